@@ -1,0 +1,1 @@
+"""Sheets of claims: read, judged, reported."""

@@ -1,0 +1,187 @@
+"""Coordinates, velocities, momenta and parameters as SymPy symbols.
+
+A coordinate is an ordinary SymPy symbol that knows the names of its rates and of its momentum, so
+``m*theta.dot**2/2`` is an ordinary SymPy expression. Velocities are independent symbols, as in
+∂L/∂q̇; :func:`time_derivative` is the d/dt that knows how they hang together.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+__all__ = [
+    "Coordinate",
+    "Momentum",
+    "Rate",
+    "acceleration",
+    "coordinates",
+    "momentum",
+    "parameters",
+    "time",
+    "time_derivative",
+    "velocity",
+    "without_dynamicsymbols",
+]
+
+time = Symbol("t", real=True)
+"""The time of every system that does not name its own."""
+
+
+class Coordinate(Symbol):
+    """A generalized coordinate: a real symbol with ``.dot``, ``.ddot`` and ``.momentum``."""
+
+    __slots__ = ()
+
+    @property
+    def dot(self) -> Rate:
+        """The generalized velocity, a symbol of its own."""
+        return velocity(self)
+
+    @property
+    def ddot(self) -> Rate:
+        """The generalized acceleration, a symbol of its own."""
+        return acceleration(self)
+
+    @property
+    def momentum(self) -> Momentum:
+        """The canonical momentum conjugate to this coordinate, named ``p_<name>``."""
+        return momentum(self)
+
+
+class Rate(Symbol):
+    """A first or second rate of a coordinate; prints as q̇ or q̈."""
+
+    __slots__ = ()
+
+    def _latex(self, printer: Any) -> str:
+        for ending, accent in (("_ddot", "ddot"), ("_dot", "dot")):
+            if self.name.endswith(ending):
+                base = printer.doprint(Symbol(self.name.removesuffix(ending)))
+                return rf"\{accent}{{{base}}}"
+        return printer.doprint(Symbol(self.name))
+
+
+class Momentum(Symbol):
+    """A canonical momentum."""
+
+    __slots__ = ()
+
+
+def coordinates(names: str, **assumptions: bool) -> tuple[Coordinate, ...]:
+    """Make generalized coordinates from their names.
+
+    Parameters
+    ----------
+    names
+        Names separated by spaces or commas.
+    **assumptions
+        SymPy assumptions such as ``positive=True``; real unless said otherwise.
+
+    Returns
+    -------
+    tuple of Coordinate
+        Always a tuple, also for a single name.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> theta, phi = coordinates("theta phi")
+    >>> theta.dot, theta.ddot, theta.momentum
+    (theta_dot, theta_ddot, p_theta)
+    """
+    return tuple(Coordinate(name, **(assumptions or {"real": True})) for name in _split(names))
+
+
+def parameters(names: str, **assumptions: bool) -> tuple[Symbol, ...]:
+    """Make parameters (masses, lengths, constants) from their names.
+
+    Parameters
+    ----------
+    names
+        Names separated by spaces or commas.
+    **assumptions
+        SymPy assumptions such as ``positive=True``; real unless said otherwise.
+
+    Returns
+    -------
+    tuple of sympy.Symbol
+        Always a tuple, also for a single name.
+
+    Examples
+    --------
+    >>> from canon import parameters
+    >>> m, l, g = parameters("m l g", positive=True)
+    >>> m.is_positive
+    True
+    """
+    return tuple(Symbol(name, **(assumptions or {"real": True})) for name in _split(names))
+
+
+def velocity(q: Symbol) -> Rate:
+    """Return the symbol for q̇."""
+    return Rate(f"{q.name}_dot", real=True)
+
+
+def acceleration(q: Symbol) -> Rate:
+    """Return the symbol for q̈."""
+    return Rate(f"{q.name}_ddot", real=True)
+
+
+def momentum(q: Symbol) -> Momentum:
+    """Return the symbol for the momentum conjugate to q, named ``p_<name>``."""
+    return Momentum(f"p_{q.name}", real=True)
+
+
+def time_derivative(f: Expr, q: Sequence[Symbol], t: Symbol = time) -> Expr:
+    """Return df/dt of f(q, q̇, t) along any motion, with q̈ where f holds q̇.
+
+    The chain rule  df/dt = Σ (∂f/∂q q̇ + ∂f/∂q̇ q̈) + ∂f/∂t.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> (x,) = coordinates("x")
+    >>> time_derivative(x * x.dot, [x])
+    x*x_ddot + x_dot**2
+    """
+    terms: list[Expr] = [f.diff(t)]
+    for s in q:
+        terms.append(f.diff(s) * velocity(s))
+        terms.append(f.diff(velocity(s)) * acceleration(s))
+    return sp.Add(*terms)
+
+
+def without_dynamicsymbols(f: Expr, functions: Mapping[Expr, Symbol], t: Symbol = time) -> Expr:
+    """Rewrite q(t), dq/dt and d²q/dt² (SymPy's dynamicsymbols) as symbols.
+
+    Parameters
+    ----------
+    f
+        Expression in applied functions of ``t`` and their derivatives.
+    functions
+        The symbol that stands for each applied function.
+    t
+        The time symbol the functions were made with.
+    """
+    replaced: Expr = f
+    for applied, symbol in functions.items():
+        replaced = replaced.xreplace(
+            {applied.diff(t, 2): acceleration(symbol), applied.diff(t): velocity(symbol)}
+        ).xreplace({applied: symbol})
+    return replaced
+
+
+def _split(names: str) -> list[str]:
+    found = names.replace(",", " ").split()
+    if not found:
+        raise ValueError("no names given: write them separated by spaces, as in coordinates('theta phi')")
+    repeated = sorted({name for name in found if found.count(name) > 1})
+    if repeated:
+        raise ValueError(f"{', '.join(repeated)} named twice; every name stands for one quantity")
+    return found

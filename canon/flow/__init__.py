@@ -1,0 +1,1 @@
+"""Motion: methods, propagation, trajectories."""

@@ -1,0 +1,1 @@
+"""Compiled numerics: from expression graphs to machine code and to heyoka."""

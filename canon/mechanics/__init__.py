@@ -1,0 +1,1 @@
+"""Symbolic mechanics: Lagrangians, Hamiltonians, brackets, transformations, generating functions."""

@@ -1,0 +1,1 @@
+"""Is this expression zero on this domain?"""

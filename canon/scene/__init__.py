@@ -1,0 +1,1 @@
+"""Ready systems, one small file a family."""

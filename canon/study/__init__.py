@@ -1,0 +1,1 @@
+"""Long runs: drift statistics, cost against accuracy."""
