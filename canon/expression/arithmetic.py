@@ -1,0 +1,137 @@
+"""The number systems an expression graph can be evaluated in."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from contextlib import AbstractContextManager
+
+__all__ = ["FLOAT64", "LONGDOUBLE", "Arithmetic", "multiprecision"]
+
+_NUMPY_NAMES = {
+    "asin": "arcsin", "acos": "arccos", "atan": "arctan", "asinh": "arcsinh", "acosh": "arccosh",
+    "atanh": "arctanh", "atan2": "arctan2", "Abs": "abs",
+}  # fmt: skip
+_FUNCTION_NAMES = (
+    "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
+    "atanh", "atan2", "Abs", "sign",
+)  # fmt: skip
+_NAMED = {
+    "pi": "3.14159265358979323846264338327950288419716939937510582",
+    "E": "2.71828182845904523536028747135266249775724709369995957",
+}
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """How exact numbers become numbers of one kind, and how functions of those are computed.
+
+    Parameters
+    ----------
+    name
+        What it is called in messages and reports.
+    digits
+        Decimal digits it works with.
+    number
+        From an exact rational number.
+    named
+        From ``"pi"`` or ``"E"``.
+    root
+        The square root.
+    functions
+        The elementary functions by their SymPy names.
+    """
+
+    name: str
+    digits: float
+    number: Callable[[Fraction], Any]
+    named: Callable[[str], Any]
+    root: Callable[[Any], Any]
+    functions: Mapping[str, Callable[..., Any]]
+
+    def power(self, base: Any, exponent: Any) -> Any:
+        """Return base**exponent: products for whole exponents, a square root for halves."""
+        if not isinstance(exponent, Fraction):
+            return base**exponent
+        if exponent.denominator == 1:
+            return base**exponent.numerator if exponent > 0 else 1 / base**-exponent.numerator
+        if exponent.denominator == 2:
+            return self.power(self.root(base), exponent * 2)
+        return base ** self.number(exponent)
+
+    def quiet(self) -> AbstractContextManager[Any]:
+        """Keep NumPy from warning where a value leaves a function's domain: it returns NaN or inf."""
+        return np.errstate(all="ignore")
+
+
+def _numpy(dtype: type[np.floating[Any]]) -> Arithmetic:
+    def number(value: Fraction) -> Any:
+        top, bottom = dtype(value.numerator), dtype(value.denominator)
+        if int(top) == value.numerator and int(bottom) == value.denominator:
+            return top / bottom
+        # Too long for the type: round the quotient once, from more digits than the type holds.
+        shift = max(0, 80 - abs(value.numerator).bit_length() + value.denominator.bit_length())
+        return np.ldexp(dtype(str((value.numerator << shift) // value.denominator)), -shift)
+
+    def named(name: str) -> Any:
+        return dtype(_NAMED[name])
+
+    functions = {name: getattr(np, _NUMPY_NAMES.get(name, name)) for name in _FUNCTION_NAMES}
+    return Arithmetic(
+        name=np.dtype(dtype).name,
+        digits=np.finfo(dtype).precision,
+        number=number,
+        named=named,
+        root=np.sqrt,
+        functions=functions,
+    )
+
+
+FLOAT64 = _numpy(np.float64)
+"""IEEE double precision, scalars or arrays."""
+
+LONGDOUBLE = _numpy(np.longdouble)
+"""The platform's ``long double``: 64-bit mantissa on x86, no wider than a double on some others."""
+
+
+@contextlib.contextmanager
+def _nothing() -> Any:
+    yield
+
+
+def multiprecision(digits: int) -> Arithmetic:
+    """Return arithmetic with mpmath numbers of so many digits (scalars only).
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> print(multiprecision(30).number(Fraction(1, 3)))
+    0.333333333333333333333333333333
+    """
+    from mpmath import MPContext
+
+    context = MPContext()
+    context.dps = digits
+
+    def number(value: Fraction) -> Any:
+        return context.mpf(value.numerator) / value.denominator
+
+    def named(name: str) -> Any:
+        return +context.pi if name == "pi" else +context.e
+
+    functions = {name: getattr(context, name) for name in _FUNCTION_NAMES if name not in ("Abs",)}
+    return Arithmetic(
+        name=f"{digits} digits",
+        digits=digits,
+        number=number,
+        named=named,
+        root=context.sqrt,
+        functions={**functions, "Abs": abs},
+    )
