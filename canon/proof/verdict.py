@@ -188,7 +188,12 @@ def all_hold(verdicts: Iterable[Verdict], question: str = "") -> Verdict:
             open_ = open_ or verdict
         elif verdict.certificate:
             certificates[verdict.certificate] = None
-    common = {"question": question, "assumed": tuple(assumed), "evidence": tuple(evidence), "seconds": seconds}
+    common = {
+        "question": question,
+        "assumed": tuple(assumed),
+        "evidence": tuple(evidence),
+        "seconds": seconds,
+    }
     if open_ is not None:
         return replace(open_, **{**common, "question": question or open_.question})
     return Verdict(Status.HOLDS, certificate=" + ".join(certificates) or "exact", **common)

@@ -1,0 +1,300 @@
+"""A tower of generators: fractions of polynomials with triangular relations.
+
+Every generator is a symbol or a kernel (a cosine, a sine, a root …); a relation replaces a power of a
+generator by a polynomial in earlier ones, as s² = 1 − c². A fraction keeps its denominator as a product of
+powers of numbered bases, so sums need no polynomial gcd. A numerator that reduces to zero proves that the
+expression vanishes wherever it is defined, because every relation holds wherever its kernel is defined.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Iterable
+
+__all__ = ["Fraction", "OutOfTime", "TooLarge", "Tower"]
+
+LARGEST_PRODUCT = 3_000_000
+"""Term products that are multiplied out at most in one step (about a second)."""
+
+FACTORED_UP_TO = 60
+"""Terms of a denominator that is still factored; larger ones are kept whole."""
+
+
+class TooLarge(Exception):
+    """The normal form would not fit."""
+
+
+class OutOfTime(Exception):
+    """The deadline has passed."""
+
+
+@dataclass(frozen=True)
+class Fraction:
+    """A numerator over a product of numbered bases: ``num / Π base[i]**e``."""
+
+    num: fmpq_mpoly
+    den: tuple[tuple[int, int], ...] = ()
+
+
+class Tower:
+    """Generators, their relations, and the arithmetic of fractions over them.
+
+    Parameters
+    ----------
+    deadline
+        Value of :func:`time.monotonic` after which arithmetic raises :class:`OutOfTime`.
+    """
+
+    def __init__(self, deadline: float = float("inf")) -> None:
+        self.deadline = deadline
+        self.generators: list[Any] = []
+        self._index: dict[Hashable, int] = {}
+        self._relations: dict[int, tuple[int, fmpq_mpoly]] = {}
+        self._bases: list[fmpq_mpoly] = []
+        self._base_index: dict[Hashable, int] = {}
+        self._capacity = 0
+        self._grow(12)
+
+    # -- generators ------------------------------------------------------------------------------
+
+    def _grow(self, capacity: int) -> None:
+        names = tuple(f"g{k}" for k in reversed(range(capacity)))
+        self._ctx = fmpq_mpoly_ctx.get(names, Ordering.lex)
+        self._capacity = capacity
+        self._gens = list(reversed(self._ctx.gens()))
+
+    def _lift(self, p: fmpq_mpoly) -> fmpq_mpoly:
+        return p if p.context() is self._ctx else p.project_to_context(self._ctx)
+
+    def generator(self, kernel: Hashable) -> int:
+        """Return the number of the generator that stands for ``kernel``."""
+        found = self._index.get(kernel)
+        if found is None:
+            found = self._index[kernel] = len(self.generators)
+            self.generators.append(kernel)
+            if found >= self._capacity:
+                self._grow(2 * self._capacity)
+        return found
+
+    def knows(self, kernel: Hashable) -> bool:
+        """Tell whether ``kernel`` already is a generator."""
+        return kernel in self._index
+
+    def relate(self, generator: int, degree: int, power: fmpq_mpoly) -> None:
+        """Declare generator**degree = power, a polynomial in earlier generators."""
+        self._relations[generator] = (degree, power)
+
+    def relation(self, generator: int) -> tuple[int, fmpq_mpoly] | None:
+        """Return the relation of a generator, if it has one."""
+        found = self._relations.get(generator)
+        return None if found is None else (found[0], self._lift(found[1]))
+
+    # -- polynomials -----------------------------------------------------------------------------
+
+    def constant(self, number: Any) -> fmpq_mpoly:
+        """Return a rational number as a polynomial."""
+        return self._ctx.constant(number)
+
+    def monomial(self, generator: int, power: int = 1) -> fmpq_mpoly:
+        """Return a power of one generator."""
+        return self._gens[generator] ** power
+
+    def terms(self, p: fmpq_mpoly) -> list[tuple[tuple[tuple[int, int], ...], fmpq]]:
+        """Return the terms of ``p`` as (((generator, exponent), …), coefficient)."""
+        last = p.context().nvars() - 1
+        return [
+            (tuple((last - k, int(e)) for k, e in enumerate(exponents) if e)[::-1], coefficient)
+            for exponents, coefficient in p.terms()
+        ]
+
+    def key(self, p: fmpq_mpoly) -> Hashable:
+        """Return a hashable value equal exactly for equal polynomials, in kernels rather than numbers."""
+        return frozenset(
+            (frozenset((self.generators[k], e) for k, e in m), int(c.p), int(c.q)) for m, c in self.terms(p)
+        )
+
+    def used(self, p: fmpq_mpoly) -> list[int]:
+        """Return the generators that occur in ``p``, ascending."""
+        degrees = p.degrees()
+        last = len(degrees) - 1
+        return sorted(last - k for k, d in enumerate(degrees) if d > 0)
+
+    def reduce(self, p: fmpq_mpoly) -> fmpq_mpoly:
+        """Replace every power that a relation covers, highest generator first."""
+        p = self._lift(p)
+        if not self._relations or p.is_constant():
+            return p
+        last = self._capacity - 1
+        degrees = p.degrees()
+        for k in sorted(self._relations, reverse=True):
+            degree, power = self._relations[k]
+            if degrees[last - k] >= degree:
+                self.check_time()
+                p = divmod(p, self._gens[k] ** degree - self._lift(power))[1]
+                if p.is_zero():
+                    return p
+                degrees = p.degrees()
+        return p
+
+    def product(self, a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:
+        """Multiply and reduce, after checking time and size."""
+        a, b = self._lift(a), self._lift(b)
+        if len(a) * len(b) > LARGEST_PRODUCT:
+            raise TooLarge(f"a product of {len(a)} by {len(b)} terms")
+        self.check_time()
+        return self.reduce(a * b)
+
+    def polynomial_power(self, p: fmpq_mpoly, n: int) -> fmpq_mpoly:
+        """Return p**n for n ≥ 0."""
+        if len(p) == 1:
+            return self.reduce(self._lift(p) ** n)
+        total = self.constant(1)
+        square = p
+        while n:
+            if n & 1:
+                total = self.product(total, square)
+            n >>= 1
+            if n:
+                square = self.product(square, square)
+        return total
+
+    def check_time(self) -> None:
+        """Raise :class:`OutOfTime` when the deadline has passed."""
+        if time.monotonic() > self.deadline:
+            raise OutOfTime
+
+    # -- fractions -------------------------------------------------------------------------------
+
+    def number(self, value: Any) -> Fraction:
+        """Return a rational number as a fraction."""
+        return Fraction(self.constant(value))
+
+    def symbol(self, kernel: Hashable, power: int = 1) -> Fraction:
+        """Return a power of the generator for ``kernel`` as a fraction."""
+        index = self.generator(kernel)
+        if power >= 0:
+            return Fraction(self.reduce(self.monomial(index, power)))
+        return self.reciprocal(Fraction(self.monomial(index, -power)))
+
+    def base(self, i: int) -> fmpq_mpoly:
+        """Return denominator base ``i``."""
+        return self._lift(self._bases[i])
+
+    def _number_base(self, p: fmpq_mpoly) -> int:
+        key = self.key(p)
+        found = self._base_index.get(key)
+        if found is None:
+            found = self._base_index[key] = len(self._bases)
+            self._bases.append(p)
+        return found
+
+    def sum(self, terms: Iterable[Fraction]) -> Fraction:
+        """Add fractions over the least common product of bases."""
+        groups: dict[tuple[tuple[int, int], ...], fmpq_mpoly] = {}
+        for term in terms:
+            before = groups.get(term.den)
+            num = self._lift(term.num)
+            groups[term.den] = num if before is None else self._lift(before) + num
+        groups = {den: num for den, num in groups.items() if not num.is_zero()}
+        if not groups:
+            return self.number(0)
+        common: dict[int, int] = {}
+        for den in groups:
+            for i, e in den:
+                common[i] = max(common.get(i, 0), e)
+        total = self.constant(0)
+        for den, num in groups.items():
+            have = dict(den)
+            for i, e in common.items():
+                missing = e - have.get(i, 0)
+                if missing:
+                    num = self.product(num, self.polynomial_power(self.base(i), missing))
+            total = self._lift(total) + self._lift(num)
+        return self._cancelled(total, common)
+
+    def times(self, *factors: Fraction) -> Fraction:
+        """Multiply fractions, smallest numerators first."""
+        num = self.constant(1)
+        den: dict[int, int] = {}
+        for factor in sorted(factors, key=lambda f: len(f.num)):
+            num = self.product(num, factor.num)
+            for i, e in factor.den:
+                den[i] = den.get(i, 0) + e
+        return self._cancelled(num, den)
+
+    def _cancelled(self, num: fmpq_mpoly, den: dict[int, int]) -> Fraction:
+        if num.is_zero():
+            return Fraction(num)
+        num = self._lift(num)
+        left: list[tuple[int, int]] = []
+        for i, e in sorted(den.items()):
+            base = self.base(i)
+            while e > 0 and len(base) <= len(num) <= 2000:
+                quotient, remainder = divmod(num, base)
+                if not remainder.is_zero():
+                    break
+                num, e = quotient, e - 1
+            if e > 0:
+                left.append((i, e))
+        return Fraction(num, tuple(left))
+
+    def reciprocal(self, f: Fraction) -> Fraction:
+        """Return 1/f.
+
+        Raises
+        ------
+        ZeroDivisionError
+            If ``f`` reduces to zero: the expression is then defined nowhere.
+        """
+        num = self.reduce(f.num)
+        if num.is_zero():
+            raise ZeroDivisionError("a denominator vanishes identically")
+        upper = self.constant(1)
+        for i, e in f.den:
+            upper = self.product(upper, self.polynomial_power(self.base(i), e))
+        if len(num) <= FACTORED_UP_TO:
+            unit, factors = num.factor()
+        else:
+            unit, factors = fmpq(1), [(num, 1)]
+        den: dict[int, int] = {}
+        upper = upper * self.constant(fmpq(1) / unit)
+        for factor, e in factors:
+            multiplier, base = self._rational_base(factor)
+            upper = self.product(upper, self.polynomial_power(multiplier, int(e)))
+            if not base.is_constant():
+                i = self._number_base(base)
+                den[i] = den.get(i, 0) + int(e)
+            else:
+                upper = upper * self.constant(fmpq(1) / base.leading_coefficient() ** int(e))
+        return self._cancelled(upper, den)
+
+    def _rational_base(self, p: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
+        """Rewrite 1/p as (multiplier, base) when p is one root ρ with ρⁿ = R: 1/ρ = ρⁿ⁻¹/R."""
+        if len(p) == 1:
+            (k,) = self.used(p)
+            relation = self.relation(k)
+            if relation is not None and len(relation[1]) == 1:
+                return self.monomial(k, relation[0] - 1), self.reduce(relation[1])
+        return self.constant(1), p
+
+    def power(self, f: Fraction, n: int) -> Fraction:
+        """Return f**n for an integer n."""
+        if n < 0:
+            return self.power(self.reciprocal(f), -n)
+        if n == 0:
+            return self.number(1)
+        return self._cancelled(self.polynomial_power(f.num, n), {i: e * n for i, e in f.den})
+
+    def is_zero(self, f: Fraction) -> bool:
+        """Tell whether the numerator reduces to zero."""
+        return self.reduce(f.num).is_zero()
+
+    def canonical(self, f: Fraction) -> Fraction:
+        """Return ``f`` with the common factors of numerator and denominator cancelled."""
+        return self._cancelled(self.reduce(f.num), dict(f.den))

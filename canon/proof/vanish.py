@@ -1,0 +1,181 @@
+"""Zero or not: proofs, certified refutations, and an honest "undecided".
+
+The ladder: a few balls, the normal form, then more balls at more precision. A verdict HOLDS only where
+the normal form is zero, and FAILS only where balls exclude zero at an exact point of the domain.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.proof.domain import EVERYWHERE, Domain
+from canon.proof.normal_form import NormalForm, Refine
+from canon.proof.refute import Search, look_for_counterexample
+from canon.proof.tower import OutOfTime, TooLarge
+from canon.proof.verdict import Evidence, Status, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from sympy import Expr
+
+__all__ = ["equal", "vanishes"]
+
+
+def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: float = 10.0) -> Verdict:
+    """Decide whether an expression, or every entry of a matrix, is zero on a domain.
+
+    Symbols are real unless declared complex. The claim is about every point of the domain where the
+    expression is defined.
+
+    Parameters
+    ----------
+    expr
+        SymPy expression or matrix.
+    domain
+        Conditions beside the symbols' own assumptions, and a box to draw points from.
+    budget
+        Seconds.
+
+    Returns
+    -------
+    Verdict
+        HOLDS with the certificate ``exact``, FAILS with ``ball`` and a counterexample, or UNDECIDED.
+
+    Examples
+    --------
+    >>> from sympy import sin, cos, symbols
+    >>> x = symbols("x")
+    >>> vanishes(sin(x) ** 2 + cos(x) ** 2 - 1).status
+    <Status.HOLDS: 'holds'>
+    """
+    start = time.monotonic()
+    if isinstance(expr, sp.MatrixBase):
+        return _matrix_vanishes(expr, domain, start, budget)
+    verdict = _decide(_exact(expr), sp.Integer(0), domain, start + budget)
+    return replace(verdict, seconds=time.monotonic() - start)
+
+
+def equal(
+    a: Expr | sp.MatrixBase, b: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: float = 10.0
+) -> Verdict:
+    """Decide whether two expressions, or two matrices of one shape, are equal on a domain.
+
+    Parameters
+    ----------
+    a, b
+        SymPy expressions or matrices.
+    domain, budget
+        As for :func:`vanishes`.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x = symbols("x")
+    >>> print(equal((x + 1)**2, x**2 + 1).status.value)
+    fails
+    """
+    start = time.monotonic()
+    if isinstance(a, sp.MatrixBase) and isinstance(b, sp.MatrixBase):
+        if a.shape != b.shape:
+            raise ValueError(f"matrices of shapes {a.shape} and {b.shape} cannot be compared entry by entry")
+        return _matrix_vanishes(a - b, domain, start, budget)
+    verdict = _decide(_exact(a), _exact(b), domain, start + budget)
+    return replace(verdict, seconds=time.monotonic() - start)
+
+
+def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget: float) -> Verdict:
+    """Decide entry by entry, equal entries once; the first entry that fails decides."""
+    places: dict[Expr, tuple[int, int]] = {}
+    for i in range(matrix.rows):
+        for j in range(matrix.cols):
+            if matrix[i, j] != 0:
+                places.setdefault(matrix[i, j], (i, j))
+    evidence: list[Evidence] = []
+    undecided: Verdict | None = None
+    for entry, (i, j) in places.items():
+        verdict = _decide(entry, sp.Integer(0), domain, start + budget)
+        seconds = time.monotonic() - start
+        if verdict.fails:
+            return replace(verdict, feedback=f"entry ({i}, {j}) does not vanish", seconds=seconds)
+        if verdict.undecided:
+            undecided = undecided or replace(verdict, feedback=f"entry ({i}, {j}) was not decided")
+            evidence.extend(verdict.evidence)
+    seconds = time.monotonic() - start
+    if undecided is not None:
+        return replace(undecided, evidence=tuple(evidence), seconds=seconds)
+    return Verdict(Status.HOLDS, certificate="exact", seconds=seconds)
+
+
+def _exact(expr: object) -> Expr:
+    """Return an expression without floating-point numbers, which would absorb small terms."""
+    if isinstance(expr, int):
+        return sp.Integer(expr)
+    if not isinstance(expr, sp.Expr):
+        raise TypeError(f"an expression is needed, not {type(expr).__name__}: {expr!r}")
+    floats = expr.atoms(sp.Float)
+    if floats:
+        raise ValueError(
+            f"{min(floats, key=str)} is a rounded number and nothing exact can be said of it; "
+            "write it as a fraction, such as Rational('0.1') or Rational(1, 10)"
+        )
+    return expr
+
+
+def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
+    search = look_for_counterexample(left, right, domain, points=3, highest=64, deadline=deadline)
+    if search.counterexample is None:
+        proof = _prove(left - right, domain, deadline)
+        if proof.holds:
+            return proof
+        search = Search()
+        for special in (False, True):
+            look_for_counterexample(
+                left,
+                right,
+                domain,
+                points=24,
+                highest=3200,
+                deadline=deadline,
+                special=special,
+                seed=1,
+                search=search,
+            )
+            if search.counterexample is not None:
+                break
+        else:
+            return replace(proof, residual=left - right, evidence=(*proof.evidence, *_known(search)))
+    return Verdict(
+        Status.FAILS, certificate="ball", counterexample=search.counterexample, residual=left - right
+    )
+
+
+def _known(search: Search) -> tuple[Evidence, ...]:
+    known = [Evidence("balls", search.known)]
+    if search.apart_where_not_real:
+        known.append(
+            Evidence("not real", f"the sides differ where one is not real: {search.apart_where_not_real}")
+        )
+    return tuple(known)
+
+
+def _prove(expr: Expr, domain: Domain, deadline: float) -> Verdict:
+    """Reduce to the normal form, refining the kernels until every argument is a whole multiple."""
+    parts: dict[Hashable, int] = {}
+    for _ in range(20):
+        try:
+            forms = NormalForm(domain, parts, deadline)
+            if forms.tower.is_zero(forms.form(expr)):
+                return Verdict(Status.HOLDS, certificate="exact")
+            return Verdict(Status.UNDECIDED, evidence=(Evidence("normal form", "not zero"),))
+        except Refine:
+            continue
+        except OutOfTime:
+            return Verdict(Status.UNDECIDED, evidence=(Evidence("normal form", "not finished in time"),))
+        except (TooLarge, ZeroDivisionError) as reason:
+            return Verdict(Status.UNDECIDED, evidence=(Evidence("normal form", str(reason)),))
+    return Verdict(Status.UNDECIDED, evidence=(Evidence("normal form", "arguments without a common part"),))
