@@ -1,0 +1,109 @@
+"""What must vanish for a map to be canonical, as Poisson, Lagrange, matrices, δ and d, and contact say it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr
+
+from canon.mechanics.bilinear import canonical_covariant, curl, displacements
+from canon.mechanics.bracket import symplectic_unit
+from canon.mechanics.substitution import entry
+from canon.proof.verdict import Evidence, Status, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from canon.mechanics.transformation import CanonicalTransformation, Test
+
+__all__ = ["disagreement", "residuals"]
+
+
+def residuals(T: CanonicalTransformation, by: Test, c: Expr) -> Iterator[tuple[str, Expr]]:
+    """Yield what is asked, in the words of the test, and the expression that must vanish."""
+    match by:
+        case "poisson":
+            return _brackets(T.poisson_brackets, _names(T, "QP"), c, "{{{}, {}}}")
+        case "lagrange":
+            return _brackets(T.lagrange_brackets, [str(z) for z in T.variables], c, "[{}, {}]")
+        case "symplectic":
+            J = symplectic_unit(len(T.q))
+            return _entries(T.jacobian * J * T.jacobian.T - c * J)
+        case "bilinear":
+            return _coefficients(T, c)
+        case "contact":
+            return _exactness(T, c)
+    raise ValueError(
+        f"no test is called {by!r}; choose poisson, lagrange, symplectic, bilinear, contact or all"
+    )
+
+
+def disagreement(verdicts: Mapping[str, Verdict]) -> Verdict:
+    """Return the verdict that all tests share; UNDECIDED, naming them, where two contradict each other."""
+    evidence = tuple(
+        Evidence(
+            f"{test} test",
+            f"{v.status.name} in {v.seconds:.3f} s" + (f", {v.certificate}" if v.certificate else ""),
+        )
+        for test, v in verdicts.items()
+    )
+    seconds = sum(v.seconds for v in verdicts.values())
+    holding = [v for v in verdicts.values() if v.holds]
+    failing = [v for v in verdicts.values() if v.fails]
+    question = "the map is canonical"
+    if holding and failing:
+        return Verdict(
+            Status.UNDECIDED,
+            question,
+            evidence=evidence,
+            seconds=seconds,
+            feedback="the tests disagree, which cannot be: please report this map as a fault of canon",
+        )
+    agreed = (failing or holding or list(verdicts.values()))[0]
+    return replace(agreed, evidence=evidence, seconds=seconds)
+
+
+def _brackets(matrix: sp.MatrixBase, names: list[str], c: Expr, written: str) -> Iterator[tuple[str, Expr]]:
+    n = len(names) // 2
+    for i in range(2 * n):
+        for j in range(i + 1, 2 * n):
+            due = c if j == i + n else sp.S.Zero
+            yield f"{written.format(names[i], names[j])} = {due}", entry(matrix, i, j) - due
+
+
+def _entries(matrix: sp.MatrixBase) -> Iterator[tuple[str, Expr]]:
+    for i in range(matrix.rows):
+        for j in range(i + 1, matrix.cols):
+            yield f"(M J Mᵀ − c J)[{i + 1}, {j + 1}] = 0", entry(matrix, i, j)
+
+
+def _coefficients(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]]:
+    """Yield the coefficients of δa db in Σ(δP dQ − dP δQ) − c Σ(δp dq − dp δq)."""
+    d, delta = displacements(T.variables)
+    n = len(T.q)
+    covariant = canonical_covariant(T.Q, T.P, T.variables)
+    for i in range(2 * n):
+        for j in range(i + 1, 2 * n):
+            due = c if j == i + n else sp.S.Zero
+            yield (
+                f"the coefficient of {delta[j]}*{d[i]} is {due}",
+                covariant.diff(delta[j]).diff(d[i]) - due,
+            )
+
+
+def _exactness(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]]:
+    rotation = curl(T.contact_form(c), T.variables)
+    z = T.variables
+    for i in range(len(z)):
+        for j in range(i + 1, len(z)):
+            yield (
+                f"the coefficients of d{z[i]} and d{z[j]} in p dq − P dQ have equal cross derivatives",
+                entry(rotation, i, j),
+            )
+
+
+def _names(T: CanonicalTransformation, letters: str) -> list[str]:
+    n = len(T.q)
+    return [f"{letter}{'' if n == 1 else i + 1}" for letter in letters for i in range(n)]

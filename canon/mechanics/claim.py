@@ -1,0 +1,76 @@
+"""Claims that consist of many expressions, each of which must vanish."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from canon.proof.domain import Domain
+from canon.proof.vanish import vanishes
+from canon.proof.verdict import Evidence, Status, Verdict, all_hold
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from sympy import Expr
+
+__all__ = ["all_vanish", "differ"]
+
+
+def all_vanish(
+    claims: Iterable[tuple[str, Expr]], question: str, domain: Domain | None = None, budget: float = 10.0
+) -> Verdict:
+    """Tell whether all of these expressions vanish, within one budget of time.
+
+    Parameters
+    ----------
+    claims
+        Pairs of what is asked, in words, and the expression that should vanish.
+    question
+        The whole claim, in words.
+    domain
+        Where it is meant.
+    budget
+        Seconds for all of them together.
+
+    Returns
+    -------
+    Verdict
+        The first claim that fails gives the residual, the counterexample and is named in the feedback.
+    """
+    domain = domain or Domain()
+    end = clock.monotonic() + budget
+
+    def verdicts() -> Iterator[Verdict]:
+        for part, expression in claims:
+            if expression == 0:
+                continue
+            left = end - clock.monotonic()
+            if left <= 0:
+                yield Verdict(
+                    Status.UNDECIDED,
+                    part,
+                    evidence=(Evidence("budget", f"{budget} s were spent before {part}"),),
+                )
+                return
+            verdict = vanishes(expression, domain, left)
+            if verdict.holds:
+                yield verdict
+                continue
+            yield replace(
+                verdict,
+                question=part,
+                residual=expression,
+                feedback=verdict.feedback or (f"not so: {part}" if verdict.fails else ""),
+            )
+
+    verdict = all_hold(verdicts(), question)
+    return replace(verdict, certificate=verdict.certificate or "exact") if verdict.holds else verdict
+
+
+def differ(expression: Expr, domain: Domain | None = None) -> bool:
+    """Whether an expression certainly does not vanish identically on the domain."""
+    if expression.is_Rational:
+        return bool(expression != 0)
+    return vanishes(expression, domain or Domain()).fails

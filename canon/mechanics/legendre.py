@@ -1,0 +1,196 @@
+"""Eliminating velocities for momenta, or momenta for velocities, in f(x) ↦ Σ x y − f, y = ∂f/∂x."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.mechanics.linear import SingularMatrixError, eliminate, is_regular, solve
+from canon.mechanics.substitution import entry, exchanged, substitute
+from canon.proof.vanish import vanishes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from canon.mechanics.lagrangian import Lagrangian
+    from canon.proof.domain import Domain
+
+__all__ = ["LegendreError", "eliminate_velocities", "legendre_residual"]
+
+
+class LegendreError(ValueError):
+    """Legendre's transformation does not exist, or not in closed form.
+
+    Parameters
+    ----------
+    message
+        What was wrong and what to do instead.
+    null_direction
+        The direction in the velocities along which the Hessian is singular, where that is the reason.
+    """
+
+    def __init__(self, message: str, null_direction: tuple[Expr, ...] | None = None) -> None:
+        super().__init__(message)
+        self.null_direction = null_direction
+
+
+def eliminate_velocities(
+    f: Expr, old: Sequence[Symbol], new: Sequence[Symbol], domain: Domain, name: str, what: str
+) -> Expr:
+    """Return Σ old·new − f as a function of ``new`` = ∂f/∂``old``.
+
+    Parameters
+    ----------
+    f
+        L with its velocities, or H with its momenta.
+    old, new
+        The variables to be eliminated and the ones that replace them.
+    domain
+        Where f is meant; it may decide between branches.
+    name, what
+        ``"L"`` and ``"velocities"``, or ``"H"`` and ``"momenta"``, for messages.
+
+    Raises
+    ------
+    LegendreError
+        Where the Hessian is singular, or the old variables have no closed form.
+    """
+    gradient = [f.diff(x) for x in old]
+    hessian = sp.Matrix([[g.diff(x) for x in old] for g in gradient])
+    quadratic = not hessian.has(*old)
+    try:
+        transformed = (
+            _of_quadratic(f, gradient, hessian, old, new, domain)
+            if quadratic
+            else _of_nonlinear(f, gradient, hessian, old, new, domain)
+        )
+    except SingularMatrixError as singular:
+        raise LegendreError(
+            f"the Hessian of {name} in its {what} ({', '.join(map(str, old))}) is singular along "
+            f"({', '.join(map(str, singular.null_direction))}), so these {what} cannot be eliminated. Remove "
+            "the redundant coordinate, or treat the relation among the momenta as a constraint (Dirac)",
+            singular.null_direction,
+        ) from singular
+    if transformed is None:
+        raise LegendreError(
+            f"the {what} ({', '.join(map(str, old))}) could not be found in closed form on this "
+            "domain; narrow it with conditions that choose the branch, or check a Hamiltonian you have with "
+            "is_hamiltonian_of"
+        )
+    return transformed
+
+
+def legendre_residual(lagrangian: Lagrangian, H: Expr, p: Sequence[Symbol]) -> Expr:
+    """Return H(q, ∂L/∂q̇, t) − (Σ p q̇ − L), which vanishes where H is the Hamiltonian of L."""
+    return substitute(H, dict(zip(p, lagrangian.momenta, strict=True))) - lagrangian.jacobi_energy
+
+
+def _of_quadratic(
+    f: Expr,
+    gradient: Sequence[Expr],
+    hessian: sp.Matrix,
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    domain: Domain,
+) -> Expr:
+    """½ wᵀ M⁻¹ w − f(0), w = y − ∂f/∂x at x = 0: through M = L D Lᵀ a sum of squares Σ (L⁻¹w)²/2D."""
+    at_rest = dict.fromkeys(old, sp.S.Zero)
+    w = [y - exchanged(g, at_rest) for y, g in zip(new, gradient, strict=True)]
+    eliminated = eliminate(hessian, sp.Matrix(w), domain)
+    if eliminated.null_direction is not None:
+        raise SingularMatrixError("the Hessian is singular", eliminated.null_direction)
+    if eliminated.order == tuple(range(len(old))):
+        squares = [
+            sp.factor_terms(row[-1]) ** 2 / (2 * sp.factor_terms(row[i]))
+            for i, row in enumerate(eliminated.rows)
+        ]
+        return sp.Add(*squares, -exchanged(f, at_rest))
+    values = [row[0] for row in eliminated.back_substituted()]
+    return sp.Add(*(v * b / 2 for v, b in zip(values, w, strict=True)), -exchanged(f, at_rest))
+
+
+def _of_nonlinear(
+    f: Expr,
+    gradient: Sequence[Expr],
+    hessian: sp.Matrix,
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    domain: Domain,
+) -> Expr | None:
+    """Transform by a candidate x(y) with x(∂f/∂x) = x proved; None where there is none."""
+    if is_regular(hessian, domain).fails:
+        solve(hessian, sp.zeros(len(old), 1), domain)
+    there = dict(zip(new, gradient, strict=True))
+    for values in _candidates(gradient, old, new):
+        if all(
+            vanishes(substitute(value, there) - x, domain).holds for value, x in zip(values, old, strict=True)
+        ):
+            return _tidied(f, old, new, values)
+    return None
+
+
+def _tidied(f: Expr, old: Sequence[Symbol], new: Sequence[Symbol], values: Sequence[Expr]) -> Expr:
+    """Σ x y − f over one denominator in what depends on y, so that √ of the same radicand meet and cancel."""
+    replaced = substitute(f, dict(zip(old, values, strict=True)))
+    plain, moving = sp.Add(*(x * y for x, y in zip(values, new, strict=True)), -replaced).as_independent(*new)
+    return plain + sp.factor(moving)
+
+
+def _candidates(
+    gradient: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol]
+) -> Iterator[tuple[Expr, ...]]:
+    """Solutions of y = ∂f/∂x that treat one common radical r(x) as an unknown of its own.
+
+    With r held fixed the equations are often linear in x (relativistic momenta are m x / r); the definition
+    of r then is one equation in r.
+    """
+    radicals = {e for g in gradient for e in g.atoms(sp.Pow) if not _exponent(e).is_Integer and e.has(*old)}
+    if not radicals and len(old) == 1:
+        for root in _roots(sp.numer(sp.together(gradient[0] - new[0])), old[0]):
+            yield (root,)
+    bases = {e.as_base_exp()[0] for e in radicals}
+    if len(bases) != 1 or any((2 * _exponent(e)).is_Integer is not True for e in radicals):
+        return
+    (base,) = bases
+    r = sp.Dummy("r", positive=True)
+    frozen = [exchanged(g, {e: r ** (2 * _exponent(e)) for e in radicals}) for g in gradient]
+    slopes = sp.Matrix([[g.diff(x) for x in old] for g in frozen])
+    if slopes.has(*old):
+        return
+    at_rest = dict.fromkeys(old, sp.S.Zero)
+    right = sp.Matrix([y - exchanged(g, at_rest) for g, y in zip(frozen, new, strict=True)])
+    column = solve(slopes, right)
+    values = [entry(column, i, 0) for i in range(len(old))]
+    defining = sp.together(r**2 - exchanged(base, dict(zip(old, values, strict=True))))
+    for root in _roots(sp.numer(defining), r):
+        yield tuple(exchanged(value, {r: root}) for value in values)
+
+
+def _exponent(power: sp.Pow) -> Expr:
+    return power.as_base_exp()[1]
+
+
+def _roots(equation: Expr, unknown: Symbol) -> list[Expr]:
+    """Roots of a polynomial equation by its factors of degree at most two."""
+    if not equation.is_polynomial(unknown):
+        return []
+    roots: list[Expr] = []
+    for factor, _ in sp.factor_list(equation, unknown)[1]:
+        coefficients = sp.Poly(factor, unknown).all_coeffs()
+        if len(coefficients) == 2:
+            roots.append(-coefficients[1] / coefficients[0])
+        elif len(coefficients) == 3:
+            a, b, c = coefficients
+            if b == 0:
+                discriminant, first = sp.sqrt(sp.cancel(-c / a)), sp.S.Zero
+            else:
+                discriminant, first = sp.sqrt(b**2 - 4 * a * c) / (2 * a), -b / (2 * a)
+            roots += [first + discriminant, first - discriminant]
+        elif all(k == 0 for k in coefficients[1:-1]):
+            degree = len(coefficients) - 1
+            root = sp.cancel(-coefficients[-1] / coefficients[0])
+            roots.append(sp.Pow(root, sp.Rational(1, degree)))
+            roots.append(-sp.Pow(root, sp.Rational(1, degree)))
+    return roots
