@@ -1,0 +1,171 @@
+"""Tests and estimates on block means: is there a slope, does the level wander, and with which power of time.
+
+Every estimate weighs the increments of the block means with a covariance that allows for a random walk, because a straight
+line fitted to a random walk by least squares is "significant" most of the time (Durlauf & Phillips, Econometrica 56, 1333
+(1988), doi:10.2307/1913101). How much walk there is beside the scatter is not known: the slope is averaged over it, with
+half of the prior weight on nothing but walk. Newey–West errors are the usual alternative; they need a bandwidth, and are too
+small by an unbounded factor for a walk.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.stats import t as student
+
+from canon.study.block import PLACES, WIDTH, bump, window_starts
+from canon.study.noise import Family, Fit, fit, fractional, local_level, wandering
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+__all__ = ["Exponent", "Slope", "Walk", "power_of_time", "power_of_wandering", "slope_of", "walk_of"]
+
+PURE_WALK_WEIGHT = 0.5
+"""Prior weight of "nothing but walk"; the other half is spread evenly over the logarithm of the ratio."""
+
+LIKELIHOOD_DROP = 2.1
+"""Half of the 95 % quantile of a likelihood ratio with one parameter and about 30 degrees of freedom."""
+
+DETECTED = 0.95
+"""Probability with which a slope as large as the detection limit is found."""
+
+
+@dataclass(frozen=True)
+class Slope:
+    """A slope per block, its standard error, and how probable one as large is without any drift."""
+
+    value: float
+    error: float
+    probability: float
+    detection_limit: float
+
+
+@dataclass(frozen=True)
+class Walk:
+    """Twice the log-likelihood ratio for a walk, and the root-mean-square distance it covers over the run."""
+
+    evidence: float
+    size: float
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """An exponent and its 95 % confidence interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+def slope_of(means: Array, false_alarm: float) -> Slope:
+    """Return the slope per block of block means that scatter, wander, or both.
+
+    The probability is twice the two-sided one of the mixture: with the factor it is honest for every ratio of
+    walk to scatter (benchmarks/drift_calibration.py).
+
+    Parameters
+    ----------
+    means
+        Block means, shape (blocks,).
+    false_alarm
+        Probability of a slope below which one is said to be there; sets the detection limit.
+    """
+    family = local_level(means.size)
+    found = _fit(means, family)
+    prior = np.full(family.ratio.size, (1.0 - PURE_WALK_WEIGHT) / (family.ratio.size - 1))
+    prior[-1] = PURE_WALK_WEIGHT
+    posterior = prior * np.exp(found.log_likelihood - found.log_likelihood.max())
+    posterior /= posterior.sum()
+    value = float(posterior @ found.slope)
+    widening = found.freedom / (found.freedom - 2.0)
+    error = float(np.sqrt(posterior @ (widening * found.slope_error**2 + (found.slope - value) ** 2)))
+    below = float(posterior @ student.cdf(-found.slope / found.slope_error, found.freedom))
+    above = float(posterior @ student.sf(-found.slope / found.slope_error, found.freedom))
+    return Slope(value, error, min(1.0, 4.0 * min(below, above)), _limit(found, posterior, false_alarm))
+
+
+def _limit(found: Fit, posterior: Array, false_alarm: float) -> float:
+    """Return the slope that would be found with 95 % probability: the threshold, and once more the scatter around it."""
+
+    def beyond(slope: float, probability: float) -> float:
+        return float(posterior @ student.sf(slope / found.slope_error, found.freedom)) - probability
+
+    widest = float(found.slope_error.max())
+    threshold = brentq(beyond, 0.0, 1e3 * widest, args=(false_alarm / 4.0,), xtol=1e-6 * widest)
+    missed = brentq(beyond, 0.0, 1e3 * widest, args=(1.0 - DETECTED,), xtol=1e-6 * widest)
+    return float(threshold) + float(missed)
+
+
+def walk_of(means: Array) -> Walk:
+    """Return the evidence that the level of block means walks at random, beside scatter and a slope.
+
+    Restricted likelihood ratio of the local level model against no walk. Without a walk the evidence follows
+    half a χ² of one degree of freedom: it exceeds 5.4 once in a hundred series.
+    """
+    family = local_level(means.size)
+    found = _fit(means, family)
+    best = int(found.log_likelihood.argmax())
+    evidence = 2.0 * float(found.log_likelihood[best] - found.log_likelihood[0])
+    share = 1.0 if np.isinf(family.ratio[best]) else family.ratio[best]
+    return Walk(evidence, float(np.sqrt(found.scale[best] * share * (means.size + WIDTH))))
+
+
+def power_of_wandering(means: Array, beside_scatter: bool) -> Exponent:
+    """Return the exponent H of a level that wanders as t^H, a slope removed.
+
+    Parameters
+    ----------
+    means
+        Block means.
+    beside_scatter
+        Whether independent scatter comes on top. Without it H may be negative, near −½ for block means that only scatter.
+    """
+    family = (wandering if beside_scatter else fractional)(means.size)
+    found = _fit(means, family)
+    exponents = np.unique(family.exponent)
+    return _interval(exponents, found.log_likelihood.reshape(exponents.size, -1).max(axis=1))
+
+
+def power_of_time(means: Array) -> Exponent:
+    """Return the exponent γ of block means that follow a + c t^γ beside scatter and walk, 0.2 ≤ γ ≤ 8."""
+    family = local_level(means.size)
+    exponents, designs = _powers(means.size)
+    profile = np.empty(exponents.size)
+    for index, design in enumerate(designs):
+        found = fit(np.diff(means), design, family, _floor(means))
+        profile[index] = np.max(-0.5 * (family.log_determinant + means.size * np.log(found.scale)))
+    return _interval(exponents, profile)
+
+
+def _fit(means: Array, family: Family) -> Fit:
+    """Return the fit of a slope of one per block."""
+    return fit(np.diff(means), np.diff(window_starts(means.size)) / PLACES, family, _floor(means))
+
+
+@lru_cache(maxsize=16)
+def _powers(windows: int) -> tuple[Array, Array]:
+    """Return exponents and, for each, the increments of the window means of t^γ over a run of unit duration."""
+    exponents = np.linspace(0.2, 8.0, 391)
+    place = (np.arange(64) + 0.5) / 64
+    weight = bump(place) / bump(place).sum()
+    t = (window_starts(windows)[:, None] / PLACES + WIDTH * place) / (windows + WIDTH)
+    return exponents, np.diff((t[None] ** exponents[:, None, None]) @ weight, axis=1)
+
+
+def _interval(exponents: Array, log_likelihood: Array) -> Exponent:
+    finer = np.linspace(exponents[0], exponents[-1], 2001)
+    profile = np.interp(finer, exponents, log_likelihood)
+    inside = finer[profile >= profile.max() - LIKELIHOOD_DROP]
+    return Exponent(float(exponents[log_likelihood.argmax()]), float(inside[0]), float(inside[-1]))
+
+
+def _floor(means: Array) -> float:
+    """Return the variance that the arithmetic of block means leaves in an increment."""
+    return float((np.finfo(np.float64).eps * np.abs(means).max()) ** 2)
