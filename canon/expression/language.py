@@ -1,0 +1,372 @@
+"""The safe expression language: text to SymPy, parsed and never evaluated as code.
+
+The grammar is in :mod:`canon.expression.syntax`; here the tree gets its meaning within a :class:`Scope` of
+declared names. What SymPy would evaluate at ruinous cost (``9**9**9``) is refused before it is built.
+"""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field
+from functools import reduce
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NoReturn
+
+import sympy as sp
+from sympy import Expr, Integer, Rational, Symbol
+from sympy.logic.boolalg import Boolean
+
+from canon.expression import syntax
+from canon.expression.symbol import Coordinate, acceleration, time, velocity
+from canon.expression.syntax import LanguageError, parse_syntax
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+__all__ = ["LanguageError", "Scope", "parse_condition", "parse_equation", "parse_expression"]
+
+MAX_EXPONENT = 1_000
+MAX_BITS = 40_000
+MAX_CHOICES = 16
+"""Most arguments of Max and Min and most pieces of Piecewise: SymPy compares them pairwise."""
+
+FUNCTIONS: Mapping[str, tuple[Callable[..., Expr], int, int]] = MappingProxyType(
+    {
+        **{
+            name: (getattr(sp, name), 1, 1)
+            for name in (
+                "sqrt", "exp", "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "acot",
+                "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "Abs", "sign", "LambertW", "elliptic_k",
+            )
+        },
+        "log": (sp.log, 1, 2),
+        "atan2": (sp.atan2, 2, 2),
+        "elliptic_e": (sp.elliptic_e, 1, 2),
+        "Max": (sp.Max, 1, MAX_CHOICES),
+        "Min": (sp.Min, 1, MAX_CHOICES),
+    }
+)  # fmt: skip
+"""Every function of the language, with the least and the greatest number of its arguments."""
+
+_CONSTANTS: Mapping[str, Expr] = MappingProxyType({"pi": sp.pi, "I": sp.I})
+_RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge, "!=": sp.Ne, "==": sp.Eq}
+_OTHER_NAMES = {"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "abs": "Abs", "cotan": "cot",
+                "max": "Max", "min": "Min", "e": "exp(1)", "E": "exp(1)", "i": "I", "j": "I", "diff": "Derivative",
+                "tg": "tan", "ctg": "cot", "sh": "sinh", "ch": "cosh", "th": "tanh"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The names an expression may use.
+
+    A declared name overrides any built-in meaning. Each :class:`Coordinate` brings its rates along:
+    ``theta_dot`` and ``theta_ddot``, or ``theta'`` and ``theta''``.
+
+    Parameters
+    ----------
+    names
+        Symbol of each declared name.
+    functions
+        Arbitrary smooth functions: the names of the arguments each was declared with.
+    time
+        The symbol of the time.
+    signs
+        SymPy assumptions on the values of declared functions, where they are more than real.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> (theta,) = coordinates("theta")
+    >>> parse_expression("theta'' + 0.5*sin(theta)", Scope({"theta": theta}))
+    theta_ddot + sin(theta)/2
+    """
+
+    names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
+    functions: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    time: Symbol = time
+    signs: Mapping[str, Mapping[str, bool]] = field(default_factory=lambda: MappingProxyType({}))
+
+    def symbol(self, name: str) -> Symbol | None:
+        """Return the symbol of a declared name or of a coordinate's rate, None for any other name."""
+        if name in self.names:
+            return self.names[name]
+        if name == self.time.name:
+            return self.time
+        for ending, rate in (("_ddot", acceleration), ("_dot", velocity)):
+            base = self.names.get(name.removesuffix(ending))
+            if name.endswith(ending) and isinstance(base, Coordinate):
+                return rate(base)
+        return None
+
+    def near(self, name: str) -> str:
+        """Return a remedy for an unknown name."""
+        if name in _OTHER_NAMES:
+            return f"write {_OTHER_NAMES[name]}, or declare the name"
+        known = [*self.names, self.time.name, *self.functions, *FUNCTIONS, *_CONSTANTS]
+        known += [f"{n}_dot" for n, s in self.names.items() if isinstance(s, Coordinate)]
+        close = difflib.get_close_matches(name[:60], known, n=1, cutoff=0.75)
+        return f"is {close[0]} meant?" if close else "declare it in parameters or functions"
+
+
+def parse_expression(text: str, scope: Scope) -> Expr:
+    """Return the SymPy expression that a text spells.
+
+    Parameters
+    ----------
+    text
+        An expression of the language; ``theta`` may also be written ``θ``, ``theta_dot`` ``theta'`` or ``θ̇``.
+    scope
+        The declared names.
+
+    Raises
+    ------
+    LanguageError
+        With the column, the reason and a remedy.
+
+    Examples
+    --------
+    >>> from canon import parameters
+    >>> x, lam = parameters("x lambda")
+    >>> parse_expression("lambda*x**2/3 + 0.25", Scope({"x": x, "lambda": lam}))
+    lambda*x**2/3 + 1/4
+    >>> parse_expression("x.__class__", Scope({"x": x}))
+    Traceback (most recent call last):
+        ...
+    canon.expression.syntax.LanguageError: column 2: '.' is not part of the language; attributes are not part ...
+    x.__class__
+     ^
+    """
+    return _Builder(text, scope).expression(parse_syntax(_plain(text)))
+
+
+def parse_condition(text: str, scope: Scope) -> Boolean:
+    """Return the SymPy condition that a text spells, such as ``0 < theta < pi`` or ``Ne(q, 0)``.
+
+    Raises
+    ------
+    LanguageError
+        With the column, the reason and a remedy.
+    """
+    return _Builder(text, scope).condition(parse_syntax(_plain(text)))
+
+
+def parse_equation(text: str, scope: Scope) -> Expr:
+    """Return lhs − rhs of ``lhs = rhs``, or the expression itself, which then should vanish.
+
+    Raises
+    ------
+    LanguageError
+        With the column, the reason and a remedy.
+    """
+    builder = _Builder(text, scope)
+    node = parse_syntax(_plain(text))
+    if not isinstance(node, syntax.Comparison):
+        return builder.expression(node)
+    if node.relations != ("=",):
+        raise LanguageError(text, node.column, "this is not one equation", "write lhs = rhs")
+    left, right = (builder.expression(side) for side in node.operands)
+    return left - right
+
+
+def _plain(text: str) -> str:
+    if text.lstrip().startswith("$"):
+        raise LanguageError(text, 1, "LaTeX is not read yet", "write it in the plain spelling, theta'' + sin(theta)")
+    return text
+
+
+class _Builder:
+    """Gives a syntax tree its meaning; every costly evaluation is bounded before SymPy is asked."""
+
+    def __init__(self, text: str, scope: Scope) -> None:
+        self.text = text
+        self.scope = scope
+
+    def refuse(self, node: syntax.Node, reason: str, remedy: str = "") -> NoReturn:
+        raise LanguageError(self.text, node.column, reason, remedy)
+
+    def expression(self, node: syntax.Node) -> Expr:
+        """Return the expression of a tree, refusing what is infinite or undefined everywhere."""
+        match node:
+            case syntax.Number(numerator, denominator):
+                return Rational(numerator, denominator)
+            case syntax.Name():
+                return self.name(node)
+            case syntax.Call():
+                found = self.call(node)
+            case syntax.Negative(operand):
+                found = -self.expression(operand)
+            case syntax.Sum(terms):
+                built = ((minus, self.expression(term)) for minus, term in terms)
+                found = sp.Add(*(-term if minus else term for minus, term in built))
+            case syntax.Product(factors):
+                found = self.product(factors)
+            case syntax.Power(base, exponent):
+                found = self.power(node, self.expression(base), self.expression(exponent))
+            case syntax.Tuple():
+                self.refuse(node, "a pair (…, …) belongs inside Piecewise or Derivative only")
+            case syntax.Comparison():
+                self.refuse(node, "a comparison where an expression should be")
+        return self.finite(node, found)
+
+    def finite(self, node: syntax.Node, value: Expr) -> Expr:
+        if isinstance(value, Rational) and _bits(value) > MAX_BITS:
+            self.refuse(node, "a number too long to be meant")
+        if value is sp.nan or value.has(sp.zoo, sp.oo, sp.S.NegativeInfinity, sp.nan):
+            self.refuse(node, "this is infinite or undefined everywhere")
+        if not isinstance(value, Expr):
+            self.refuse(node, "this is not an expression")
+        return value
+
+    def name(self, node: syntax.Name) -> Expr:
+        symbol = self.scope.symbol(node.text + ("", "_dot", "_ddot")[min(node.primes, 2)])
+        if symbol is not None and node.primes < 3:
+            return symbol
+        if node.primes:
+            self.refuse(
+                node,
+                f"{node.text}{node.primes * chr(39)} is not a rate of a declared coordinate",
+                "one or two primes after a coordinate; for a function write Derivative(f(t), t)",
+            )
+        if node.text in self.scope.functions:
+            arguments = ", ".join(self.scope.functions[node.text])
+            self.refuse(node, f"{node.text} is a function", f"write {node.text}({arguments})")
+        if node.text in _CONSTANTS:
+            return _CONSTANTS[node.text]
+        if node.text in FUNCTIONS:
+            self.refuse(node, f"{node.text} needs its argument in parentheses")
+        return self.refuse(node, f"{node.text} is not declared", self.scope.near(node.text))
+
+    def call(self, node: syntax.Call) -> Expr:
+        name = node.function
+        if name in self.scope.functions:
+            return self.declared(node)
+        if self.scope.symbol(name) is not None:
+            self.refuse(node, f"{name} is a declared symbol and can't be applied to anything", "write * for a product")
+        if name == "Derivative":
+            return self.derivative(node)
+        if name == "Piecewise":
+            return self.piecewise(node)
+        if name not in FUNCTIONS:
+            self.refuse(node, f"{name} is not a function of the language", self.scope.near(name))
+        function, least, most = FUNCTIONS[name]
+        if not least <= len(node.arguments) <= most:
+            wanted = str(least) if least == most else f"{least} to {most}"
+            self.refuse(node, f"{name} takes {wanted} argument(s), not {len(node.arguments)}")
+        arguments = [self.expression(argument) for argument in node.arguments]
+        if name == "exp":
+            self.exponential(node, arguments[0])
+        return function(*arguments)
+
+    def declared(self, node: syntax.Call) -> Expr:
+        wanted = self.scope.functions[node.function]
+        if len(node.arguments) != len(wanted):
+            self.refuse(node, f"{node.function} is declared with {len(wanted)} argument(s): {', '.join(wanted)}")
+        sign = self.scope.signs.get(node.function) or {"real": True}
+        return sp.Function(node.function, **sign)(*(self.expression(argument) for argument in node.arguments))
+
+    def derivative(self, node: syntax.Call) -> Expr:
+        if len(node.arguments) < 2:
+            self.refuse(node, "Derivative takes an expression and at least one variable", "write Derivative(f(t), t)")
+        value = self.expression(node.arguments[0])
+        orders = [self.order(argument) for argument in node.arguments[1:]]
+        if sum(order for _, order in orders) > 8:
+            self.refuse(node, "a derivative of more than the 8th order")
+        if isinstance(value, Coordinate) and all(variable == self.scope.time for variable, _ in orders):
+            self.refuse(node, f"{value} is a coordinate here, not a function of the time", f"write {value}_dot")
+        return reduce(lambda f, order: f.diff(*order), orders, value)
+
+    def order(self, node: syntax.Node) -> tuple[Symbol, int]:
+        variable, order = node, 1
+        if isinstance(node, syntax.Tuple):
+            if len(node.items) != 2 or not isinstance(node.items[1], syntax.Number):
+                self.refuse(node, "this should be (variable, order)", "write (t, 2)")
+            variable = node.items[0]
+            number = node.items[1]
+            order = number.numerator
+            if number.denominator != 1 or not 1 <= order <= 8:
+                self.refuse(number, "the order of a derivative is a whole number from 1 to 8")
+        symbol = self.expression(variable)
+        if not isinstance(symbol, Symbol):
+            self.refuse(node, "a derivative is taken with respect to a declared symbol")
+        return symbol, order
+
+    def piecewise(self, node: syntax.Call) -> Expr:
+        if not 1 <= len(node.arguments) <= MAX_CHOICES:
+            self.refuse(node, f"Piecewise takes 1 to {MAX_CHOICES} pieces")
+        pieces: list[tuple[Expr, Boolean]] = []
+        for piece in node.arguments:
+            if not isinstance(piece, syntax.Tuple) or len(piece.items) != 2:
+                self.refuse(piece, "a piece is (expression, condition)", "write Piecewise((x, x > 0), (0, True))")
+            pieces.append((self.expression(piece.items[0]), self.condition(piece.items[1])))
+        return sp.Piecewise(*pieces)
+
+    def condition(self, node: syntax.Node) -> Boolean:
+        """Return the condition of a tree: a chain of comparisons, ``Ne(a, b)``, or True."""
+        match node:
+            case syntax.Name(text="True"):
+                return sp.true
+            case syntax.Call(function="Ne", arguments=(left, right)) if "Ne" not in self.scope.functions:
+                return sp.Ne(self.expression(left), self.expression(right))
+            case syntax.Comparison(operands, relations):
+                if "=" in relations:
+                    self.refuse(node, "an equation where a condition should be", "write < <= > >= or Ne(a, b)")
+                sides = [self.expression(side) for side in operands]
+                pairs = zip(sides, relations, sides[1:], strict=False)
+                try:
+                    return sp.And(*(_RELATIONS[relation](left, right) for left, relation, right in pairs))
+                except TypeError:
+                    self.refuse(node, "imaginary numbers can't be compared")
+            case _:
+                self.refuse(node, "a condition is missing", "write < <= > >= or Ne(a, b)")
+
+    def product(self, factors: tuple[tuple[bool, syntax.Node], ...]) -> Expr:
+        built: list[Expr] = []
+        bits = 0
+        for divides, node in factors:
+            factor = self.expression(node)
+            if divides and factor is sp.S.Zero:
+                self.refuse(node, "division by zero")
+            bits += _bits(factor)
+            if bits > MAX_BITS:
+                self.refuse(node, "the product is a number too long to be meant")
+            built.append(1 / factor if divides else factor)
+        return sp.Mul(*built)
+
+    def power(self, node: syntax.Power, base: Expr, exponent: Expr) -> Expr:
+        coefficient = abs(exponent.as_coeff_Mul()[0])
+        if isinstance(coefficient, Rational):
+            if coefficient > MAX_EXPONENT or coefficient.q > MAX_EXPONENT:
+                self.refuse(node, f"an exponent beyond {MAX_EXPONENT}")
+            if _bits(base) * max(1, int(coefficient)) > MAX_BITS:
+                self.refuse(node, "the power is a number too long to be meant")
+        if base is sp.S.Zero and isinstance(exponent, Rational) and exponent < 0:
+            self.refuse(node, "division by zero")
+        self.exponential(node, exponent)
+        return sp.Pow(base, exponent)
+
+    def exponential(self, node: syntax.Node, exponent: Expr) -> None:
+        """Refuse exponents like 10**9*log(2), which SymPy turns into 2**10**9."""
+        if not exponent.has(sp.log):
+            return
+        for term in sp.Add.make_args(exponent):
+            if abs(term.as_coeff_Mul()[0]) > MAX_EXPONENT:
+                self.refuse(node, f"a multiple of a logarithm beyond {MAX_EXPONENT} in an exponent")
+
+
+def _bits(value: Expr) -> int:
+    """Return the length of the rational number in front of an expression, at least 1."""
+    number = value.as_coeff_Mul()[0]
+    if not isinstance(number, Rational):
+        return 1
+    return max(int(number.p).bit_length(), int(number.q).bit_length(), 1)
+
+
+def exact(value: float | int | str) -> Rational:
+    """Return the exact rational that a number in a sheet spells.
+
+    Examples
+    --------
+    >>> exact(0.1)
+    1/10
+    """
+    return Integer(value) if isinstance(value, int) else Rational(str(value))

@@ -1,0 +1,144 @@
+"""Claims judged: the kind says what must vanish, the proof room whether it does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, TypeAlias
+
+from canon.exercise import judge_appell, judge_canonical, judge_constrained, judge_hamiltonian, judge_lagrangian
+from canon.exercise.question import Deadline, Question, decide
+from canon.exercise.reading import InvalidClaim, Reading
+from canon.exercise.sheet import Claim, ClaimError
+from canon.mechanics.linear import SingularMatrixError
+from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from canon.exercise.report import Report
+    from canon.exercise.sheet import Sheet
+
+__all__ = ["JUDGES", "Finding", "InvalidClaim", "check", "examine", "judge"]
+
+Judge: TypeAlias = "Callable[[Reading], Iterator[Question]]"
+
+JUDGES: Mapping[str, Judge] = MappingProxyType(
+    {
+        "euler-lagrange": judge_lagrangian.euler_lagrange,
+        "dissipative": judge_lagrangian.dissipative,
+        "multiplier-holonomic": judge_constrained.multiplier_holonomic,
+        "nonholonomic": judge_constrained.nonholonomic,
+        "legendre-hamiltonian": judge_hamiltonian.legendre_hamiltonian,
+        "hamilton-equations": judge_hamiltonian.hamilton_equations,
+        "routhian": judge_lagrangian.routhian,
+        "gibbs-appell": judge_appell.gibbs_appell,
+        "poisson-bracket": judge_canonical.poisson_brackets,
+        "lagrange-bracket": judge_canonical.lagrange_brackets,
+        "lie-bracket": judge_canonical.lie_brackets,
+        "canonicity": judge_canonical.canonicity,
+        "canonicity-time-dependent": judge_canonical.canonicity,
+        "bilinear-covariant": judge_canonical.bilinear,
+        "generating-F1": judge_canonical.generating,
+        "generating-F2": judge_canonical.generating,
+        "generating-F3": judge_canonical.generating,
+        "generating-F4": judge_canonical.generating,
+        "transformed-hamiltonian-K": judge_canonical.new_hamiltonian,
+        "constant-of-motion": judge_hamiltonian.constant_of_motion,
+        "lagrangian-equivalence": judge_lagrangian.lagrangian_equivalence,
+        "equality-only": judge_hamiltonian.equality,
+    }
+)
+"""What each kind of claim comes down to."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A verdict on a claim, and the question on which it turned, where it is not HOLDS."""
+
+    reading: Reading
+    verdict: Verdict
+    question: Question | None = None
+
+
+def judge(claim: Claim) -> Verdict:
+    """Judge one claim of a sheet.
+
+    Parameters
+    ----------
+    claim
+        A claim as :func:`canon.read_sheet` gives it. Its ``expect`` is not looked at.
+
+    Returns
+    -------
+    Verdict
+        HOLDS or FAILS, or UNDECIDED with what is known; ``feedback`` says in one sentence where a false
+        claim is wrong, where that was found and proved.
+
+    Raises
+    ------
+    InvalidClaim
+        Where the claim does not say something that could be judged; ``error`` names key and column.
+
+    Examples
+    --------
+    >>> from canon import Claim
+    >>> print(judge(Claim("a", "equality-only", {"lhs": "sin(t)**2", "rhs": "1 - cos(t)**2"})))
+    HOLDS ...
+    """
+    return examine(claim).verdict
+
+
+def examine(claim: Claim) -> Finding:
+    """Judge one claim, and keep the question on which it turned.
+
+    Raises
+    ------
+    InvalidClaim
+        As :func:`judge` does.
+    """
+    if claim.errors:
+        raise InvalidClaim(claim.errors[0])
+    deadline = Deadline.after(claim.budget)
+    reading = Reading(claim)
+    answered: list[Verdict] = []
+    turned: Question | None = None
+    try:
+        for question in JUDGES[claim.kind](reading):
+            verdict = decide(question, deadline)
+            answered.append(verdict)
+            if verdict.fails:
+                turned = question
+                break
+    except Undecided as reason:
+        answered.append(Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),)))
+    except SingularMatrixError as singular:
+        raise InvalidClaim(ClaimError(claim.id, "", str(singular))) from singular
+    seconds = claim.budget - (deadline.left if deadline.left > 0.05 else 0.0)
+    verdict = replace(all_hold(answered, _title(claim)), seconds=seconds)
+    return Finding(reading, verdict, turned)
+
+
+def check(sheet: str | Path | Sheet) -> Report:
+    """Judge every claim of a sheet.
+
+    Parameters
+    ----------
+    sheet
+        A sheet, or the path of one.
+
+    Raises
+    ------
+    SheetError
+        Where the file is no sheet.
+    """
+    from canon.exercise.report import report
+    from canon.exercise.sheet import Sheet, read_sheet
+
+    return report(sheet if isinstance(sheet, Sheet) else read_sheet(sheet))
+
+
+def _title(claim: Claim) -> str:
+    title = claim.keys.get("title")
+    return str(title) if title else f"{claim.kind} {claim.id}"

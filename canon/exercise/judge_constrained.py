@@ -1,0 +1,83 @@
+"""Claims about motion under holonomic and nonholonomic constraints, with Lagrange's multipliers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.manifold import on_manifold
+from canon.exercise.question import Part, Question, Same, SameEquations
+from canon.expression.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.linear import SingularMatrixError, solve
+from canon.mechanics.substitution import substitute
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from canon.exercise.reading import Reading
+
+__all__ = ["multiplier_holonomic", "nonholonomic"]
+
+
+def multiplier_holonomic(reading: Reading) -> Iterator[Question]:
+    """With d/dt L_v − L_q = Σ λ ∂f/∂q, f(q, t) = 0, every claimed equation holds on every motion."""
+    q, t = reading.symbols("q"), reading.time
+    constraints = reading.equations("constraints")
+    velocities = tuple(velocity(x) for x in q)
+    for i, f in enumerate(constraints):
+        if f.has(*velocities):
+            reading.fault(f"constraints[{i}]", "a holonomic constraint depends on coordinates and time only")
+    directions = sp.Matrix([[f.diff(x) for x in q] for f in constraints])
+    rates = tuple(time_derivative(f, q, t) for f in constraints)
+    yield from _on_every_motion(reading, directions, (*constraints, *rates), rates)
+
+
+def nonholonomic(reading: Reading) -> Iterator[Question]:
+    """With d/dt L_v − L_q = Σ λ ∂g/∂q̇, g(q, q̇, t) = 0 affine in q̇, every claimed equation holds on every motion."""
+    q = reading.symbols("q")
+    constraints = reading.equations("constraints")
+    velocities = tuple(velocity(x) for x in q)
+    for i, g in enumerate(constraints):
+        if not g.has(*velocities):
+            reading.fault(f"constraints[{i}]", "this constraint holds no velocity; give its time derivative")
+    directions = sp.Matrix([[g.diff(v) for v in velocities] for g in constraints])
+    if directions.has(*velocities):
+        reading.fault("constraints", "every constraint should be affine in the velocities")
+    yield from _on_every_motion(reading, directions, constraints, constraints)
+
+
+def _on_every_motion(
+    reading: Reading, directions: sp.Matrix, manifold: Sequence[Expr], held: Sequence[Expr]
+) -> Iterator[Question]:
+    """Accelerations and multipliers solve  M q̈ + b = Aᵀ λ  and  d(held)/dt = 0;  claims hold on the manifold."""
+    q, t, multipliers = reading.symbols("q"), reading.time, reading.symbols("multipliers")
+    if len(multipliers) != directions.rows:
+        reading.fault("multipliers", f"{len(multipliers)} multipliers for {directions.rows} constraints")
+    lagrangian = Lagrangian(reading.expression("L"), q, t)
+    unknowns = (*(acceleration(x) for x in q), *multipliers)
+    reactions = directions.T * sp.Matrix(multipliers)
+    system = [equation - reaction for equation, reaction in zip(lagrangian.equations, reactions, strict=True)]
+    system += [time_derivative(g, q, t) for g in held]
+    claims = reading.equations("claim")
+    for branch in on_manifold(manifold, reading.domain, keep=(t, *unknowns), prefer=lagrangian.velocities):
+        here = [substitute(equation, branch.values) for equation in system]
+        matrix, rest = _affine(here, unknowns)
+        try:
+            solution = solve(matrix, -rest, branch.domain)
+        except SingularMatrixError:  # dependent constraints or massless coordinates: ask for linear consequences
+            seen = tuple(substitute(claim, branch.values) for claim in claims)
+            yield SameEquations((*here, *seen), tuple(here), unknowns, branch.domain)
+            continue
+        through = {**branch.values, **dict(zip(unknowns, solution, strict=True))}
+        parts = tuple(Part(f"claim {i}", claim, through=through) for i, claim in enumerate(claims, 1))
+        yield Same(parts, branch.domain)
+
+
+def _affine(system: Sequence[Expr], unknowns: Sequence[Symbol]) -> tuple[sp.Matrix, sp.Matrix]:
+    """Return A and b of A u + b."""
+    at_rest = dict.fromkeys(unknowns, sp.S.Zero)
+    matrix = sp.Matrix([[equation.diff(u) for u in unknowns] for equation in system])
+    return matrix, sp.Matrix([equation.xreplace(at_rest) for equation in system])

@@ -1,0 +1,95 @@
+"""Claims about Hamiltonians, Hamilton's equations and constants of the motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.manifold import on_manifold, transported
+from canon.exercise.question import Part, Question, Regular, Same
+from canon.expression.symbol import acceleration, velocity
+from canon.mechanics.hamiltonian import Hamiltonian, legendre
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.substitution import substitute
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.exercise.reading import Reading
+
+__all__ = ["constant_of_motion", "equality", "hamilton_equations", "legendre_hamiltonian"]
+
+
+def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
+    """The velocity Hessian is regular and H(q, ∂L/∂q̇, t) = Σ p q̇ − L."""
+    q, p = reading.phase_space("q", "p")
+    lagrangian = Lagrangian(reading.expression("L"), q, reading.time)
+    domain = reading.domain
+    yield Regular(lagrangian.mass_matrix, "the velocity Hessian", domain)
+    if reading.has("H"):
+        through = dict(zip(p, lagrangian.momenta, strict=True))
+        part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through)
+        yield Same((part,), transported(domain, through), lambda: legendre(lagrangian, p, domain).H)
+
+
+def hamilton_equations(reading: Reading) -> Iterator[Question]:
+    """q̇ = ∂H/∂p and ṗ = −∂H/∂q as claimed, or solved by the claimed functions of time."""
+    q, p = reading.phase_space("q", "p")
+    system = Hamiltonian(reading.expression("H"), q, p, reading.time)
+    if reading.has("q_dot"):
+        claimed = (*reading.expressions("q_dot", like="q"), *reading.expressions("p_dot", like="p"))
+        through = {velocity(x): rate for x, rate in zip(q, system.q_dot, strict=True)}
+        parts = tuple(
+            Part(f"d{z}/dt", rate, right, through)
+            for z, rate, right in zip((*q, *p), claimed, system.vector_field, strict=True)
+        )
+        yield Same(parts, reading.domain, lambda: system.vector_field)
+    if reading.has("solution"):
+        yield _solution(reading, system)
+
+
+def _solution(reading: Reading, system: Hamiltonian) -> Same:
+    table, names = reading.table("solution"), {z.name: z for z in (*system.q, *system.p)}
+    if set(table) != set(names):
+        reading.fault("solution", f"should say what each of {', '.join(names)} is, and nothing else")
+    motion = {names[name]: value for name, value in table.items()}
+    for z, value in motion.items():
+        if value.has(*motion):
+            reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
+    domain = transported(reading.domain, motion)
+    rates = zip((*system.q, *system.p), system.vector_field, strict=True)
+    parts = (Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates)
+    return Same(tuple(parts), domain)
+
+
+def constant_of_motion(reading: Reading) -> Iterator[Question]:
+    """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes, where the restrictions do."""
+    I, t = reading.expression("I"), reading.time
+    rates = _rates(reading, I)
+    rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
+    restrictions = reading.equations("restrict") if reading.has("restrict") else ()
+    for branch in on_manifold(restrictions, reading.domain):
+        yield Same((Part("dI/dt", rate, through=branch.values),), branch.domain)
+
+
+def equality(reading: Reading) -> Iterator[Question]:
+    """Both sides are equal on the whole domain."""
+    yield Same((Part("lhs", reading.expression("lhs"), reading.expression("rhs")),), reading.domain)
+
+
+def _rates(reading: Reading, I: Expr) -> dict[Symbol, Expr]:
+    if reading.has("H"):
+        q, p = reading.phase_space("q", "p")
+        system = Hamiltonian(reading.expression("H"), q, p, reading.time)
+        return dict(zip((*q, *p), system.vector_field, strict=True))
+    if reading.has("L"):
+        lagrangian = Lagrangian(reading.expression("L"), reading.symbols("q"), reading.time)
+        rates = {x: velocity(x) for x in lagrangian.q}
+        if I.has(*(acceleration(x) for x in lagrangian.q)):
+            reading.fault("I", "should depend on coordinates, velocities and time only")
+        if I.has(*lagrangian.velocities):
+            rates |= dict(zip(lagrangian.velocities, lagrangian.accelerations, strict=True))
+        return rates
+    return dict(zip(reading.symbols("x"), reading.expressions("X", like="x"), strict=True))

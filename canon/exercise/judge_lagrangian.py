@@ -1,0 +1,135 @@
+"""Claims about Lagrange's equations: free, damped, reduced by Routh, equivalent Lagrangians."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.manifold import transported
+from canon.exercise.question import Part, Question, Regular, Same, SameEquations
+from canon.expression.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.linear import solve
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.reading import Reading
+
+__all__ = ["dissipative", "euler_lagrange", "lagrangian_equivalence", "routhian"]
+
+
+def euler_lagrange(reading: Reading) -> Iterator[Question]:
+    """The claimed equations are equivalent to d/dt ∂L/∂q̇ − ∂L/∂q = 0."""
+    lagrangian = Lagrangian(reading.expression("L"), reading.symbols("q"), reading.time)
+    yield same_motion(reading, lagrangian)
+
+
+def dissipative(reading: Reading) -> Iterator[Question]:
+    """Equations with d/dt ∂L/∂q̇ − ∂L/∂q + ∂F/∂q̇ = Q, and dE/dt = Σ q̇ (Q − ∂F/∂q̇) − ∂L/∂t."""
+    q, t = reading.symbols("q"), reading.time
+    damping = reading.expression("F", sp.S.Zero)
+    applied = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
+    forces = [Q - damping.diff(velocity(x)) for x, Q in zip(q, applied, strict=True)]
+    lagrangian = Lagrangian(reading.expression("L"), q, t, forces)
+    if reading.has("claim"):
+        yield same_motion(reading, lagrangian)
+    if reading.has("energy_rate"):
+        claimed = reading.expression("energy_rate")
+        rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
+        part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed))
+        yield Same((part,), reading.domain, lambda: rate)
+
+
+def routhian(reading: Reading) -> Iterator[Question]:
+    """Ignorable coordinates do not occur in L, and R(q, v, ∂L/∂v_c) = ±(L − Σ v_c ∂L/∂v_c)."""
+    q, t = reading.symbols("q"), reading.time
+    ignorable, momenta = reading.subset("cyclic", of="q"), reading.symbols("momenta")
+    if len(momenta) != len(ignorable):
+        reading.fault("momenta", f"{len(momenta)} momenta for {len(ignorable)} ignorable coordinates")
+    sign = {"L-pq": 1, "pq-L": -1}.get(reading.word("convention"))
+    if sign is None:
+        reading.fault("convention", "write L-pq or pq-L")
+    lagrangian = Lagrangian(reading.expression("L"), q, t)
+    L, velocities = lagrangian.L, tuple(velocity(c) for c in ignorable)
+    absent = tuple(Part(f"∂L/∂{c} of the ignorable coordinate {c}", L.diff(c)) for c in ignorable)
+    yield Same(absent, reading.domain)
+    yield Regular(
+        sp.Matrix([[L.diff(a, b) for b in velocities] for a in velocities]),
+        "the Hessian in the ignorable velocities",
+        reading.domain,
+    )
+    through = {p: L.diff(v) for p, v in zip(momenta, velocities, strict=True)}
+    if reading.has("R"):
+        right = sign * (L - sp.Add(*(v * L.diff(v) for v in velocities)))
+        part = Part("the Routhian", reading.expression("R"), right, through)
+        yield Same((part,), transported(reading.domain, through), lambda: routhian_in_momenta(lagrangian, through, sign))
+    if reading.has("claim"):
+        conserved = tuple(time_derivative(p, q, t) for p in through.values())
+        seen = tuple(Part("", equation, through=through).residual for equation in reading.equations("claim"))
+        unknowns = tuple(acceleration(x) for x in q)
+        domain = transported(reading.domain, through)
+        yield SameEquations((*seen, *conserved), lagrangian.equations, unknowns, domain)
+
+
+def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
+    """L₂ − L₁ is a total time derivative, or both have the same equations of motion."""
+    q, t = reading.symbols("q"), reading.time
+    first, second = reading.expression("L1"), reading.expression("L2")
+    relation = reading.word("relation")
+    if relation == "equations":
+        systems = [Lagrangian(L, q, t).equations for L in (second, first)]
+        yield SameEquations(systems[0], systems[1], tuple(acceleration(x) for x in q), reading.domain)
+    elif relation != "gauge":
+        reading.fault("relation", "write gauge or equations")
+    elif reading.has("F"):
+        F = reading.expression("F")
+        yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
+    else:
+        yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
+
+
+def routhian_in_momenta(lagrangian: Lagrangian, through: Mapping[Symbol, Expr], sign: int) -> Expr | None:
+    """Return ±(L − Σ p q̇) with the ignorable velocities eliminated, where the momenta are affine in them."""
+    momenta = list(through)
+    velocities = [v for v in lagrangian.velocities if any(p.diff(v) != 0 for p in through.values())]
+    ignorable = [v for v in velocities if lagrangian.L.diff(v) in through.values()]
+    matrix = sp.Matrix([[p.diff(v) for v in ignorable] for p in through.values()])
+    if matrix.has(*ignorable):
+        return None
+    rest = [p - value.xreplace(dict.fromkeys(ignorable, sp.S.Zero)) for p, value in through.items()]
+    found = dict(zip(ignorable, solve(matrix, sp.Matrix(rest)), strict=True))
+    value = lagrangian.L - sp.Add(*(p * v for p, v in zip(momenta, ignorable, strict=True)))
+    return sign * value.xreplace(found)
+
+
+def same_motion(reading: Reading, lagrangian: Lagrangian) -> SameEquations:
+    """Return the question whether the claimed equations are those of a Lagrangian."""
+    unknowns = tuple(acceleration(x) for x in lagrangian.q)
+    right = lagrangian.equations
+    return SameEquations(reading.equations("claim"), right, unknowns, reading.domain, lambda: right)
+
+
+def on_the_motion(lagrangian: Lagrangian, *expressions: Expr) -> dict[Symbol, Expr]:
+    """Return the accelerations on the motion, where any of the expressions holds one."""
+    unknowns = [acceleration(x) for x in lagrangian.q]
+    if not any(expression.has(*unknowns) for expression in expressions):
+        return {}
+    return dict(zip(unknowns, lagrangian.accelerations, strict=True))
+
+
+def _total_derivative_conditions(difference: Expr, q: Sequence[Symbol], t: Symbol) -> Iterator[Part]:
+    """Σ aᵢ q̇ᵢ + b is dF/dt of some F(q, t), locally, exactly where the form Σ aᵢ dqᵢ + b dt is closed."""
+    velocities = [velocity(x) for x in q]
+    slopes = [difference.diff(v) for v in velocities]
+    for i, a in enumerate(slopes):
+        for v in velocities[i:]:
+            yield Part(f"L2 − L1 is affine in {v}", a.diff(v))
+    rest = difference - sp.Add(*(a * v for a, v in zip(slopes, velocities, strict=True)))
+    for (a, x), (b, y) in combinations(zip(slopes, q, strict=True), 2):
+        yield Part(f"the derivatives by {x} and {y} agree", a.diff(y), b.diff(x))
+    for a, x in zip(slopes, q, strict=True):
+        yield Part(f"the derivatives by {x} and {t} agree", a.diff(t), rest.diff(x))

@@ -1,0 +1,135 @@
+"""The kinds of claims: which keys each takes, and what shape they have."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["COMMON", "KINDS", "Kind", "Shape"]
+
+
+class Shape(enum.Enum):
+    """What stands under a key."""
+
+    TEXT = "an expression"
+    TEXTS = "a list of expressions"
+    NAMES = "a list of names"
+    WORD = "a word"
+    TRUE = "true"
+    NUMBER = "a number"
+    ASSUMPTIONS = "a table {name = assumption}"
+    FUNCTIONS = "a table {function = [arguments]}"
+    BOX = "a table {name = [lo, hi]}"
+    EXPRESSIONS = "a table {name = expression}"
+    LISTS = "a table of lists of expressions"
+    BRACKETS = "a list of tables, each with three expressions"
+    BODIES = "a list of tables {m, r, I, angle, omega}"
+
+
+@dataclass(frozen=True)
+class Kind:
+    """The keys of one kind of claim.
+
+    Parameters
+    ----------
+    required, optional
+        Shape of each key.
+    one_of
+        Alternatives: at least one whole group of keys must be there.
+    """
+
+    required: Mapping[str, Shape]
+    optional: Mapping[str, Shape] = field(default_factory=lambda: MappingProxyType({}))
+    one_of: tuple[tuple[str, ...], ...] = ()
+
+
+COMMON: Mapping[str, Shape] = MappingProxyType(
+    {
+        "id": Shape.WORD,
+        "kind": Shape.WORD,
+        "title": Shape.WORD,
+        "source": Shape.WORD,
+        "t": Shape.WORD,
+        "expect": Shape.WORD,
+        "parameters": Shape.ASSUMPTIONS,
+        "functions": Shape.FUNCTIONS,
+        "domain": Shape.TEXTS,
+        "box": Shape.BOX,
+        "budget": Shape.NUMBER,
+    }
+)
+"""Keys that every claim may have."""
+
+_T, _TS, _N = Shape.TEXT, Shape.TEXTS, Shape.NAMES
+_PHASE = {"q": _N, "p": _N}
+_NEW = {"new_q": _N, "new_p": _N}
+_LAGRANGE = {"q": _N, "L": _T}
+_MAP_EITHER_WAY = {"map": Shape.LISTS, "inverse_map": Shape.LISTS}
+_CANONICITY = Kind(
+    _PHASE,
+    {"Q": _TS, "P": _TS, "valence": _T, **_NEW, "implicit": _TS},
+    one_of=(("Q", "P"), ("new_q", "new_p", "implicit")),
+)
+_GENERATING = Kind({**_PHASE, **_NEW, "F": _T}, _MAP_EITHER_WAY, one_of=(("map",), ("inverse_map",)))
+_CONSTRAINED = Kind({**_LAGRANGE, "constraints": _TS, "multipliers": _N, "claim": _TS})
+
+KINDS: Mapping[str, Kind] = MappingProxyType(
+    {
+        "euler-lagrange": Kind({**_LAGRANGE, "claim": _TS}),
+        "dissipative": Kind(
+            _LAGRANGE,
+            {"F": _T, "Qnc": _TS, "claim": _TS, "energy_rate": _T},
+            one_of=(("claim",), ("energy_rate",)),
+        ),
+        "multiplier-holonomic": _CONSTRAINED,
+        "nonholonomic": _CONSTRAINED,
+        "legendre-hamiltonian": Kind(
+            {**_PHASE, "L": _T}, {"H": _T, "exists": Shape.TRUE}, one_of=(("H",), ("exists",))
+        ),
+        "hamilton-equations": Kind(
+            {**_PHASE, "H": _T},
+            {"q_dot": _TS, "p_dot": _TS, "solution": Shape.EXPRESSIONS},
+            one_of=(("q_dot", "p_dot"), ("solution",)),
+        ),
+        "routhian": Kind(
+            {**_LAGRANGE, "cyclic": _N, "momenta": _N, "convention": Shape.WORD},
+            {"R": _T, "claim": _TS},
+            one_of=(("R",), ("claim",)),
+        ),
+        "gibbs-appell": Kind(
+            {"q": _N, "bodies": Shape.BODIES},
+            {"quasi": _N, "q_dot": _TS, "V": _T, "S": _T, "claim": _TS},
+            one_of=(("S",), ("claim",)),
+        ),
+        "poisson-bracket": Kind({**_PHASE, "pairs": Shape.BRACKETS}),
+        "lagrange-bracket": Kind({"variables": _N, "q": _TS, "p": _TS, "pairs": Shape.BRACKETS}),
+        "lie-bracket": Kind({"x": _N, "X": _TS, "Y": _TS, "claim": _TS}),
+        "canonicity": _CANONICITY,
+        "canonicity-time-dependent": _CANONICITY,
+        "bilinear-covariant": Kind(
+            {},
+            {"x": _N, "form": _TS, "claim": _T, **_PHASE, "Q": _TS, "P": _TS, "factor": _T},
+            one_of=(("x", "form", "claim"), ("q", "p", "Q", "P", "factor")),
+        ),
+        "generating-F1": _GENERATING,
+        "generating-F2": _GENERATING,
+        "generating-F3": _GENERATING,
+        "generating-F4": _GENERATING,
+        "transformed-hamiltonian-K": Kind(
+            {**_PHASE, "H": _T, **_NEW, "K": _T}, _MAP_EITHER_WAY, one_of=(("map",), ("inverse_map",))
+        ),
+        "constant-of-motion": Kind(
+            {"I": _T},
+            {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS, "restrict": _TS},
+            one_of=(("q", "p", "H"), ("q", "L"), ("x", "X")),
+        ),
+        "lagrangian-equivalence": Kind({"q": _N, "L1": _T, "L2": _T, "relation": Shape.WORD}, {"F": _T}),
+        "equality-only": Kind({"lhs": _T, "rhs": _T}),
+    }
+)
+"""Every kind of claim that can stand in a sheet."""

@@ -1,0 +1,172 @@
+"""Where some expressions vanish: the constraint manifold, written as a graph over free variables.
+
+Each constraint is solved for one symbol that it determines, a coordinate or a parameter (a claim is for
+every value of the parameters, so l = √(x² + y²) describes a circle of any radius without branches). The
+points that a graph misses, where the coefficient of that symbol vanishes too, have a lower dimension and
+lie in its closure: constraints are split into factors first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.mechanics.substitution import substitute
+from canon.proof.domain import Domain
+from canon.proof.vanish import vanishes
+from canon.proof.verdict import Undecided
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+__all__ = ["Branch", "on_manifold", "transported"]
+
+MAX_BRANCHES = 16
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A part of the manifold: the symbols that are determined, and the domain of the others."""
+
+    values: Mapping[Symbol, Expr]
+    domain: Domain
+
+    def and_then(self, symbol: Symbol, value: Expr, conditions: Sequence[Expr]) -> Branch:
+        """Return the part where one symbol more is determined."""
+        step = {symbol: value}
+        values = {old: substitute(given, step) for old, given in self.values.items()} | step
+        domain = Domain((*self.domain.conditions, *(sp.Ge(c, 0) for c in conditions)), self.domain.box)
+        return Branch(values, transported(domain, step))
+
+
+@dataclass(frozen=True)
+class _Solution:
+    """One way to solve a constraint: a symbol, its values, and what must not be negative for them."""
+
+    symbol: Symbol
+    values: tuple[Expr, ...]
+    conditions: tuple[Expr, ...]
+    cost: tuple[int, int]
+
+
+def on_manifold(
+    constraints: Sequence[Expr], domain: Domain, keep: Sequence[Symbol] = (), prefer: Sequence[Symbol] = ()
+) -> list[Branch]:
+    """Return the branches of the set where all the constraints vanish.
+
+    Parameters
+    ----------
+    constraints
+        Expressions that vanish on the manifold.
+    domain
+        Where the claim is meant.
+    keep
+        Symbols that are not to be solved for, such as the time.
+    prefer
+        Symbols that are solved for where there is a choice, such as velocities.
+
+    Raises
+    ------
+    Undecided
+        Where a constraint can't be solved for any symbol in closed form.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y", real=True)
+    >>> l = sp.Symbol("l", positive=True)
+    >>> on_manifold([x**2 + y**2 - l**2], Domain())[0].values
+    {l: sqrt(x**2 + y**2)}
+    """
+    branches = [Branch({}, domain)]
+    for constraint in constraints:
+        branches = [part for branch in branches for part in _restricted(branch, constraint, keep, prefer)]
+        if len(branches) > MAX_BRANCHES:
+            raise Undecided(f"the constraints have more than {MAX_BRANCHES} branches; split the claim")
+    return branches
+
+
+def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
+    """Return the domain after a substitution, what was assumed of the replaced symbols turned into conditions.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> p = sp.Symbol("p", positive=True)
+    >>> transported(Domain(), {p: x}).conditions
+    (x > 0,)
+    """
+    conditions = [condition.subs(values, simultaneous=True) for condition in domain.conditions]
+    for symbol, value in values.items():
+        if symbol.is_positive and not value.is_positive:
+            conditions.append(sp.Gt(value, 0))
+        elif symbol.is_negative and not value.is_negative:
+            conditions.append(sp.Lt(value, 0))
+        elif symbol.is_nonzero and not value.is_nonzero:
+            conditions.append(sp.Ne(value, 0))
+    kept = {symbol: ends for symbol, ends in domain.box.items() if symbol not in values}
+    return Domain(tuple(dict.fromkeys(c for c in conditions if c is not sp.true)), kept)
+
+
+def _restricted(branch: Branch, constraint: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]) -> Iterator[Branch]:
+    here = substitute(constraint, branch.values)
+    if here == 0 or vanishes(here, branch.domain, budget=1.0).holds:
+        yield branch
+        return
+    for factor in _factors(here):
+        solution = min(_solutions(factor, keep, prefer), key=lambda s: s.cost, default=None)
+        if solution is None:
+            raise Undecided(f"{factor} = 0 could not be solved for any of its symbols in closed form")
+        for value in solution.values:
+            part = branch.and_then(solution.symbol, value, solution.conditions)
+            if sp.false not in part.domain.conditions:
+                yield part
+
+
+def _factors(expression: Expr) -> list[Expr]:
+    """Return the factors of the numerator that can vanish."""
+    numerator = sp.numer(sp.together(expression))
+    _, factors = sp.factor_list(numerator)
+    able = [f for f, _ in factors if f.is_nonzero is not True and f.is_positive is not True]
+    return able or [numerator]
+
+
+def _solutions(c: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]) -> Iterator[_Solution]:
+    for symbol in sorted(c.free_symbols - set(keep), key=lambda s: s.name):
+        if symbol.is_integer:
+            continue
+        try:
+            poly = sp.Poly(c, symbol)
+        except sp.PolynomialError:
+            continue
+        if any(coefficient.has(symbol) for coefficient in poly.all_coeffs()):
+            continue
+        wanted = 0 if symbol in prefer else 1
+        solution = _of_polynomial(poly, symbol, wanted)
+        if solution is not None:
+            yield solution
+
+
+def _of_polynomial(poly: sp.Poly, symbol: Symbol, wanted: int) -> _Solution | None:
+    terms = {power: coefficient for (power,), coefficient in poly.terms()}
+    top = poly.degree()
+    lead = terms[top]
+    generic = 0 if lead.is_nonzero or lead.is_positive or lead.is_negative else 2
+    size = int(sp.count_ops(lead))
+    if top == 1:
+        return _Solution(symbol, (-terms.get(0, sp.S.Zero) / lead,), (), (generic, 10 * wanted + size))
+    if set(terms) <= {0, top}:
+        power = -terms.get(0, sp.S.Zero) / lead
+        if symbol.is_positive:
+            return _Solution(symbol, (power ** sp.Rational(1, top),), (), (generic + 1, 10 * wanted + size))
+        if top == 2:
+            root = sp.sqrt(power)
+            return _Solution(symbol, (root, -root), (power,), (generic + 4, 10 * wanted + size))
+    if top == 2:
+        b, c = terms.get(1, sp.S.Zero), terms.get(0, sp.S.Zero)
+        discriminant = b**2 - 4 * lead * c
+        roots = tuple((-b + sign * sp.sqrt(discriminant)) / (2 * lead) for sign in (1, -1))
+        return _Solution(symbol, roots, (discriminant,), (generic + 5, 10 * wanted + size))
+    return None

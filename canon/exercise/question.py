@@ -1,0 +1,152 @@
+"""What a claim comes down to: a few questions of proof, and their answers."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, TypeAlias
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.mechanics.linear import is_regular
+from canon.mechanics.substitution import substitute
+from canon.proof.domain import Domain
+from canon.proof.equations import equivalent_equations
+from canon.proof.vanish import vanishes
+from canon.proof.verdict import Status, Verdict, all_hold
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+__all__ = ["Answer", "Deadline", "Part", "Question", "Regular", "Same", "SameEquations", "decide"]
+
+Answer: TypeAlias = "Callable[[], object]"
+"""Finds the right answer; called only where a claim fails."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One component of an answer: ``claimed``, seen through a substitution, should equal ``right``.
+
+    Parameters
+    ----------
+    name
+        What a person would call it.
+    claimed
+        The expression as it was given.
+    right
+        What it should equal, after the substitution.
+    through
+        The substitution, such as p = ∂L/∂q̇ or q̈ = the true accelerations.
+    """
+
+    name: str
+    claimed: Expr
+    right: Expr = sp.S.Zero
+    through: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+
+    def seen(self, expression: Expr) -> Expr:
+        """Return an expression after the substitution."""
+        return substitute(expression, self.through)
+
+    @property
+    def residual(self) -> Expr:
+        """What vanishes where the component is right."""
+        return self.seen(self.claimed) - self.right
+
+
+@dataclass(frozen=True)
+class Same:
+    """All these components are right."""
+
+    parts: tuple[Part, ...]
+    domain: Domain
+    answer: Answer | None = None
+
+
+@dataclass(frozen=True)
+class SameEquations:
+    """Two systems, affine in the unknowns, have the same solutions at generic points."""
+
+    claimed: tuple[Expr, ...]
+    right: tuple[Expr, ...]
+    unknowns: tuple[Symbol, ...]
+    domain: Domain
+    answer: Answer | None = None
+
+
+@dataclass(frozen=True)
+class Regular:
+    """A matrix is regular at generic points; ``name`` is what a person would call it."""
+
+    matrix: sp.MatrixBase
+    name: str
+    domain: Domain
+    singular_is: str = ""
+
+
+Question: TypeAlias = Same | SameEquations | Regular | Verdict
+
+
+@dataclass(frozen=True)
+class Deadline:
+    """A point in time that a judgement should not pass."""
+
+    at: float
+
+    @classmethod
+    def after(cls, seconds: float) -> Deadline:
+        """Return the deadline so many seconds from now."""
+        return cls(time.monotonic() + seconds)
+
+    @property
+    def left(self) -> float:
+        """Seconds that are left, at least a few hundredths, so that every question is at least looked at."""
+        return max(0.05, self.at - time.monotonic())
+
+
+def decide(question: Question, deadline: Deadline) -> Verdict:
+    """Return the answer to one question."""
+    match question:
+        case Verdict():
+            return question
+        case Same(parts, domain):
+            return _all_vanish(parts, domain, deadline)
+        case SameEquations(claimed, right, unknowns, domain):
+            return _same_equations(claimed, right, unknowns, domain, deadline)
+        case Regular(matrix, name, domain, singular_is):
+            verdict = is_regular(matrix, domain, name)
+            return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
+
+
+def _all_vanish(parts: Sequence[Part], domain: Domain, deadline: Deadline) -> Verdict:
+    """Refute if any component can be refuted quickly, before any long proof of another begins."""
+    open_ = [part for part in parts if part.residual != 0]
+    if not open_:
+        return Verdict(Status.HOLDS, certificate="exact")
+    share = min(1.0, deadline.left / (2 * len(open_)))
+    first = [vanishes(part.residual, domain, budget=share).about(part.name) for part in open_]
+    failed = next((verdict for verdict in first if verdict.fails), None)
+    if failed is not None:
+        return failed
+    return all_hold(
+        verdict if verdict.holds else vanishes(part.residual, domain, budget=deadline.left).about(part.name)
+        for part, verdict in zip(open_, first, strict=True)
+    )
+
+
+def _same_equations(
+    claimed: tuple[Expr, ...], right: tuple[Expr, ...], unknowns: tuple[Symbol, ...], domain: Domain, deadline: Deadline
+) -> Verdict:
+    for i, equation in enumerate(claimed, 1):
+        slopes = sp.Matrix([[equation.diff(a).diff(b) for b in unknowns] for a in unknowns])
+        affine = vanishes(slopes, domain, budget=deadline.left)
+        if not affine.holds:
+            return replace(affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}")
+    return equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
+
+
+def _listed(symbols: Sequence[Symbol]) -> str:
+    return ", ".join(map(str, symbols))

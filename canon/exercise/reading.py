@@ -1,0 +1,222 @@
+"""What a claim says: its names and expressions as SymPy objects, its domain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import sympy as sp
+from sympy import Expr, Rational, Symbol
+
+from canon.exercise.kinds import KINDS, Shape
+from canon.exercise.sheet import Claim, ClaimError
+from canon.expression.language import LanguageError, Scope, parse_condition, parse_equation, parse_expression
+from canon.expression.symbol import Coordinate, Momentum, velocity
+from canon.proof.domain import Domain
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from sympy.logic.boolalg import Boolean
+
+__all__ = ["InvalidClaim", "Reading"]
+
+_MAKERS: Mapping[str, Callable[..., Symbol]] = MappingProxyType(
+    {"q": Coordinate, "p": Momentum, "quasi": Coordinate, "new_p": Momentum, "momenta": Momentum}
+)
+_NAME_KEYS = ("q", "p", "x", "variables", "new_q", "new_p", "cyclic", "momenta", "multipliers", "quasi")
+
+
+class InvalidClaim(ValueError):
+    """A claim that does not say something that could be judged."""
+
+    def __init__(self, error: ClaimError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A claim with its names resolved.
+
+    Parameters
+    ----------
+    claim
+        The claim as written; its form has been checked.
+    names
+        Symbols that the judge of a kind adds to the declared ones, such as ``d_x`` and ``delta_x``.
+
+    Raises
+    ------
+    InvalidClaim
+        From any attribute or method, with the key and column at fault.
+    """
+
+    claim: Claim
+    names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
+
+    def has(self, key: str) -> bool:
+        """Whether the claim has this key."""
+        return key in self.claim.keys
+
+    def word(self, key: str) -> str:
+        """Return a word as written."""
+        return str(self.claim.keys[key])
+
+    def fault(self, key: str, reason: str) -> NoReturn:
+        """Refuse the claim for what stands under a key."""
+        raise InvalidClaim(ClaimError(self.claim.id, key, reason))
+
+    def with_names(self, names: Mapping[str, Symbol]) -> Reading:
+        """Return the same claim read with more names."""
+        return replace(self, names=MappingProxyType({**self.names, **names}))
+
+    @cached_property
+    def time(self) -> Symbol:
+        """The symbol of the time."""
+        name = str(self.claim.keys.get("t", "t"))
+        if not (name.isidentifier() and name.isascii()):
+            self.fault("t", "should be the name of the time")
+        return Symbol(name, **self._assumptions(name))
+
+    @cached_property
+    def scope(self) -> Scope:
+        """The declared names."""
+        keys = self.claim.keys
+        names: dict[str, Symbol] = {}
+        for key in _NAME_KEYS:
+            if not self._is_list_of_names(key):
+                continue
+            for name in _as_list(keys[key]):
+                if name == self.time.name:
+                    self.fault(key, f"{name} is the name of the time; choose another, or say t = 'tau'")
+                if key == "cyclic":
+                    continue
+                if name in names:
+                    self.fault(key, f"{name} is declared twice")
+                names[name] = _MAKERS.get(key, Symbol)(name, **self._assumptions(name))
+        functions = {name: tuple(_as_list(args)) for name, args in keys.get("functions", {}).items()}
+        for name in keys.get("parameters", {}):
+            if name not in functions and name != self.time.name:
+                names.setdefault(name, Symbol(name, **self._assumptions(name)))
+        if self._is_list_of_names("quasi"):
+            rates = {f"{u}_dot": velocity(names[u]) for u in _as_list(keys["quasi"])}
+            names = {**rates, **names}
+        for name in functions:
+            if name in names:
+                self.fault("functions", f"{name} is declared as a symbol too")
+        signs = {name: self._assumptions(name) for name in functions}
+        return Scope({**self.names, **names}, functions, self.time, signs)
+
+    @cached_property
+    def domain(self) -> Domain:
+        """The conditions of the claim and the box of its hints."""
+        conditions: list[Boolean] = []
+        for position, text in enumerate(_as_list(self.claim.keys.get("domain", []))):
+            condition = self._parse(parse_condition, text, f"domain[{position}]")
+            if condition is sp.false:
+                self.fault(f"domain[{position}]", "no point satisfies this condition")
+            if condition is not sp.true:
+                conditions += condition.args if isinstance(condition, sp.And) else (condition,)
+        box: dict[Symbol, tuple[Rational, Rational]] = {}
+        for name, (low, high) in self.claim.keys.get("box", {}).items():
+            symbol = self.scope.symbol(name)
+            if symbol is None:
+                self.fault("box", f"{name} is not declared; {self.scope.near(name)}")
+            box[symbol] = (Rational(str(low)), Rational(str(high)))
+        return Domain(tuple(conditions), MappingProxyType(box))
+
+    def symbols(self, key: str) -> tuple[Symbol, ...]:
+        """Return the symbols of a list of names."""
+        return tuple(self.scope.names[name] for name in _as_list(self.claim.keys.get(key, [])))
+
+    def subset(self, key: str, of: str) -> tuple[Symbol, ...]:
+        """Return the symbols of a list of names that must be among those of another list."""
+        allowed = _as_list(self.claim.keys[of])
+        for name in _as_list(self.claim.keys[key]):
+            if name not in allowed:
+                self.fault(key, f"{name} is not among {of} = {', '.join(allowed)}")
+        return self.symbols(key)
+
+    def phase_space(self, q: str, p: str) -> tuple[tuple[Symbol, ...], tuple[Symbol, ...]]:
+        """Return coordinates and momenta, as many of each."""
+        coordinates, momenta = self.symbols(q), self.symbols(p)
+        if len(coordinates) != len(momenta):
+            self.fault(p, f"{len(momenta)} momenta for {len(coordinates)} coordinates")
+        return coordinates, momenta
+
+    def expression(self, key: str, default: Expr | None = None) -> Expr:
+        """Return the expression under a key."""
+        if default is not None and not self.has(key):
+            return default
+        return self._parse(parse_expression, self.claim.keys[key], key)
+
+    def expressions(self, key: str, like: str = "") -> tuple[Expr, ...]:
+        """Return the expressions of a list, as many as there are names under ``like``."""
+        found = tuple(
+            self._parse(parse_expression, text, f"{key}[{i}]") for i, text in enumerate(_as_list(self.claim.keys[key]))
+        )
+        return self._as_many(key, found, like)
+
+    def equations(self, key: str) -> tuple[Expr, ...]:
+        """Return the equations of a list, each as what should vanish."""
+        texts = _as_list(self.claim.keys[key])
+        if not texts:
+            self.fault(key, "at least one equation is needed")
+        return tuple(self._parse(parse_equation, text, f"{key}[{i}]") for i, text in enumerate(texts))
+
+    def table(self, key: str) -> dict[str, Expr]:
+        """Return the expressions of a table {name: expression}."""
+        table = self.claim.keys[key]
+        return {name: self._parse(parse_expression, text, f"{key}.{name}") for name, text in table.items()}
+
+    def lists(self, key: str, parts: Mapping[str, str]) -> tuple[tuple[Expr, ...], ...]:
+        """Return the lists of a table, ``parts`` saying as many as which names each of them has."""
+        table = self.claim.keys[key]
+        if set(table) != set(parts):
+            self.fault(key, f"should be a table of {' and '.join(parts)}")
+        return tuple(self.inside(f"{key}.{part}", table[part], like) for part, like in parts.items())
+
+    def inside(self, where: str, value: Any, like: str = "") -> tuple[Expr, ...]:
+        """Return the expressions of a list that stands inside another key."""
+        found = tuple(self._parse(parse_expression, text, f"{where}[{i}]") for i, text in enumerate(_as_list(value)))
+        return self._as_many(where, found, like)
+
+    def brackets(self, first: str, second: str) -> list[tuple[Expr, Expr, Expr]]:
+        """Return the triples (first, second, value) under ``pairs``."""
+        found: list[tuple[Expr, Expr, Expr]] = []
+        for i, pair in enumerate(self.claim.keys["pairs"]):
+            if set(pair) != {first, second, "value"}:
+                self.fault(f"pairs[{i}]", f"should be a table of {first}, {second} and value")
+            a, b, value = (
+                self._parse(parse_expression, pair[k], f"pairs[{i}].{k}") for k in (first, second, "value")
+            )
+            found.append((a, b, value))
+        return found
+
+    def _as_many(self, key: str, found: tuple[Expr, ...], like: str) -> tuple[Expr, ...]:
+        if like and len(found) != len(_as_list(self.claim.keys[like])):
+            self.fault(key, f"{len(found)} expressions for the {len(_as_list(self.claim.keys[like]))} names of {like}")
+        return found
+
+    def _is_list_of_names(self, key: str) -> bool:
+        kind = KINDS[self.claim.kind]
+        return self.has(key) and {**kind.required, **kind.optional}.get(key) is Shape.NAMES
+
+    def _assumptions(self, name: str) -> dict[str, bool]:
+        word = self.claim.keys.get("parameters", {}).get(name, "real")
+        return {"real": True} if word == "real" else {"real": True, word: True}
+
+    def _parse(self, parse: Callable[[str, Scope], Any], text: Any, key: str) -> Any:
+        try:
+            return parse(str(text), self.scope)
+        except LanguageError as error:
+            raise InvalidClaim(
+                ClaimError(self.claim.id, key, error.message, error.column, error.caret())
+            ) from error
+
+
+def _as_list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
