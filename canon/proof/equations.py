@@ -144,16 +144,20 @@ def _rows_follow(
                     f"{names[1]}: {equation} = 0",
                 )
             if verdict.undecided:
-                undecided = undecided or replace(
-                    verdict,
-                    evidence=(
-                        *verdict.evidence,
-                        Evidence(
-                            "equation", f"whether equation {number + 1} of the {names[0]} system follows"
+                undecided = (
+                    undecided
+                    if undecided is not None
+                    else replace(
+                        verdict,
+                        evidence=(
+                            *verdict.evidence,
+                            Evidence(
+                                "equation", f"whether equation {number + 1} of the {names[0]} system follows"
+                            ),
                         ),
-                    ),
+                    )
                 )
-    return undecided or Verdict(Status.HOLDS, certificate="exact", assumed=assumed)
+    return undecided if undecided is not None else Verdict(Status.HOLDS, certificate="exact", assumed=assumed)
 
 
 def _largest_minor(system: _System, domain: Domain) -> _Pivots:

@@ -103,7 +103,8 @@ def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget
         if verdict.fails:
             return replace(verdict, feedback=f"entry ({i}, {j}) does not vanish", seconds=seconds)
         if verdict.undecided:
-            undecided = undecided or replace(verdict, feedback=f"entry ({i}, {j}) was not decided")
+            if undecided is None:
+                undecided = replace(verdict, feedback=f"entry ({i}, {j}) was not decided")
             evidence.extend(verdict.evidence)
     seconds = time.monotonic() - start
     if undecided is not None:

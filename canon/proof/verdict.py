@@ -185,7 +185,7 @@ def all_hold(verdicts: Iterable[Verdict], question: str = "") -> Verdict:
         assumed.update(dict.fromkeys(verdict.assumed))
         evidence.extend(verdict.evidence)
         if verdict.undecided:
-            open_ = open_ or verdict
+            open_ = verdict if open_ is None else open_
         elif verdict.certificate:
             certificates[verdict.certificate] = None
     common = {
