@@ -1,1 +1,52 @@
-"""Ready systems, one small file a family."""
+"""Ready systems, one small file a family; each is data plus its known truths.
+
+>>> from canon.scene import find, names
+>>> find("henon-heiles").title
+'Hénon–Heiles: a star in the meridian plane of a galaxy'
+>>> len(names()) > 10
+True
+"""
+
+from __future__ import annotations
+
+from canon.scene import henon_heiles, kepler, oscillator, pendulum, two_degree
+from canon.scene.scene import Integral, Parameter, Scene, SceneError, Start, near
+
+__all__ = ["SCENES", "Integral", "Parameter", "Scene", "SceneError", "Start", "find", "names"]
+
+SCENES: tuple[Scene, ...] = (
+    *pendulum.SCENES,
+    *oscillator.SCENES,
+    *kepler.SCENES,
+    *henon_heiles.SCENES,
+    *two_degree.SCENES,
+)
+"""Every scene."""
+
+
+def names() -> tuple[str, ...]:
+    """Return the names of all scenes."""
+    return tuple(scene.name for scene in SCENES)
+
+
+def find(name: str) -> Scene:
+    """Return the scene of that name.
+
+    Raises
+    ------
+    SceneError
+        With near matches, where there is none.
+
+    Examples
+    --------
+    >>> find("kepler").coordinates
+    'x y'
+    >>> find("double-pendulm")
+    Traceback (most recent call last):
+    canon.scene.scene.SceneError: there is no scene 'double-pendulm'; did you mean double-pendulum ...
+    """
+    wanted = name.strip().lower().replace("_", "-").replace(" ", "-")
+    for scene in SCENES:
+        if scene.name == wanted:
+            return scene
+    raise SceneError(f"there is no scene {name!r}{near(wanted, names())}")

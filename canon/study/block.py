@@ -1,12 +1,13 @@
 """Window means of an error series: what is left of it once its oscillation is averaged away.
 
-A plain mean over a window leaves a share A/(π c) of an oscillation of amplitude A that turns c times in it. With the weights
-of a weighted Birkhoff average the share falls faster than any power of c for quasi-periodic motion (Das, Saiki, Sander &
-Yorke, Nonlinearity 30, 4111 (2017), doi:10.1088/1361-6544/aa84c2): 0.6 % at 4.5 turns, 6e-7 at 16.5. A drift or a random
-walk passes through unharmed.
+A plain mean over a window leaves a share A/(π c) of an oscillation of amplitude A that turns c times in
+it. With the weights of a weighted Birkhoff average the share falls faster than any power of c for quasi-
+periodic motion (Das, Saiki, Sander & Yorke, Nonlinearity 30, 4111 (2017), doi:10.1088/1361-6544/aa84c2):
+0.6 % at 4.5 turns, 6e-7 at 16.5. A drift or a random walk passes through unharmed.
 
-The windows do not stand at equal distances: what is left of an oscillation nearly in step with equal distances would look
-like a slow oscillation, and a slow oscillation like growth. Scattered windows make noise of it.
+The windows do not stand at equal distances: what is left of an oscillation nearly in step with equal
+distances would look like a slow oscillation, and a slow oscillation like growth. Scattered windows make
+noise of it.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def bump(s: Array) -> Array:
 
 @lru_cache(maxsize=16)
 def window_starts(windows: int) -> NDArray[np.int64]:
-    """Return where the windows start, in units of 1/PLACES of a block: one at a fixed random place of each block."""
+    """Return where the windows start, in 1/PLACES of a block: one at a fixed random place of each block."""
     scattered = np.random.default_rng(windows).integers(0, PLACES, windows)
     return PLACES * np.arange(windows, dtype=np.int64) + scattered
 
@@ -112,8 +113,8 @@ def block_means(t: ArrayLike, error: ArrayLike, windows: int = 32) -> Blocks:
     samples = last - first
     if samples.min() < max(FEWEST_SAMPLES, 0.25 * samples.mean()):
         raise ValueError(
-            f"window {int(samples.argmin()) + 1} of {windows} holds {int(samples.min())} of the {times.size} samples; "
-            f"sample the run evenly and at least {FEWEST_SAMPLES * windows} times"
+            f"window {int(samples.argmin()) + 1} of {windows} holds {int(samples.min())} of the "
+            f"{times.size} samples; sample the run evenly and at least {FEWEST_SAMPLES * windows} times"
         )
     centre, mean, square = np.empty((3, windows))
     for k, (start, i, j) in enumerate(zip(starts, first, last, strict=True)):

@@ -1,4 +1,4 @@
-"""Does a conserved quantity stay bounded along a run, wander as round-off does, or drift?"""
+"""Whether a conserved quantity stays bounded along a run, wanders as round-off does, or drifts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.study.block import Blocks, block_means
+from canon.study.block import WIDTH, Blocks, block_means
 from canon.study.growth import Exponent, Slope, Walk, power_of_time, power_of_wandering, slope_of, walk_of
 
 if TYPE_CHECKING:
@@ -18,6 +18,9 @@ __all__ = ["FEWEST", "Drift", "Growth", "drift"]
 
 WINDOWS = 32
 """Windows from which slopes and walks are found."""
+
+BLOCKS = WINDOWS + WIDTH
+"""Blocks of a run."""
 
 FINE_WINDOWS = 128
 """Windows from which the exponent of a walk is taken where the samples suffice."""
@@ -29,7 +32,7 @@ WALK_EVIDENCE = 5.4
 """Evidence for a walk that series without one reach once in a hundred."""
 
 BLOW_UP = 30.0
-"""Last block over median block (root mean square) from which growth is faster than t⁵ and not worth a power law."""
+"""Ratio of the last window to the median one (root mean square) that only growth faster than t⁴ reaches."""
 
 BEYOND_ROUND_OFF = 50.0
 """How far a walk may exceed the expected round-off and still be called round-off."""
@@ -60,7 +63,8 @@ class Drift:
     amplitude_slope, amplitude_slope_error
         The same for the size of the oscillation about the mean.
     exponent, exponent_interval
-        Power of time with which the error grows (0 bounded, ½ round-off, 1 secular) and its 95 % confidence interval.
+        Power of time with which the error grows (0 bounded, ½ round-off, 1 secular) and its 95 %
+        confidence interval.
     detection_limit
         Size of slope that would have been found with 95 % probability.
     verdict
@@ -111,9 +115,10 @@ def drift(
 ) -> Drift:
     """Judge how the relative error of a conserved quantity grows along a run.
 
-    The run is cut into blocks, and the increments of weighted block means (and of the size of the oscillation in
-    each block) are tested for a slope and for a random walk. Assumed is that the oscillation is faster than about a
-    tenth of the run; a slower one cannot be told from a drift by any means but a longer run.
+    The run is cut into blocks, and the increments of weighted block means (and of the size of the
+    oscillation in each block) are tested for a slope and for a random walk. Assumed is that the
+    oscillation is faster than about a tenth of the run; a slower one cannot be told from a drift by any
+    means but a longer run.
 
     Parameters
     ----------
@@ -123,8 +128,8 @@ def drift(
     error
         Error with its sign, (E(t) − E(0))/|E(0)|, shape (times,).
     roundoff
-        Random walk expected of round-off over the whole run, such as u√n after n steps; a walk more than 50 times
-        larger is not called round-off.
+        Random walk expected of round-off over the whole run, such as u√n after n steps; a walk more than
+        50 times larger is not called round-off.
     resolution
         Error that the arithmetic can't tell from none.
     diverged
@@ -135,7 +140,8 @@ def drift(
     Raises
     ------
     ValueError
-        Where the series is too short, not in order of time, or holds NaN or infinity: a failed run is never data.
+        Where the series is too short, not in order of time, or holds NaN or infinity: a failed run is
+        never data.
 
     Examples
     --------
@@ -159,8 +165,8 @@ def drift(
     walk = walk_of(blocks.mean)
     if not (walk.evidence > WALK_EVIDENCE and walk.size > resolution):
         walk = Walk(walk.evidence, 0.0)
-    drifts = slope.probability < false_alarm / 2 and abs(slope.value) * WINDOWS > resolution
-    widens = breath.probability < false_alarm / 2 and breath.value * WINDOWS > resolution
+    drifts = slope.probability < false_alarm / 2 and abs(slope.value) * BLOCKS > resolution
+    widens = breath.probability < false_alarm / 2 and breath.value * BLOCKS > resolution
     if _blew_up(blocks, bound, diverged):
         verdict, exponent, reason = _diverged(blocks, bound, diverged)
     elif drifts or widens:
@@ -200,8 +206,8 @@ def _checked(t: ArrayLike, error: ArrayLike) -> tuple[NDArray[np.float64], NDArr
     wrong = np.flatnonzero(~(np.isfinite(times) & np.isfinite(values)))
     if wrong.size:
         raise ValueError(
-            f"the series is not finite at sample {wrong[0]} (t = {times[wrong[0]]:.6g}): the run failed there, "
-            "and a failed run is no data; cut it before that time or run again with a smaller step"
+            f"the series is not finite at sample {wrong[0]} (t = {times[wrong[0]]:.6g}): the run failed "
+            "there, and a failed run is no data; cut it before that time or run again with a smaller step"
         )
     if not np.all(np.diff(times) > 0.0):
         raise ValueError("the times must increase strictly; reverse the series of a backward run, or use −t")
@@ -221,7 +227,7 @@ def _below_resolution(blocks: Blocks, bound: float, span: float, resolution: flo
         verdict=Growth.BOUNDED,
         walk=0.0,
         span=span,
-        reason=f"the error never exceeds what the arithmetic resolves ({resolution:.2g}), so its growth can't be measured",
+        reason=f"the error never exceeds {resolution:.2g}, which the arithmetic can't tell from none",
         blocks=blocks,
     )
 
@@ -245,13 +251,13 @@ def _diverged(blocks: Blocks, bound: float, diverged: float) -> tuple[Growth, Ex
 def _secular(
     blocks: Blocks, slope: Slope, breath: Slope, drifts: bool, widens: bool
 ) -> tuple[Growth, Exponent, str]:
-    if drifts and not (widens and breath.value > abs(slope.value)):
-        sigmas = abs(slope.value) / slope.error
-        reason = f"the mean drifts by {slope.value * WINDOWS:.2g} over the run, {sigmas:.3g} times its standard error"
-        return Growth.SECULAR, power_of_time(blocks.mean), reason
-    sigmas = breath.value / breath.error
-    reason = f"the oscillation widens by {breath.value * WINDOWS:.2g} over the run, {sigmas:.3g} times its standard error"
-    return Growth.SECULAR, power_of_time(blocks.amplitude), reason
+    of_mean = drifts and not (widens and breath.value > abs(slope.value))
+    what, found, series = (
+        ("mean drifts", slope, blocks.mean) if of_mean else ("oscillation widens", breath, blocks.amplitude)
+    )
+    sigmas = abs(found.value) / found.error
+    reason = f"the {what} by {found.value * BLOCKS:.2g} over the run, {sigmas:.3g} times its standard error"
+    return Growth.SECULAR, power_of_time(series), reason
 
 
 def _wandering(
@@ -265,29 +271,14 @@ def _wandering(
     if times.size >= 16 * FINE_WINDOWS:
         means = block_means(times, values, FINE_WINDOWS).mean
     exponent = power_of_wandering(means, beside_scatter=True)
+    found = f"the mean wanders by {walk.size:.2g} over the run"
     if roundoff is not None and walk.size > BEYOND_ROUND_OFF * roundoff:
-        return (
-            Growth.UNDECIDED,
-            exponent,
-            (
-                f"the mean wanders by {walk.size:.2g}, far beyond the {roundoff:.2g} of round-off: a slow oscillation, "
-                "or a drift that a longer run would show"
-            ),
-        )
-    if not exponent.low <= 0.5 <= exponent.high:
-        return (
-            Growth.UNDECIDED,
-            exponent,
-            (
-                f"the mean wanders by {walk.size:.2g} without a direction and not as t^½: a slow oscillation, "
-                "or a drift that a longer run would show"
-            ),
-        )
-    return (
-        Growth.ROUND_OFF,
-        exponent,
-        f"the mean wanders as a random walk does, by {walk.size:.2g} over the run",
-    )
+        found += f", far beyond the {roundoff:.2g} of round-off"
+    elif exponent.low <= 0.5 <= exponent.high:
+        return Growth.ROUND_OFF, exponent, f"{found}, as a random walk does"
+    else:
+        found += ", without a direction but not as t^½"
+    return Growth.UNDECIDED, exponent, f"{found}: a slow oscillation, or a drift that a longer run would show"
 
 
 def _bounded(blocks: Blocks) -> tuple[Growth, Exponent, str]:

@@ -1,10 +1,11 @@
 """Tests and estimates on block means: is there a slope, does the level wander, and with which power of time.
 
-Every estimate weighs the increments of the block means with a covariance that allows for a random walk, because a straight
-line fitted to a random walk by least squares is "significant" most of the time (Durlauf & Phillips, Econometrica 56, 1333
-(1988), doi:10.2307/1913101). How much walk there is beside the scatter is not known: the slope is averaged over it, with
-half of the prior weight on nothing but walk. Newey–West errors are the usual alternative; they need a bandwidth, and are too
-small by an unbounded factor for a walk.
+Every estimate weighs the increments of the block means with a covariance that allows for a random walk,
+because a straight line fitted to a random walk by least squares is "significant" most of the time
+(Durlauf & Phillips, Econometrica 56, 1333 (1988), doi:10.2307/1913101). How much walk there is beside the
+scatter is not known: the slope is averaged over it, with half of the prior weight on nothing but walk.
+Newey–West errors are the usual alternative; they need a bandwidth, and are too small by an unbounded
+factor for a walk.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 from scipy.stats import t as student
 
 from canon.study.block import PLACES, WIDTH, bump, window_starts
@@ -92,15 +93,17 @@ def slope_of(means: Array, false_alarm: float) -> Slope:
 
 
 def _limit(found: Fit, posterior: Array, false_alarm: float) -> float:
-    """Return the slope that would be found with 95 % probability: the threshold, and once more the scatter around it."""
-
-    def beyond(slope: float, probability: float) -> float:
-        return float(posterior @ student.sf(slope / found.slope_error, found.freedom)) - probability
-
+    """Return the slope that would be found with 95 % probability: the threshold and the scatter around it."""
     widest = float(found.slope_error.max())
-    threshold = brentq(beyond, 0.0, 1e3 * widest, args=(false_alarm / 4.0,), xtol=1e-6 * widest)
-    missed = brentq(beyond, 0.0, 1e3 * widest, args=(1.0 - DETECTED,), xtol=1e-6 * widest)
-    return float(threshold) + float(missed)
+
+    def exceeded_with(probability: float) -> float:
+        def excess(sigmas: float) -> float:
+            tail = student.sf(sigmas * widest / found.slope_error, found.freedom)
+            return float(posterior @ tail) - probability
+
+        return widest * float(root_scalar(excess, bracket=(0.0, 1e3), xtol=1e-9).root)
+
+    return exceeded_with(false_alarm / 4.0) + exceeded_with(1.0 - DETECTED)
 
 
 def walk_of(means: Array) -> Walk:
@@ -125,7 +128,8 @@ def power_of_wandering(means: Array, beside_scatter: bool) -> Exponent:
     means
         Block means.
     beside_scatter
-        Whether independent scatter comes on top. Without it H may be negative, near −½ for block means that only scatter.
+        Whether independent scatter comes on top. Without it H may be negative, near −½ for block means
+        that only scatter.
     """
     family = (wandering if beside_scatter else fractional)(means.size)
     found = _fit(means, family)
@@ -151,7 +155,7 @@ def _fit(means: Array, family: Family) -> Fit:
 
 @lru_cache(maxsize=16)
 def _powers(windows: int) -> tuple[Array, Array]:
-    """Return exponents and, for each, the increments of the window means of t^γ over a run of unit duration."""
+    """Return exponents γ and the increments of the window means of t^γ, over a run of unit duration."""
     exponents = np.linspace(0.2, 8.0, 391)
     place = (np.arange(64) + 0.5) / 64
     weight = bump(place) / bump(place).sum()

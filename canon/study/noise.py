@@ -1,9 +1,10 @@
 """How the increments of block means scatter, for an error that oscillates, wanders, or does both.
 
-The block means of a bounded oscillation scatter independently about one value at worst (those of a quasi-periodic one
-less); those of accumulated round-off are a random walk. Both at once is the local level model of Harvey, *Forecasting,
-structural time series models and the Kalman filter* (1989), § 2.3; with a walk of exponent H ≠ ½ (fractional Brownian
-motion) in place of the random walk the same model measures how fast the error wanders.
+The block means of a bounded oscillation scatter independently about one value at worst (those of a quasi-
+periodic one less); those of accumulated round-off are a random walk. Both at once is the local level
+model of Harvey, *Forecasting, structural time series models and the Kalman filter* (1989), § 2.3; with a
+walk of exponent H ≠ ½ (fractional Brownian motion) in place of the random walk the same model measures
+how fast the error wanders.
 """
 
 from __future__ import annotations
@@ -112,7 +113,7 @@ def local_level(windows: int) -> Family:
 
 @lru_cache(maxsize=16)
 def fractional(windows: int) -> Family:
-    """Return fractional noise without further scatter, H = −0.45 (nearly independent) to 0.95 (nearly a trend)."""
+    """Return fractional noise alone, from H = −0.45 (nearly independent) to 0.95 (nearly a trend)."""
     exponents = np.linspace(-0.45, 0.95, 57)
     return _family(exponents, np.full(exponents.size, np.inf), windows)
 
@@ -134,7 +135,8 @@ def _family(exponents: Array, ratios: Array, windows: int) -> Family:
     ]
     factor = np.linalg.cholesky(np.stack(members))
     log_determinant = 2.0 * np.sum(np.log(np.diagonal(factor, axis1=1, axis2=2)), axis=1)
-    return Family(exponents, ratios, np.linalg.inv(factor), log_determinant)
+    whitener = np.asarray(np.linalg.inv(factor), dtype=np.float64)
+    return Family(exponents, ratios, whitener, log_determinant)
 
 
 def scatter_covariance(windows: int) -> Array:
@@ -149,11 +151,11 @@ def scatter_covariance(windows: int) -> Array:
 
 
 def walk_covariance(exponent: float, windows: int) -> Array:
-    """Return the covariance of the increments of window means of a walk with E|Δ|² = lag^(2H)/(2H), lag in blocks.
+    """Return the covariance of the increments of window means of a walk with E|Δ|² = lag^(2H)/(2H).
 
-    With r the autocorrelation of the weights, the means of windows h apart have covariance
-    R(h) = −½ ∫ r(u) |u + h|^(2H) du / 2H up to a constant. The kernel is taken as (|u|^(2H) − 1)/(2H), which continues
-    through H = 0 as log|u|; cells are integrated in closed form.
+    With r the autocorrelation of the weights, the means of windows h apart have covariance R(h) = −½ ∫
+    r(u) |u + h|^(2H) du / 2H up to a constant. The kernel is taken as (|u|^(2H) − 1)/(2H), which
+    continues through H = 0 as log|u|; cells are integrated in closed form.
     """
     reach = PLACES * (windows + WIDTH)
     edges = (np.arange(-WIDTH * PLACES, reach + 1) + 0.5) / PLACES

@@ -1,0 +1,180 @@
+"""Pendulums: simple, sliding mass, spherical, double with point masses and with rods.
+
+Angles are counted from the downward vertical; the potential energy is zero at the height of the pivot.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from canon.scene.scene import Integral, Parameter, Scene, Start
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from types import SimpleNamespace
+
+    from sympy import Expr
+
+__all__ = ["SCENES"]
+
+GRAVITY = Parameter("g", 9.80665, "m/s²", "standard acceleration of free fall")
+
+
+def _small_swing(value: Mapping[str, float]) -> float:
+    return 2.0 * math.pi * math.sqrt(value["l"] / value["g"])
+
+
+def _simple(s: SimpleNamespace) -> Expr:
+    from sympy import cos
+
+    return s.m * s.l**2 * s.theta.dot**2 / 2 + s.m * s.g * s.l * cos(s.theta)
+
+
+SIMPLE = Scene(
+    name="simple-pendulum",
+    title="Simple pendulum: a point mass on a massless rod in a plane",
+    coordinates="theta",
+    parameters=(Parameter("m", 1.0, "kg", "mass of the bob"), Parameter("l", 1.0, "m", "length"), GRAVITY),
+    starts=(
+        Start("wide", "released at rest at 2 rad", q=(2.0,), v=(0.0,)),
+        Start("small", "released at rest at 0.1 rad", q=(0.1,), v=(0.0,)),
+        Start("rotating", "going over the top", q=(0.0,), v=(7.0,)),
+    ),
+    time_scale=_small_swing,
+    time_unit="s",
+    source="Landau & Lifshitz, Mechanics (3rd ed.), § 11 problem 1",
+    L_of=_simple,
+)
+
+
+def _sliding(s: SimpleNamespace) -> Expr:
+    from sympy import cos
+
+    kinetic = s.m * (s.r.dot**2 + s.r**2 * s.theta.dot**2) / 2
+    return kinetic + s.m * s.g * s.r * cos(s.theta) - s.k * s.r**2 / 2
+
+
+def _elastic(value: Mapping[str, float]) -> float:
+    return 2.0 * math.pi * math.sqrt(value["m"] / value["k"])
+
+
+SLIDING_MASS = Scene(
+    name="sliding-mass-pendulum",
+    title="Pendulum with a sliding mass: a bead on a swinging rod, held by a spring of zero natural length",
+    coordinates="r theta",
+    parameters=(
+        Parameter("m", 0.5, "kg", "mass of the bead"),
+        Parameter("k", 20.0, "N/m", "stiffness of the spring"),
+        GRAVITY,
+    ),
+    starts=(
+        Start("swinging", "drawn aside and released", q=(0.4, 0.8), v=(0.0, 0.0)),
+        Start("hanging", "pulled down and released", q=(0.35, 0.0), v=(0.0, 0.0)),
+    ),
+    time_scale=_elastic,
+    time_unit="s",
+    source="a spring of zero natural length makes x and y independent oscillators: closed form",
+    L_of=_sliding,
+    integrals=(Integral("energy of the horizontal oscillator", lambda s: _horizontal(s)),),
+)
+
+
+def _horizontal(s: SimpleNamespace) -> Expr:
+    """Return p_x²/2m + k x²/2 with x = r sin θ, p_x = p_r sin θ + p_θ cos θ / r."""
+    from sympy import cos, sin
+
+    p_x = s.r.momentum * sin(s.theta) + s.theta.momentum * cos(s.theta) / s.r
+    return p_x**2 / (2 * s.m) + s.k * (s.r * sin(s.theta)) ** 2 / 2
+
+
+def _spherical(s: SimpleNamespace) -> Expr:
+    from sympy import cos, sin
+
+    kinetic = s.m * s.l**2 * (s.theta.dot**2 + s.phi.dot**2 * sin(s.theta) ** 2) / 2
+    return kinetic + s.m * s.g * s.l * cos(s.theta)
+
+
+SPHERICAL = Scene(
+    name="spherical-pendulum",
+    title="Spherical pendulum: a point mass on a massless rod in space",
+    coordinates="theta phi",
+    parameters=(Parameter("m", 1.0, "kg", "mass of the bob"), Parameter("l", 1.0, "m", "length"), GRAVITY),
+    starts=(
+        Start("precessing", "thrown sideways from 1 rad", q=(1.0, 0.0), v=(0.0, 2.0)),
+        Start("conical", "circling at 1 rad", q=(1.0, 0.0), v=(0.0, math.sqrt(9.80665 / math.cos(1.0)))),
+    ),
+    time_scale=_small_swing,
+    time_unit="s",
+    source="Landau & Lifshitz, Mechanics (3rd ed.), § 14 problem 1",
+    L_of=_spherical,
+    integrals=(Integral("angular momentum about the vertical", lambda s: s.phi.momentum),),
+)
+
+
+def _double(s: SimpleNamespace) -> Expr:
+    from sympy import cos
+
+    a, b = s.theta1, s.theta2
+    kinetic = (
+        (s.m1 + s.m2) * s.l1**2 * a.dot**2 / 2
+        + s.m2 * s.l2**2 * b.dot**2 / 2
+        + s.m2 * s.l1 * s.l2 * a.dot * b.dot * cos(a - b)
+    )
+    return kinetic + (s.m1 + s.m2) * s.g * s.l1 * cos(a) + s.m2 * s.g * s.l2 * cos(b)
+
+
+def _rods(s: SimpleNamespace) -> Expr:
+    from sympy import cos
+
+    a, b = s.theta1, s.theta2
+    kinetic = (
+        (s.m1 / 3 + s.m2) * s.l1**2 * a.dot**2 / 2
+        + s.m2 * s.l2**2 * b.dot**2 / 6
+        + s.m2 * s.l1 * s.l2 * a.dot * b.dot * cos(a - b) / 2
+    )
+    return kinetic + (s.m1 / 2 + s.m2) * s.g * s.l1 * cos(a) + s.m2 * s.g * s.l2 * cos(b) / 2
+
+
+def _upper_swing(value: Mapping[str, float]) -> float:
+    return 2.0 * math.pi * math.sqrt(value["l1"] / value["g"])
+
+
+_DOUBLE_PARAMETERS = (
+    Parameter("m1", 1.0, "kg", "upper mass"),
+    Parameter("m2", 0.5, "kg", "lower mass"),
+    Parameter("l1", 1.0, "m", "upper length"),
+    Parameter("l2", 0.8, "m", "lower length"),
+    GRAVITY,
+)
+_DOUBLE_STARTS = (
+    Start("regular", "released at rest at small angles", q=(0.3, 0.4), v=(0.0, 0.0)),
+    Start("chaotic", "released at rest with both arms raised", q=(2.0, 2.5), v=(0.0, 0.0)),
+)
+
+DOUBLE = Scene(
+    name="double-pendulum",
+    title="Double pendulum: two point masses on massless rods in a plane",
+    coordinates="theta1 theta2",
+    parameters=_DOUBLE_PARAMETERS,
+    starts=_DOUBLE_STARTS,
+    time_scale=_upper_swing,
+    time_unit="s",
+    source="Landau & Lifshitz, Mechanics (3rd ed.), § 5 problem 1",
+    L_of=_double,
+)
+
+DOUBLE_RODS = Scene(
+    name="double-pendulum-rods",
+    title="Double pendulum of two uniform rods in a plane",
+    coordinates="theta1 theta2",
+    parameters=_DOUBLE_PARAMETERS,
+    starts=_DOUBLE_STARTS,
+    time_scale=_upper_swing,
+    time_unit="s",
+    source="kinetic energy of each rod by König's theorem, central inertia m l²/12",
+    L_of=_rods,
+)
+
+SCENES = (SIMPLE, SLIDING_MASS, SPHERICAL, DOUBLE, DOUBLE_RODS)
+"""The pendulums."""
