@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import random
 import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from flint import acb, acb_mat
+from sympy.core.function import AppliedUndef
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import EVERYWHERE, Domain
+from canon.proof.refute import with_example_functions
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from sympy import Expr, Symbol
 
@@ -128,13 +131,13 @@ def _rows_follow(
     assumed = ("generic point: the coefficients' largest minor is not zero",)
     undecided: Verdict | None = None
     for number, row in enumerate(rows.rows):
-        for column in range(len(row)):
-            if column in pivots.columns:
-                continue
-            columns = (*pivots.columns, column)
-            bordered = [[basis.rows[i][c] for c in columns] for i in pivots.rows]
-            bordered.append([row[c] for c in columns])
+        for bordered in _borders(row, basis, pivots):
             verdict = vanishes(_determinant(bordered), domain, max(0.1, deadline - time.monotonic()))
+            if verdict.fails and not _minor_is_largest(basis, pivots, domain, deadline):
+                verdict = Verdict(
+                    Status.UNDECIDED,
+                    evidence=(Evidence("rank", f"the rank of the {names[1]} system is not known"),),
+                )
             if verdict.fails:
                 equation = equations[number]
                 return replace(
@@ -160,12 +163,34 @@ def _rows_follow(
     return undecided if undecided is not None else Verdict(Status.HOLDS, certificate="exact", assumed=assumed)
 
 
+def _borders(row: tuple[Expr, ...], basis: _System, pivots: _Pivots) -> Iterator[list[list[Expr]]]:
+    """Border the pivots' minor with a row and, in turn, each column outside it."""
+    for column in range(len(row)):
+        if column not in pivots.columns:
+            columns = (*pivots.columns, column)
+            yield [*([basis.rows[i][c] for c in columns] for i in pivots.rows), [row[c] for c in columns]]
+
+
+def _minor_is_largest(basis: _System, pivots: _Pivots, domain: Domain, deadline: float) -> bool:
+    """Tell whether every row of the basis is proved to depend on the pivots' rows.
+
+    Without that a row outside the pivots' span may still follow from the basis.
+    """
+    return all(
+        vanishes(_determinant(bordered), domain, max(0.1, deadline - time.monotonic())).holds
+        for number, row in enumerate(basis.rows)
+        if number not in pivots.rows
+        for bordered in _borders(row, basis, pivots)
+    )
+
+
 def _largest_minor(system: _System, domain: Domain) -> _Pivots:
     """Find the largest minor that balls certify as nonzero at some point of the domain."""
     best = _Pivots((), ())
     if not system.rows:
         return best
     symbols = set[sp.Symbol]().union(*(entry.free_symbols for row in system.rows for entry in row))
+    system = _with_examples(system)
     full = min(len(system.rows), len(system.rows[0]))
     for point in domain.points(symbols, POINTS, seed=3):
         found = _pivots_at(system, point)
@@ -174,6 +199,15 @@ def _largest_minor(system: _System, domain: Domain) -> _Pivots:
         if len(best.rows) == full:
             break
     return best
+
+
+def _with_examples(system: _System) -> _System:
+    """Put examples for the arbitrary functions: a minor that is nonzero for one choice is not zero."""
+    entries = [entry for row in system.rows for entry in row]
+    if any(entry.has(AppliedUndef) for entry in entries):
+        entries, _ = with_example_functions(entries, random.Random(3))
+    width = len(system.rows[0])
+    return _System(tuple(tuple(entries[i : i + width]) for i in range(0, len(entries), width)))
 
 
 def _pivots_at(system: _System, point: dict[Symbol, sp.Rational]) -> _Pivots:

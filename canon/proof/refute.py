@@ -16,13 +16,13 @@ from canon.proof.normal_form import declared_complex
 from canon.proof.verdict import Counterexample
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from sympy import Expr, Symbol
 
     from canon.proof.domain import Domain
 
-__all__ = ["Search", "look_for_counterexample"]
+__all__ = ["Search", "look_for_counterexample", "with_example_functions"]
 
 HIGHEST_PRECISION = 3200
 """Bits after which a point that has not decided is left."""
@@ -77,7 +77,8 @@ def look_for_counterexample(
         if time.monotonic() > deadline:
             break
         if has_functions:
-            sides, result.functions = _with_example_functions((left, right), chance)
+            (left_there, right_there), result.functions = with_example_functions((left, right), chance)
+            sides = (left_there, right_there)
         result.tried += 1
         if _try_point(sides, point, highest, deadline, result, complex_counts=spoken_complex):
             break
@@ -163,21 +164,21 @@ def _text(z: acb, digits: int) -> str:
     return f"{real} + ({z.imag.str(digits, radius=False)})*I"
 
 
-def _with_example_functions(
-    sides: tuple[Expr, Expr], chance: random.Random
-) -> tuple[tuple[Expr, Expr], dict[str, str]]:
+def with_example_functions(
+    expressions: Sequence[Expr], chance: random.Random
+) -> tuple[tuple[Expr, ...], dict[str, str]]:
     """Put short random polynomials for the arbitrary functions: the claim is for every such function."""
-    applied = sorted(sides[0].atoms(AppliedUndef) | sides[1].atoms(AppliedUndef), key=str)
+    applied = sorted(set[sp.Basic]().union(*(e.atoms(AppliedUndef) for e in expressions)), key=str)
     chosen: dict[str, str] = {}
-    lefts, rights = sides
+    replaced = list(expressions)
     for function, sample in {a.func: a for a in applied}.items():
         places = sp.symbols(f"_u0:{len(sample.args)}", real=True)
         polynomial = _random_polynomial(places, chance)
         shown = polynomial.xreplace(dict(zip(places, sample.args, strict=True)))
         chosen[str(sample)] = str(shown)
         body = sp.Lambda(places, polynomial)
-        lefts, rights = lefts.replace(function, body), rights.replace(function, body)
-    return (_derived(lefts), _derived(rights)), chosen
+        replaced = [e.replace(function, body) for e in replaced]
+    return tuple(_derived(e) for e in replaced), chosen
 
 
 def _random_polynomial(places: tuple[Symbol, ...], chance: random.Random) -> Expr:
