@@ -116,7 +116,8 @@ def examine(claim: Claim) -> Finding:
     except SingularMatrixError as singular:
         raise InvalidClaim(ClaimError(claim.id, "", str(singular))) from singular
     seconds = claim.budget - (deadline.left if deadline.left > 0.05 else 0.0)
-    verdict = replace(all_hold(answered, _title(claim)), seconds=seconds)
+    verdict = replace(all_hold(answered), seconds=seconds)
+    verdict = verdict if verdict.question else verdict.about(_title(claim))
     return Finding(reading, verdict, turned)
 
 
@@ -133,10 +134,13 @@ def check(sheet: str | Path | Sheet) -> Report:
     SheetError
         Where the file is no sheet.
     """
-    from canon.exercise.report import report
+    from canon.exercise.report import Report
     from canon.exercise.sheet import Sheet, read_sheet
+    from canon.exercise.worker import Worker
 
-    return report(sheet if isinstance(sheet, Sheet) else read_sheet(sheet))
+    read = sheet if isinstance(sheet, Sheet) else read_sheet(sheet)
+    with Worker() as worker:
+        return Report(read.title or read.file, tuple(worker.judge(claim) for claim in read.claims))
 
 
 def _title(claim: Claim) -> str:

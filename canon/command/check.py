@@ -1,0 +1,157 @@
+"""``canon check``: judge sheets of claims."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import argparse
+
+    from canon.exercise.report import Judgement, Report
+    from canon.exercise.sheet import Claim, Sheet
+
+__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
+
+DESCRIPTION = """\
+Judge each claim of one or more sheets. HOLDS is only said of what was proved, FAILS only of what was certainly
+refuted; what is neither is UNDECIDED, with what is known. Nothing in a sheet is executed, and every claim has
+a budget of time (10 s unless it says otherwise).
+"""
+EXAMPLES = """\
+a sheet (TOML; JSON has the same keys):
+
+  [[claim]]
+  id = "pendulum"
+  kind = "euler-lagrange"
+  q = ["theta"]
+  parameters = { m = "positive", l = "positive", g = "positive" }
+  L = "m*l**2*theta_dot**2/2 + m*g*l*cos(theta)"
+  claim = ["theta'' + g/l*sin(theta) = 0"]
+
+  [[claim]]
+  id = "polar"
+  kind = "canonicity"
+  q = ["q"]
+  p = ["p"]
+  parameters = { q = "positive" }
+  Q = ["sqrt(2*q)*cos(p)"]
+  P = ["sqrt(2*q)*sin(p)"]
+
+kinds of claims:
+{kinds}
+
+exit status: 0 all hold, 1 some fail, 3 none fails but some are undecided, 2 bad usage or an invalid claim;
+with --expect 1 where a verdict differs from the claim's "expect", else 0
+
+examples:
+  canon check answers.toml
+  canon check --json class/*.json > verdicts.jsonl
+  canon check --expect regression.toml
+  canon check --only pendulum answers.toml
+"""
+
+
+def _kinds() -> str:
+    from canon.exercise.kinds import KINDS
+
+    names = list(KINDS)
+    return "\n".join("  " + ", ".join(names[i : i + 4]) for i in range(0, len(names), 4))
+
+
+EXAMPLES = EXAMPLES.replace("{kinds}", _kinds())
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what the command reads."""
+    parser.add_argument("sheets", metavar="SHEET", nargs="+", help="a .toml or .json file of claims; - reads JSON from stdin")
+    parser.add_argument("--json", action="store_true", help="one JSON object a line instead of a table")
+    parser.add_argument(
+        "--expect", action="store_true", help="compare with what each claim expects; exit 1 where a verdict differs"
+    )
+    parser.add_argument("--only", metavar="ID", action="append", help="judge this claim only; may be repeated")
+    parser.add_argument("--budget", metavar="S", type=_seconds, help="seconds a claim, whatever the sheet says")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge the sheets, print each verdict as soon as it is there, return the exit status."""
+    from canon.exercise.report import Report
+    from canon.exercise.sheet import SheetError
+    from canon.exercise.worker import Worker
+
+    try:
+        sheets = [_read(name) for name in arguments.sheets]
+        chosen = [(sheet, _chosen(sheet, arguments)) for sheet in sheets]
+    except SheetError as error:
+        print(f"canon check: {error}", file=sys.stderr)
+        return 2
+    wanted = set(arguments.only or ())
+    unknown = wanted - {claim.id for _, claims in chosen for claim in claims}
+    if unknown:
+        print(f"canon check: no claim is called {', '.join(sorted(unknown))}", file=sys.stderr)
+        return 2
+    judgements: list[Judgement] = []
+    with Worker() as worker:
+        for sheet, claims in chosen:
+            if not arguments.json and (sheet.title or len(sheets) > 1):
+                print(sheet.title or sheet.file)
+            for claim in claims:
+                judgement = worker.judge(claim)
+                judgements.append(judgement)
+                _show(judgement, json=arguments.json)
+    report = Report("", tuple(judgements))
+    if not arguments.json:
+        print(report.summary)
+    return _status(report, judgements, expected=arguments.expect)
+
+
+def _status(report: Report, judgements: list[Judgement], *, expected: bool) -> int:
+    if not expected:
+        return report.exit_status
+    for judgement in report.unexpected:
+        line = f"canon check: {judgement.id}: {judgement.status}, expected {judgement.expect}"
+        print(line, file=sys.stderr)
+    if any(judgement.status == "invalid" and not judgement.expect for judgement in judgements):
+        return 2
+    return 1 if report.unexpected else 0
+
+
+def _read(name: str) -> Sheet:
+    from canon.exercise.sheet import MAX_BYTES, SheetError, read_sheet, sheet_from
+
+    if name != "-":
+        return read_sheet(name)
+    data = sys.stdin.buffer.read(MAX_BYTES + 1)
+    if len(data) > MAX_BYTES:
+        raise SheetError(f"standard input: more than {MAX_BYTES} bytes; split the sheet")
+    return sheet_from(data, file="standard input")
+
+
+def _chosen(sheet: Sheet, arguments: argparse.Namespace) -> list[Claim]:
+    from dataclasses import replace
+
+    claims = [claim for claim in sheet.claims if not arguments.only or claim.id in arguments.only]
+    if arguments.budget is not None:
+        claims = [replace(claim, budget=arguments.budget) for claim in claims]
+    return claims
+
+
+def _show(judgement: Judgement, *, json: bool) -> None:
+    import json as json_
+
+    if json:
+        print(json_.dumps(judgement.to_dict(), ensure_ascii=False), flush=True)
+    else:
+        print(*judgement.lines(), sep="\n", flush=True)
+
+
+def _seconds(text: str) -> float:
+    import argparse
+
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = 0.0
+    if not 0 < seconds <= 3600:
+        raise argparse.ArgumentTypeError(f"{text!r} should be a number of seconds above 0 and up to 3600")
+    return seconds

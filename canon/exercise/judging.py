@@ -1,0 +1,79 @@
+"""From a claim to what a report says of it, and a sheet's claims one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.exercise.feedback import corrected, feedback
+from canon.exercise.judge import InvalidClaim, examine
+from canon.exercise.report import MAX_SHOWN, Judgement, invalid
+from canon.proof.verdict import Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.exercise.judge import Finding
+    from canon.exercise.sheet import Claim
+
+__all__ = ["judgements"]
+
+FEEDBACK_SECONDS = 2.0
+
+
+def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
+    """Yield the judgement on a claim, then the same with feedback; the flag marks the last one."""
+    try:
+        finding = examine(claim)
+    except InvalidClaim as error:
+        yield invalid(claim, str(error)), True
+        return
+    except (RecursionError, MemoryError) as error:
+        what = "memory" if isinstance(error, MemoryError) else "depth of its expressions"
+        known = f"the {what} that it needs is beyond the limit"
+        yield replace(invalid(claim, known), status="undecided"), True
+        return
+    judgement = _told(claim, finding.verdict)
+    if not finding.verdict.fails:
+        yield judgement, True
+        return
+    yield judgement, False
+    yield _with_feedback(judgement, finding, claim), True
+
+
+def _with_feedback(judgement: Judgement, finding: Finding, claim: Claim) -> Judgement:
+    left = min(FEEDBACK_SECONDS, claim.budget - judgement.seconds)
+    sentence = feedback(finding, left) if left > 0.1 else ""
+    right = corrected(finding) if left > 0.1 else ""
+    return replace(judgement, feedback=sentence or judgement.feedback, corrected=right[:MAX_SHOWN])
+
+
+def _told(claim: Claim, verdict: Verdict) -> Judgement:
+    example = verdict.counterexample
+    point = {"point": dict(example.point), "left": example.left, "right": example.right} if example else None
+    known = "; ".join(evidence.text for evidence in verdict.evidence) if verdict.undecided else ""
+    return Judgement(
+        claim.id,
+        claim.kind,
+        verdict.status.value,
+        verdict.seconds,
+        certificate=verdict.certificate,
+        question=verdict.question,
+        counterexample=point,
+        residual=_short(verdict.residual) if verdict.fails or verdict.undecided else "",
+        feedback=verdict.feedback,
+        known=known,
+        title=str(claim.keys.get("title", "")),
+        expect=claim.expect,
+    )
+
+
+def _short(residual: sp.Basic | sp.MatrixBase | None) -> str:
+    """Return an expression as text, unless that would be longer than anyone reads."""
+    if residual is None:
+        return ""
+    if isinstance(residual, sp.Basic) and sum(1 for _ in zip(sp.preorder_traversal(residual), range(5000), strict=False)) >= 5000:
+        return "(too long to be shown)"
+    return str(residual)[:MAX_SHOWN]
