@@ -62,7 +62,7 @@ class Graph:
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self._number_of: dict[Node, int] = {}
-        self._symbols: dict[int, frozenset[Symbol]] = {}
+        self._symbols: list[frozenset[Symbol]] = []
         self._derivatives: dict[Symbol, dict[int, int]] = {}
 
     # building ------------------------------------------------------------------------------------
@@ -73,6 +73,8 @@ class Graph:
         if number is None:
             number = self._number_of[node] = len(self.nodes)
             self.nodes.append(node)
+            own = [frozenset((value,))] if kind == "symbol" else [self._symbols[o] for o in operands]
+            self._symbols.append(own[0] if len(own) == 1 else frozenset[Any]().union(*own))
         return number
 
     def number(self, value: Fraction | int) -> int:
@@ -234,12 +236,6 @@ class Graph:
 
     def symbols(self, node: int) -> frozenset[Symbol]:
         """Return the symbols a node depends on."""
-        if node not in self._symbols:
-            for each in self.reachable([node]):
-                if each not in self._symbols:
-                    kind, operands, value = self.nodes[each]
-                    own = [frozenset((value,))] if kind == "symbol" else [self._symbols[o] for o in operands]
-                    self._symbols[each] = frozenset[Any]().union(*own)
         return self._symbols[node]
 
     def derivative(self, node: int, symbol: Symbol) -> int:

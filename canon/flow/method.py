@@ -1,0 +1,208 @@
+"""Methods of integration as values: what to use, not how it runs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from canon.kernel.order import order
+from canon.kernel.scheme import SCHEMES, Scheme
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["DOP853", "RK4", "Method", "Splitting", "Taylor"]
+
+Coefficient = float | int | str | Fraction
+"""Text is read as the exact decimal or quotient it spells, a float as the binary number it is."""
+
+
+@dataclass(frozen=True, init=False)
+class Splitting:
+    """A symplectic splitting method for H = T(p, t) + V(q, t): drifts and kicks in turn.
+
+    Parameters
+    ----------
+    name
+        One of ``verlet``, ``forest-ruth``, ``suzuki-4``, ``blanes-moan-4``, ``blanes-moan-6``,
+        ``kahan-li-6``, ``kahan-li-8``, ``sofroniou-spaletta-10``; or ``srkn-6a``, ``srkn-6b`` where T is
+        quadratic in p.
+    a, b
+        Coefficients of your own instead: drift a₁h, kick b₁h, drift a₂h …; as many drifts as kicks, or one
+        more.
+
+    Raises
+    ------
+    ValueError
+        No such method; or coefficients whose number is wrong or which do not add up to 1.
+
+    Examples
+    --------
+    >>> Splitting("kahan-li-8")
+    Splitting('kahan-li-8')
+    >>> Splitting("kahan-li-8").order, Splitting("kahan-li-8").stages
+    (8, 17)
+    >>> Splitting(a=["1/2", "1/2"], b=[1]).order
+    2
+    """
+
+    scheme: Scheme
+
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        a: Sequence[Coefficient] | None = None,
+        b: Sequence[Coefficient] | None = None,
+    ) -> None:
+        if (name is None) == (a is None) or (a is None) != (b is None):
+            raise ValueError("say which splitting: Splitting('kahan-li-8'), or Splitting(a=[…], b=[…])")
+        if name is not None:
+            if name not in SCHEMES:
+                raise ValueError(f"no splitting is called {name!r}; there are {', '.join(SCHEMES)}")
+            object.__setattr__(self, "scheme", SCHEMES[name])
+        elif a is not None and b is not None:
+            object.__setattr__(self, "scheme", _own_scheme(a, b))
+
+    def __repr__(self) -> str:
+        if self.scheme.name:
+            return f"Splitting({self.scheme.name!r})"
+        a, b = ([float(x) for x in half] for half in (self.scheme.a, self.scheme.b))
+        return f"Splitting(a={a}, b={b})"
+
+    def __str__(self) -> str:
+        return self.scheme.name or f"splitting, order {self.order}, {self.stages} stages"
+
+    @cached_property
+    def order(self) -> int:
+        """The order of the method; for ``srkn`` methods on kinetic energies quadratic in p."""
+        return self.scheme.order
+
+    @property
+    def stages(self) -> int:
+        """Force evaluations in a step."""
+        return self.scheme.stages
+
+    @property
+    def citation(self) -> str:
+        """Where the method was published."""
+        return self.scheme.citation
+
+
+def _own_scheme(a: Sequence[Coefficient], b: Sequence[Coefficient]) -> Scheme:
+    drifts, kicks = ([_exact(x) for x in half] for half in (a, b))
+    if len(drifts) == len(kicks):
+        drifts.append(Fraction(0))
+    if len(drifts) != len(kicks) + 1 or not kicks:
+        raise ValueError(
+            f"{len(drifts)} drifts and {len(kicks)} kicks: they alternate, so give as many or one drift more"
+        )
+    for letter, half in (("a", drifts), ("b", kicks)):
+        if abs(sum(half) - 1) > Fraction(1, 10**12):
+            raise ValueError(
+                f"the coefficients {letter} add up to {float(sum(half))!r}; a consistent method has 1"
+            )
+    found = order([float(x) for x in drifts], [float(x) for x in kicks])
+    return Scheme("", found, tuple(drifts), tuple(kicks), "coefficients given by the user")
+
+
+def _exact(x: Coefficient) -> Fraction:
+    if isinstance(x, float) and not math.isfinite(x):
+        raise ValueError(f"{x} is no coefficient: give finite numbers")
+    return Fraction(x)
+
+
+@dataclass(frozen=True)
+class RK4:
+    """The classical fourth-order Runge–Kutta method: not symplectic, its energy error grows with time.
+
+    Examples
+    --------
+    >>> RK4().order, RK4().stages
+    (4, 4)
+    """
+
+    order = 4
+    stages = 4
+    citation = (
+        "W. Kutta, Beitrag zur näherungsweisen Integration totaler Differentialgleichungen, "
+        "Z. Math. Phys. 46 (1901) 435–453"
+    )
+
+    def __str__(self) -> str:
+        return "RK4"
+
+
+@dataclass(frozen=True)
+class Taylor:
+    """heyoka's adaptive Taylor method, of the order and with the steps its tolerance asks for.
+
+    Parameters
+    ----------
+    tolerance
+        Relative tolerance of a step; the rounding unit 2⁻⁵² where not given.
+
+    Examples
+    --------
+    >>> Taylor().order
+    20
+    """
+
+    tolerance: float | None = None
+    citation = (
+        "F. Biscani, D. Izzo, Revisiting high-order Taylor methods for astrodynamics and celestial "
+        "mechanics, Mon. Not. R. Astron. Soc. 504 (2021) 2614–2628, doi:10.1093/mnras/stab1032"
+    )
+
+    def __post_init__(self) -> None:
+        _check_tolerance(self.tolerance)
+
+    def __str__(self) -> str:
+        return "Taylor" if self.tolerance is None else f"Taylor({self.tolerance:g})"
+
+    @property
+    def order(self) -> int:
+        """The order that the tolerance leads to: ⌈1 − ½ ln(tolerance)⌉."""
+        return math.ceil(1 - math.log(self.tolerance or 2.0**-52) / 2)
+
+    @property
+    def stages(self) -> int:
+        """Taylor series in a step."""
+        return 1
+
+
+@dataclass(frozen=True)
+class DOP853:
+    """SciPy's adaptive Runge–Kutta method of order 8: the ordinary choice, for comparison.
+
+    Parameters
+    ----------
+    tolerance
+        Relative and absolute tolerance of a step.
+    """
+
+    tolerance: float = 1e-12
+    order = 8
+    stages = 12
+    citation = (
+        "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., "
+        "Springer 1993, doi:10.1007/978-3-540-78862-1"
+    )
+
+    def __post_init__(self) -> None:
+        _check_tolerance(self.tolerance)
+
+    def __str__(self) -> str:
+        return f"DOP853({self.tolerance:g})"
+
+
+Method = Splitting | RK4 | Taylor | DOP853
+"""What ``propagate`` takes as ``method``."""
+
+
+def _check_tolerance(tolerance: float | None) -> None:
+    if tolerance is not None and not 0 < tolerance < 1:
+        raise ValueError(f"tolerance {tolerance}: give a number between 0 and 1, such as 1e-12")

@@ -1,0 +1,179 @@
+"""Trajectories, and the energy along them in higher precision than their states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from canon.expression.arithmetic import LONGDOUBLE, multiprecision
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from canon.flow.method import Method
+    from canon.kernel.structure import Equations
+
+__all__ = ["Samples", "Trajectory", "measured"]
+
+Array = npt.NDArray[np.float64]
+
+_WIDE = bool(np.finfo(np.longdouble).nmant >= 63)
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What an integrator hands back: sampled states and what they cost.
+
+    Parameters
+    ----------
+    t
+        Sample times, shape (times,).
+    y
+        States, shape (2n, times).
+    carried
+        What compensation carries at those times: the state is y + carried, shape (2n, times).
+    steps, evaluations
+        Steps taken, and evaluations of the force (Taylor: of the series).
+    step
+        The step size of a fixed-step method.
+    cpu_seconds, compile_seconds
+        Processor time of the integration, and the wall-clock time that compiling its loop took.
+    """
+
+    t: Array
+    y: Array
+    carried: Array | None
+    steps: int
+    evaluations: int
+    step: float | None
+    cpu_seconds: float
+    compile_seconds: float
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A sampled motion and what it cost.
+
+    Parameters
+    ----------
+    t
+        Sample times, shape (times,).
+    y
+        States (q, p), shape (2n, times).
+    energy
+        H at the samples, evaluated in higher precision than the states and then rounded, shape (times,).
+    energy_change
+        H − H(start), subtracted before rounding, shape (times,).
+    method
+        The method that was used.
+    precision
+        ``"double"`` or ``"compensated"``.
+    step
+        The step size of a fixed-step method, as adjusted to end at the last time; None for adaptive methods.
+    steps, evaluations
+        Steps taken; evaluations of the force (Taylor: of the series).
+    cpu_seconds, compile_seconds
+        Processor time of the integration, and the wall-clock time that compiling its loop took, be it now or
+        in an earlier call.
+    autonomous
+        Whether H does not depend on t, so that its change is an error.
+    observables, changes
+        Values of the observables at the samples, and their changes since the start.
+    """
+
+    t: Array
+    y: Array
+    energy: Array
+    energy_change: Array
+    method: Method
+    precision: str
+    step: float | None
+    steps: int
+    evaluations: int
+    cpu_seconds: float
+    compile_seconds: float
+    autonomous: bool
+    observables: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
+    changes: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __repr__(self) -> str:
+        return (
+            f"Trajectory({len(self.q)} degrees of freedom, t = {self.t[0]:g} … {self.t[-1]:g}, "
+            f"{len(self.t)} samples, {self.method}, {self.steps} steps, {self.cpu_seconds:.3g} s)"
+        )
+
+    @property
+    def q(self) -> Array:
+        """Coordinates, shape (n, times)."""
+        return self.y[: len(self.y) // 2]
+
+    @property
+    def p(self) -> Array:
+        """Momenta, shape (n, times)."""
+        return self.y[len(self.y) // 2 :]
+
+    @property
+    def final(self) -> Array:
+        """The state at the last time, shape (2n,)."""
+        return self.y[:, -1]
+
+    @property
+    def relative(self) -> bool:
+        """Whether ``energy_error`` is relative: the starting energy is not zero."""
+        return bool(self.energy[0] != 0)
+
+    @cached_property
+    def energy_error(self) -> Array:
+        """(H − H(start)) / |H(start)|, or H − H(start) where the starting energy is zero; shape (times,).
+
+        Raises
+        ------
+        ValueError
+            H depends on time, so that its change is no error; see ``energy_change``.
+        """
+        if not self.autonomous:
+            raise ValueError("H depends on t, so its change is no error; energy_change has it")
+        return self.energy_change / abs(self.energy[0]) if self.relative else self.energy_change
+
+
+def measured(system: Equations, nodes: Sequence[int], samples: Samples) -> list[tuple[Array, Array]]:
+    """Return each node's values along a trajectory and their changes since the start.
+
+    They are evaluated with a 64-bit mantissa where the platform's long double has one (x86), with 40
+    digits elsewhere, at the state with what compensation carries: what is reported is the trajectory's
+    error, not the evaluation's.
+    """
+    carried = np.zeros_like(samples.y) if samples.carried is None else samples.carried
+    values = _wide_values if _WIDE else _many_digits
+    return [
+        (np.array(value, dtype=np.float64), np.array(value - value[0], dtype=np.float64))
+        for value in values(system, nodes, samples.t, samples.y, carried)
+    ]
+
+
+def _wide_values(
+    system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
+) -> list[npt.NDArray[Any]]:
+    state = y.astype(np.longdouble) + carried.astype(np.longdouble)
+    values = dict(zip(system.inputs, (*state, t.astype(np.longdouble)), strict=True))
+    found = system.graph.evaluate(nodes, values, LONGDOUBLE)
+    return [np.broadcast_to(np.asarray(value, dtype=np.longdouble), t.shape) for value in found]
+
+
+def _many_digits(
+    system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
+) -> list[npt.NDArray[Any]]:
+    digits = multiprecision(40)
+    rows: list[list[Any]] = []
+    for i, time in enumerate(t):
+        pairs = zip(y[:, i].tolist(), carried[:, i].tolist(), strict=True)
+        point = [Fraction(x) + Fraction(e) for x, e in pairs] + [Fraction(float(time))]
+        values = dict(zip(system.inputs, map(digits.number, point), strict=True))
+        rows.append(system.graph.evaluate(nodes, values, digits))
+    return [np.array(column, dtype=object) for column in zip(*rows, strict=True)]

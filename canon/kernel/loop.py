@@ -1,0 +1,183 @@
+"""The compiled loops: many steps of one method in one call, for one Hamiltonian.
+
+Every loop has the signature ``advance(y, e, c, first, steps)``: ``y`` holds q then p, ``e`` what
+compensation carries (y + e is the state), ``c`` the numbers t0, h and then the method's coefficients times h,
+``first`` the number of the first step, so that time is t0 + n·h and never accumulates.
+
+Kahan's compensation of an increment d: d ← d + e; s ← y + d; e ← d − (s − y); y ← s. The product of a
+coefficient and a rate enters through ``fma``, rounded once together with e.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from canon.kernel.llvm import MachineCode, compiled
+from canon.kernel.machine import DOUBLE, MachineType
+from canon.kernel.writer import LIBRARY, Writer
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Sequence
+
+    from canon.kernel.program import Program
+    from canon.kernel.structure import Equations
+
+__all__ = ["Loop", "field_function", "runge_kutta_loop", "splitting_loop"]
+
+_POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
+_SIGNATURE = (_POINTER, _POINTER, _POINTER, _INTEGER, _INTEGER)
+_PARAMETERS = "ptr noalias %y, ptr noalias %e, ptr noalias %c, i64 %first, i64 %steps"
+_METHOD = 2
+"""Where the method's own coefficients start in c."""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A compiled loop and what one step of it costs.
+
+    Parameters
+    ----------
+    code
+        The machine code.
+    dimension
+        Degrees of freedom n.
+    compensated
+        Whether it carries round-off along.
+    number
+        The type it computes in.
+    """
+
+    code: MachineCode
+    dimension: int
+    compensated: bool
+    number: MachineType
+
+
+def splitting_loop(
+    system: Equations, stages: int, *, compensated: bool, number: MachineType = DOUBLE
+) -> Loop:
+    """Compile drift–kick–…–drift steps for H = T(p, t) + V(q, t).
+
+    The coefficients are h·a₁, h·b₁, …, h·a_s, h·b_s, h·a_{s+1}. Two clocks make time-dependent parts exact
+    splittings of the extended phase space: a kick reads the clock that drifts advance, and the other way
+    round.
+    """
+    n = len(system.q)
+    w = Writer(number)
+    y, e = _local(w, 2 * n, compensated=compensated)
+    rate = w.array(n)
+    drift_clock, kick_clock = w.array(1), w.array(1)
+
+    def substep(
+        nodes: Sequence[int], reads: int, moves: int, coefficient: str, read_clock: str, own_clock: str
+    ) -> None:
+        arguments = ["poison"] * (2 * n + 1)
+        for i in range(n):
+            arguments[reads + i] = w.load(y, reads + i)
+        arguments[2 * n] = w.load(read_clock, 0)
+        for i, value in enumerate(w.program(system.program(nodes), arguments)):
+            w.store(value, rate, i)
+        with w.loop(0, n) as i:
+            _increase(w, y, e, w.let(f"add i64 {i}, {moves}"), coefficient, w.load(rate, i))
+        if not system.autonomous:
+            w.store(w.algebra("add", w.load(own_clock, 0), coefficient), own_clock, 0)
+
+    with _steps(w, system) as time:
+        w.store(time, drift_clock, 0)
+        w.store(time, kick_clock, 0)
+        with w.loop(0, stages) as s:
+            pair = w.let(f"shl i64 {s}, 1")
+            drift = w.load("%c", w.let(f"add i64 {pair}, {_METHOD}"))
+            substep(system.velocity, n, 0, drift, kick_clock, drift_clock)
+            kick = w.load("%c", w.let(f"add i64 {pair}, {_METHOD + 1}"))
+            substep(system.force, 0, n, kick, drift_clock, kick_clock)
+        substep(system.velocity, n, 0, w.load("%c", _METHOD + 2 * stages), kick_clock, drift_clock)
+    return _finished(w, y, e, n, compensated=compensated)
+
+
+def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
+    """Compile the classical fourth-order Runge–Kutta method; its coefficients are h/2, h/6, h/3."""
+    n = len(system.q)
+    w = Writer(number)
+    y, e = _local(w, 2 * n, compensated=compensated)
+    stage, rate, total = w.array(2 * n), w.array(2 * n), w.array(2 * n)
+    field = system.program((*system.velocity, *system.force))
+    full, half, sixth, third = (w.load("%c", i) for i in range(1, 5))
+
+    def evaluate(at: str, clock: str) -> None:
+        arguments = [*(w.load(at, i) for i in range(2 * n)), clock]
+        for i, value in enumerate(w.program(field, arguments)):
+            w.store(value, rate, i)
+
+    with _steps(w, system) as time:
+        midway, end = w.algebra("add", time, half), w.algebra("add", time, full)
+        evaluate(y, time)
+        with w.loop(0, 2 * n) as i:
+            w.store(w.algebra("mul", sixth, w.load(rate, i)), total, i)
+        for weight, reach, clock in ((third, half, midway), (third, half, midway), (sixth, full, end)):
+            with w.loop(0, 2 * n) as i:
+                w.store(w.intrinsic("fma", reach, w.load(rate, i), w.load(y, i)), stage, i)
+            evaluate(stage, clock)
+            with w.loop(0, 2 * n) as i:
+                w.store(w.intrinsic("fma", weight, w.load(rate, i), w.load(total, i)), total, i)
+        with w.loop(0, 2 * n) as i:
+            _increase(w, y, e, i, w.constant(Fraction(1)), w.load(total, i))
+    return _finished(w, y, e, n, compensated=compensated)
+
+
+def field_function(field: Program, number: MachineType = DOUBLE) -> MachineCode:
+    """Compile a program as ``f(x, out)``: x holds its inputs, out gets its outputs."""
+    w = Writer(number)
+    arguments = [w.load("%x", i) for i in range(len(field.inputs))]
+    for i, value in enumerate(w.program(field, arguments)):
+        w.store(value, "%out", i)
+    return _compiled(w, "ptr noalias %x, ptr noalias %out", (_POINTER, _POINTER))
+
+
+# pieces of loops -------------------------------------------------------------------------------------
+
+
+def _local(w: Writer, length: int, *, compensated: bool) -> tuple[str, str]:
+    y, e = w.array(length), w.array(length)
+    w.copy("%y", y, length)
+    if compensated:
+        w.copy("%e", e, length)
+    return y, e if compensated else ""
+
+
+@contextlib.contextmanager
+def _steps(w: Writer, system: Equations) -> Generator[str]:
+    """Repeat what is written inside for every step and yield the time at which the step starts."""
+    start, h = w.load("%c", 0), w.load("%c", 1)
+    last = w.let("add i64 %first, %steps")
+    with w.loop("%first", last) as step:
+        yield start if system.autonomous else w.intrinsic("fma", w.whole(step), h, start)
+
+
+def _increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> None:
+    """Write y_i ← y_i + coefficient · rate, compensated where there is an e."""
+    old = w.load(y, i)
+    if not e:
+        w.store(w.intrinsic("fma", coefficient, rate, old), y, i)
+        return
+    increment = w.intrinsic("fma", coefficient, rate, w.load(e, i))
+    new = w.algebra("add", old, increment)
+    w.store(w.algebra("sub", increment, w.algebra("sub", new, old)), e, i)
+    w.store(new, y, i)
+
+
+def _finished(w: Writer, y: str, e: str, n: int, *, compensated: bool) -> Loop:
+    w.copy(y, "%y", 2 * n)
+    if compensated:
+        w.copy(e, "%e", 2 * n)
+    return Loop(_compiled(w, _PARAMETERS, _SIGNATURE), n, compensated, w.number)
+
+
+def _compiled(w: Writer, parameters: str, signature: Sequence[object]) -> MachineCode:
+    ir = "\n".join([*sorted(w.declarations), f"define void @advance({parameters}) {{", w.body(), "}"])
+    called = [f"{name}{w.number.library_suffix}" for name in LIBRARY]
+    return compiled(ir, "advance", signature, [name for name in called if f"@{name}(" in ir])

@@ -1,0 +1,79 @@
+"""Machine numbers: the types the compiled loops work in, and how exact constants are printed for LLVM."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+__all__ = ["DOUBLE", "EXTENDED", "SINGLE", "MachineType"]
+
+
+@dataclass(frozen=True)
+class MachineType:
+    """A hardware floating-point type, one number or several side by side in SIMD lanes.
+
+    Parameters
+    ----------
+    scalar
+        LLVM's name of the type.
+    mantissa
+        Bits of the mantissa.
+    dtype
+        NumPy's name of the type in memory.
+    library_suffix
+        What libm appends to a function's name for this type.
+    lanes
+        Numbers side by side.
+    """
+
+    scalar: str
+    mantissa: int
+    dtype: str
+    library_suffix: str
+    lanes: int = 1
+
+    @property
+    def name(self) -> str:
+        """The LLVM type of a value."""
+        return self.scalar if self.lanes == 1 else f"<{self.lanes} x {self.scalar}>"
+
+    @property
+    def intrinsic(self) -> str:
+        """How LLVM's intrinsics name the type."""
+        short = {"double": "f64", "float": "f32", "x86_fp80": "f80"}[self.scalar]
+        return short if self.lanes == 1 else f"v{self.lanes}{short}"
+
+    @property
+    def bytes(self) -> int:
+        """Bytes that a value takes in memory."""
+        return np.dtype(self.dtype).itemsize * self.lanes
+
+    def literal(self, value: Fraction) -> str:
+        """Return the LLVM constant nearest to an exact number, in every lane."""
+        one = _extended_literal(value) if self.scalar == "x86_fp80" else self._literal(value)
+        return one if self.lanes == 1 else "<" + ", ".join([f"{self.scalar} {one}"] * self.lanes) + ">"
+
+    def _literal(self, value: Fraction) -> str:
+        nearest = float(value) if self.scalar == "double" else float(np.float32(float(value)))
+        return f"0x{struct.unpack('<Q', struct.pack('<d', nearest))[0]:016X}"
+
+
+def _extended_literal(value: Fraction) -> str:
+    if not value:
+        return "0xK" + "0" * 20
+    size = abs(value)
+    exponent = size.numerator.bit_length() - size.denominator.bit_length() - 64
+    mantissa = round(size / Fraction(2) ** exponent)
+    while mantissa >= 1 << 64:
+        exponent += 1
+        mantissa = round(size / Fraction(2) ** exponent)
+    biased = exponent + 63 + 16383 + (0x8000 if value < 0 else 0)
+    return f"0xK{biased:04X}{mantissa:016X}"
+
+
+DOUBLE = MachineType("double", 53, "float64", "")
+SINGLE = MachineType("float", 24, "float32", "f")
+EXTENDED = MachineType("x86_fp80", 64, "longdouble", "l")

@@ -1,0 +1,176 @@
+"""What kind of Hamiltonian it is, and the programs of its equations of motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from canon.expression.graph import Graph
+from canon.kernel.program import Program, exact_value, program
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from sympy import Expr, Symbol
+
+__all__ = ["Equations", "equations", "exact"]
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """Hamilton's equations of one Hamiltonian with numbers for its parameters.
+
+    Parameters
+    ----------
+    graph
+        The graph that holds the Hamiltonian and its gradient.
+    q, p, t
+        Coordinates, momenta and time.
+    parameters
+        The parameters' numbers by name.
+    hamiltonian
+        The node of H.
+    velocity, force
+        The nodes of ∂H/∂p and of −∂H/∂q.
+    separable
+        Whether H = T(p, t) + V(q, t): then drifts and kicks are exact flows.
+    quadratic_kinetic
+        Whether moreover ∂²T/∂p² is constant, as Nyström methods ask.
+    autonomous
+        Whether t is absent from H.
+    """
+
+    graph: Graph
+    q: tuple[Symbol, ...]
+    p: tuple[Symbol, ...]
+    t: Symbol
+    parameters: Mapping[str, Fraction]
+    hamiltonian: int
+    velocity: tuple[int, ...]
+    force: tuple[int, ...]
+    separable: bool
+    quadratic_kinetic: bool
+    autonomous: bool
+
+    @property
+    def inputs(self) -> tuple[Symbol, ...]:
+        """The arguments of every program of these equations: q, p and t."""
+        return (*self.q, *self.p, self.t)
+
+    def program(self, nodes: Sequence[int]) -> Program:
+        """Return the program of some nodes, a function of (q, p, t)."""
+        return program(self.graph, nodes, self.inputs)
+
+    def node(self, expression: Expr, what: str) -> int:
+        """Return the node of a function of (q, p, t) and the parameters; ``what`` names it in errors."""
+        return _with_numbers(self.graph, expression, self.inputs, self.parameters, what)
+
+
+def equations(
+    hamiltonian: Expr,
+    q: Sequence[Symbol],
+    p: Sequence[Symbol],
+    t: Symbol,
+    parameters: Mapping[str, Fraction],
+) -> Equations:
+    """Return Hamilton's equations q̇ = ∂H/∂p, ṗ = −∂H/∂q, ready to compile.
+
+    Parameters
+    ----------
+    hamiltonian
+        H(q, p, t) as a SymPy expression.
+    q, p, t
+        Its coordinates, momenta and time.
+    parameters
+        An exact number for every other symbol, by name.
+
+    Raises
+    ------
+    KeyError
+        A symbol of H is neither a coordinate, a momentum, the time nor a given parameter.
+    """
+    q, p = tuple(q), tuple(p)
+    made = _equations(hamiltonian, q, p, t, parameters)
+    if made.separable or not hamiltonian.is_polynomial(*q, *p):
+        return made
+    # (q + p)² − 2qp is separable only after multiplying out, which is cheap for polynomials.
+    expanded = _equations(sp.expand(hamiltonian), q, p, t, parameters)
+    return expanded if expanded.separable else made
+
+
+def _equations(
+    hamiltonian: Expr,
+    q: tuple[Symbol, ...],
+    p: tuple[Symbol, ...],
+    t: Symbol,
+    parameters: Mapping[str, Fraction],
+) -> Equations:
+    graph = Graph()
+    node = _with_numbers(graph, hamiltonian, (*q, *p, t), parameters, "the Hamiltonian")
+    gradient = graph.gradient(node, (*q, *p))
+    velocity = gradient[len(q) :]
+    force = tuple(graph.negative(slope) for slope in gradient[: len(q)])
+    return Equations(
+        graph=graph,
+        q=q,
+        p=p,
+        t=t,
+        parameters=parameters,
+        hamiltonian=node,
+        velocity=velocity,
+        force=force,
+        separable=not (_depends(graph, velocity, q) or _depends(graph, force, p)),
+        quadratic_kinetic=not any(_depends(graph, graph.gradient(v, p), (*q, *p, t)) for v in velocity),
+        autonomous=t not in graph.symbols(node),
+    )
+
+
+def _depends(graph: Graph, nodes: Sequence[int], symbols: Sequence[Symbol]) -> bool:
+    wanted = frozenset[Any](symbols)
+    return any(wanted & graph.symbols(node) for node in nodes)
+
+
+def _with_numbers(
+    graph: Graph, expression: Expr, variables: Sequence[Symbol], parameters: Mapping[str, Fraction], what: str
+) -> int:
+    general = graph.from_sympy(expression)
+    others = graph.symbols(general) - set(variables)
+    unknown = sorted(symbol.name for symbol in others if symbol.name not in parameters)
+    if unknown:
+        raise KeyError(f"{what} holds {', '.join(unknown)}: give each a number, parameters={{symbol: value}}")
+    known = {graph.symbol(symbol): graph.number(parameters[symbol.name]) for symbol in others}
+    return graph.substitute([general], known)[0]
+
+
+def exact(value: Any, what: str) -> Fraction:
+    """Return a number exactly: floats as the binary numbers they are, text as the decimal it spells.
+
+    Raises
+    ------
+    ValueError
+        The value is no finite real number; ``what`` says in the message what it was given for.
+
+    Examples
+    --------
+    >>> exact("0.1", "g"), exact(0.5, "g")
+    (Fraction(1, 10), Fraction(1, 2))
+    """
+    if isinstance(value, sp.Expr):
+        graph = Graph()
+        node = graph.from_sympy(value)
+        if graph.symbols(node):
+            raise ValueError(f"{what} = {value} is no number")
+        return exact_value(graph, node)
+    if isinstance(value, bool):
+        raise ValueError(f"{what} = {value} is no number")
+    try:
+        return (
+            Fraction(value)
+            if isinstance(value, str | int | Fraction)
+            else Fraction(*value.as_integer_ratio())
+        )
+    except (ValueError, OverflowError, AttributeError):
+        raise ValueError(f"{what} = {value!r} is no finite real number") from None

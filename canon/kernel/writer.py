@@ -1,0 +1,176 @@
+"""Writing LLVM IR text: registers, memory, counted loops, and straight-line programs."""
+
+from __future__ import annotations
+
+import contextlib
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from canon.kernel.machine import MachineType
+    from canon.kernel.program import Program
+
+__all__ = ["LIBRARY", "Writer"]
+
+_ALGEBRA = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
+
+LIBRARY = (
+    "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
+    "atanh", "atan2", "pow",
+)  # fmt: skip
+"""Functions that come from the platform's libm."""
+
+
+class Writer:
+    """Collects the lines of one LLVM function body.
+
+    Parameters
+    ----------
+    number
+        The floating-point type the function computes in.
+    """
+
+    def __init__(self, number: MachineType) -> None:
+        self.number = number
+        self.reserved: list[str] = []
+        self.lines: list[str] = []
+        self.declarations: set[str] = set()
+        self._count = 0
+
+    def line(self, text: str) -> None:
+        """Write an instruction without a result."""
+        self.lines.append("  " + text)
+
+    def let(self, text: str) -> str:
+        """Write an instruction and return the register of its result."""
+        self._count += 1
+        self.line(f"%r{self._count} = {text}")
+        return f"%r{self._count}"
+
+    # numbers -------------------------------------------------------------------------------------
+
+    def constant(self, value: Fraction) -> str:
+        """Return an exact number as an operand."""
+        return self.number.literal(value)
+
+    def algebra(self, operation: str, a: str, b: str) -> str:
+        """Write a + b, a − b, a · b or a / b."""
+        return self.let(f"{_ALGEBRA[operation]} {self.number.name} {a}, {b}")
+
+    def intrinsic(self, name: str, *operands: str) -> str:
+        """Write a call of one of LLVM's own functions, such as ``fma`` or ``sqrt``."""
+        kind, full = self.number.name, f"@llvm.{name}.{self.number.intrinsic}"
+        self.declarations.add(f"declare {kind} {full}({', '.join([kind] * len(operands))})")
+        return self.let(f"call {kind} {full}({', '.join(f'{kind} {o}' for o in operands)})")
+
+    def library(self, name: str, *operands: str) -> str:
+        """Write a call of a libm function, lane by lane: lanes give the bits that scalars give."""
+        scalar, full = self.number.scalar, f"@{name}{self.number.library_suffix}"
+        self.declarations.add(
+            f"declare {scalar} {full}({', '.join([scalar] * len(operands))}) nounwind willreturn memory(none)"
+        )
+        if self.number.lanes == 1:
+            return self.let(f"call {scalar} {full}({', '.join(f'{scalar} {o}' for o in operands)})")
+        result = "poison"
+        for lane in range(self.number.lanes):
+            parts = [self.let(f"extractelement {self.number.name} {o}, i32 {lane}") for o in operands]
+            value = self.let(f"call {scalar} {full}({', '.join(f'{scalar} {x}' for x in parts)})")
+            result = self.let(f"insertelement {self.number.name} {result}, {scalar} {value}, i32 {lane}")
+        return result
+
+    def whole(self, integer: str) -> str:
+        """Turn an i64 register into a number."""
+        one = self.let(f"sitofp i64 {integer} to {self.number.scalar}")
+        if self.number.lanes == 1:
+            return one
+        first = self.let(f"insertelement {self.number.name} poison, {self.number.scalar} {one}, i32 0")
+        mask = f"<{self.number.lanes} x i32> zeroinitializer"
+        return self.let(f"shufflevector {self.number.name} {first}, {self.number.name} poison, {mask}")
+
+    def body(self) -> str:
+        """Return what was written, as the inside of a function that returns nothing."""
+        return "\n".join(["entry:", *self.reserved, *self.lines, "  ret void"])
+
+    # memory --------------------------------------------------------------------------------------
+
+    def array(self, length: int) -> str:
+        """Reserve local memory for so many numbers."""
+        return self._reserve(f"[{length} x {self.number.name}], align 64")
+
+    def _reserve(self, what: str) -> str:
+        # All in the function's first block: memory reserved inside a loop would pile up.
+        self._count += 1
+        self.reserved.append(f"  %r{self._count} = alloca {what}")
+        return f"%r{self._count}"
+
+    def at(self, array: str, index: str | int) -> str:
+        """Return the address of an array's element."""
+        return self.let(f"getelementptr inbounds {self.number.name}, ptr {array}, i64 {index}")
+
+    def load(self, array: str, index: str | int) -> str:
+        """Read an array's element."""
+        return self.let(f"load {self.number.name}, ptr {self.at(array, index)}")
+
+    def store(self, value: str, array: str, index: str | int) -> None:
+        """Write an array's element."""
+        self.line(f"store {self.number.name} {value}, ptr {self.at(array, index)}")
+
+    # loops ---------------------------------------------------------------------------------------
+
+    @contextlib.contextmanager
+    def loop(self, start: str | int, stop: str | int) -> Generator[str]:
+        """Repeat what is written inside for i = start … stop − 1 and yield i."""
+        self._count += 1
+        label = f"loop{self._count}"
+        counter = self._reserve("i64")
+        self.line(f"store i64 {start}, ptr {counter}")
+        self.line(f"br label %{label}.test")
+        self.lines.append(f"{label}.test:")
+        index = self.let(f"load i64, ptr {counter}")
+        more = self.let(f"icmp slt i64 {index}, {stop}")
+        self.line(f"br i1 {more}, label %{label}.body, label %{label}.end")
+        self.lines.append(f"{label}.body:")
+        yield index
+        following = self.let(f"add i64 {index}, 1")
+        self.line(f"store i64 {following}, ptr {counter}")
+        self.line(f"br label %{label}.test")
+        self.lines.append(f"{label}.end:")
+
+    def copy(self, source: str, target: str, length: int) -> None:
+        """Copy an array of so many numbers."""
+        with self.loop(0, length) as i:
+            self.store(self.load(source, i), target, i)
+
+    # programs ------------------------------------------------------------------------------------
+
+    def program(self, steps: Program, inputs: list[str]) -> list[str]:
+        """Write a straight-line program and return the operands that hold its outputs."""
+        registers: list[str] = []
+        for operation, operands, value in steps.instructions:
+            if operation == "input":
+                registers.append(inputs[value])
+            elif operation == "constant":
+                registers.append(self.constant(value))
+            else:
+                registers.append(self._operation(operation, [registers[o] for o in operands]))
+        return [registers[o] for o in steps.outputs]
+
+    def _operation(self, operation: str, x: list[str]) -> str:
+        kind = self.number.name
+        if operation in _ALGEBRA:
+            return self.algebra(operation, *x)
+        if operation == "neg":
+            return self.let(f"fneg {kind} {x[0]}")
+        if operation == "sqrt":
+            return self.intrinsic("sqrt", *x)
+        if operation == "Abs":
+            return self.intrinsic("fabs", *x)
+        if operation == "sign":
+            zero, one = self.constant(Fraction(0)), self.constant(Fraction(1))
+            unit = self.intrinsic("copysign", one, x[0])
+            vanishes = self.let(f"fcmp oeq {kind} {x[0]}, {zero}")
+            flags = "i1" if self.number.lanes == 1 else f"<{self.number.lanes} x i1>"
+            return self.let(f"select {flags} {vanishes}, {kind} {zero}, {kind} {unit}")
+        return self.library(operation, *x)
