@@ -11,16 +11,31 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from sympy import Eq, Integer, Rational, Symbol
+from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Rational, Symbol, oo
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from sympy import Basic, Expr
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["EVERYWHERE", "Domain"]
+__all__ = ["EVERYWHERE", "Domain", "declared_complex"]
+
+
+def declared_complex(symbol: Basic) -> bool:
+    """Tell whether a symbol was declared complex and not real; all others are read as real."""
+    said: Mapping[str, bool] = getattr(symbol, "assumptions0", {})
+    return said.get("real") is not True and ("complex" in said or "imaginary" in said)
+
+
+def _parts(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
+    for condition in conditions:
+        if isinstance(condition, And):
+            yield from _parts(condition.args)
+        else:
+            yield condition
 
 
 @dataclass(frozen=True)
@@ -78,10 +93,55 @@ class Domain:
             point = {s: self._draw(s, scale, chance) for s in ordered}
             if special:
                 for s in chance.sample(ordered, k=min(len(ordered), 1 + attempt % 2)):
-                    point[s] = _nearest_allowed(s, Rational(chance.choice((0, 0, 1, -1))), point[s])
-            if self._settle_equalities(point) and self.contains(point):
+                    wanted = Integer(chance.choice((0, 0, 1, -1)))
+                    point[s] = wanted if _allows(s, wanted) else point[s]
+            allowed = self._settle_equalities(point) and all(
+                _allows(s, number) for s, number in point.items()
+            )
+            if allowed and self.contains(point):
                 found += 1
                 yield point
+
+    def interval(self, symbol: Symbol) -> tuple[Expr, Expr, bool]:
+        """Return the bounds of one symbol, and whether both are certainly excluded.
+
+        Examples
+        --------
+        >>> from sympy import pi, symbols
+        >>> theta = symbols("theta", positive=True)
+        >>> Domain(conditions=(theta < pi,)).interval(theta)
+        (0, pi, True)
+        """
+        low: Expr = Integer(0) if symbol.is_nonnegative else -oo
+        high: Expr = Integer(0) if symbol.is_nonpositive else oo
+        open_low = bool(symbol.is_positive) or low is -oo
+        open_high = bool(symbol.is_negative) or high is oo
+        for condition in _parts(self.conditions):
+            if not isinstance(condition, Lt | Le | Gt | Ge):
+                continue
+            less, greater = condition.lts, condition.gts
+            strict = isinstance(condition, Lt | Gt)
+            if less == symbol and greater.is_number and (greater < high or (greater == high and strict)):
+                high, open_high = greater, strict
+            elif greater == symbol and less.is_number and (less > low or (less == low and strict)):
+                low, open_low = less, strict
+        return low, high, open_low and open_high
+
+    def is_connected(self, symbols: Iterable[Symbol]) -> bool:
+        """Tell whether the domain is certainly connected: an intersection of half spaces is convex."""
+        for s in symbols:
+            if s.is_integer or declared_complex(s):
+                return False
+            if s.is_zero is False and not (s.is_positive or s.is_negative):
+                return False
+        for condition in _parts(self.conditions):
+            if not isinstance(condition, Lt | Le | Gt | Ge):
+                return False
+            gap = condition.lhs - condition.rhs
+            slopes = [gap.diff(s) for s in gap.free_symbols]
+            if any(slope.free_symbols for slope in slopes):
+                return False
+        return True
 
     def contains(self, point: Mapping[Symbol, Rational]) -> bool:
         """Tell whether every condition certainly holds at an exact point."""
@@ -97,7 +157,7 @@ class Domain:
         if symbol in self.box:
             low, high = (Rational(end) for end in self.box[symbol])
             drawn = low + (high - low) * Rational(chance.randint(1, 63), 64)
-            return _nearest_allowed(symbol, drawn, drawn)
+            return Integer(round(drawn)) if symbol.is_integer else drawn
         if symbol.is_integer:
             magnitude = Integer(chance.randint(1, max(3, int(8 * scale))))
         else:
@@ -131,18 +191,15 @@ _SCALES = (Rational(1, 2), Rational(1), Rational(1, 8), Rational(4), Rational(1)
 """Sizes that points are drawn at, one after another."""
 
 
-def _nearest_allowed(symbol: Symbol, wanted: Rational, otherwise: Rational) -> Rational:
-    """Return ``wanted`` if the symbol's assumptions allow it."""
-    checks = (
-        (symbol.is_positive, wanted > 0),
-        (symbol.is_negative, wanted < 0),
-        (symbol.is_nonnegative, wanted >= 0),
-        (symbol.is_nonpositive, wanted <= 0),
-        (symbol.is_zero is False, wanted != 0),
-        (symbol.is_integer, wanted.is_integer),
+def _allows(symbol: Symbol, number: Rational) -> bool:
+    """Tell whether the symbol's assumptions admit a value."""
+    return not (
+        (symbol.is_positive and number <= 0)
+        or (symbol.is_negative and number >= 0)
+        or (symbol.is_nonnegative and number < 0)
+        or (symbol.is_nonpositive and number > 0)
+        or (symbol.is_zero is False and number == 0)
+        or (symbol.is_integer and not number.is_integer)
+        or (symbol.is_even and number % 2 != 0)
+        or (symbol.is_odd and number % 2 != 1)
     )
-    if all(allowed for asked, allowed in checks if asked):
-        return wanted
-    if symbol.is_integer:
-        return Integer(round(float(otherwise)))
-    return otherwise

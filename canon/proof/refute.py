@@ -12,7 +12,7 @@ from flint import acb
 from sympy.core.function import AppliedUndef, Derivative, Subs
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.normal_form import declared_complex
+from canon.proof.domain import declared_complex
 from canon.proof.verdict import Counterexample
 
 if TYPE_CHECKING:
@@ -133,12 +133,7 @@ def _record(
     left: acb, right: acb, point: Mapping[Symbol, sp.Rational], result: Search, *, complex_counts: bool
 ) -> bool:
     names = {s.name: str(number) for s, number in point.items()} | result.functions
-    not_real = any(not z.imag.contains(0) for z in (left, right))
-    example = Counterexample(names, *_texts(left, right))
-    if not_real and not complex_counts:
-        result.apart_where_not_real = result.apart_where_not_real or str(example)
-        return False
-    result.counterexample = example
+    result.counterexample = Counterexample(names, *_texts(left, right))
     return True
 
 

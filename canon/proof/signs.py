@@ -1,95 +1,125 @@
-"""Signs of polynomials over a tower, as far as inspection of their terms can prove them."""
+"""Signs of polynomials over a tower, proved by a few rules.
+
+A sign is ``"+"`` (positive), ``"0+"`` (not negative), ``"-"``, ``"0-"`` or ``""`` (not known). Every rule
+is about all points of the domain at which the generators are defined.
+"""
 
 from __future__ import annotations
 
-from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable
+
     from flint import fmpq_mpoly
 
     from canon.proof.tower import Tower
 
 __all__ = ["Signs"]
 
-MOST_FACTS = 12
+MOST_CONDITIONS = 6
+MOST_FACTS = 48
+DEEPEST = 4
+LONGEST = 60
 
 
 class Signs:
     """What is known of the signs of a tower's generators and of some polynomials in them.
 
-    A generator's sign is one of ``"+"`` (positive), ``"0+"`` (not negative), ``"-"``, ``"0-"``,
-    ``"real"`` and ``""`` (possibly complex).
+    Parameters
+    ----------
+    tower
+        The generators.
+    of_constant
+        Decides the sign of a polynomial in constants (roots of numbers, π, …) by balls; ``""`` for others.
     """
 
-    def __init__(self, tower: Tower) -> None:
+    def __init__(self, tower: Tower, of_constant: Callable[[fmpq_mpoly], str]) -> None:
         self.tower = tower
+        self._of_constant = of_constant
         self._of: dict[int, str] = {}
         self._facts: list[tuple[fmpq_mpoly, bool]] = []
+        self._conditions: list[tuple[fmpq_mpoly, bool]] = []
+        self._found: dict[Hashable, str] = {}
 
     def declare(self, generator: int, sign: str) -> None:
-        """Record the sign of a generator."""
+        """Record the sign of a generator: one of the signs above, "real", or "" where it may be complex."""
         self._of[generator] = sign
 
-    def learn(self, p: fmpq_mpoly, *, strict: bool) -> None:
-        """Record that p > 0 (strict) or p ≥ 0 on the domain."""
+    def declared(self, generator: int) -> str:
+        """Return what was declared of a generator."""
+        return self._of.get(generator, "")
+
+    def learn(self, p: fmpq_mpoly, *, strict: bool, combine: bool = True) -> None:
+        """Record that p > 0 (strict) or p ≥ 0 on the domain; with ``combine`` also its products with others."""
+        if combine and len(self._conditions) < MOST_CONDITIONS:
+            self._conditions.append((p, strict))
+            for q, strict_q in self._conditions:
+                if len(p) * len(q) <= 100:
+                    self._facts.append((self.tower.product(p, q), strict and strict_q))
         if len(self._facts) < MOST_FACTS:
             self._facts.append((p, strict))
+        self._found.clear()
 
     def real(self, p: fmpq_mpoly) -> bool:
         """Tell whether every generator of ``p`` is real on the domain."""
         return all(self._of.get(k, "") for k in self.tower.used(p))
 
     def of(self, p: fmpq_mpoly) -> str:
-        """Return the proven sign of ``p``: ``"+"``, ``"0+"``, ``"-"``, ``"0-"`` or ``""``."""
-        p = self.tower.reduce(p)
-        for sign, candidate in (("+", p), ("-", -p)):
-            found = self._inspect(candidate)
-            if found:
-                return found.replace("+", sign)
-        if not self.real(p) or len(p) > 60:
-            return ""
-        for sign, candidate in (("+", p), ("-", -p)):
-            found = self._from_facts(candidate)
-            if found:
-                return found.replace("+", sign)
+        """Return the proven sign of ``p``."""
+        return self._sign(self.tower.reduce(p), DEEPEST)
+
+    def _sign(self, p: fmpq_mpoly, depth: int) -> str:
+        if p.is_constant():
+            return "" if p.is_zero() else "+" if p.leading_coefficient() > 0 else "-"
+        key = self.tower.key(p)
+        found = self._found.get(key)
+        if found is None:
+            self._found[key] = ""
+            found = self._found[key] = self._search(p, depth)
+            if not found and depth < DEEPEST:
+                del self._found[key]
+        return found
+
+    def _search(self, p: fmpq_mpoly, depth: int) -> str:
+        by_terms = self._by_terms(p)
+        if by_terms or not self.real(p):
+            return by_terms
+        constant = self._of_constant(p)
+        if constant or len(p) > LONGEST:
+            return constant
+        by_facts = self._by_facts(p) or _opposite(self._by_facts(-p))
+        if by_facts or depth == 0:
+            return by_facts
+        return self._by_factors(p, depth) or self._by_root(p, depth) or self._by_square(p, depth)
+
+    def _by_terms(self, p: fmpq_mpoly) -> str:
+        """A sum of terms of one sign has that sign, strictly if one of them has it strictly."""
+        signs = {self._of_term(monomial, coefficient > 0) for monomial, coefficient in self.tower.terms(p)}
+        if signs <= {"+", "0+"}:
+            return "+" if "+" in signs else "0+"
+        if signs <= {"-", "0-"}:
+            return "-" if "-" in signs else "0-"
         return ""
 
-    def _inspect(self, p: fmpq_mpoly) -> str:
-        """Return "+" or "0+" when every term is so: a sum of nonnegative terms with a positive one is positive."""
-        strict = False
-        terms = self.tower.terms(p)
-        if not terms:
-            return ""
-        for monomial, coefficient in terms:
-            positive, known = coefficient > 0, True
-            nonzero = True
-            for k, e in monomial:
-                sign = self._of.get(k, "")
-                if not sign:
-                    return ""
-                if e % 2 == 0:
-                    nonzero = nonzero and sign in ("+", "-")
-                elif sign == "real":
-                    known = False
-                    break
-                else:
-                    nonzero = nonzero and sign in ("+", "-")
-                    positive = positive != sign.endswith("-")
-            if not known or not positive:
+    def _of_term(self, monomial: tuple[tuple[int, int], ...], positive: bool) -> str:
+        strict = True
+        for k, e in monomial:
+            sign = self._of.get(k, "")
+            if not sign:
                 return ""
-            strict = strict or nonzero
-        return "+" if strict else "0+"
+            strict = strict and sign in ("+", "-")
+            if e % 2:
+                if sign == "real":
+                    return ""
+                positive = positive != sign.endswith("-")
+        return ("" if strict else "0") + ("+" if positive else "-")
 
-    def _from_facts(self, p: fmpq_mpoly) -> str:
-        """Return a sign when p minus a positive multiple of a fact, or of two facts' product, has one."""
-        known = [(self.tower.reduce(fact), strict) for fact, strict in self._facts]
-        products = list(known)
-        for (a, strict_a), (b, strict_b) in combinations_with_replacement(known, 2):
-            if len(a) * len(b) <= 400:
-                products.append((self.tower.product(a, b), strict_a and strict_b))
+    def _by_facts(self, p: fmpq_mpoly) -> str:
+        """p ≥ 0 where p minus a positive multiple of a known fact, or of two facts' product, is so."""
         wanted = dict(self.tower.terms(p))
-        for fact, strict in products:
+        for known, strict in self._facts:
+            fact = self.tower.reduce(known)
             for monomial, coefficient in self.tower.terms(fact):
                 ratio = wanted.get(monomial)
                 if ratio is None or (ratio > 0) != (coefficient > 0):
@@ -97,7 +127,65 @@ class Signs:
                 rest = self.tower.reduce(p - fact * self.tower.constant(ratio / coefficient))
                 if rest.is_zero():
                     return "+" if strict else "0+"
-                found = self._inspect(rest)
-                if found:
+                found = self._by_terms(rest)
+                if found.endswith("+"):
                     return "+" if strict or found == "+" else "0+"
         return ""
+
+    def _by_factors(self, p: fmpq_mpoly, depth: int) -> str:
+        """The sign of a product is the product of the signs."""
+        unit, factors = self.tower.factors(p)
+        if len(factors) == 1 and factors[0][1] == 1:
+            return ""
+        positive, strict = unit > 0, True
+        for factor, e in factors:
+            if e % 2 == 0:
+                strict = strict and self._sign(factor, depth - 1) in ("+", "-")
+                continue
+            sign = self._sign(factor, depth - 1)
+            if not sign:
+                return ""
+            strict = strict and sign in ("+", "-")
+            positive = positive != sign.endswith("-")
+        return ("" if strict else "0") + ("+" if positive else "-")
+
+    def _by_root(self, p: fmpq_mpoly, depth: int) -> str:
+        """A + Bρ with ρ = √R ≥ 0 has the sign of the larger of |A| and |B|ρ: compare A² with B²R."""
+        t = self.tower
+        for k in reversed(t.used(p)):
+            relation = t.relation(k)
+            if relation is None or relation[0] != 2 or not self._of[k].endswith("+"):
+                continue
+            a, b = (*t.coefficients(p, k), t.constant(0))[:2]
+            gap = t.reduce(t.product(a, a) - t.product(t.product(b, b), relation[1]))
+            comparison = self._sign(gap, depth - 1)
+            if comparison.endswith("-") and (sign_b := self._sign(b, depth - 1)):
+                return ("" if comparison == "-" else "0") + sign_b[-1]
+            if comparison.endswith("+") and (sign_a := self._sign(a, depth - 1)):
+                return ("" if comparison == "+" else "0") + sign_a[-1]
+        return ""
+
+    def _by_square(self, p: fmpq_mpoly, depth: int) -> str:
+        """a v² + b v + c with a > 0 and 4ac − b² ≥ 0 is not negative; positive if that is positive."""
+        t = self.tower
+        for k in t.used(p):
+            if t.relation(k) is not None:
+                continue
+            parts = t.coefficients(p, k)
+            if len(parts) != 3 or parts[1].is_zero():
+                continue
+            c, b, a = parts
+            leading = self._sign(a, depth - 1)
+            if leading not in ("+", "-"):
+                continue
+            gap = t.reduce(4 * t.product(a, c) - t.product(b, b))
+            if gap.is_zero():
+                return "0" + leading
+            comparison = self._sign(gap, depth - 1)
+            if comparison.endswith("+"):
+                return leading if comparison == "+" else "0" + leading
+        return ""
+
+
+def _opposite(sign: str) -> str:
+    return sign.translate(str.maketrans("+-", "-+"))

@@ -13,21 +13,26 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint.utils.flint_exceptions import DomainError
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable
 
-__all__ = ["Fraction", "OutOfTime", "TooLarge", "Tower"]
+__all__ = ["Fraction", "Full", "OutOfTime", "TooLarge", "Tower"]
 
 LARGEST_PRODUCT = 3_000_000
 """Term products that are multiplied out at most in one step (about a second)."""
 
-FACTORED_UP_TO = 60
-"""Terms of a denominator that is still factored; larger ones are kept whole."""
+FACTORED_UP_TO = (40, 16)
+"""Terms and total degree of a polynomial that is still factored; larger ones are kept whole."""
 
 
 class TooLarge(Exception):
     """The normal form would not fit."""
+
+
+class Full(Exception):
+    """More generators are needed than there is room for; start again with more room."""
 
 
 class OutOfTime(Exception):
@@ -49,37 +54,38 @@ class Tower:
     ----------
     deadline
         Value of :func:`time.monotonic` after which arithmetic raises :class:`OutOfTime`.
+    largest_product
+        Term products beyond which a multiplication raises :class:`TooLarge`.
+    capacity
+        Number of generators beyond which :class:`Full` is raised.
     """
 
-    def __init__(self, deadline: float = float("inf")) -> None:
+    def __init__(
+        self, deadline: float = float("inf"), largest_product: int = LARGEST_PRODUCT, capacity: int = 16
+    ) -> None:
         self.deadline = deadline
+        self.largest_product = largest_product
         self.generators: list[Any] = []
         self._index: dict[Hashable, int] = {}
         self._relations: dict[int, tuple[int, fmpq_mpoly]] = {}
         self._bases: list[fmpq_mpoly] = []
         self._base_index: dict[Hashable, int] = {}
-        self._capacity = 0
-        self._grow(12)
-
-    # -- generators ------------------------------------------------------------------------------
-
-    def _grow(self, capacity: int) -> None:
+        self._capacity = capacity
         names = tuple(f"g{k}" for k in reversed(range(capacity)))
         self._ctx = fmpq_mpoly_ctx.get(names, Ordering.lex)
-        self._capacity = capacity
         self._gens = list(reversed(self._ctx.gens()))
 
-    def _lift(self, p: fmpq_mpoly) -> fmpq_mpoly:
-        return p if p.context() is self._ctx else p.project_to_context(self._ctx)
+    # -- generators ------------------------------------------------------------------------------
 
     def generator(self, kernel: Hashable) -> int:
         """Return the number of the generator that stands for ``kernel``."""
         found = self._index.get(kernel)
         if found is None:
-            found = self._index[kernel] = len(self.generators)
-            self.generators.append(kernel)
+            found = len(self.generators)
             if found >= self._capacity:
-                self._grow(2 * self._capacity)
+                raise Full
+            self._index[kernel] = found
+            self.generators.append(kernel)
         return found
 
     def knows(self, kernel: Hashable) -> bool:
@@ -93,7 +99,7 @@ class Tower:
     def relation(self, generator: int) -> tuple[int, fmpq_mpoly] | None:
         """Return the relation of a generator, if it has one."""
         found = self._relations.get(generator)
-        return None if found is None else (found[0], self._lift(found[1]))
+        return None if found is None else (found[0], found[1])
 
     # -- polynomials -----------------------------------------------------------------------------
 
@@ -127,7 +133,7 @@ class Tower:
 
     def reduce(self, p: fmpq_mpoly) -> fmpq_mpoly:
         """Replace every power that a relation covers, highest generator first."""
-        p = self._lift(p)
+
         if not self._relations or p.is_constant():
             return p
         last = self._capacity - 1
@@ -136,7 +142,7 @@ class Tower:
             degree, power = self._relations[k]
             if degrees[last - k] >= degree:
                 self.check_time()
-                p = divmod(p, self._gens[k] ** degree - self._lift(power))[1]
+                p = divmod(p, self._gens[k] ** degree - power)[1]
                 if p.is_zero():
                     return p
                 degrees = p.degrees()
@@ -144,8 +150,8 @@ class Tower:
 
     def product(self, a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:
         """Multiply and reduce, after checking time and size."""
-        a, b = self._lift(a), self._lift(b)
-        if len(a) * len(b) > LARGEST_PRODUCT:
+
+        if len(a) * len(b) > self.largest_product:
             raise TooLarge(f"a product of {len(a)} by {len(b)} terms")
         self.check_time()
         return self.reduce(a * b)
@@ -153,7 +159,7 @@ class Tower:
     def polynomial_power(self, p: fmpq_mpoly, n: int) -> fmpq_mpoly:
         """Return p**n for n ≥ 0."""
         if len(p) == 1:
-            return self.reduce(self._lift(p) ** n)
+            return self.reduce(p**n)
         total = self.constant(1)
         square = p
         while n:
@@ -162,6 +168,48 @@ class Tower:
             n >>= 1
             if n:
                 square = self.product(square, square)
+        return total
+
+    def factors(self, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
+        """Write p as a number times powers of irreducible factors; a large p stays one factor."""
+        terms, degree = FACTORED_UP_TO
+        self.check_time()
+        if len(p) <= terms and p.total_degree() <= degree:
+            unit, found = p.factor()
+            return unit, [(factor, int(e)) for factor, e in found]
+        unit = p.leading_coefficient()
+        return unit, [(p * self.constant(1 / unit), 1)]
+
+    def square_root(self, p: fmpq_mpoly) -> fmpq_mpoly | None:
+        """Return a polynomial whose square is ``p``, if there is one."""
+        try:
+            return p.sqrt()
+        except DomainError:
+            return None
+
+    def coefficients(self, p: fmpq_mpoly, generator: int) -> list[fmpq_mpoly]:
+        """Return the coefficients of ``p`` as a polynomial in one generator, constant term first."""
+
+        place = self._capacity - 1 - generator
+        parts: dict[int, dict[tuple[int, ...], fmpq]] = {}
+        for exponents, coefficient in p.terms():
+            e = int(exponents[place])
+            rest = (*exponents[:place], 0, *exponents[place + 1 :])
+            parts.setdefault(e, {})[rest] = coefficient
+        return [self._ctx.from_dict(parts.get(e, {})) for e in range(max(parts, default=0) + 1)]
+
+    def resultant(self, p: fmpq_mpoly, q: fmpq_mpoly, generator: int) -> fmpq_mpoly:
+        """Eliminate one generator from two polynomials."""
+        self.check_time()
+        return p.resultant(q, f"g{generator}")
+
+    def substitute(self, p: fmpq_mpoly, generator: int, q: fmpq_mpoly) -> fmpq_mpoly:
+        """Put the polynomial ``q`` for a generator and reduce."""
+        total, power = self.constant(0), self.constant(1)
+        for k, coefficient in enumerate(self.coefficients(p, generator)):
+            if k:
+                power = self.product(power, q)
+            total = total + self.product(coefficient, power)
         return total
 
     def check_time(self) -> None:
@@ -184,7 +232,7 @@ class Tower:
 
     def base(self, i: int) -> fmpq_mpoly:
         """Return denominator base ``i``."""
-        return self._lift(self._bases[i])
+        return self._bases[i]
 
     def _number_base(self, p: fmpq_mpoly) -> int:
         key = self.key(p)
@@ -199,8 +247,8 @@ class Tower:
         groups: dict[tuple[tuple[int, int], ...], fmpq_mpoly] = {}
         for term in terms:
             before = groups.get(term.den)
-            num = self._lift(term.num)
-            groups[term.den] = num if before is None else self._lift(before) + num
+            num = term.num
+            groups[term.den] = num if before is None else before + num
         groups = {den: num for den, num in groups.items() if not num.is_zero()}
         if not groups:
             return self.number(0)
@@ -215,7 +263,7 @@ class Tower:
                 missing = e - have.get(i, 0)
                 if missing:
                     num = self.product(num, self.polynomial_power(self.base(i), missing))
-            total = self._lift(total) + self._lift(num)
+            total = total + num
         return self._cancelled(total, common)
 
     def times(self, *factors: Fraction) -> Fraction:
@@ -231,7 +279,7 @@ class Tower:
     def _cancelled(self, num: fmpq_mpoly, den: dict[int, int]) -> Fraction:
         if num.is_zero():
             return Fraction(num)
-        num = self._lift(num)
+        num = num
         left: list[tuple[int, int]] = []
         for i, e in sorted(den.items()):
             base = self.base(i)
@@ -258,10 +306,7 @@ class Tower:
         upper = self.constant(1)
         for i, e in f.den:
             upper = self.product(upper, self.polynomial_power(self.base(i), e))
-        if len(num) <= FACTORED_UP_TO:
-            unit, factors = num.factor()
-        else:
-            unit, factors = fmpq(1), [(num, 1)]
+        unit, factors = self.factors(num)
         den: dict[int, int] = {}
         upper = upper * self.constant(fmpq(1) / unit)
         for factor, e in factors:

@@ -13,14 +13,11 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.proof.domain import EVERYWHERE, Domain
-from canon.proof.normal_form import NormalForm, Refine
+from canon.proof.prove import prove_zero
 from canon.proof.refute import Search, look_for_counterexample
-from canon.proof.tower import OutOfTime, TooLarge
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
-
     from sympy import Expr
 
 __all__ = ["equal", "vanishes"]
@@ -130,9 +127,9 @@ def _exact(expr: object) -> Expr:
 def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
     search = look_for_counterexample(left, right, domain, points=3, highest=64, deadline=deadline)
     if search.counterexample is None:
-        proof = _prove(left - right, domain, deadline)
+        proof = prove_zero(left - right, domain, deadline)
         if proof.holds:
-            return proof
+            return Verdict(Status.HOLDS, certificate=" + ".join(proof.rungs) or "exact")
         search = Search()
         for special in (False, True):
             look_for_counterexample(
@@ -149,7 +146,8 @@ def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict
             if search.counterexample is not None:
                 break
         else:
-            return replace(proof, residual=left - right, evidence=(*proof.evidence, *_known(search)))
+            tried = tuple(Evidence("tried", obstacle) for obstacle in proof.obstacles)
+            return Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, *_known(search)))
     return Verdict(
         Status.FAILS, certificate="ball", counterexample=search.counterexample, residual=left - right
     )
@@ -162,21 +160,3 @@ def _known(search: Search) -> tuple[Evidence, ...]:
             Evidence("not real", f"the sides differ where one is not real: {search.apart_where_not_real}")
         )
     return tuple(known)
-
-
-def _prove(expr: Expr, domain: Domain, deadline: float) -> Verdict:
-    """Reduce to the normal form, refining the kernels until every argument is a whole multiple."""
-    parts: dict[Hashable, int] = {}
-    for _ in range(20):
-        try:
-            forms = NormalForm(domain, parts, deadline)
-            if forms.tower.is_zero(forms.form(expr)):
-                return Verdict(Status.HOLDS, certificate="exact")
-            return Verdict(Status.UNDECIDED, evidence=(Evidence("normal form", "not zero"),))
-        except Refine:
-            continue
-        except OutOfTime:
-            return Verdict(Status.UNDECIDED, evidence=(Evidence("normal form", "not finished in time"),))
-        except (TooLarge, ZeroDivisionError) as reason:
-            return Verdict(Status.UNDECIDED, evidence=(Evidence("normal form", str(reason)),))
-    return Verdict(Status.UNDECIDED, evidence=(Evidence("normal form", "arguments without a common part"),))

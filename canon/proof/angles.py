@@ -1,0 +1,289 @@
+"""Sines, cosines and hyperbolic functions in the tower."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import lcm
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from flint import fmpq, fmpz_poly
+
+from canon.proof.tower import Fraction, TooLarge
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from sympy import Expr
+
+    from canon.proof.normal_form import NormalForm
+
+__all__ = ["Refine", "combination", "cos_sin", "divided", "elementary", "imaginary_split", "phase_of_pi"]
+
+LARGEST_MULTIPLE = 200
+"""Multiples of an angle or exponent that are still written out."""
+
+BY_RADICALS = frozenset({1, 2, 3, 4, 5, 6, 10, 12})
+"""Denominators q for which cos(πp/q) is written in square roots; others go through cyclotomic fields."""
+
+
+class Refine(Exception):
+    """A kernel is needed at a finer fraction than was provided for; start again."""
+
+
+def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
+    """Return a trigonometric or hyperbolic function through sin, cos and exp, by definition."""
+    t = n.tower
+    match expr:
+        case sp.sin():
+            return cos_sin(n, n.form(expr.args[0]))[1]
+        case sp.cos():
+            return cos_sin(n, n.form(expr.args[0]))[0]
+        case sp.tan():
+            c, s = cos_sin(n, n.form(expr.args[0]))
+            return n.over(s, c)
+        case sp.cot():
+            c, s = cos_sin(n, n.form(expr.args[0]))
+            return n.over(c, s)
+        case sp.sec():
+            return t.reciprocal(cos_sin(n, n.form(expr.args[0]))[0])
+        case sp.csc():
+            return t.reciprocal(cos_sin(n, n.form(expr.args[0]))[1])
+    if not isinstance(expr, sp.sinh | sp.cosh | sp.tanh | sp.coth | sp.sech | sp.csch):
+        return None
+    cosh, sinh = cosh_sinh(n, n.form(expr.args[0]))
+    match expr:
+        case sp.sinh():
+            return sinh
+        case sp.cosh():
+            return cosh
+        case sp.tanh():
+            return n.over(sinh, cosh)
+        case sp.coth():
+            return n.over(cosh, sinh)
+        case sp.sech():
+            return t.reciprocal(cosh)
+        case _:
+            return t.reciprocal(sinh)
+
+
+def cosh_sinh(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
+    """Return (cosh f, sinh f) = (e^f ± e^−f)/2."""
+    from canon.proof.powers import exponential
+
+    e = exponential(n, f)
+    inverse = n.tower.reciprocal(e)
+    return n.scaled(fmpq(1, 2), n.tower.sum([e, inverse])), n.scaled(fmpq(1, 2), n.minus(e, inverse))
+
+
+def combination(n: NormalForm, f: Fraction) -> list[tuple[Fraction, fmpq]]:
+    """Write f as Σ rᵢ·atomᵢ with rational rᵢ and monomials over the denominator as atoms."""
+    t = n.tower
+    f = t.canonical(f)
+    found: list[tuple[Fraction, fmpq]] = []
+    for monomial, coefficient in t.terms(f.num):
+        p = t.constant(1)
+        for k, e in monomial:
+            p = p * t.monomial(k, e)
+        found.append((Fraction(p, f.den), coefficient))
+    return found
+
+
+def divided(n: NormalForm, kind: str, key: Hashable, coefficient: fmpq) -> int:
+    """Return the number of parts that make ``coefficient`` a whole multiple, or ask to refine."""
+    have = n.parts.get((kind, key), 1)
+    need = lcm(have, int(coefficient.q))
+    if need != have:
+        n.parts[(kind, key)] = need
+        raise Refine
+    if abs(coefficient) * need > LARGEST_MULTIPLE:
+        raise TooLarge(f"a multiple of {abs(coefficient) * need} of one argument")
+    return need
+
+
+def imaginary_split(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
+    """Write f = a + i·b, where i in a denominator stays there as part of the atoms."""
+    t = n.tower
+    if not t.knows(("I",)):
+        return f, t.number(0)
+    parts = t.coefficients(t.reduce(f.num), t.generator(("I",)))
+    return Fraction(parts[0], f.den), Fraction(parts[1] if len(parts) > 1 else t.constant(0), f.den)
+
+
+def cos_sin(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
+    """Return (cos f, sin f) by the addition theorems, which hold for complex arguments as well.
+
+    cos(ib) = cosh b and sin(ib) = i sinh b.
+    """
+    t = n.tower
+    a, b = imaginary_split(n, f)
+    pair = (t.number(1), t.number(0))
+    for atom, r in combination(n, a):
+        pair = turned(n, pair, _multiple_angle(n, atom, r))
+    if not b.num.is_zero():
+        cosh, sinh = cosh_sinh(n, b)
+        pair = turned(n, pair, (cosh, t.times(n.imaginary_unit, sinh)))
+    return pair
+
+
+def turned(
+    n: NormalForm, first: tuple[Fraction, Fraction], second: tuple[Fraction, Fraction]
+) -> tuple[Fraction, Fraction]:
+    """Return cos and sin of a sum of two angles given by theirs."""
+    t = n.tower
+    (c1, s1), (c2, s2) = first, second
+    return n.minus(t.times(c1, c2), t.times(s1, s2)), t.sum([t.times(s1, c2), t.times(c1, s2)])
+
+
+def multiple(n: NormalForm, pair: tuple[Fraction, Fraction], times: int) -> tuple[Fraction, Fraction]:
+    """Return cos and sin of a whole multiple of an angle."""
+    result = (n.tower.number(1), n.tower.number(0))
+    k = abs(times)
+    while k:
+        if k & 1:
+            result = turned(n, result, pair)
+        k >>= 1
+        if k:
+            pair = turned(n, pair, pair)
+    return (result[0], n.negative(result[1])) if times < 0 else result
+
+
+def _multiple_angle(n: NormalForm, atom: Fraction, r: fmpq) -> tuple[Fraction, Fraction]:
+    from canon.proof.arcs import cos_sin_of_arc
+
+    kernel = n.only_kernel(atom)
+    if kernel == ("pi",):
+        return phase_of_pi(n, r)
+    key = n.fraction_key(atom)
+    if kernel is not None and (known := cos_sin_of_arc(n, kernel, r)) is not None:
+        return known
+    if r.q == 1 and n.parts.get(("angle", key), 1) == 1 and _whole_multiple_of_pi(n, atom):
+        return _alternating(n, key, atom, int(r.p))
+    parts = divided(n, "angle", key, r)
+    return multiple(n, _base_angle(n, key, atom, parts), int((r * parts).p))
+
+
+def _whole_multiple_of_pi(n: NormalForm, atom: Fraction) -> bool:
+    kernels = [(n.tower.generators[k], e) for m, _ in n.tower.terms(atom.num) for k, e in m]
+    return (
+        not atom.den
+        and (("pi",), 1) in kernels
+        and all(
+            kernel == ("pi",) or (kernel[0] == "symbol" and kernel[1].is_integer) for kernel, _ in kernels
+        )
+    )
+
+
+def _alternating(n: NormalForm, key: Hashable, atom: Fraction, k: int) -> tuple[Fraction, Fraction]:
+    """Return cos(kπN) and sin(kπN) for an integer N: a sign ε with ε² = 1, and 0."""
+    t = n.tower
+    kernel = ("alternating", key)
+    fresh = not t.knows(kernel)
+    c = n.atom(kernel, "real", lambda: sp.cos(n.fraction_expression(atom)))
+    if fresh:
+        t.relate(t.generator(kernel), 2, t.constant(1))
+    return t.power(c, k % 2), t.number(0)
+
+
+def _base_angle(n: NormalForm, key: Hashable, atom: Fraction, parts: int) -> tuple[Fraction, Fraction]:
+    """Return cos and sin of a part of one atom as two generators with s² = 1 − c².
+
+    Their signs follow from the range of the angle on the domain.
+    """
+    t = n.tower
+    sin_kernel = ("sin", key, parts)
+    fresh = not t.knows(sin_kernel)
+    real = n.is_real(atom)
+    angle = lambda: n.fraction_expression(atom) / parts  # noqa: E731
+    signs = _quadrant(n, atom, parts) if fresh and real else ("real", "real") if real else ("", "")
+    c = n.atom(("cos", key, parts), signs[0], lambda: sp.cos(angle()))
+    s = n.atom(sin_kernel, signs[1], lambda: sp.sin(angle()))
+    if fresh:
+        n.arguments[("cos", key, parts)] = n.arguments[sin_kernel] = n.scaled(fmpq(1, parts), atom)
+        t.relate(t.generator(sin_kernel), 2, 1 - c.num**2)
+        if real:
+            n.signs.learn(1 - c.num, strict=False, combine=False)
+            n.signs.learn(1 + c.num, strict=False, combine=False)
+    return c, s
+
+
+def _quadrant(n: NormalForm, atom: Fraction, parts: int) -> tuple[str, str]:
+    """Return the signs of cos and sin of atom/parts where the domain bounds a single symbol."""
+    kernel = n.only_kernel(atom)
+    if kernel is None or kernel[0] != "symbol":
+        return "real", "real"
+    low, high, strict = n.domain.interval(kernel[1])
+    low, high = low / parts, high / parts
+    if not (low.is_finite and high.is_finite):
+        return "real", "real"
+    return (
+        _sign_between(low, high, -sp.pi / 2, strict=strict),
+        _sign_between(low, high, sp.Integer(0), strict=strict),
+    )
+
+
+def _sign_between(low: Expr, high: Expr, rise: Expr, *, strict: bool) -> str:
+    """Return the sign on [low, high] of a function like cos that is positive on (rise, rise + π), then negative."""
+    for turn in (-2, -1, 0, 1):
+        start = rise + turn * sp.pi
+        end = start + sp.pi
+        if (low - start).is_nonnegative and (end - high).is_nonnegative:
+            sign = "+" if turn % 2 == 0 else "-"
+            inside = (low - start).is_positive and (end - high).is_positive
+            return sign if strict or inside else "0" + sign
+    return "real"
+
+
+# -- rational multiples of π ---------------------------------------------------------------------------
+
+
+def phase_of_pi(n: NormalForm, r: fmpq) -> tuple[Fraction, Fraction]:
+    """Return cos(rπ) and sin(rπ) exactly: by square roots, or in the real field of 2 cos(π/2N).
+
+    sin(rπ) = cos((1/2 − r)π), so one generator serves both.
+    """
+    angle = sp.Rational(int(r.p), int(r.q)) % 2
+    if angle.q in BY_RADICALS:
+        return n.form(sp.cos(angle * sp.pi)), n.form(sp.sin(angle * sp.pi))
+    half = divided(n, "angle of pi", "cyclotomic", fmpq(1, 2 * int(angle.q)))
+    order = half
+    first, second = angle * order, (sp.Rational(1, 2) - angle) * order
+    return _cosine_in_field(n, int(first), order), _cosine_in_field(n, abs(int(second)), order)
+
+
+def _cosine_in_field(n: NormalForm, k: int, order: int) -> Fraction:
+    """Return cos(kπ/order) as a polynomial in C = 2cos(π/order), reduced by C's minimal polynomial."""
+    t = n.tower
+    kernel = ("cyclotomic", order)
+    fresh = not t.knows(kernel)
+    c = n.atom(kernel, "+", lambda: 2 * sp.cos(sp.pi / order))
+    if fresh:
+        coefficients = _minimal_polynomial(2 * order)
+        degree = len(coefficients) - 1
+        power = t.constant(0)
+        for e, coefficient in enumerate(coefficients[:-1]):
+            power = power - t.constant(coefficient) * c.num**e
+        t.relate(t.generator(kernel), degree, power)
+    before, now = t.number(2), c
+    k = min(k % (2 * order), -k % (2 * order))
+    if k == 0:
+        return t.number(1)
+    for _ in range(k - 1):
+        before, now = now, n.minus(t.times(c, now), before)
+    return n.scaled(fmpq(1, 2), now)
+
+
+@cache
+def _minimal_polynomial(m: int) -> tuple[int, ...]:
+    """Return the minimal polynomial of 2cos(2π/m) from Φ_m(z) = z^(φ/2) ψ(z + 1/z), constant term first."""
+    if m > 2 * LARGEST_MULTIPLE:
+        raise TooLarge(f"the field of the {m}-th roots of unity")
+    phi = [int(c) for c in fmpz_poly.cyclotomic(m)]
+    middle = len(phi) // 2
+    x = fmpz_poly([0, 1])
+    before, now = fmpz_poly([2]), x
+    total = fmpz_poly([phi[middle]])
+    for k in range(1, middle + 1):
+        total = total + phi[middle + k] * now
+        before, now = now, x * now - before
+    return tuple(int(c) for c in total)

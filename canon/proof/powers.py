@@ -1,0 +1,322 @@
+"""Roots, exponentials, logarithms and moduli in the tower."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from flint import fmpq
+
+from canon.proof.angles import combination, cos_sin, divided, imaginary_split, phase_of_pi
+from canon.proof.tower import Fraction
+
+if TYPE_CHECKING:
+    from flint import fmpq_mpoly
+
+    from canon.proof.normal_form import NormalForm
+
+__all__ = ["exponential", "logarithm", "modulus", "root"]
+
+LARGEST_FACTORED_INTEGER = 10**15
+"""Integers up to this are split into primes under roots and logarithms."""
+
+MOST_ROOTS_MULTIPLIED = 3
+MOST_ROOTS_KNOWN = 7
+
+
+# -- exponentials --------------------------------------------------------------------------------------
+
+
+def exponential(n: NormalForm, f: Fraction) -> Fraction:
+    """Return exp(f).
+
+    exp is entire: exp(Σ rᵢ aᵢ) = Π exp(aᵢ/d)^(d rᵢ) and exp(ib) = cos b + i sin b hold everywhere.
+    exp(r log u) is the principal power u^r by definition.
+    """
+    t = n.tower
+    a, b = imaginary_split(n, f)
+    factors = [_exponential_part(n, atom, r) for atom, r in combination(n, a)]
+    if not b.num.is_zero():
+        c, s = cos_sin(n, b)
+        factors.append(t.sum([c, t.times(n.imaginary_unit, s)]))
+    return t.times(*factors)
+
+
+def _exponential_part(n: NormalForm, atom: Fraction, r: fmpq) -> Fraction:
+    t = n.tower
+    kernel = n.only_kernel(atom)
+    if kernel is not None and kernel[0] == "log":
+        return root(n, n.arguments[kernel], r)
+    if (
+        kernel is not None
+        and kernel[0] is sp.LambertW
+        and r.q == 1
+        and (solved := _of_lambert_w(n, atom, kernel))
+    ):
+        return t.power(solved, int(r.p))
+    key = n.fraction_key(atom)
+    parts = divided(n, "exp", key, r)
+    kernel = ("exp", key, parts)
+    n.arguments[kernel] = n.scaled(fmpq(1, parts), atom)
+    generator = n.atom(
+        kernel, "+" if n.is_real(atom) else "", lambda: sp.exp(n.fraction_expression(n.arguments[kernel]))
+    )
+    return t.power(generator, int((r * parts).p))
+
+
+def _of_lambert_w(n: NormalForm, w: Fraction, kernel: tuple[object, ...]) -> Fraction | None:
+    """Return exp(W(z)) = z/W(z) for z proven not to vanish (W(z) exp W(z) = z on every branch)."""
+    z = n.arguments.get(kernel)
+    if z is None or n.sign(z) not in ("+", "-"):
+        return None
+    return n.over(z, w)
+
+
+# -- positive and other factors ------------------------------------------------------------------------
+
+
+def _split(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
+    """Write f = content · Π positiveᵢ^eᵢ · rest with content > 0 and positiveᵢ ≥ 0 proven.
+
+    (ab)^r = a^r b^r and log ab = log a + log b hold when a ≥ 0, so every proven factor may be taken
+    out; an even power of a real factor is that power of its modulus, and 1/p = p/|p|². The rest keeps
+    what has no proven sign.
+    """
+    t = n.tower
+    f = t.canonical(f)
+    content, factors = t.factors(f.num)
+    factors = factors + [(t.base(i), -e) for i, e in f.den]
+    sign = 1 if content > 0 else -1
+    outside: list[tuple[Fraction, int]] = []
+    rest = t.number(1)
+    for p, e in factors:
+        if p.is_constant():
+            content = content * p.leading_coefficient() ** e
+            continue
+        known = n.signs.of(p)
+        if known:
+            outside.append((Fraction(p if known.endswith("+") else -p), e))
+            sign = -sign if e % 2 and known.endswith("-") else sign
+        elif n.signs.real(p):
+            if e - e % 2:
+                outside.append((_modulus_of_polynomial(n, p), e - e % 2))
+            if e % 2:
+                rest = t.times(rest, Fraction(p))
+        else:
+            rest = t.times(rest, t.power(Fraction(p), e))
+    return abs(content), outside, t.canonical(n.scaled(sign, rest))
+
+
+def _primes(number: fmpq) -> list[tuple[int, int]]:
+    """Return primes and exponents of a positive rational; large integers stay whole."""
+    found: list[tuple[int, int]] = []
+    for whole, side in ((int(number.p), 1), (int(number.q), -1)):
+        if whole > LARGEST_FACTORED_INTEGER:
+            found.append((whole, side))
+        elif whole > 1:
+            found.extend((int(p), side * int(e)) for p, e in sp.factorint(whole).items())
+    return found
+
+
+# -- roots ---------------------------------------------------------------------------------------------
+
+
+def root(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
+    """Return the principal power f^r for rational r.
+
+    (R^(1/n))^k = R^(k/n) holds for every R ≠ 0 and whole k, since |arg R|/n < π; (−1)^r = exp(iπr).
+    """
+    t = n.tower
+    if r.q == 1:
+        return t.power(f, int(r.p))
+    if t.is_zero(f):
+        return t.power(t.number(0), 1 if r > 0 else -1)
+    content, outside, rest = _split(n, f)
+    factors = [_root_kernel(n, t.number(p), r * e, "+") for p, e in _primes(content)]
+    factors.extend(_root_of_nonnegative(n, p, r * e) for p, e in outside)
+    if rest.num.is_constant() and not rest.den:
+        if rest.num.leading_coefficient() < 0:
+            c, s = phase_of_pi(n, r)
+            factors.append(t.sum([c, t.times(n.imaginary_unit, s)]))
+    else:
+        factors.append(_root_kernel(n, rest, r, ""))
+    return t.times(*factors)
+
+
+def _root_of_nonnegative(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
+    """Return f^r for f ≥ 0; powers of exponentials and of roots have those of their arguments."""
+    t = n.tower
+    if r.q == 1:
+        return t.power(f, int(r.p))
+    kernel = n.only_kernel(f)
+    if kernel is not None and kernel[0] == "exp":
+        return exponential(n, n.scaled(r, n.arguments[kernel]))
+    if kernel is not None and kernel[0] == "root":
+        return _root_kernel(n, n.arguments[kernel], r / kernel[2], "0+")
+    return _root_kernel(n, f, r, n.signs.of(f.num) or "0+")
+
+
+def _root_kernel(n: NormalForm, radicand: Fraction, r: fmpq, sign: str) -> Fraction:
+    """Return radicand^r through ρ = radicand^(1/m), ρᵐ = radicand; whole powers come out."""
+    t = n.tower
+    whole = int(r.p) // int(r.q)
+    part = r - whole
+    outside = t.power(radicand, whole)
+    if part == 0:
+        return outside
+    key = n.fraction_key(radicand)
+    m = divided(n, "root", key, part)
+    kernel = ("root", key, m)
+    if not t.knows(kernel):
+        if radicand.den:
+            opaque = n.atom(
+                ("power", key, int(part.p), int(part.q)),
+                "",
+                lambda: n.fraction_expression(radicand) ** sp.Rational(int(part.p), int(part.q)),
+            )
+            return t.times(outside, opaque)
+        if m == 2 and sign and (known := n.known_roots.get(key) or _denested(n, radicand.num)):
+            n.known_roots[key] = known
+            return t.times(outside, known)
+        n.arguments[kernel] = radicand
+        index = t.generator(kernel)
+        t.relate(index, m, radicand.num)
+    rho = n.atom(kernel, sign, lambda: n.fraction_expression(radicand) ** sp.Rational(1, m))
+    return t.times(outside, t.power(rho, int((part * m).p)))
+
+
+def _denested(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
+    """Return √p, p ≥ 0, through square roots that are there already, or through simpler ones."""
+    return _by_products(n, p) or _by_conjugate(n, p)
+
+
+def _by_products(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
+    """Return √p = |S|·Πρⱼ/ΠRⱼ where p·ΠRⱼ = S² for known roots ρⱼ = √Rⱼ with Rⱼ > 0 proven."""
+    t = n.tower
+    roots = [
+        (kernel, n.arguments[kernel].num)
+        for kernel in t.generators
+        if kernel[0] == "root" and kernel[2] == 2 and not n.arguments[kernel].num.is_constant()
+    ]
+    if len(roots) > MOST_ROOTS_KNOWN or p.is_constant():
+        return None
+    for size in range(MOST_ROOTS_MULTIPLIED + 1):
+        for chosen in combinations(roots, size):
+            product = p
+            for _, radicand in chosen:
+                product = t.product(product, radicand)
+            square = t.square_root(product)
+            if square is None or any(n.signs.of(radicand) != "+" for _, radicand in chosen):
+                continue
+            result = modulus(n, Fraction(square))
+            for kernel, radicand in chosen:
+                rho = Fraction(t.monomial(t.generator(kernel)))
+                result = t.times(result, rho, t.reciprocal(Fraction(radicand)))
+            return result
+    return None
+
+
+def _by_conjugate(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
+    """Return √(A + Bρ) = √((A+D)/2) ± √((A−D)/2), the sign that of B, where A² − B²R = D², D ≥ 0.
+
+    With p ≥ 0 and p·(A − Bρ) = D² ≥ 0 (and p > 0) also A − Bρ ≥ 0, so A ≥ 0 and A ± D ≥ 0 because
+    (A + D)(A − D) = B²R ≥ 0; the square of the right side is A + |B|ρ·sign B.
+    """
+    t = n.tower
+    if n.signs.of(p) != "+":
+        return None
+    for k in reversed(t.used(p)):
+        relation = t.relation(k)
+        if relation is None or relation[0] != 2 or not n.signs.declared(k).endswith("+"):
+            continue
+        parts = t.coefficients(p, k)
+        if len(parts) != 2:
+            continue
+        a, b = parts
+        sign_b = n.signs.of(b)
+        d = t.square_root(t.reduce(t.product(a, a) - t.product(t.product(b, b), relation[1])))
+        if d is None or not sign_b:
+            continue
+        d = modulus(n, Fraction(d))
+        half = fmpq(1, 2)
+        larger = root(n, n.scaled(half, t.sum([Fraction(a), d])), half)
+        smaller = root(n, n.scaled(half, n.minus(Fraction(a), d)), half)
+        return t.sum([larger, smaller if sign_b.endswith("+") else n.negative(smaller)])
+    return None
+
+
+# -- logarithms ----------------------------------------------------------------------------------------
+
+
+def logarithm(n: NormalForm, f: Fraction) -> Fraction:
+    """Return log f: factors proven positive come out, log exp a = a for real a, log(−1) = iπ."""
+    t = n.tower
+    if t.is_zero(f):
+        raise ZeroDivisionError("the logarithm of zero")
+    content, outside, rest = _split(n, f)
+    terms = [n.scaled(e, _log_kernel(n, t.number(p), "+")) for p, e in _primes(content)]
+    terms.extend(n.scaled(e, _log_of_positive(n, p)) for p, e in outside)
+    if rest.num.is_constant() and not rest.den:
+        if rest.num.leading_coefficient() < 0:
+            terms.append(t.times(n.imaginary_unit, n.pi))
+    else:
+        terms.append(_log_kernel(n, rest, ""))
+    return t.sum(terms)
+
+
+def _log_of_positive(n: NormalForm, f: Fraction) -> Fraction:
+    """Return log f where f ≥ 0 (at f = 0 neither side is defined)."""
+    kernel = n.only_kernel(f)
+    if kernel is not None and kernel[0] == "exp":
+        return n.arguments[kernel]
+    if kernel is not None and kernel[0] == "root":
+        return n.scaled(fmpq(1, kernel[2]), _log_of_positive(n, n.arguments[kernel]))
+    return _log_kernel(n, f, "real")
+
+
+def _log_kernel(n: NormalForm, f: Fraction, sign: str) -> Fraction:
+    kernel = ("log", n.fraction_key(f))
+    n.arguments[kernel] = f
+    return n.atom(kernel, sign, lambda: sp.log(n.fraction_expression(f)))
+
+
+# -- moduli --------------------------------------------------------------------------------------------
+
+
+def modulus(n: NormalForm, f: Fraction) -> Fraction:
+    """Return |f|: |ab| = |a||b|; |p|² = p² for real p; |a + ib| = √(a² + b²)."""
+    t = n.tower
+    f = t.canonical(f)
+    if f.num.is_zero():
+        return f
+    if not n.is_real(f):
+        return _complex_modulus(n, f)
+    content, factors = t.factors(f.num)
+    result = t.number(abs(content))
+    for p, e in factors + [(t.base(i), -e) for i, e in f.den]:
+        result = t.times(result, t.power(_modulus_of_polynomial(n, p), e))
+    return result
+
+
+def _modulus_of_polynomial(n: NormalForm, p: fmpq_mpoly) -> Fraction:
+    known = n.signs.of(p)
+    if known:
+        return Fraction(p if known.endswith("+") else -p)
+    t = n.tower
+    if p.leading_coefficient() < 0:
+        p = -p
+    kernel = ("abs", t.key(p))
+    if not t.knows(kernel):
+        n.arguments[kernel] = Fraction(p)
+        square = t.product(p, p)
+        t.relate(t.generator(kernel), 2, square)
+    return n.atom(kernel, "0+", lambda: sp.Abs(n.expression(p)))
+
+
+def _complex_modulus(n: NormalForm, f: Fraction) -> Fraction:
+    t = n.tower
+    a, b = imaginary_split(n, f)
+    if n.is_real(a) and n.is_real(b):
+        return root(n, t.sum([t.times(a, a), t.times(b, b)]), fmpq(1, 2))
+    return n.atom(("modulus", n.fraction_key(f)), "0+", lambda: sp.Abs(n.fraction_expression(f)))

@@ -1,0 +1,109 @@
+"""The proving rungs, one after another, and the cases when none of them reaches."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from canon.proof.angles import Refine
+from canon.proof.conjugates import radicals_cancel
+from canon.proof.normal_form import NormalForm
+from canon.proof.phases import arcs_cancel
+from canon.proof.split import cases, settle_equalities
+from canon.proof.tower import LARGEST_PRODUCT, Full, OutOfTime, TooLarge
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from sympy import Expr
+
+    from canon.proof.domain import Domain
+
+__all__ = ["Attempt", "prove_zero"]
+
+MOST_CASES = 27
+"""Cases into which one claim is cut at most."""
+
+
+@dataclass
+class Attempt:
+    """What the proving rungs did."""
+
+    holds: bool = False
+    rungs: list[str] = field(default_factory=list[str])
+    obstacles: list[str] = field(default_factory=list[str])
+    cases: int = 1
+
+    def reach(self, rung: str) -> None:
+        """Note a rung that was needed."""
+        if rung not in self.rungs:
+            self.rungs.append(rung)
+
+    def stop(self, obstacle: str) -> None:
+        """Note why a rung gave no proof."""
+        if obstacle not in self.obstacles:
+            self.obstacles.append(obstacle)
+
+
+def prove_zero(
+    expr: Expr, domain: Domain, deadline: float, largest_product: int = LARGEST_PRODUCT
+) -> Attempt:
+    """Try to prove that an expression vanishes wherever it is defined on the domain."""
+    attempt = Attempt()
+    case = settle_equalities(expr, domain)
+    attempt.holds = case.expr is None or _prove(case.expr, case.domain, deadline, largest_product, attempt)
+    return attempt
+
+
+def _prove(expr: Expr, domain: Domain, deadline: float, largest: int, attempt: Attempt) -> bool:
+    if _without_cases(expr, domain, deadline, largest, attempt):
+        return True
+    pieces = cases(expr, domain)
+    if pieces is None or time.monotonic() > deadline:
+        return False
+    attempt.cases += len(pieces) - 1
+    if attempt.cases > MOST_CASES:
+        attempt.stop(f"more than {MOST_CASES} cases")
+        return False
+    for piece in pieces:
+        if piece.expr is not None and not _prove(piece.expr, piece.domain, deadline, largest, attempt):
+            attempt.stop(f"not proved for {piece.where}")
+            return False
+    attempt.reach("cases")
+    return True
+
+
+def _without_cases(expr: Expr, domain: Domain, deadline: float, largest: int, attempt: Attempt) -> bool:
+    """Reduce to the normal form, refining kernels until every argument is a whole multiple."""
+    parts: dict[Hashable, int] = {}
+    capacity = 16
+    for _ in range(20):
+        try:
+            forms = NormalForm(domain, parts, deadline, largest, capacity)
+            if forms.empty:
+                return True
+            f = forms.form(expr)
+            if forms.tower.is_zero(f):
+                attempt.reach("exact")
+                return True
+            if arcs_cancel(forms, f):
+                attempt.reach("exponentiation")
+                return True
+            if radicals_cancel(forms, f):
+                attempt.reach("conjugates")
+                return True
+        except Refine:
+            continue
+        except Full:
+            capacity *= 2
+            continue
+        except OutOfTime:
+            attempt.stop("not finished in time")
+        except (TooLarge, ZeroDivisionError) as reason:
+            attempt.stop(str(reason))
+        else:
+            attempt.stop("the normal form is not zero")
+        return False
+    attempt.stop("arguments without a common part")
+    return False

@@ -1,0 +1,183 @@
+"""Cases: Abs, sign, Max, Min and Piecewise go away when the domain is cut where they change."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy.core.relational import Relational
+from sympy.logic.boolalg import Boolean
+
+from canon.proof.domain import Domain, declared_complex
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from sympy import Expr, Symbol
+
+__all__ = ["Case", "cases", "settle_equalities"]
+
+NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.AccumBounds)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One piece of the domain and what the expression is there; None where it is defined nowhere."""
+
+    expr: Expr | None
+    domain: Domain
+    where: str
+
+
+def cases(expr: Expr, domain: Domain) -> list[Case] | None:
+    """Cut the domain so that one piecewise function less is left, or one symbol has a sign.
+
+    The pieces cover the domain, so an expression that vanishes on each of them vanishes.
+    """
+    piecewise = sorted(expr.atoms(sp.Piecewise), key=sp.default_sort_key)
+    if piecewise:
+        return list(_pieces(expr, domain, _innermost(piecewise, sp.Piecewise)))
+    for kind in (sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside):
+        found = sorted(expr.atoms(kind), key=sp.default_sort_key)
+        found = [e for e in found if not any(map(declared_complex, e.free_symbols)) and e.free_symbols]
+        if found:
+            return _by_kind(expr, domain, _innermost(found, kind))
+    return _by_symbol(expr, domain)
+
+
+def _innermost(found: list[sp.Basic], kind: type[sp.Basic]) -> sp.Basic:
+    return next(e for e in found if not any(a.has(kind) for a in e.args))
+
+
+def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | None:
+    if isinstance(function, sp.Max | sp.Min):
+        first, *others = function.args
+        rest = type(function)(*others)
+        larger = isinstance(function, sp.Max)
+        return [
+            _case(expr, {function: first if larger else rest}, domain, sp.Ge(first, rest)),
+            _case(expr, {function: rest if larger else first}, domain, sp.Le(first, rest)),
+        ]
+    u = function.args[0]
+    if u.is_real is False or u.has(sp.I):
+        return None
+    if isinstance(function, sp.Abs):
+        return [
+            _case(expr, {function: u}, domain, sp.Ge(u, 0)),
+            _case(expr, {function: -u}, domain, sp.Le(u, 0)),
+        ]
+    above, at_zero, below = (1, 0, -1) if isinstance(function, sp.sign) else (1, sp.Rational(1, 2), 0)
+    at_zero = function.func(0) if isinstance(function, sp.Heaviside) else sp.Integer(at_zero)
+    return [
+        _case(expr, {function: sp.Integer(above)}, domain, sp.Gt(u, 0)),
+        _case(expr, {function: sp.Integer(below)}, domain, sp.Lt(u, 0)),
+        _case(expr, {function: at_zero}, domain, sp.Eq(u, 0)),
+    ]
+
+
+def _case(expr: Expr, replaced: dict[sp.Basic, Expr], domain: Domain, condition: sp.Basic) -> Case:
+    return settle_equalities(expr.xreplace(replaced), _narrowed(domain, condition), str(condition))
+
+
+def _narrowed(domain: Domain, *conditions: sp.Basic) -> Domain:
+    added: list[Boolean] = []
+    for condition in conditions:
+        if isinstance(condition, sp.And):
+            added.extend(part for part in condition.args if isinstance(part, Boolean))
+        elif isinstance(condition, Boolean) and condition != sp.true:
+            added.append(condition)
+    return Domain((*domain.conditions, *added), domain.box)
+
+
+def _pieces(expr: Expr, domain: Domain, function: sp.Basic) -> Iterator[Case]:
+    """Yield one case for each way in which one piece's condition holds and those before fail."""
+    failed: list[sp.Basic] = []
+    for piece, condition in function.args:
+        applies = sp.And(condition, *(sp.Not(c) for c in failed))
+        alternatives = sp.to_dnf(applies) if len(applies.atoms(Relational)) <= 8 else applies
+        for alternative in alternatives.args if isinstance(alternatives, sp.Or) else (alternatives,):
+            if alternative != sp.false:
+                yield settle_equalities(
+                    expr.xreplace({function: piece}), _narrowed(domain, alternative), str(alternative)
+                )
+        failed.append(condition)
+
+
+def _by_symbol(expr: Expr, domain: Domain) -> list[Case] | None:
+    """Cut by the sign of a real symbol under a root, a logarithm or an inverse function."""
+    if expr.has(sp.Derivative, sp.Subs):
+        return None
+    candidates: dict[Symbol, int] = {}
+    for part in sp.preorder_traversal(expr):
+        branching = isinstance(part, sp.Function) and not isinstance(
+            part,
+            sp.sin | sp.cos | sp.tan | sp.exp | sp.sinh | sp.cosh | sp.tanh | sp.core.function.AppliedUndef,
+        )
+        if branching or (isinstance(part, sp.Pow) and not part.exp.is_integer):
+            for s in part.free_symbols:
+                if not (s.is_nonnegative or s.is_nonpositive or declared_complex(s)):
+                    candidates[s] = candidates.get(s, 0) + 1
+    if not candidates:
+        return None
+    chosen = max(sorted(candidates, key=lambda s: s.name), key=lambda s: candidates[s])
+    whole = {"integer": True} if chosen.is_integer else {}
+    positive = sp.Dummy(chosen.name, positive=True, **whole)
+    found = [
+        _substituted(expr, domain, chosen, positive, f"{chosen} > 0"),
+        _substituted(expr, domain, chosen, -positive, f"{chosen} < 0"),
+    ]
+    if chosen.is_zero is not False:
+        found.append(_substituted(expr, domain, chosen, sp.Integer(0), f"{chosen} = 0"))
+    return found
+
+
+def _substituted(expr: Expr, domain: Domain, symbol: Symbol, by: Expr, where: str) -> Case:
+    box = {}
+    for s, (low, high) in domain.box.items():
+        if s != symbol:
+            box[s] = (low, high)
+    conditions = tuple(c.xreplace({symbol: by}) for c in domain.conditions)
+    narrowed = Domain(tuple(c for c in conditions if c != sp.true), box)
+    value = expr.xreplace({symbol: by})
+    return Case(None if value.has(*NOT_NUMBERS) else value, narrowed, where)
+
+
+def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
+    """Use an equality of the domain to remove a symbol that it holds linearly with a constant slope."""
+    for condition in domain.conditions:
+        if not isinstance(condition, sp.Eq):
+            continue
+        gap = condition.lhs - condition.rhs
+        if isinstance(gap, Boolean):
+            continue
+        for s in sorted(gap.free_symbols, key=lambda s: s.name):
+            slope = gap.diff(s)
+            if slope.free_symbols or slope.is_zero is not False:
+                continue
+            solution = -gap.xreplace({s: sp.Integer(0)}) / slope
+            others = tuple(c.xreplace({s: solution}) for c in domain.conditions if c != condition)
+            own = _assumed(s, solution)
+            value = expr.xreplace({s: solution})
+            box = {name: ends for name, ends in domain.box.items() if name != s}
+            narrowed = Domain(tuple(c for c in (*others, *own) if c != sp.true), box)
+            return (
+                settle_equalities(value, narrowed, where)
+                if not value.has(*NOT_NUMBERS)
+                else Case(None, narrowed, where)
+            )
+    return Case(expr, domain, where)
+
+
+def _assumed(s: Symbol, solution: Expr) -> tuple[Boolean, ...]:
+    """Return what the assumptions of a removed symbol say of its value."""
+    said: list[Boolean] = []
+    if s.is_positive:
+        said.append(sp.Gt(solution, 0))
+    elif s.is_nonnegative:
+        said.append(sp.Ge(solution, 0))
+    if s.is_negative:
+        said.append(sp.Lt(solution, 0))
+    elif s.is_nonpositive:
+        said.append(sp.Le(solution, 0))
+    return tuple(said)
