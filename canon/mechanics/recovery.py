@@ -1,0 +1,143 @@
+"""From a canonical map to its generating functions.
+
+The contact form p dq − P dQ is integrated in the old variables (q, p), where no inversion is needed; the
+four types differ from that function by ± Σ QP and ± Σ qp; only then the equations are solved for the
+variables of the wanted type, on the branch that the domain determines.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.mechanics.inversion import Inversion, solve_system
+from canon.mechanics.linear import is_regular
+from canon.mechanics.potential import potential
+from canon.mechanics.substitution import exchanged, substitute
+from canon.mechanics.witness import far_from_principal, witnesses
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from sympy.logic.boolalg import Boolean
+
+    from canon.mechanics.transformation import CanonicalTransformation
+    from canon.proof.verdict import Verdict
+
+__all__ = ["Recovery"]
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """A map on its way to a generating function of given types.
+
+    Parameters
+    ----------
+    map
+        The canonical transformation.
+    kinds
+        The type of each degree of freedom.
+    new_q, new_p
+        Symbols for the new variables.
+    """
+
+    map: CanonicalTransformation
+    kinds: tuple[int, ...]
+    new_q: tuple[Symbol, ...]
+    new_p: tuple[Symbol, ...]
+
+    @cached_property
+    def meaning(self) -> dict[Symbol, Expr]:
+        """The new variables as functions of the old ones."""
+        return dict(zip((*self.new_q, *self.new_p), self.map.images, strict=True))
+
+    @property
+    def given(self) -> tuple[Symbol, ...]:
+        """The new variables of the type: Q for types 1 and 3, P for 2 and 4."""
+        return tuple(
+            Q if k in (1, 3) else P for k, Q, P in zip(self.kinds, self.new_q, self.new_p, strict=True)
+        )
+
+    @property
+    def eliminated(self) -> tuple[Symbol, ...]:
+        """The old variables that are not of the type: p for types 1 and 2, q for 3 and 4."""
+        return tuple(
+            p if k in (1, 2) else q for k, q, p in zip(self.kinds, self.map.q, self.map.p, strict=True)
+        )
+
+    def exists(self) -> Verdict:
+        """Tell whether the block ∂(new variables of the type)/∂(eliminated old ones) is regular."""
+        block = sp.Matrix([[self.meaning[b].diff(y) for y in self.eliminated] for b in self.given])
+        return is_regular(block, self.map.domain, f"∂({_listed(self.given)})/∂({_listed(self.eliminated)})")
+
+    @cached_property
+    def in_old_variables(self) -> Expr | None:
+        """G with dG = Σ p dq − Σ P dQ at fixed t, in old and new variables; None where none was found."""
+        T = self.map
+        hints = {q * p: q * p for q, p in zip(T.q, T.p, strict=True)}
+        hints |= {
+            q * p: self.meaning[q] * self.meaning[p] for q, p in zip(self.new_q, self.new_p, strict=True)
+        }
+        hints |= {f: substitute(f, self.meaning) for f in self._further_hints()}
+        return potential(T.contact_form(), T.variables, T.domain, hints)
+
+    def _further_hints(self) -> Iterator[Expr]:
+        """Yield the new variables and squares, of which generating functions are often made."""
+        yield from self.new_q
+        yield from self.new_p
+        for z in (*self.new_q, *self.new_p, *self.map.variables):
+            yield z**2
+
+    @cached_property
+    def converted(self) -> Expr | None:
+        """The function of the wanted type in mixed variables, G + Σ QP − Σ qp."""
+        if self.in_old_variables is None:
+            return None
+        total = self.in_old_variables
+        for i, k in enumerate(self.kinds):
+            if k in (2, 4):
+                total += self.new_q[i] * self.new_p[i]
+            if k in (3, 4):
+                total -= self.map.q[i] * self.map.p[i]
+        total = exchanged(total, {self.meaning[b]: b for b in self.given if not self.meaning[b].is_Atom})
+        others = {s: f for s, f in self.meaning.items() if s not in self.given}
+        return substitute(total, others)
+
+    def converted_along_map(self) -> Expr | None:
+        """Return the function of the wanted type in the old variables only."""
+        return None if self.converted is None else substitute(self.converted, self.meaning)
+
+    def closed_forms(self) -> Iterator[tuple[Expr, tuple[Boolean, ...]]]:
+        """Yield F in the variables of its type, with the conditions of the branch it is on."""
+        if self.converted is None:
+            return
+        if not self.converted.has(*self.eliminated):
+            yield self.converted, ()
+            return
+        symbols = set(self.map.variables).union(*(f.atoms(Symbol) for f in self.map.images))
+        points = sorted(witnesses(symbols, self.meaning, self.map.domain, 12), key=far_from_principal)
+        seen: set[Expr] = set()
+        for witness in points[:3]:
+            inversion = Inversion(witness)
+            solved = solve_system([(self.meaning[b], b) for b in self.given], self.eliminated, inversion)
+            if solved is None:
+                continue
+            F = _tidied(substitute(exchanged(self.converted, inversion.known), solved))
+            if F not in seen:
+                seen.add(F)
+                yield F, tuple(inversion.conditions)
+
+
+def _tidied(F: Expr) -> Expr:
+    """Return the shortest of a few plain forms of F: as it stands, over one denominator, multiplied out."""
+    if sp.count_ops(F) > 150:
+        return F
+    return min((F, sp.factor_terms(F), sp.expand(F), sp.cancel(sp.together(F))), key=sp.count_ops)
+
+
+def _listed(symbols: Sequence[Symbol]) -> str:
+    return ", ".join(map(str, symbols))
