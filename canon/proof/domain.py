@@ -83,7 +83,8 @@ class Domain:
         >>> all(0 < point[x] < 1 for point in Domain(conditions=(x < 1,)).points([x], 5))
         True
         """
-        ordered = sorted(set(symbols), key=lambda s: s.name)
+        conditioned = {s for condition in self.conditions for s in condition.free_symbols}
+        ordered = sorted({*symbols, *conditioned}, key=lambda s: s.name)
         chance = random.Random(seed)
         found = 0
         for attempt in range(40 * count + 200):
