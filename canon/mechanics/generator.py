@@ -16,7 +16,7 @@ from canon.mechanics.substitution import exchanged
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-__all__ = ["generator_values"]
+__all__ = ["generator_values", "low_degree_roots"]
 
 
 def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, Expr | None]]:
@@ -50,7 +50,7 @@ def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, Ex
         reduced = _eliminated(polynomial, kernel, names, x)
         if reduced is None:
             continue
-        for root, sign in _roots(reduced, names[kernel]):
+        for root, sign in low_degree_roots(reduced, names[kernel]):
             value = exchanged(root, back)
             if not value.has(x):
                 yield kernel, value, None if sign is None else exchanged(sign, back)
@@ -83,7 +83,7 @@ def _relation(kernel: Expr, name: Symbol, kept: Expr, u: Symbol, names: Mapping[
     return None
 
 
-def _roots(polynomial: Expr, u: Symbol) -> list[tuple[Expr, Expr | None]]:
+def low_degree_roots(polynomial: Expr, u: Symbol) -> list[tuple[Expr, Expr | None]]:
     """Return the roots in u of factors of low degree, each with the expression whose sign tells it."""
     if not polynomial.is_polynomial(u):
         return []
@@ -102,7 +102,7 @@ def _roots(polynomial: Expr, u: Symbol) -> list[tuple[Expr, Expr | None]]:
             half = sp.sqrt(sp.factor(b**2 - 4 * a * c))
             roots.extend([((-b + half) / (2 * a), 2 * a * u + b), ((-b - half) / (2 * a), 2 * a * u + b)])
         elif len(coefficients) == 5 and all(c == 0 for c in coefficients[1::2]):
-            for square, _ in _roots(exchanged(factor.as_expr(), {u**4: u**2, u**2: u}), u):
+            for square, _ in low_degree_roots(exchanged(factor.as_expr(), {u**4: u**2, u**2: u}), u):
                 roots.extend([(sp.sqrt(square), u), (-sp.sqrt(square), u)])
     return roots
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.mechanics.generator import low_degree_roots
 from canon.mechanics.linear import SingularMatrixError, eliminate, is_regular, solve
 from canon.mechanics.substitution import entry, exchanged, substitute
 from canon.proof.vanish import vanishes
@@ -95,7 +96,7 @@ def _of_quadratic(
     new: Sequence[Symbol],
     domain: Domain,
 ) -> Expr:
-    """½ wᵀ M⁻¹ w − f(0), w = y − ∂f/∂x at x = 0: through M = L D Lᵀ a sum of squares Σ (L⁻¹w)²/2D."""
+    """Return ½ wᵀ M⁻¹ w − f(0), w = y − ∂f/∂x at x = 0: through M = L D Lᵀ a sum of squares Σ (L⁻¹w)²/2D."""
     at_rest = dict.fromkeys(old, sp.S.Zero)
     w = [y - exchanged(g, at_rest) for y, g in zip(new, gradient, strict=True)]
     eliminated = eliminate(hessian, sp.Matrix(w), domain)
@@ -123,74 +124,85 @@ def _of_nonlinear(
     if is_regular(hessian, domain).fails:
         solve(hessian, sp.zeros(len(old), 1), domain)
     there = dict(zip(new, gradient, strict=True))
-    for values in _candidates(gradient, old, new):
+    for values, transformed in _candidates(f, gradient, old, new):
         if all(
             vanishes(substitute(value, there) - x, domain).holds for value, x in zip(values, old, strict=True)
         ):
-            return _tidied(f, old, new, values)
+            return transformed
     return None
 
 
-def _tidied(f: Expr, old: Sequence[Symbol], new: Sequence[Symbol], values: Sequence[Expr]) -> Expr:
-    """Σ x y − f over one denominator in what depends on y, so that √ of the same radicand meet and cancel."""
-    replaced = substitute(f, dict(zip(old, values, strict=True)))
-    plain, moving = sp.Add(*(x * y for x, y in zip(values, new, strict=True)), -replaced).as_independent(*new)
-    return plain + sp.factor(moving)
-
-
 def _candidates(
-    gradient: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol]
-) -> Iterator[tuple[Expr, ...]]:
-    """Solutions of y = ∂f/∂x that treat one common radical r(x) as an unknown of its own.
+    f: Expr, gradient: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol]
+) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
+    """Yield x(y) that may solve y = ∂f/∂x, each with Σ x y − f in terms of y.
 
-    With r held fixed the equations are often linear in x (relativistic momenta are m x / r); the definition
-    of r then is one equation in r.
+    A common radical r(x) is treated as an unknown of its own: with r held fixed the equations are often linear
+    in x (relativistic momenta are m x / r), and the definition of r then is one equation for r².
     """
-    radicals = {e for g in gradient for e in g.atoms(sp.Pow) if not _exponent(e).is_Integer and e.has(*old)}
+    radicals = {e for e in f.atoms(sp.Pow) if not _exponent(e).is_Integer and e.has(*old)}
     if not radicals and len(old) == 1:
-        for root in _roots(sp.numer(sp.together(gradient[0] - new[0])), old[0]):
-            yield (root,)
+        for root, _ in low_degree_roots(sp.numer(sp.together(gradient[0] - new[0])), old[0]):
+            yield (root,), sp.factor_terms(root * new[0] - substitute(f, {old[0]: root}))
     bases = {e.as_base_exp()[0] for e in radicals}
     if len(bases) != 1 or any((2 * _exponent(e)).is_Integer is not True for e in radicals):
         return
     (base,) = bases
     r = sp.Dummy("r", positive=True)
-    frozen = [exchanged(g, {e: r ** (2 * _exponent(e)) for e in radicals}) for g in gradient]
-    slopes = sp.Matrix([[g.diff(x) for x in old] for g in frozen])
+    frozen = [
+        exchanged(g, {e: r ** (2 * _exponent(e)) for e in g.atoms(sp.Pow) if e.as_base_exp()[0] == base})
+        for g in (*gradient, f)
+    ]
+    slopes = sp.Matrix([[g.diff(x) for x in old] for g in frozen[:-1]])
     if slopes.has(*old):
         return
     at_rest = dict.fromkeys(old, sp.S.Zero)
-    right = sp.Matrix([y - exchanged(g, at_rest) for g, y in zip(frozen, new, strict=True)])
+    right = sp.Matrix([y - exchanged(g, at_rest) for g, y in zip(frozen[:-1], new, strict=True)])
     column = solve(slopes, right)
-    values = [entry(column, i, 0) for i in range(len(old))]
-    defining = sp.together(r**2 - exchanged(base, dict(zip(old, values, strict=True))))
-    for root in _roots(sp.numer(defining), r):
-        yield tuple(exchanged(value, {r: root}) for value in values)
+    in_r = {x: entry(column, i, 0) for i, x in enumerate(old)}
+    total = sp.Add(
+        *(value * y for value, y in zip(in_r.values(), new, strict=True)), -exchanged(frozen[-1], in_r)
+    )
+    equation = sp.numer(sp.together(r**2 - exchanged(base, in_r)))
+    for square in _squares(equation, r):
+        numerator, denominator = sp.fraction(square)
+        root = sp.sqrt(numerator) / sp.sqrt(denominator)
+        yield (
+            tuple(exchanged(value, {r: root}) for value in in_r.values()),
+            _with_root(total, r, square, root),
+        )
+
+
+def _squares(equation: Expr, r: Symbol) -> list[Expr]:
+    """Return the values of r² that a polynomial equation, even in r, allows."""
+    if not equation.is_polynomial(r):
+        return []
+    square = sp.Dummy()
+    even = sp.Poly(equation, r)
+    if any(power % 2 for (power,) in even.monoms()):
+        return []
+    reduced = sp.Add(*(c * square ** (power // 2) for (power,), c in even.terms()))
+    return [sp.cancel(value) for value, _ in low_degree_roots(reduced, square)]
+
+
+def _with_root(f: Expr, r: Symbol, square: Expr, root: Expr) -> Expr:
+    """Put r in what is even plus what is odd in r, so that each holds the root at most once."""
+    mirrored = exchanged(f, {r: -r})
+    even, odd = sp.cancel((f + mirrored) / 2), sp.cancel((f - mirrored) * r / 2)
+    s = sp.Dummy()
+    even, odd = (sp.cancel(exchanged(_in_square(part, r, s), {s: square})) for part in (even, odd))
+    return sp.factor_terms(even) + sp.factor(odd) / root
+
+
+def _in_square(f: Expr, r: Symbol, s: Symbol) -> Expr:
+    """Write a rational function that is even in r through s = r²."""
+    numerator, denominator = (sp.Poly(part, r) for part in sp.fraction(sp.cancel(f)))
+    if any(power % 2 for part in (numerator, denominator) for (power,) in part.monoms()):
+        numerator, denominator = numerator * sp.Poly(r, r), denominator * sp.Poly(r, r)
+    return sp.Add(*(c * s ** (power // 2) for (power,), c in numerator.terms())) / sp.Add(
+        *(c * s ** (power // 2) for (power,), c in denominator.terms())
+    )
 
 
 def _exponent(power: sp.Pow) -> Expr:
     return power.as_base_exp()[1]
-
-
-def _roots(equation: Expr, unknown: Symbol) -> list[Expr]:
-    """Roots of a polynomial equation by its factors of degree at most two."""
-    if not equation.is_polynomial(unknown):
-        return []
-    roots: list[Expr] = []
-    for factor, _ in sp.factor_list(equation, unknown)[1]:
-        coefficients = sp.Poly(factor, unknown).all_coeffs()
-        if len(coefficients) == 2:
-            roots.append(-coefficients[1] / coefficients[0])
-        elif len(coefficients) == 3:
-            a, b, c = coefficients
-            if b == 0:
-                discriminant, first = sp.sqrt(sp.cancel(-c / a)), sp.S.Zero
-            else:
-                discriminant, first = sp.sqrt(b**2 - 4 * a * c) / (2 * a), -b / (2 * a)
-            roots += [first + discriminant, first - discriminant]
-        elif all(k == 0 for k in coefficients[1:-1]):
-            degree = len(coefficients) - 1
-            root = sp.cancel(-coefficients[-1] / coefficients[0])
-            roots.append(sp.Pow(root, sp.Rational(1, degree)))
-            roots.append(-sp.Pow(root, sp.Rational(1, degree)))
-    return roots

@@ -1,0 +1,162 @@
+"""Legendre's transformation both ways, Hamilton's equations, claims about them."""
+
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from canon.expression.symbol import coordinates, parameters, time
+from canon.mechanics.hamiltonian import (
+    Hamiltonian,
+    LegendreError,
+    has_hamiltonian,
+    is_hamiltonian_of,
+    legendre,
+)
+from canon.mechanics.lagrangian import Lagrangian
+from canon.proof.domain import Domain
+from canon.proof.vanish import vanishes
+
+m, a, g, k, b, c, l = parameters("m a g k b c l", positive=True)
+x, y, theta, phi = coordinates("x y theta phi")
+
+LAGRANGIANS = {
+    "oscillator": (m * x.dot**2 / 2 - k * x**2 / 2, [x]),
+    "double pendulum": (
+        m * a**2 * (2 * theta.dot**2 + phi.dot**2 + 2 * theta.dot * phi.dot * sp.cos(theta - phi)) / 2
+        + m * g * a * (2 * sp.cos(theta) + sp.cos(phi)),
+        [theta, phi],
+    ),
+    "two degrees": (x.dot**2 / (2 * (a + b * y**2)) + y.dot**2 / 2 - k * y**2, [x, y]),
+    "magnetic field": (m * (x.dot**2 + y.dot**2) / 2 + k * (x * y.dot - y * x.dot), [x, y]),
+    "off-diagonal only": (m * x.dot * y.dot - k * x * y, [x, y]),
+    "driven": (m * x.dot**2 / 2 + x.dot * sp.sin(time), [x]),
+}
+
+
+@pytest.mark.parametrize("name", LAGRANGIANS)
+def test_legendre_and_back_is_the_identity(name):
+    lagrangian = Lagrangian(*LAGRANGIANS[name])
+    assert vanishes(legendre(lagrangian).lagrangian().L - lagrangian.L).holds
+
+
+@pytest.mark.parametrize("name", LAGRANGIANS)
+def test_the_hamiltonian_is_recognized_and_a_twin_is_not(name):
+    lagrangian = Lagrangian(*LAGRANGIANS[name])
+    H = legendre(lagrangian)
+    assert is_hamiltonian_of(lagrangian, H.H, H.p).holds
+    assert is_hamiltonian_of(lagrangian, H.H + H.p[0] ** 2 / 1000, H.p).fails
+
+
+@pytest.mark.parametrize("name", LAGRANGIANS)
+def test_hamiltons_equations_are_lagranges(name):
+    """With p = ∂L/∂q̇, q̇ = ∂H/∂p is an identity and ṗ + ∂H/∂q is Lagrange's equation."""
+    lagrangian = Lagrangian(*LAGRANGIANS[name])
+    H = legendre(lagrangian)
+    there = dict(zip(H.p, lagrangian.momenta, strict=True))
+    for v, rate in zip(lagrangian.velocities, H.q_dot, strict=True):
+        assert vanishes(rate.xreplace(there) - v).holds
+    for s, rate in zip(lagrangian.q, H.p_dot, strict=True):
+        assert vanishes(rate.xreplace(there) - lagrangian.L.diff(s)).holds
+
+
+coefficients = st.integers(-3, 3)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(coefficients, min_size=8, max_size=8))
+def test_round_trip_of_generated_lagrangians(n):
+    """Positive definite mass matrices A Aᵀ + 1 with linear and potential terms."""
+    A = sp.Matrix([[n[0], n[1] * x], [n[2] * sp.sin(y), n[3]]])
+    M = A * A.T + sp.eye(2)
+    v = sp.Matrix([x.dot, y.dot])
+    L = (v.T * M * v)[0] / 2 + n[4] * y * x.dot + n[5] * x**2 * y.dot - n[6] * x**2 * y - n[7] * sp.cos(y)
+    lagrangian = Lagrangian(L, [x, y])
+    H = legendre(lagrangian)
+    assert vanishes(H.lagrangian().L - L).holds
+    assert is_hamiltonian_of(lagrangian, H.H, H.p).holds
+
+
+def test_relativistic_hamiltonian_of_two_degrees():
+    slow = Domain((x.dot**2 + y.dot**2 < c**2,))
+    particle = Lagrangian(-m * c**2 * sp.sqrt(1 - (x.dot**2 + y.dot**2) / c**2) - k * x, [x, y])
+    H = legendre(particle, domain=slow)
+    expected = c * sp.sqrt(m**2 * c**2 + x.momentum**2 + y.momentum**2) + k * x
+    assert vanishes(H.H - expected).holds
+    assert is_hamiltonian_of(particle, expected, H.p, slow).holds
+    assert is_hamiltonian_of(particle, -expected, H.p, slow).fails
+
+
+def test_relativistic_hamiltonian_goes_back():
+    H = Hamiltonian(c * sp.sqrt(m**2 * c**2 + x.momentum**2), x, x.momentum)
+    assert vanishes(
+        H.lagrangian().L + m * c**2 * sp.sqrt(1 - x.dot**2 / c**2), Domain((x.dot**2 < c**2,))
+    ).holds
+
+
+def test_a_singular_hessian_names_its_null_direction():
+    with pytest.raises(LegendreError, match=r"singular along \(-1, 1\)") as caught:
+        legendre(Lagrangian((x.dot + y.dot) ** 2 / 2, [x, y]))
+    assert caught.value.null_direction == (-1, 1)
+
+
+def test_a_hessian_singular_in_the_velocities_is_found():
+    """L homogeneous of first degree: a reparametrization-invariant action."""
+    lagrangian = Lagrangian(sp.sqrt(x.dot**2 + y.dot**2), [x, y])
+    assert has_hamiltonian(lagrangian).fails
+    with pytest.raises(LegendreError, match="singular along"):
+        legendre(lagrangian)
+
+
+def test_existence_is_told_apart():
+    assert has_hamiltonian(Lagrangian(m * x.dot**2 / 2, [x])).holds
+    assert has_hamiltonian(Lagrangian(m * x.dot, [x])).fails
+
+
+def test_forces_do_not_fit_into_a_hamiltonian():
+    with pytest.raises(LegendreError, match="forces without a potential"):
+        legendre(Lagrangian(x.dot**2, [x], forces=[-x.dot]))
+
+
+def test_claimed_equations():
+    H = Hamiltonian(x * x.momentum - y * y.momentum - a * x**2 + b * y**2, (x, y), (x.momentum, y.momentum))
+    p1, p2 = H.p
+    right = ([x, -y], [2 * a * x - p1, p2 - 2 * b * y])
+    assert H.has_equations(*right).holds
+    assert H.has_equations(right[0], [2 * a * x + p1, p2 - 2 * b * y]).fails
+
+
+def test_claimed_motions():
+    w = sp.sqrt(g / l)
+    H = Hamiltonian(theta.momentum**2 / (2 * m * l**2) - m * g * l * sp.cos(theta), theta, theta.momentum)
+    p = 2 * m * l**2 * w / sp.cosh(w * time)
+    oscillator = Hamiltonian(x.momentum**2 / (2 * m) + k * x**2 / 2, x, x.momentum)
+    w0 = sp.sqrt(k / m)
+    motion = {x: a * sp.cos(w0 * time), x.momentum: -m * w0 * a * sp.sin(w0 * time)}
+    assert oscillator.is_solution(motion).holds
+    assert oscillator.is_solution({**motion, x.momentum: -motion[x.momentum]}).fails
+    assert H.is_solution({theta: 2 * sp.atan(sp.tanh(w * time)), theta.momentum: p}).fails
+    with pytest.raises(ValueError, match="does not say what p_x is"):
+        oscillator.is_solution({x: sp.sin(time)})
+
+
+def test_conserved_quantities_have_no_rate():
+    px, py = x.momentum, y.momentum
+    H = Hamiltonian((px**2 + py**2) / (2 * m) + sp.Function("V")(x**2 + y**2), (x, y), (px, py))
+    assert vanishes(H.rate(x * py - y * px)).holds
+    assert vanishes(H.rate(x * py + y * px)).fails
+    assert vanishes(H.rate(H.H)).holds
+    assert H.rate(x * time - time**2) == x - 2 * time + px * time / m
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Hamiltonian(x, (x, y), (x.momentum,)), "2 coordinates and 1 momenta"),
+        (lambda: Hamiltonian(x, (x,), (x,)), "not all different"),
+        (lambda: legendre(Lagrangian(x.dot**2, [x]), p=[x.momentum, y.momentum]), "2 momenta for 1"),
+    ],
+)
+def test_refusals_say_what_is_wrong(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
