@@ -64,13 +64,21 @@ EXAMPLES = EXAMPLES.replace("{kinds}", _kinds())
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command reads."""
-    parser.add_argument("sheets", metavar="SHEET", nargs="+", help="a .toml or .json file of claims; - reads JSON from stdin")
+    parser.add_argument(
+        "sheets", metavar="SHEET", nargs="+", help="a .toml or .json file of claims; - reads JSON from stdin"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object a line instead of a table")
     parser.add_argument(
-        "--expect", action="store_true", help="compare with what each claim expects; exit 1 where a verdict differs"
+        "--expect",
+        action="store_true",
+        help="compare with what each claim expects; exit 1 where a verdict differs",
     )
-    parser.add_argument("--only", metavar="ID", action="append", help="judge this claim only; may be repeated")
-    parser.add_argument("--budget", metavar="S", type=_seconds, help="seconds a claim, whatever the sheet says")
+    parser.add_argument(
+        "--only", metavar="ID", action="append", help="judge this claim only; may be repeated"
+    )
+    parser.add_argument(
+        "--budget", metavar="S", type=_seconds, help="seconds a claim, whatever the sheet says"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -7,7 +7,13 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
-from canon.exercise import judge_appell, judge_canonical, judge_constrained, judge_hamiltonian, judge_lagrangian
+from canon.exercise import (
+    judge_appell,
+    judge_canonical,
+    judge_constrained,
+    judge_hamiltonian,
+    judge_lagrangian,
+)
 from canon.exercise.question import Deadline, Question, decide
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.sheet import Claim, ClaimError

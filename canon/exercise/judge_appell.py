@@ -62,7 +62,9 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
     if reading.has("S"):
         claimed = substitute(reading.expression("S"), kinematics.through)
         yield Same(
-            tuple(Part(f"∂S/∂{a}", claimed.diff(a), s) for a, s in zip(kinematics.u_dot, slopes, strict=True)),
+            tuple(
+                Part(f"∂S/∂{a}", claimed.diff(a), s) for a, s in zip(kinematics.u_dot, slopes, strict=True)
+            ),
             reading.domain,
         )
     if reading.has("claim"):
@@ -103,7 +105,9 @@ def _slopes(reading: Reading, kinematics: _Kinematics) -> list[Expr]:
     return [sp.Add(*(force * a.diff(b) for force, a in terms)) for b in kinematics.u_dot]
 
 
-def _rotor(reading: Reading, where: str, body: Mapping[str, object], kinematics: _Kinematics) -> list[tuple[Expr, Expr]]:
+def _rotor(
+    reading: Reading, where: str, body: Mapping[str, object], kinematics: _Kinematics
+) -> list[tuple[Expr, Expr]]:
     inertia = reading.inside(f"{where}.I", body["I"])
     if "angle" in body:
         (angle,) = _exactly(reading, f"{where}.angle", body["angle"], 1)

@@ -121,7 +121,9 @@ def _implicit_canonicity(
         return
     keep = set(reading.scope.names.values()) - {*old, *new} | {reading.time}
     for branch in on_manifold(equations, reading.domain, keep=tuple(keep), prefer=(*new, *old)):
-        yield Same(tuple(Part("M J Mᵀ − c J", entry, through=branch.values) for entry in entries), branch.domain)
+        yield Same(
+            tuple(Part("M J Mᵀ − c J", entry, through=branch.values) for entry in entries), branch.domain
+        )
 
 
 def bilinear(reading: Reading) -> Iterator[Question]:
@@ -131,7 +133,11 @@ def bilinear(reading: Reading) -> Iterator[Question]:
         d, delta = displacements(x)
         extended = reading.with_names({s.name: s for s in (*d, *delta)})
         right = bilinear_covariant(reading.expressions("form", like="x"), x, d, delta)
-        yield Same((Part("the bilinear covariant", extended.expression("claim"), right),), reading.domain, lambda: right)
+        yield Same(
+            (Part("the bilinear covariant", extended.expression("claim"), right),),
+            reading.domain,
+            lambda: right,
+        )
         return
     q, p = reading.phase_space("q", "p")
     Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")

@@ -67,7 +67,9 @@ def _on_every_motion(
         matrix, rest = _affine(here, unknowns)
         try:
             solution = solve(matrix, -rest, branch.domain)
-        except SingularMatrixError:  # dependent constraints or massless coordinates: ask for linear consequences
+        except (
+            SingularMatrixError
+        ):  # dependent constraints or massless coordinates: ask for linear consequences
             seen = tuple(substitute(claim, branch.values) for claim in claims)
             yield SameEquations((*here, *seen), tuple(here), unknowns, branch.domain)
             continue

@@ -60,7 +60,9 @@ def _solution(reading: Reading, system: Hamiltonian) -> Same:
             reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
     domain = transported(reading.domain, motion)
     rates = zip((*system.q, *system.p), system.vector_field, strict=True)
-    parts = (Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates)
+    parts = (
+        Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
+    )
     return Same(tuple(parts), domain)
 
 

@@ -66,7 +66,11 @@ def routhian(reading: Reading) -> Iterator[Question]:
     if reading.has("R"):
         right = sign * (L - sp.Add(*(v * L.diff(v) for v in velocities)))
         part = Part("the Routhian", reading.expression("R"), right, through)
-        yield Same((part,), transported(reading.domain, through), lambda: routhian_in_momenta(lagrangian, through, sign))
+        yield Same(
+            (part,),
+            transported(reading.domain, through),
+            lambda: routhian_in_momenta(lagrangian, through, sign),
+        )
     if reading.has("claim"):
         conserved = tuple(time_derivative(p, q, t) for p in through.values())
         seen = tuple(Part("", equation, through=through).residual for equation in reading.equations("claim"))

@@ -74,6 +74,9 @@ def _short(residual: sp.Basic | sp.MatrixBase | None) -> str:
     """Return an expression as text, unless that would be longer than anyone reads."""
     if residual is None:
         return ""
-    if isinstance(residual, sp.Basic) and sum(1 for _ in zip(sp.preorder_traversal(residual), range(5000), strict=False)) >= 5000:
+    if (
+        isinstance(residual, sp.Basic)
+        and sum(1 for _ in zip(sp.preorder_traversal(residual), range(5000), strict=False)) >= 5000
+    ):
         return "(too long to be shown)"
     return str(residual)[:MAX_SHOWN]

@@ -110,7 +110,9 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
     return Domain(tuple(dict.fromkeys(c for c in conditions if c is not sp.true)), kept)
 
 
-def _restricted(branch: Branch, constraint: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]) -> Iterator[Branch]:
+def _restricted(
+    branch: Branch, constraint: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]
+) -> Iterator[Branch]:
     here = substitute(constraint, branch.values)
     if here == 0 or vanishes(here, branch.domain, budget=1.0).holds:
         yield branch

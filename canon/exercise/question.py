@@ -138,13 +138,19 @@ def _all_vanish(parts: Sequence[Part], domain: Domain, deadline: Deadline) -> Ve
 
 
 def _same_equations(
-    claimed: tuple[Expr, ...], right: tuple[Expr, ...], unknowns: tuple[Symbol, ...], domain: Domain, deadline: Deadline
+    claimed: tuple[Expr, ...],
+    right: tuple[Expr, ...],
+    unknowns: tuple[Symbol, ...],
+    domain: Domain,
+    deadline: Deadline,
 ) -> Verdict:
     for i, equation in enumerate(claimed, 1):
         slopes = sp.Matrix([[equation.diff(a).diff(b) for b in unknowns] for a in unknowns])
         affine = vanishes(slopes, domain, budget=deadline.left)
         if not affine.holds:
-            return replace(affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}")
+            return replace(
+                affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}"
+            )
     return equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
 
 

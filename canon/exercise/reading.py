@@ -156,7 +156,8 @@ class Reading:
     def expressions(self, key: str, like: str = "") -> tuple[Expr, ...]:
         """Return the expressions of a list, as many as there are names under ``like``."""
         found = tuple(
-            self._parse(parse_expression, text, f"{key}[{i}]") for i, text in enumerate(_as_list(self.claim.keys[key]))
+            self._parse(parse_expression, text, f"{key}[{i}]")
+            for i, text in enumerate(_as_list(self.claim.keys[key]))
         )
         return self._as_many(key, found, like)
 
@@ -181,7 +182,9 @@ class Reading:
 
     def inside(self, where: str, value: Any, like: str = "") -> tuple[Expr, ...]:
         """Return the expressions of a list that stands inside another key."""
-        found = tuple(self._parse(parse_expression, text, f"{where}[{i}]") for i, text in enumerate(_as_list(value)))
+        found = tuple(
+            self._parse(parse_expression, text, f"{where}[{i}]") for i, text in enumerate(_as_list(value))
+        )
         return self._as_many(where, found, like)
 
     def brackets(self, first: str, second: str) -> list[tuple[Expr, Expr, Expr]]:
@@ -198,7 +201,10 @@ class Reading:
 
     def _as_many(self, key: str, found: tuple[Expr, ...], like: str) -> tuple[Expr, ...]:
         if like and len(found) != len(_as_list(self.claim.keys[like])):
-            self.fault(key, f"{len(found)} expressions for the {len(_as_list(self.claim.keys[like]))} names of {like}")
+            self.fault(
+                key,
+                f"{len(found)} expressions for the {len(_as_list(self.claim.keys[like]))} names of {like}",
+            )
         return found
 
     def _is_list_of_names(self, key: str) -> bool:

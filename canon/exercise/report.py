@@ -142,5 +142,10 @@ class Report:
 def invalid(claim: Claim, reason: str) -> Judgement:
     """Return the judgement on a claim that does not say something that could be judged."""
     return Judgement(
-        claim.id, claim.kind, "invalid", known=reason, title=str(claim.keys.get("title", "")), expect=claim.expect
+        claim.id,
+        claim.kind,
+        "invalid",
+        known=reason,
+        title=str(claim.keys.get("title", "")),
+        expect=claim.expect,
     )

@@ -176,7 +176,9 @@ def _json(text: str) -> Any:
         found = dict(pairs)
         if len(found) < len(pairs):
             keys = [key for key, _ in pairs]
-            raise ValueError(f"the key {next(k for k in keys if keys.count(k) > 1)!r} stands twice in one object")
+            raise ValueError(
+                f"the key {next(k for k in keys if keys.count(k) > 1)!r} stands twice in one object"
+            )
         return found
 
     return json.loads(text, parse_float=Decimal, parse_constant=no_constant, object_pairs_hook=no_repeats)
@@ -185,7 +187,9 @@ def _json(text: str) -> Any:
 def _sheet(found: Any, file: str, shown: str) -> Sheet:
     raw = found.get("claims", found.get("claim")) if isinstance(found, dict) else found
     if not isinstance(raw, list):
-        raise SheetError(f"{shown}: no claims; write [[claim]] tables in TOML, or {{'claims': [ … ]}} in JSON")
+        raise SheetError(
+            f"{shown}: no claims; write [[claim]] tables in TOML, or {{'claims': [ … ]}} in JSON"
+        )
     if isinstance(found, dict):
         unknown = sorted(set(found) - {"title", "claims", "claim", "source"})
         if unknown:
@@ -197,7 +201,9 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
     for number, keys in enumerate(raw, 1):
         claim = _claim(keys, number, file)
         if claim.id in seen:
-            error = ClaimError(claim.id, "id", "another claim before it has the same id; rename one", file=file)
+            error = ClaimError(
+                claim.id, "id", "another claim before it has the same id; rename one", file=file
+            )
             claim = replace(claim, errors=(*claim.errors, error))
         seen.add(claim.id)
         claims.append(claim)
@@ -310,7 +316,11 @@ def _interval(value: Any) -> bool:
 
 
 def _bracket(value: Any) -> bool:
-    return _table(value) and set(value) in ({"f", "g", "value"}, {"u", "v", "value"}) and all(map(_text, value.values()))
+    return (
+        _table(value)
+        and set(value) in ({"f", "g", "value"}, {"u", "v", "value"})
+        and all(map(_text, value.values()))
+    )
 
 
 def _body(value: Any) -> bool:

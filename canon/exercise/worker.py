@@ -84,7 +84,9 @@ class Worker:
             if not line:
                 self._stop()
                 spent = time.monotonic() - start
-                return verdict or _open(claim, "the process that judged it broke off (memory, or a fault)", spent)
+                return verdict or _open(
+                    claim, "the process that judged it broke off (memory, or a fault)", spent
+                )
             answer = json.loads(line)
             verdict = Judgement.from_dict(answer)
             if answer["last"]:
@@ -143,7 +145,13 @@ def _open(claim: Claim, why: str, seconds: float) -> Judgement:
 
 
 def _encoded(claim: Claim) -> str:
-    said = {"id": claim.id, "kind": claim.kind, "keys": dict(claim.keys), "expect": claim.expect, "budget": claim.budget}
+    said = {
+        "id": claim.id,
+        "kind": claim.kind,
+        "keys": dict(claim.keys),
+        "expect": claim.expect,
+        "budget": claim.budget,
+    }
     return json.dumps(said, default=_plain)
 
 

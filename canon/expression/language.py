@@ -170,7 +170,9 @@ def parse_equation(text: str, scope: Scope) -> Expr:
 
 def _plain(text: str) -> str:
     if text.lstrip().startswith("$"):
-        raise LanguageError(text, 1, "LaTeX is not read yet", "write it in the plain spelling, theta'' + sin(theta)")
+        raise LanguageError(
+            text, 1, "LaTeX is not read yet", "write it in the plain spelling, theta'' + sin(theta)"
+        )
     return text
 
 
@@ -241,7 +243,9 @@ class _Builder:
         if name in self.scope.functions:
             return self.declared(node)
         if self.scope.symbol(name) is not None:
-            self.refuse(node, f"{name} is a declared symbol and can't be applied to anything", "write * for a product")
+            self.refuse(
+                node, f"{name} is a declared symbol and can't be applied to anything", "write * for a product"
+            )
         if name == "Derivative":
             return self.derivative(node)
         if name == "Piecewise":
@@ -260,19 +264,25 @@ class _Builder:
     def declared(self, node: syntax.Call) -> Expr:
         wanted = self.scope.functions[node.function]
         if len(node.arguments) != len(wanted):
-            self.refuse(node, f"{node.function} is declared with {len(wanted)} argument(s): {', '.join(wanted)}")
+            self.refuse(
+                node, f"{node.function} is declared with {len(wanted)} argument(s): {', '.join(wanted)}"
+            )
         sign = self.scope.signs.get(node.function) or {"real": True}
         return sp.Function(node.function, **sign)(*(self.expression(argument) for argument in node.arguments))
 
     def derivative(self, node: syntax.Call) -> Expr:
         if len(node.arguments) < 2:
-            self.refuse(node, "Derivative takes an expression and at least one variable", "write Derivative(f(t), t)")
+            self.refuse(
+                node, "Derivative takes an expression and at least one variable", "write Derivative(f(t), t)"
+            )
         value = self.expression(node.arguments[0])
         orders = [self.order(argument) for argument in node.arguments[1:]]
         if sum(order for _, order in orders) > 8:
             self.refuse(node, "a derivative of more than the 8th order")
         if isinstance(value, Coordinate) and all(variable == self.scope.time for variable, _ in orders):
-            self.refuse(node, f"{value} is a coordinate here, not a function of the time", f"write {value}_dot")
+            self.refuse(
+                node, f"{value} is a coordinate here, not a function of the time", f"write {value}_dot"
+            )
         return reduce(lambda f, order: f.diff(*order), orders, value)
 
     def order(self, node: syntax.Node) -> tuple[Symbol, int]:
@@ -296,7 +306,9 @@ class _Builder:
         pieces: list[tuple[Expr, Boolean]] = []
         for piece in node.arguments:
             if not isinstance(piece, syntax.Tuple) or len(piece.items) != 2:
-                self.refuse(piece, "a piece is (expression, condition)", "write Piecewise((x, x > 0), (0, True))")
+                self.refuse(
+                    piece, "a piece is (expression, condition)", "write Piecewise((x, x > 0), (0, True))"
+                )
             pieces.append((self.expression(piece.items[0]), self.condition(piece.items[1])))
         return sp.Piecewise(*pieces)
 
@@ -309,11 +321,13 @@ class _Builder:
                 return sp.Ne(self.expression(left), self.expression(right))
             case syntax.Comparison(operands, relations):
                 if "=" in relations:
-                    self.refuse(node, "an equation where a condition should be", "write < <= > >= or Ne(a, b)")
+                    self.refuse(
+                        node, "an equation where a condition should be", "write < <= > >= or Ne(a, b)"
+                    )
                 sides = [self.expression(side) for side in operands]
                 pairs = zip(sides, relations, sides[1:], strict=False)
                 try:
-                    return sp.And(*(_RELATIONS[relation](left, right) for left, relation, right in pairs))
+                    return sp.And(*(_related(left, relation, right) for left, relation, right in pairs))
                 except TypeError:
                     self.refuse(node, "imaginary numbers can't be compared")
             case _:
@@ -351,6 +365,14 @@ class _Builder:
         for term in sp.Add.make_args(exponent):
             if abs(term.as_coeff_Mul()[0]) > MAX_EXPONENT:
                 self.refuse(node, f"a multiple of a logarithm beyond {MAX_EXPONENT} in an exponent")
+
+
+def _related(left: Expr, relation: str, right: Expr) -> Boolean:
+    """Return a relation, a number on its right."""
+    if left.is_number and not right.is_number:
+        left, right = right, left
+        relation = relation.translate(str.maketrans("<>", "><"))
+    return _RELATIONS[relation](left, right)
 
 
 def _bits(value: Expr) -> int:

@@ -197,7 +197,10 @@ def parse_syntax(text: str) -> Node:
 def _tokens(text: str) -> list[_Token]:
     if len(text) > MAX_CHARACTERS:
         raise LanguageError(
-            text, MAX_CHARACTERS, f"{len(text)} characters, and at most {MAX_CHARACTERS} are read", "split the claim"
+            text,
+            MAX_CHARACTERS,
+            f"{len(text)} characters, and at most {MAX_CHARACTERS} are read",
+            "split the claim",
         )
     found: list[_Token] = []
     at = 0
@@ -208,7 +211,9 @@ def _tokens(text: str) -> list[_Token]:
         if match.lastgroup != "space":
             found.append(_token(text, match))
             if len(found) > MAX_TOKENS:
-                raise LanguageError(text, at + 1, f"more than {MAX_TOKENS} numbers, names and signs", "split the claim")
+                raise LanguageError(
+                    text, at + 1, f"more than {MAX_TOKENS} numbers, names and signs", "split the claim"
+                )
         at = match.end()
     found.append(_Token("end", "", len(text) + 1))
     return found
@@ -384,4 +389,6 @@ class _Parser:
             return self.fault("'(' is never closed", token=opening)
         if self.token.text == "for":
             return self.fault("comprehensions are not part of the language")
-        return self.fault(f"an operator or ')' is missing before {self.token.text!r}", "write * for a product")
+        return self.fault(
+            f"an operator or ')' is missing before {self.token.text!r}", "write * for a product"
+        )

@@ -1,0 +1,238 @@
+"""``canon drift``: run a scene long and judge how the energy error of each method grows."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+
+    from canon.flow.method import Method
+    from canon.scene.scene import Scene
+    from canon.study.comparison import DriftRow, DriftStudy
+
+__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
+
+DESCRIPTION = """\
+Integrate a scene with several methods and tell how the energy error of each one grows: bounded, as round-off does
+(t^1/2), or secularly. Long runs show their progress; the states between the samples are not kept.
+"""
+EXAMPLES = """\
+methods: kahan-li-8, verlet, blanes-moan-4, … (symplectic splittings), rk4, dop853 (not symplectic), taylor (heyoka)
+
+reading the table:
+  max |ΔE/E|   the largest energy error met
+  drift        its mean growth per period, with standard error
+  exponent     power of time it grows with: 0 bounded, 0.5 round-off, 1 secular
+  verdict      "bounded" means: no growth found above the detection limit
+
+examples:
+  canon drift henon-heiles
+  canon drift kepler --method kahan-li-8 --method rk4 --step 0.02 --periods 10000
+  canon drift simple-pendulum --set l=2 --start large --plot pendulum.png
+  canon drift henon-heiles --method taylor --tolerance 1e-10 --json
+
+exit status: 0 every run finished, 1 a run failed, 2 bad usage
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what the command reads."""
+    parser.add_argument("scene", metavar="SCENE", help="a scene by name; 'list' names them all")
+    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a parameter")
+    parser.add_argument("--start", metavar="NAME", help="the initial state, by its name in the scene")
+    parser.add_argument(
+        "--method", metavar="NAME", action="append", help="may be repeated; the usual four unless given"
+    )
+    parser.add_argument(
+        "--step", metavar="H", type=float, help="of the fixed-step methods; a fiftieth of the period"
+    )
+    parser.add_argument("--tolerance", metavar="EPS", type=float, help="of the adaptive methods")
+    length = parser.add_mutually_exclusive_group()
+    length.add_argument(
+        "--periods", metavar="N", type=float, default=1000.0, help="duration in periods (1000)"
+    )
+    length.add_argument("--until", metavar="T", type=float, help="duration in units of time")
+    parser.add_argument("--precision", choices=["compensated", "double"], help="of the fixed-step methods")
+    parser.add_argument("--samples", metavar="N", type=int, help="states kept of each run")
+    parser.add_argument(
+        "--json", action="store_true", help="one JSON object a method and line instead of a table"
+    )
+    parser.add_argument(
+        "--plot", metavar="FILE", help="write a figure of |ΔE/E| over time (.png, .pdf, .svg)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the study, print its table or lines, return the exit status."""
+    from canon.scene import SceneError, find
+    from canon.study.comparison import StudyError
+
+    if arguments.scene == "list":
+        _list_scenes()
+        return 0
+    try:
+        scene = find(arguments.scene).with_parameters(**dict(map(_setting, arguments.set)))
+        methods = [method_named(name) for name in arguments.method] if arguments.method else None
+        study = _study(scene, methods, arguments)
+    except (SceneError, StudyError, ValueError) as error:
+        print(f"canon drift: {error}", file=sys.stderr)
+        return 2
+    if arguments.json:
+        _print_lines(study)
+    else:
+        from canon.study.table import drift_table
+
+        print(drift_table(study))
+    if arguments.plot and not save_figure(study, arguments.plot):
+        return 2
+    return 1 if any(row.failure for row in study.rows) else 0
+
+
+def method_named(name: str) -> Method:
+    """Return the method of that name on the command line.
+
+    Examples
+    --------
+    >>> method_named("kahan-li-8"), method_named("rk4")
+    (Splitting('kahan-li-8'), RK4())
+    """
+    from canon.flow.method import DOP853, RK4, Splitting, Taylor
+
+    others = {"rk4": RK4, "taylor": Taylor, "dop853": DOP853}
+    wanted = name.lower()
+    return others[wanted]() if wanted in others else Splitting(wanted)
+
+
+def save_figure(study: DriftStudy, file: str) -> bool:
+    """Write the energy errors of a study as a figure; say so, or why not."""
+    from canon.plot import PlotError, plot_energy_error
+
+    try:
+        figure = plot_energy_error(study).get_figure(root=True)
+        if figure is not None:
+            figure.savefig(file, dpi=150)
+    except (PlotError, OSError, ValueError) as error:
+        print(f"canon: no figure was written: {error}", file=sys.stderr)
+        return False
+    print(f"figure: {file}")
+    return True
+
+
+def _study(scene: Scene, methods: Sequence[Method] | None, arguments: argparse.Namespace) -> DriftStudy:
+    from canon.study.comparison import drift_study
+
+    with Progress() as progress:
+        return drift_study(
+            scene,
+            arguments.start,
+            methods=methods,
+            step=arguments.step,
+            tolerance=arguments.tolerance,
+            periods=arguments.periods,
+            until=arguments.until,
+            precision=arguments.precision,
+            samples=arguments.samples,
+            progress=progress,
+        )
+
+
+class Progress:
+    """A bar a method on stderr with the remaining time; silent when piped or where tqdm is not installed."""
+
+    def __init__(self) -> None:
+        self._bar: object = None
+        self._method = ""
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._close()
+
+    def __call__(self, method: str, done: float) -> None:
+        """Show that this fraction of a method's run is done."""
+        if not sys.stderr.isatty():
+            return
+        try:
+            from tqdm import tqdm
+        except ImportError:
+            return
+        if method != self._method or self._bar is None:
+            self._close()
+            self._method = method
+            self._bar = tqdm(
+                total=100,
+                desc=method,
+                unit="%",
+                leave=False,
+                bar_format="{desc} {percentage:3.0f}% {bar} {remaining}",
+            )
+        bar: tqdm = self._bar  # pyright: ignore[reportAssignmentType, reportMissingTypeArgument]
+        bar.update(100 * done - bar.n)
+
+    def _close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()  # pyright: ignore[reportAttributeAccessIssue]
+            self._bar = None
+
+
+def _setting(text: str) -> tuple[str, float]:
+    name, equals, value = text.partition("=")
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    if not (name.strip() and equals and math.isfinite(number)):
+        raise ValueError(f"--set {text}: write a parameter's name, =, and a number, as in --set l=2")
+    return name.strip(), number
+
+
+def _list_scenes() -> None:
+    from canon.scene import SCENES
+
+    width = max(len(scene.name) for scene in SCENES)
+    for scene in SCENES:
+        print(f"{scene.name:{width}}  {scene.title}")
+        print(f"{'':{width}}  starts: {', '.join(start.name for start in scene.starts)}")
+        if scene.parameters:
+            constants = (f"{c.name} = {c.value:g} {c.unit}".strip() for c in scene.parameters)
+            print(f"{'':{width}}  parameters: {', '.join(constants)}")
+
+
+def _print_lines(study: DriftStudy) -> None:
+    import json
+
+    for row in study.rows:
+        print(json.dumps({"study": study.title, "span": study.span, "period": study.period, **_line(row)}))
+
+
+def _line(row: DriftRow) -> dict[str, object]:
+    line: dict[str, object] = {
+        "method": str(row.method),
+        "order": row.method.order,
+        "step": row.step,
+        "steps": row.steps,
+        "evaluations": row.evaluations,
+        "cpu_seconds": row.cpu_seconds,
+        "compile_seconds": row.compile_seconds,
+        "precision": row.precision,
+    }
+    if row.drift is None:
+        return {**line, "verdict": "failed", "reason": row.failure}
+    found = row.drift
+    return {
+        **line,
+        "relative": row.relative,
+        "bound": found.bound,
+        "slope": found.slope,
+        "slope_error": found.slope_error,
+        "detection_limit": found.detection_limit,
+        "exponent": found.exponent,
+        "exponent_interval": list(found.exponent_interval),
+        "verdict": found.verdict.value,
+        "reason": found.reason,
+    }
