@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
 DESCRIPTION = """\
-Judge a bundled sheet of answers from lecture notes, some of them wrong, and say where each wrong one is wrong; then run the
-Hénon–Heiles system with a symplectic method, a non-symplectic one and heyoka's Taylor method, and tell which of them
-can be trusted for long. Takes less than half a minute.
+Judge a bundled sheet of answers from lecture notes, some of them wrong, and say where each wrong one is wrong;
+then run the Hénon–Heiles system with symplectic methods, a non-symplectic one and heyoka's Taylor method, and tell
+which of them can be trusted for long. Takes less than half a minute.
 """
 EXAMPLES = """\
 examples:
