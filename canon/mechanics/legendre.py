@@ -137,8 +137,8 @@ def _candidates(
 ) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
     """Yield x(y) that may solve y = ∂f/∂x, each with Σ x y − f in terms of y.
 
-    A common radical r(x) is treated as an unknown of its own: with r held fixed the equations are often linear
-    in x (relativistic momenta are m x / r), and the definition of r then is one equation for r².
+    A common radical r(x) is treated as an unknown of its own: with r held fixed the equations are often
+    linear in x (relativistic momenta are m x / r), and the definition of r then is one equation for r².
     """
     radicals = {e for e in f.atoms(sp.Pow) if not _exponent(e).is_Integer and e.has(*old)}
     if not radicals and len(old) == 1:

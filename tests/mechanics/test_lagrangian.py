@@ -120,7 +120,7 @@ def test_agrees_with_sympys_lagranges_method():
     """Second route: SymPy's own derivation, in its own dynamicsymbols."""
     T1, T2 = dynamicsymbols("theta1 theta2")
     N = ReferenceFrame("N")
-    O = Point("O")  # noqa: E741
+    O = Point("O")
     O.set_vel(N, 0)
     particle = O.locatenew("A", l1 * (sp.sin(T1) * N.x - sp.cos(T1) * N.y))
     particle.set_vel(N, particle.pos_from(O).dt(N))
