@@ -16,7 +16,7 @@ from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Rational, Symbol, oo
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sympy import Basic, Expr
     from sympy.logic.boolalg import Boolean
@@ -61,7 +61,13 @@ class Domain:
     box: Mapping[Symbol, tuple[Rational, Rational]] = field(default_factory=lambda: MappingProxyType({}))
 
     def points(
-        self, symbols: Iterable[Symbol], count: int, *, seed: int = 0, special: bool = False
+        self,
+        symbols: Iterable[Symbol],
+        count: int,
+        *,
+        seed: int = 0,
+        in_box: bool = True,
+        marks: Mapping[Symbol, Sequence[Rational]] = MappingProxyType({}),
     ) -> Iterator[dict[Symbol, Rational]]:
         """Draw exact points of the domain: short rationals at several scales.
 
@@ -73,8 +79,10 @@ class Domain:
             How many points at most; fewer where the conditions leave little room.
         seed
             Equal seeds draw equal points.
-        special
-            Put some of the symbols at 0, 1 and −1.
+        in_box
+            Keep to the box, which is a hint and no part of the claim.
+        marks
+            Values at which one or two symbols at a time are put.
 
         Examples
         --------
@@ -91,11 +99,10 @@ class Domain:
             if found == count:
                 return
             scale = _SCALES[(attempt // 3) % len(_SCALES)]
-            point = {s: self._draw(s, scale, chance) for s in ordered}
-            if special:
-                for s in chance.sample(ordered, k=min(len(ordered), 1 + attempt % 2)):
-                    wanted = Integer(chance.choice((0, 0, 1, -1)))
-                    point[s] = wanted if _allows(s, wanted) else point[s]
+            point = {s: self._draw(s, scale, chance, in_box=in_box) for s in ordered}
+            marked = [s for s in ordered if marks.get(s)]
+            for s in chance.sample(marked, k=min(len(marked), 1 + attempt % 2)):
+                point[s] = chance.choice(marks[s])
             allowed = self._settle_equalities(point) and all(
                 _allows(s, number) for s, number in point.items()
             )
@@ -154,8 +161,8 @@ class Domain:
         except Unmodelled:
             return False
 
-    def _draw(self, symbol: Symbol, scale: Rational, chance: random.Random) -> Rational:
-        if symbol in self.box:
+    def _draw(self, symbol: Symbol, scale: Rational, chance: random.Random, *, in_box: bool) -> Rational:
+        if in_box and symbol in self.box:
             low, high = (Rational(end) for end in self.box[symbol])
             drawn = low + (high - low) * Rational(chance.randint(1, 63), 64)
             return Integer(round(drawn)) if symbol.is_integer else drawn

@@ -5,24 +5,25 @@ from __future__ import annotations
 import random
 import time
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import sympy as sp
-from flint import acb
+from flint import acb, arb
 from sympy.core.function import AppliedUndef, Derivative, Subs
+from sympy.core.relational import Relational
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.domain import declared_complex
 from canon.proof.verdict import Counterexample
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
     from canon.proof.domain import Domain
 
-__all__ = ["Search", "look_for_counterexample", "with_example_functions"]
+__all__ = ["Search", "evaluated", "look_for_counterexample", "search_widely", "with_example_functions"]
 
 HIGHEST_PRECISION = 3200
 """Bits after which a point that has not decided is left."""
@@ -35,7 +36,6 @@ class Search:
     counterexample: Counterexample | None = None
     agreements: int = 0
     digits: int = 0
-    apart_where_not_real: str = ""
     unmodelled: str = ""
     tried: int = 0
     functions: dict[str, str] = field(default_factory=dict[str, str])
@@ -53,38 +53,100 @@ class Search:
 def look_for_counterexample(
     left: Expr,
     right: Expr,
-    domain: Domain,
+    points: Iterable[Mapping[Symbol, sp.Rational]],
     *,
-    points: int,
     highest: int,
     deadline: float,
-    seed: int = 0,
-    special: bool = False,
     search: Search | None = None,
 ) -> Search:
     """Evaluate both sides at points of the domain until they certainly differ somewhere.
 
-    A difference where a side is not real only counts if the claim speaks of complex numbers, or if no
-    point was found where it is real: a claim is about the points where both sides are defined.
+    Parameters
+    ----------
+    left, right
+        The two sides.
+    points
+        Exact points; the same for both sides.
+    highest
+        Bits of precision at most.
+    deadline
+        Value of :func:`time.monotonic` to stop at.
+    search
+        What was found before, to be added to.
     """
     result = search or Search()
-    spoken_complex = any(e.has(sp.I) or any(map(declared_complex, e.free_symbols)) for e in (left, right))
-    chance = random.Random(seed)
     sides = (left, right)
     has_functions = any(e.has(AppliedUndef) for e in sides)
-    symbols = left.free_symbols | right.free_symbols
-    for point in domain.points(symbols, points, seed=seed, special=special):
+    for number, point in enumerate(points):
         if time.monotonic() > deadline:
             break
         if has_functions:
-            (left_there, right_there), result.functions = with_example_functions((left, right), chance)
+            (left_there, right_there), result.functions = with_example_functions(
+                (left, right), random.Random(number)
+            )
             sides = (left_there, right_there)
         result.tried += 1
-        if _try_point(sides, point, highest, deadline, result, complex_counts=spoken_complex):
+        if _try_point(sides, point, highest, deadline, result):
             break
-        if not symbols and not has_functions:
+        if not point and not has_functions:
             break
     return result
+
+
+def search_widely(left: Expr, right: Expr, domain: Domain, deadline: float) -> Search:
+    """Look for a counterexample with high precision, outside the box, and where pieces meet."""
+    symbols = left.free_symbols | right.free_symbols
+    marks = landmarks((left, right), domain, symbols)
+    rounds = (
+        (domain.points(symbols, 6, seed=1), 512),
+        (domain.points(symbols, 40, seed=2, in_box=False), 128),
+        (domain.points(symbols, 60, seed=3, in_box=False, marks=marks), 128),
+        (domain.points(symbols, 40, seed=4, marks=marks), 128),
+        (domain.points(symbols, 4, seed=1), HIGHEST_PRECISION),
+    )
+    search = Search()
+    for points, highest in rounds:
+        look_for_counterexample(left, right, points, highest=highest, deadline=deadline, search=search)
+        if search.counterexample is not None or search.unmodelled:
+            break
+    return search
+
+
+def landmarks(
+    sides: Iterable[Expr], domain: Domain, symbols: Iterable[Symbol]
+) -> dict[Symbol, list[sp.Rational]]:
+    """Return values at which a symbol may reach a boundary, a kink or a cut, and values beyond them."""
+    found: dict[Symbol, set[sp.Rational]] = {s: set(_EVERYWHERE) for s in symbols}
+    places: set[sp.Basic] = set()
+    for condition in domain.conditions:
+        places |= {r.lhs - r.rhs for r in condition.atoms(Relational)}
+    for side in sides:
+        places |= {r.lhs - r.rhs for r in side.atoms(Relational) if isinstance(r.lhs, sp.Expr)}
+        places |= {e.args[0] for e in side.atoms(sp.Abs, sp.sign, sp.Heaviside, sp.acot, sp.log)}
+        places |= {a - b for e in side.atoms(sp.Max, sp.Min) for a, b in combinations(e.args, 2)}
+        places |= {e.base for e in side.atoms(sp.Pow) if not e.exp.is_integer}
+    for gap in places:
+        for s in gap.free_symbols:
+            found.setdefault(s, set()).update(_crossings(gap, s))
+    return {s: sorted(values) for s, values in found.items()}
+
+
+_EVERYWHERE = tuple(
+    sp.Rational(p, q) for p, q in ((0, 1), (1, 1), (-1, 1), (2, 1), (-2, 1), (7, 2), (-7, 2), (10, 1))
+)
+
+
+def _crossings(gap: Expr, s: Symbol) -> set[sp.Rational]:
+    """Return rationals at and around the zero of ``gap`` in one symbol, other symbols being 0."""
+    slope = gap.diff(s)
+    if slope.free_symbols or slope.is_zero is not False:
+        return set()
+    zero = -gap.xreplace(dict.fromkeys(gap.free_symbols, sp.Integer(0))) / slope
+    if not zero.is_real or not zero.is_finite:
+        return set()
+    near = zero if isinstance(zero, sp.Rational) else sp.Rational(round(64 * float(zero)), 64)
+    steps = (0, sp.Rational(1, 32), 1, 3)
+    return {near + sign * step for step in steps for sign in (1, -1)} | {2 * near}
 
 
 def _try_point(
@@ -93,8 +155,6 @@ def _try_point(
     highest: int,
     deadline: float,
     result: Search,
-    *,
-    complex_counts: bool,
 ) -> bool:
     bits = 64
     while bits <= highest and time.monotonic() < deadline:
@@ -112,7 +172,8 @@ def _try_point(
                 continue
             difference = left - right
             if not difference.contains(0):
-                return _record(left, right, point, result, complex_counts=complex_counts)
+                _record(left, right, point, result)
+                return True
             agreed = _agreeing_digits(left, right, difference)
         bits *= 2
         if bits > highest:
@@ -122,28 +183,24 @@ def _try_point(
 
 
 def _agreeing_digits(left: acb, right: acb, difference: acb) -> int:
-    size = max(float(abs(left).mid()), float(abs(right).mid()), 1e-300)
+    """Return how many decimal digits two values certainly share (1000 where they are exactly equal)."""
     spread = abs(difference).upper()
     if spread.is_zero():
         return 1000
-    return max(0, int(float((acb(size) / acb(spread)).real.log().mid()) / 2.302585))
+    size = max(abs(left).upper(), abs(right).upper())
+    if size.is_zero() or size <= spread:
+        return 0
+    return int(float((arb(size) / arb(spread)).log().mid()) / 2.302585092994046)
 
 
-def _record(
-    left: acb, right: acb, point: Mapping[Symbol, sp.Rational], result: Search, *, complex_counts: bool
-) -> bool:
+def _record(left: acb, right: acb, point: Mapping[Symbol, sp.Rational], result: Search) -> None:
     names = {s.name: str(number) for s, number in point.items()} | result.functions
     result.counterexample = Counterexample(names, *_texts(left, right))
-    return True
 
 
 def _texts(left: acb, right: acb) -> tuple[str, str, int]:
     """Return both values in as many certain digits as tell them apart."""
-    difference = abs(left - right)
-    size = max(float(abs(left).mid()), float(abs(right).mid()))
-    lost = 0
-    if size > 0:
-        lost = max(0, int(float((acb(size) / acb(difference.mid())).real.log().mid()) / 2.302585))
+    lost = _agreeing_digits(left, right, left - right)
     digits = min(
         15 + lost, max(1, int(min(left.rel_accuracy_bits(), 10**6) * 0.30103)) if left != 0 else 15 + lost
     )
@@ -173,7 +230,7 @@ def with_example_functions(
         chosen[str(sample)] = str(shown)
         body = sp.Lambda(places, polynomial)
         replaced = [e.replace(function, body) for e in replaced]
-    return tuple(_derived(e) for e in replaced), chosen
+    return tuple(evaluated(e) for e in replaced), chosen
 
 
 def _random_polynomial(places: tuple[Symbol, ...], chance: random.Random) -> Expr:
@@ -188,7 +245,10 @@ def _random_polynomial(places: tuple[Symbol, ...], chance: random.Random) -> Exp
     return sp.Add(*terms)
 
 
-def _derived(expr: Expr) -> Expr:
+def evaluated(expr: Expr) -> Expr:
+    """Carry out the derivatives of what is not an arbitrary function."""
     if not expr.has(Derivative, Subs):
         return expr
-    return expr.replace(lambda e: isinstance(e, Derivative | Subs), lambda e: e.doit())
+    return expr.replace(
+        lambda e: isinstance(e, Derivative | Subs) and not e.has(AppliedUndef), lambda e: e.doit()
+    )

@@ -149,7 +149,7 @@ def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
         if not isinstance(condition, sp.Eq):
             continue
         gap = condition.lhs - condition.rhs
-        if isinstance(gap, Boolean):
+        if not isinstance(gap, sp.Expr):
             continue
         for s in sorted(gap.free_symbols, key=lambda s: s.name):
             slope = gap.diff(s)

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.proof.domain import EVERYWHERE, Domain
-from canon.proof.prove import prove_zero
-from canon.proof.refute import Search, look_for_counterexample
+from canon.proof.prove import Attempt, prove_zero
+from canon.proof.refute import evaluated, look_for_counterexample, search_widely
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
@@ -121,42 +121,23 @@ def _exact(expr: object) -> Expr:
             f"{min(floats, key=str)} is a rounded number and nothing exact can be said of it; "
             "write it as a fraction, such as Rational('0.1') or Rational(1, 10)"
         )
-    return expr
+    return evaluated(expr)
 
 
 def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
-    search = look_for_counterexample(left, right, domain, points=3, highest=64, deadline=deadline)
+    symbols = left.free_symbols | right.free_symbols
+    search = look_for_counterexample(left, right, domain.points(symbols, 3), highest=64, deadline=deadline)
+    proof = Attempt()
     if search.counterexample is None:
         proof = prove_zero(left - right, domain, deadline)
         if proof.holds:
             return Verdict(Status.HOLDS, certificate=" + ".join(proof.rungs) or "exact")
-        search = Search()
-        for special in (False, True):
-            look_for_counterexample(
-                left,
-                right,
-                domain,
-                points=24,
-                highest=3200,
-                deadline=deadline,
-                special=special,
-                seed=1,
-                search=search,
-            )
-            if search.counterexample is not None:
-                break
-        else:
-            tried = tuple(Evidence("tried", obstacle) for obstacle in proof.obstacles)
-            return Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, *_known(search)))
-    return Verdict(
-        Status.FAILS, certificate="ball", counterexample=search.counterexample, residual=left - right
-    )
-
-
-def _known(search: Search) -> tuple[Evidence, ...]:
-    known = [Evidence("balls", search.known)]
-    if search.apart_where_not_real:
-        known.append(
-            Evidence("not real", f"the sides differ where one is not real: {search.apart_where_not_real}")
+        search = search_widely(left, right, domain, deadline)
+    if search.counterexample is not None:
+        return Verdict(
+            Status.FAILS, certificate="ball", counterexample=search.counterexample, residual=left - right
         )
-    return tuple(known)
+    tried = tuple(Evidence("tried", obstacle) for obstacle in proof.obstacles)
+    return Verdict(
+        Status.UNDECIDED, residual=left - right, evidence=(*tried, Evidence("balls", search.known))
+    )
