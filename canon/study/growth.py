@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import root_scalar
-from scipy.stats import t as student
+from scipy.special import stdtr
 
 from canon.study.block import PLACES, WIDTH, bump, window_starts
 from canon.study.noise import Family, Fit, fit, fractional, local_level, wandering
@@ -87,9 +87,9 @@ def slope_of(means: Array, false_alarm: float) -> Slope:
     value = float(posterior @ found.slope)
     widening = found.freedom / (found.freedom - 2.0)
     error = float(np.sqrt(posterior @ (widening * found.slope_error**2 + (found.slope - value) ** 2)))
-    below = float(posterior @ student.cdf(-found.slope / found.slope_error, found.freedom))
-    above = float(posterior @ student.sf(-found.slope / found.slope_error, found.freedom))
-    return Slope(value, error, min(1.0, 4.0 * min(below, above)), _limit(found, posterior, false_alarm))
+    sigmas = found.slope / found.slope_error
+    against = float(min(posterior @ stdtr(found.freedom, -sigmas), posterior @ stdtr(found.freedom, sigmas)))
+    return Slope(value, error, min(1.0, 4.0 * against), _limit(found, posterior, false_alarm))
 
 
 def _limit(found: Fit, posterior: Array, false_alarm: float) -> float:
@@ -98,7 +98,7 @@ def _limit(found: Fit, posterior: Array, false_alarm: float) -> float:
 
     def exceeded_with(probability: float) -> float:
         def excess(sigmas: float) -> float:
-            tail = student.sf(sigmas * widest / found.slope_error, found.freedom)
+            tail = stdtr(found.freedom, -sigmas * widest / found.slope_error)
             return float(posterior @ tail) - probability
 
         return widest * float(root_scalar(excess, bracket=(0.0, 1e3), xtol=1e-9).root)
@@ -140,27 +140,29 @@ def power_of_wandering(means: Array, beside_scatter: bool) -> Exponent:
 def power_of_time(means: Array) -> Exponent:
     """Return the exponent γ of block means that follow a + c t^γ beside scatter and walk, 0.2 ≤ γ ≤ 8."""
     family = local_level(means.size)
-    exponents, designs = _powers(means.size)
-    profile = np.empty(exponents.size)
-    for index, design in enumerate(designs):
-        found = fit(np.diff(means), design, family, _floor(means))
-        profile[index] = np.max(-0.5 * (family.log_determinant + means.size * np.log(found.scale)))
-    return _interval(exponents, profile)
+    exponents, x = _powers(means.size)
+    y = (family.whitener @ np.diff(means))[:, :, None]
+    slope = np.sum(x * y, axis=1) / np.sum(x * x, axis=1)
+    squares = np.sum((y - slope[:, None, :] * x) ** 2, axis=1)
+    scale = squares / (means.size - 2) + _floor(means)
+    likelihood = -0.5 * (family.log_determinant[:, None] + means.size * np.log(scale))
+    return _interval(exponents, likelihood.max(axis=0))
 
 
 def _fit(means: Array, family: Family) -> Fit:
     """Return the fit of a slope of one per block."""
-    return fit(np.diff(means), np.diff(window_starts(means.size)) / PLACES, family, _floor(means))
+    return fit(np.diff(means), family, _floor(means))
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=4)
 def _powers(windows: int) -> tuple[Array, Array]:
-    """Return exponents γ and the increments of the window means of t^γ, over a run of unit duration."""
+    """Return exponents γ, and the increments of the window means of t^γ as each member of the family whitens them."""
     exponents = np.linspace(0.2, 8.0, 391)
     place = (np.arange(64) + 0.5) / 64
     weight = bump(place) / bump(place).sum()
     t = (window_starts(windows)[:, None] / PLACES + WIDTH * place) / (windows + WIDTH)
-    return exponents, np.diff((t[None] ** exponents[:, None, None]) @ weight, axis=1)
+    increments = np.diff((t[None] ** exponents[:, None, None]) @ weight, axis=1)
+    return exponents, local_level(windows).whitener @ increments.T
 
 
 def _interval(exponents: Array, log_likelihood: Array) -> Exponent:

@@ -48,17 +48,20 @@ class Family:
         Inverse Cholesky factors, shape (members, K − 1, K − 1).
     log_determinant
         Of each covariance.
+    line
+        Whitened increments of a slope of one per block, shape (members, K − 1).
     """
 
     exponent: Array
     ratio: Array
     whitener: Array
     log_determinant: Array
+    line: Array
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Generalized least squares of increments = slope × design + noise, for each member of a family.
+    """Generalized least squares of increments = slope × distance + noise, for each member of a family.
 
     Parameters
     ----------
@@ -67,7 +70,7 @@ class Fit:
     scale
         Estimated factor of the member's covariance.
     log_likelihood
-        Restricted (slope and factor removed), so that members with one design compare.
+        Restricted (slope and factor removed).
     freedom
         Degrees of freedom of ``slope_error``.
     """
@@ -79,22 +82,20 @@ class Fit:
     freedom: int
 
 
-def fit(increments: Array, design: Array, family: Family, floor: float = 0.0) -> Fit:
+def fit(increments: Array, family: Family, floor: float = 0.0) -> Fit:
     """Return the fit of one slope to increments of block means, for every member of a family.
 
     Parameters
     ----------
     increments
         Differences of neighbouring block means, shape (K − 1,).
-    design
-        What a slope of one would make of them.
     family
         The covariances to try.
     floor
         Variance of an increment that arithmetic leaves even where nothing scatters.
     """
     y = family.whitener @ increments
-    x = family.whitener @ design
+    x = family.line
     weight = np.sum(x * x, axis=1)
     slope = np.sum(x * y, axis=1) / weight
     squares = np.sum((y - slope[:, None] * x) ** 2, axis=1)
@@ -136,7 +137,8 @@ def _family(exponents: Array, ratios: Array, windows: int) -> Family:
     factor = np.linalg.cholesky(np.stack(members))
     log_determinant = 2.0 * np.sum(np.log(np.diagonal(factor, axis1=1, axis2=2)), axis=1)
     whitener = np.asarray(np.linalg.inv(factor), dtype=np.float64)
-    return Family(exponents, ratios, whitener, log_determinant)
+    line = whitener @ (np.diff(window_starts(windows)) / PLACES)
+    return Family(exponents, ratios, whitener, log_determinant, line)
 
 
 def scatter_covariance(windows: int) -> Array:

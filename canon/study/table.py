@@ -97,6 +97,8 @@ def _cells(study: DriftStudy, row: DriftRow) -> tuple[str, ...]:
 def _verdict(found: Drift, unit: float) -> str:
     if found.verdict is Growth.BOUNDED:
         return f"bounded (drift < {found.detection_limit * unit:.0e})"
+    if found.verdict is Growth.ROUND_OFF:
+        return f"round-off ({found.walk:.0e} in all)"
     return WORDS[found.verdict]
 
 

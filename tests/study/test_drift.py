@@ -1,0 +1,152 @@
+"""Verdicts on series of known kinds; what is no data is refused."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from canon.study.drift import Growth, drift
+from tests.study import series
+
+TIMES = series.TIMES
+
+
+def judged(make, number, seed, **options):
+    random = np.random.default_rng(seed)
+    return [drift(TIMES, make(random), **options) for _ in range(number)]
+
+
+def verdicts(found):
+    return Counter(each.verdict for each in found)
+
+
+@pytest.mark.parametrize("name", series.BOUNDED)
+def test_bounded_series_are_called_bounded(name):
+    """At most 1 % are called secular and 1 % a walk (a little more for the peaks of a pericentre)."""
+    found = verdicts(judged(series.BOUNDED[name], 200, seed=11))
+    assert found[Growth.SECULAR] + found[Growth.DIVERGED] <= 7
+    assert found[Growth.ROUND_OFF] + found[Growth.UNDECIDED] <= 9
+    assert found[Growth.BOUNDED] >= 188
+
+
+@pytest.mark.parametrize("name", series.ROUND_OFF)
+def test_walks_are_called_round_off(name):
+    found = judged(series.ROUND_OFF[name], 200, seed=12)
+    counts = verdicts(found)
+    assert counts[Growth.SECULAR] + counts[Growth.DIVERGED] <= 7
+    assert counts[Growth.ROUND_OFF] >= 176
+    sizes = [each.walk for each in found if each.verdict is Growth.ROUND_OFF]
+    assert 0.7e-13 < np.sqrt(np.mean(np.square(sizes))) < 1.4e-13
+
+
+@pytest.mark.parametrize("name", series.SECULAR)
+def test_drifts_are_called_secular(name):
+    exponent, make = series.SECULAR[name]
+    found = judged(make, 50, seed=13)
+    assert verdicts(found)[Growth.SECULAR] >= 49
+    assert abs(np.median([each.exponent for each in found]) - exponent) < 0.05
+    covered = np.mean(
+        [each.exponent_interval[0] - 0.02 <= exponent <= each.exponent_interval[1] + 0.02 for each in found]
+    )
+    assert covered >= 0.84
+
+
+def test_the_slope_is_measured_under_an_oscillation_a_hundred_times_larger():
+    for found in judged(
+        lambda random: 1e-6 * series.oscillation(random, 3, 150.0) - 1e-8 * series.SHARE, 30, 14
+    ):
+        assert found.verdict is Growth.SECULAR
+        assert found.slope == pytest.approx(-1e-11, rel=0.05)
+        assert abs(found.slope + 1e-11) < 6.0 * found.slope_error
+
+
+def test_a_widening_oscillation_is_secular_although_its_mean_is_not():
+    found = drift(TIMES, 1e-6 * series.SHARE * np.sin(2.0 * np.pi * 331.7 * series.SHARE))
+    assert found.verdict is Growth.SECULAR
+    assert abs(found.slope) < 5.0 * found.slope_error
+    assert found.amplitude_slope == pytest.approx(1e-6 / series.SPAN / np.sqrt(2.0), rel=1e-3)
+    assert "widens" in found.reason
+
+
+@pytest.mark.parametrize("turns", [1.0, 2.0, 3.0])
+def test_a_slow_oscillation_is_not_called_round_off_or_bounded(turns):
+    found = drift(TIMES, 1e-6 * np.sin(2.0 * np.pi * turns * series.SHARE + 0.4), roundoff=1e-14)
+    assert found.verdict is Growth.UNDECIDED
+    assert "slow oscillation" in found.reason
+
+
+def test_a_walk_far_beyond_round_off_is_undecided():
+    error = 1e-9 * series.walk(np.random.default_rng(15))
+    assert drift(TIMES, error).verdict is Growth.ROUND_OFF
+    found = drift(TIMES, error, roundoff=1e-13)
+    assert found.verdict is Growth.UNDECIDED
+    assert "far beyond the 1e-13" in found.reason
+
+
+@pytest.mark.parametrize("rate", [8.0, 12.0, 20.0])
+def test_exponential_growth_has_diverged(rate):
+    assert drift(TIMES, 1e-14 * np.exp(rate * series.SHARE)).verdict is Growth.DIVERGED
+
+
+def test_an_error_as_large_as_the_quantity_has_diverged():
+    error = 2.0 * series.SHARE
+    assert drift(TIMES, error).verdict is Growth.DIVERGED
+    assert drift(TIMES, error, diverged=10.0).verdict is Growth.SECULAR
+
+
+def test_no_error_at_all_is_below_the_resolution():
+    found = drift(TIMES, np.zeros_like(TIMES))
+    assert found.verdict is Growth.BOUNDED
+    assert found.bound == 0.0
+    assert found.detection_limit == pytest.approx(2.0**-53 / series.SPAN)
+    assert found.exponent_interval == (0.0, 1.0)
+
+
+def test_errors_of_a_few_units_in_the_last_place_are_bounded():
+    random = np.random.default_rng(16)
+    found = drift(TIMES, 2.0**-53 * random.integers(-2, 3, TIMES.size))
+    assert found.verdict is Growth.BOUNDED
+    assert found.detection_limit >= 2.0**-53 / series.SPAN
+
+
+def test_scaling_the_error_scales_the_answer_and_keeps_the_verdict():
+    error = 1e-6 * (series.oscillation(np.random.default_rng(17)) + 0.3 * series.SHARE)
+    one, other = drift(TIMES, error), drift(2.0 * TIMES, -1e-3 * error)
+    assert one.verdict is other.verdict is Growth.SECULAR
+    assert other.slope == pytest.approx(-0.5e-3 * one.slope, rel=1e-9)
+    assert other.slope_error == pytest.approx(0.5e-3 * one.slope_error, rel=1e-9)
+    assert other.exponent == one.exponent
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_a_failed_run_is_never_data(bad):
+    error = np.zeros_like(TIMES)
+    error[1000] = bad
+    with pytest.raises(ValueError, match=r"not finite at sample 1000 .*a failed run is no data"):
+        drift(TIMES, error)
+
+
+def test_what_is_no_series_is_refused():
+    with pytest.raises(ValueError, match="at least 256"):
+        drift(np.arange(100.0), np.zeros(100))
+    with pytest.raises(ValueError, match="increase strictly"):
+        drift(TIMES[::-1], np.zeros_like(TIMES))
+    with pytest.raises(ValueError, match="one length"):
+        drift(TIMES, np.zeros(TIMES.size - 1))
+
+
+def test_jittered_samples_see_what_even_ones_in_step_miss():
+    """Samples in step with an oscillation see a slow one; scattered ones do not."""
+    even = np.arange(4096.0)
+    turn = 2.0 * np.pi * (1.0 + 1.3 / 4096.0)
+    assert drift(even, 1e-6 * np.sin(turn * even)).verdict is not Growth.BOUNDED
+    scattered = even + np.random.default_rng(18).uniform(0.0, 1.0, even.size)
+    assert drift(scattered, 1e-6 * np.sin(turn * scattered)).verdict is Growth.BOUNDED
+
+
+def test_the_answer_reads_as_words():
+    text = str(drift(TIMES, 1e-6 * np.sin(900.0 * series.SHARE)))
+    assert text.startswith("bounded: no growth above the detection limit")
+    assert "largest error    1e-06" in text
