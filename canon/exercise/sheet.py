@@ -12,13 +12,14 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
+from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NoReturn
 
 from canon.exercise.kinds import COMMON, KINDS, Shape
 
-__all__ = ["Claim", "ClaimError", "Sheet", "SheetError", "read_sheet", "sheet_from"]
+__all__ = ["Claim", "ClaimError", "Sheet", "SheetError", "bundled_sheet", "read_sheet", "sheet_from"]
 
 MAX_BYTES = 10_000_000
 MAX_CLAIMS = 10_000
@@ -138,6 +139,18 @@ def read_sheet(path: str | Path) -> Sheet:
     except OSError as error:
         raise SheetError(f"{path}: can't be read ({error.strerror or error})") from error
     return sheet_from(data, file=str(path), toml=path.suffix.lower() == ".toml")
+
+
+def bundled_sheet(name: str = "tour") -> Sheet:
+    """Return a sheet that comes with canon.
+
+    Examples
+    --------
+    >>> bundled_sheet().claims[0].id
+    'pendulum'
+    """
+    data = resources.files("canon.exercise").joinpath("sheets", f"{name}.toml").read_bytes()
+    return sheet_from(data, file=f"{name}.toml", toml=True)
 
 
 def sheet_from(data: bytes, *, file: str = "", toml: bool = False) -> Sheet:
