@@ -9,21 +9,21 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from canon.exercise.judge import check, judge
-    from canon.exercise.sheet import Claim, Sheet, read_sheet
-    from canon.expression.language import parse_expression
-    from canon.expression.symbol import Coordinate, coordinates, parameters, time, time_derivative
-    from canon.flow.method import DOP853, RK4, Splitting, Taylor
-    from canon.flow.propagate import Trajectory, propagate
-    from canon.mechanics.bracket import poisson_bracket
-    from canon.mechanics.generating import GeneratingFunction, generating_function
-    from canon.mechanics.hamiltonian import Hamiltonian
-    from canon.mechanics.lagrangian import Lagrangian
-    from canon.mechanics.transformation import CanonicalTransformation
-    from canon.proof.domain import Domain
-    from canon.proof.vanish import equal, equivalent_equations, vanishes
-    from canon.proof.verdict import Counterexample, Evidence, Status, Undecided, Verdict
-    from canon.study.drift import Drift, drift
+    from canon.exercise.judge import check as check, judge as judge
+    from canon.exercise.sheet import Claim as Claim, Sheet as Sheet, read_sheet as read_sheet
+    from canon.expression.language import parse_expression as parse_expression
+    from canon.expression.symbol import Coordinate as Coordinate, coordinates as coordinates, parameters as parameters, time as time, time_derivative as time_derivative
+    from canon.flow.method import DOP853 as DOP853, RK4 as RK4, Splitting as Splitting, Taylor as Taylor
+    from canon.flow.propagate import Trajectory as Trajectory, propagate as propagate
+    from canon.mechanics.bracket import poisson_bracket as poisson_bracket
+    from canon.mechanics.generating import GeneratingFunction as GeneratingFunction, generating_function as generating_function
+    from canon.mechanics.hamiltonian import Hamiltonian as Hamiltonian
+    from canon.mechanics.lagrangian import Lagrangian as Lagrangian
+    from canon.mechanics.transformation import CanonicalTransformation as CanonicalTransformation
+    from canon.proof.domain import Domain as Domain
+    from canon.proof.vanish import equal as equal, equivalent_equations as equivalent_equations, vanishes as vanishes
+    from canon.proof.verdict import Counterexample as Counterexample, Evidence as Evidence, Status as Status, Undecided as Undecided, Verdict as Verdict
+    from canon.study.drift import Drift as Drift, drift as drift
 
 __version__ = "0.1.0"
 

@@ -188,12 +188,10 @@ def all_hold(verdicts: Iterable[Verdict], question: str = "") -> Verdict:
             open_ = verdict if open_ is None else open_
         elif verdict.certificate:
             certificates[verdict.certificate] = None
-    common = {
-        "question": question,
-        "assumed": tuple(assumed),
-        "evidence": tuple(evidence),
-        "seconds": seconds,
-    }
-    if open_ is not None:
-        return replace(open_, **{**common, "question": question or open_.question})
-    return Verdict(Status.HOLDS, certificate=" + ".join(certificates) or "exact", **common)
+    status, certificate = Status.HOLDS, " + ".join(certificates) or "exact"
+    rest = Verdict(status, question, certificate, None, None, tuple(assumed), tuple(evidence), seconds)
+    if open_ is None:
+        return rest
+    return replace(
+        open_, question=question or open_.question, assumed=rest.assumed, evidence=rest.evidence, seconds=seconds
+    )
