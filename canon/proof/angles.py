@@ -159,6 +159,8 @@ def _multiple_angle(n: NormalForm, atom: Fraction, r: fmpq) -> tuple[Fraction, F
         return known
     if r.q == 1 and n.parts.get(("angle", key), 1) == 1 and _whole_multiple_of_pi(n, atom):
         return _alternating(n, key, atom, int(r.p))
+    if abs(r) > LARGEST_MULTIPLE:
+        return _base_angle(n, (key, int(r.p), int(r.q)), n.scaled(r, atom), 1)
     parts = divided(n, "angle", key, r)
     return multiple(n, _base_angle(n, key, atom, parts), int((r * parts).p))
 

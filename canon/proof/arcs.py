@@ -131,7 +131,16 @@ def _atanh(n: NormalForm, z: Fraction) -> Fraction:
 
 
 def _lambert_w(n: NormalForm, expr: sp.Basic, z: Fraction) -> Fraction:
-    """Return the principal W(z); W has the sign of z for real z ≥ 0."""
+    """Return the principal W(z): g where z = g exp g with g ≥ −1; otherwise a kernel, ≥ 0 for z ≥ 0."""
+    from canon.proof.powers import exponential
+
+    for k in n.tower.used(z.num):
+        candidate = n.tower.generators[k]
+        if candidate[0] in ("exp", "log"):
+            g = n.arguments[candidate] if candidate[0] == "exp" else Fraction(n.tower.monomial(k))
+            above = n.sign(n.tower.sum([g, n.tower.number(1)]))
+            if above.endswith("+") and n.tower.is_zero(n.minus(z, n.tower.times(g, exponential(n, g)))):
+                return g
     kernel = (sp.LambertW, (n.fraction_key(n.tower.canonical(z)),))
     n.arguments[kernel] = z
     sign = n.sign(z) if n.is_real(z) else ""
@@ -148,9 +157,10 @@ def cos_sin_of_arc(n: NormalForm, kernel: tuple[object, ...], r: fmpq) -> tuple[
     if kernel[0] not in ARCS or int(r.q) not in (1, 2):
         return None
     t = n.tower
-    if kernel[0] == "atan" and not n.is_real(n.arguments[kernel]):
-        if r.q != 1 or int(r.p) % 2:
-            return None
+    whole_turns = r.q == 1 and int(r.p) % 2 == 0
+    if kernel[0] == "atan" and not whole_turns and not n.is_real(n.arguments[kernel]):
+        return None
+    if kernel[0] == "atan" and whole_turns:
         z = n.arguments[kernel]
         square = t.times(z, z)
         below = t.sum([t.number(1), square])

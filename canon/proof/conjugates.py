@@ -22,6 +22,9 @@ LARGEST_DEGREE = 96
 
 DEEPEST = 4
 
+LONGEST_NORM = 40
+"""Terms of a norm that is still taken further."""
+
 
 def radicals_cancel(n: NormalForm, f: Fraction) -> bool:
     """Tell whether the numerator of ``f`` is proven zero through one of its factors."""
@@ -40,7 +43,7 @@ def _by_norm(n: NormalForm, p: fmpq_mpoly, depth: int) -> bool:
             continue
         a, b = (*t.coefficients(p, k), t.constant(0))[:2]
         norm = t.reduce(t.product(a, a) - t.product(t.product(b, b), relation[1]))
-        if not norm.is_zero() and not _by_norm(n, norm, depth - 1):
+        if not norm.is_zero() and (len(norm) > LONGEST_NORM or not _by_norm(n, norm, depth - 1)):
             continue
         signs = (n.signs.of(a), n.signs.of(b))
         if all(signs) and signs[0][-1] != signs[1][-1]:

@@ -90,9 +90,9 @@ class NormalForm:
                 self.signs.learn(gap.num, strict=strict)
 
     def _sign_of_constant(self, p: fmpq_mpoly) -> str:
-        expr = self.expression(p)
-        if expr.free_symbols or expr.has(AppliedUndef, Derivative):
+        if not all(self._is_constant(k) for k in self.tower.used(p)):
             return ""
+        expr = self.expression(p)
         for bits in (64, 256, 1024):
             with precision(bits):
                 try:
@@ -107,6 +107,17 @@ class NormalForm:
                 if real < 0:
                     return "-"
         return ""
+
+    def _is_constant(self, generator: int) -> bool:
+        """Tell whether a generator is a number."""
+        kernel = self.tower.generators[generator]
+        if kernel[0] in ("pi", "I", "cyclotomic"):
+            return True
+        argument = self.arguments.get(kernel)
+        if argument is None or kernel[0] == "atan2":
+            return False
+        below = [k for i, _ in argument.den for k in self.tower.used(self.tower.base(i))]
+        return all(self._is_constant(k) for k in (*self.tower.used(argument.num), *below))
 
     # -- recursion -------------------------------------------------------------------------------
 
@@ -162,7 +173,7 @@ class NormalForm:
             return self.tower.power(self.form(base), int(exponent))
         if isinstance(exponent, sp.Rational):
             return powers.root(self, self.form(base), fmpq(int(exponent.p), int(exponent.q)))
-        logarithm = powers.logarithm(self, self.form(base))
+        logarithm = powers.logarithm(self, self.form(base), whole_powers=bool(exponent.is_integer))
         return powers.exponential(self, self.tower.times(self.form(exponent), logarithm))
 
     def _sign_function(self, expr: sp.sign) -> Fraction:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 from flint import arb, fmpq
 
+from canon.proof.angles import imaginary_split
 from canon.proof.arcs import ARCS
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.powers import exponential
@@ -154,7 +155,7 @@ def _range(n: NormalForm, monomial: Monomial) -> Range:
         return UNBOUNDED
     kernel: Any = next(iter(kernels))
     if kernel[0] == "log" and not imaginary:
-        return Range(Rational(-1), Rational(1), low_open=True)
+        return _argument_range(n, n.arguments[kernel])
     if not imaginary:
         return UNBOUNDED
     if kernel == ("pi",):
@@ -162,6 +163,19 @@ def _range(n: NormalForm, monomial: Monomial) -> Range:
     if kernel[0] == "symbol":
         return _symbol_range(n, kernel[1])
     return _arc_range(n, kernel) if kernel[0] in ARCS else UNBOUNDED
+
+
+def _argument_range(n: NormalForm, z: Fraction) -> Range:
+    """Return the range of arg z: within a quarter turn where Re z > 0, of one sign where Im z has one."""
+    whole = Range(Rational(-1), Rational(1), low_open=True)
+    if z.den:
+        return whole
+    a, b = imaginary_split(n, z)
+    if not (n.is_real(a) and n.is_real(b)):
+        return whole
+    if n.sign(a) == "+":
+        whole = Range(Rational(-1, 2), Rational(1, 2), low_open=True, high_open=True)
+    return _with_sign(whole, n.sign(b)) if n.sign(b) in ("+", "-") else whole
 
 
 def _arc_range(n: NormalForm, kernel: tuple[Hashable, ...]) -> Range:

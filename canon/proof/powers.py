@@ -59,9 +59,13 @@ def _exponential_part(n: NormalForm, atom: Fraction, r: fmpq) -> Fraction:
     parts = divided(n, "exp", key, r)
     kernel = ("exp", key, parts)
     n.arguments[kernel] = n.scaled(fmpq(1, parts), atom)
+    fresh = not t.knows(kernel)
     generator = n.atom(
         kernel, "+" if n.is_real(atom) else "", lambda: sp.exp(n.fraction_expression(n.arguments[kernel]))
     )
+    if fresh and (sign := n.sign(atom)):
+        above = generator.num - 1 if sign.endswith("+") else 1 - generator.num
+        n.signs.learn(above, strict=sign in ("+", "-"), combine=False)
     return t.power(generator, int((r * parts).p))
 
 
@@ -85,8 +89,11 @@ def _split(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]]
     """
     t = n.tower
     f = t.canonical(f)
-    content, factors = t.factors(f.num)
-    factors = factors + [(t.base(i), -e) for i, e in f.den]
+    content, factors = _factors(n, f.num)
+    for i, e in f.den:
+        unit, below = _factors(n, t.base(i))
+        content = content / unit**e
+        factors = factors + [(p, -e * k) for p, k in below]
     sign = 1 if content > 0 else -1
     outside: list[tuple[Fraction, int]] = []
     rest = t.number(1)
@@ -106,6 +113,41 @@ def _split(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]]
         else:
             rest = t.times(rest, t.power(Fraction(p), e))
     return abs(content), outside, t.canonical(n.scaled(sign, rest))
+
+
+def _factors(n: NormalForm, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
+    """Factor p, also as a form in the cosine and sine of an angle: 1 − c² = s², 1 − 2sc = (c − s)²."""
+    t = n.tower
+    for k in t.used(p):
+        kernel = t.generators[k]
+        if kernel[0] != "cos":
+            continue
+        homogeneous = _homogeneous(n, p, k, t.generator(("sin", *kernel[1:])))
+        if homogeneous is not None:
+            unit, factors = t.factors(homogeneous)
+            if len(factors) > 1 or factors[0][1] > 1:
+                return unit, factors
+    return t.factors(p)
+
+
+def _homogeneous(n: NormalForm, p: fmpq_mpoly, c: int, s: int) -> fmpq_mpoly | None:
+    """Multiply terms by c² + s² = 1 until all have one degree in c and s, if their degrees allow it."""
+    t = n.tower
+    by_degree: dict[int, fmpq_mpoly] = {}
+    for monomial, coefficient in t.terms(p):
+        degree = sum(e for k, e in monomial if k in (c, s))
+        term = t.constant(coefficient)
+        for k, e in monomial:
+            term = term * t.monomial(k, e)
+        by_degree[degree] = by_degree.get(degree, t.constant(0)) + term
+    highest = max(by_degree)
+    if highest > 8 or len({degree % 2 for degree in by_degree}) > 1 or len(p) > 40:
+        return None
+    one = t.monomial(c, 2) + t.monomial(s, 2)
+    total = t.constant(0)
+    for degree, part in by_degree.items():
+        total = total + part * one ** ((highest - degree) // 2)
+    return total
 
 
 def _primes(number: fmpq) -> list[tuple[int, int]]:
@@ -249,20 +291,43 @@ def _by_conjugate(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
 # -- logarithms ----------------------------------------------------------------------------------------
 
 
-def logarithm(n: NormalForm, f: Fraction) -> Fraction:
-    """Return log f: factors proven positive come out, log exp a = a for real a, log(−1) = iπ."""
+def logarithm(n: NormalForm, f: Fraction, *, whole_powers: bool = False) -> Fraction:
+    """Return log f: factors proven positive come out, log exp a = a for real a, log(−1) = iπ, log i = iπ/2.
+
+    With ``whole_powers`` only exp(k log f) with whole k is wanted; then every factor may come out, because
+    (ab)^k = a^k b^k for all a, b ≠ 0.
+    """
     t = n.tower
     if t.is_zero(f):
         raise ZeroDivisionError("the logarithm of zero")
-    content, outside, rest = _split(n, f)
+    content, outside, rest = _apart(n, f) if whole_powers else _split(n, f)
     terms = [n.scaled(e, _log_kernel(n, t.number(p), "+")) for p, e in _primes(content)]
     terms.extend(n.scaled(e, _log_of_positive(n, p)) for p, e in outside)
     if rest.num.is_constant() and not rest.den:
         if rest.num.leading_coefficient() < 0:
             terms.append(t.times(n.imaginary_unit, n.pi))
+    elif (quarter_turns := _quarter_turns(n, rest)) is not None:
+        terms.append(n.scaled(fmpq(quarter_turns, 2), t.times(n.imaginary_unit, n.pi)))
     else:
         terms.append(_log_kernel(n, rest, ""))
     return t.sum(terms)
+
+
+def _quarter_turns(n: NormalForm, f: Fraction) -> int | None:
+    """Return 1 for i and −1 for −i."""
+    for sign in (1, -1):
+        if n.only_kernel(n.scaled(sign, f)) == ("I",):
+            return sign
+    return None
+
+
+def _apart(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
+    """Write f = content · Π pᵢ^eᵢ · (±1) with each pᵢ a polynomial of any sign."""
+    t = n.tower
+    f = t.canonical(f)
+    content, factors = t.factors(f.num)
+    powers = [(Fraction(p), e) for p, e in factors] + [(Fraction(t.base(i)), -e) for i, e in f.den]
+    return abs(content), powers, t.number(1 if content > 0 else -1)
 
 
 def _log_of_positive(n: NormalForm, f: Fraction) -> Fraction:
@@ -272,7 +337,8 @@ def _log_of_positive(n: NormalForm, f: Fraction) -> Fraction:
         return n.arguments[kernel]
     if kernel is not None and kernel[0] == "root":
         return n.scaled(fmpq(1, kernel[2]), _log_of_positive(n, n.arguments[kernel]))
-    return _log_kernel(n, f, "real")
+    sign = n.sign(n.minus(f, n.tower.number(1)))
+    return _log_kernel(n, f, sign or ("real" if n.signs.of(f.num).endswith("+") else ""))
 
 
 def _log_kernel(n: NormalForm, f: Fraction, sign: str) -> Fraction:
@@ -292,7 +358,7 @@ def modulus(n: NormalForm, f: Fraction) -> Fraction:
         return f
     if not n.is_real(f):
         return _complex_modulus(n, f)
-    content, factors = t.factors(f.num)
+    content, factors = _factors(n, f.num)
     result = t.number(abs(content))
     for p, e in factors + [(t.base(i), -e) for i, e in f.den]:
         result = t.times(result, t.power(_modulus_of_polynomial(n, p), e))

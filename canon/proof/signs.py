@@ -11,11 +11,16 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
 
-    from flint import fmpq_mpoly
+    from flint import fmpq, fmpq_mpoly
 
     from canon.proof.tower import Tower
 
 __all__ = ["Signs"]
+
+Monomial = tuple[tuple[int, int], ...]
+
+MOST_SEARCHES = 1500
+"""Polynomials whose sign is looked for by more than their terms, in one tower."""
 
 MOST_CONDITIONS = 6
 MOST_FACTS = 48
@@ -41,6 +46,7 @@ class Signs:
         self._facts: list[tuple[fmpq_mpoly, bool]] = []
         self._conditions: list[tuple[fmpq_mpoly, bool]] = []
         self._found: dict[Hashable, str] = {}
+        self._searches = 0
 
     def declare(self, generator: int, sign: str) -> None:
         """Record the sign of a generator: one of the signs above, "real", or "" where it may be complex."""
@@ -86,9 +92,10 @@ class Signs:
         if by_terms or not self.real(p):
             return by_terms
         constant = self._of_constant(p)
-        if constant or len(p) > LONGEST:
+        self._searches += 1
+        if constant or len(p) > LONGEST or self._searches > MOST_SEARCHES:
             return constant
-        by_facts = self._by_facts(p) or _opposite(self._by_facts(-p))
+        by_facts = self._by_facts(p, 3) or _opposite(self._by_facts(-p, 3))
         if by_facts or depth == 0:
             return by_facts
         return self._by_factors(p, depth) or self._by_root(p, depth) or self._by_square(p, depth)
@@ -102,7 +109,7 @@ class Signs:
             return "-" if "-" in signs else "0-"
         return ""
 
-    def _of_term(self, monomial: tuple[tuple[int, int], ...], positive: bool) -> str:
+    def _of_term(self, monomial: Monomial, positive: bool) -> str:
         strict = True
         for k, e in monomial:
             sign = self._of.get(k, "")
@@ -115,22 +122,40 @@ class Signs:
                 positive = positive != sign.endswith("-")
         return ("" if strict else "0") + ("+" if positive else "-")
 
-    def _by_facts(self, p: fmpq_mpoly) -> str:
-        """p ≥ 0 where p minus a positive multiple of a known fact, or of two facts' product, is so."""
-        wanted = dict(self.tower.terms(p))
+    def _by_facts(self, p: fmpq_mpoly, steps: int) -> str:
+        """p ≥ 0 where p minus nonnegative multiples of known facts is so.
+
+        A multiple is a positive number, or half of it, times a monomial that is not negative; it is chosen to
+        cancel a term of p.
+        """
+        terms = self.tower.terms(p)
         for known, strict in self._facts:
-            fact = self.tower.reduce(known)
-            for monomial, coefficient in self.tower.terms(fact):
-                ratio = wanted.get(monomial)
-                if ratio is None or (ratio > 0) != (coefficient > 0):
+            leading, coefficient = self.tower.terms(known)[0]
+            for monomial, ratio in terms:
+                multiple = _quotient(monomial, leading)
+                if multiple is None or (ratio > 0) != (coefficient > 0):
                     continue
-                rest = self.tower.reduce(p - fact * self.tower.constant(ratio / coefficient))
-                if rest.is_zero():
-                    return "+" if strict else "0+"
-                found = self._by_terms(rest)
-                if found.endswith("+"):
-                    return "+" if strict or found == "+" else "0+"
+                sign = self._of_term(multiple, positive=True)
+                if not sign.endswith("+"):
+                    continue
+                for share in (1, 2) if len(multiple) == 0 else (1,):
+                    found = self._without(p, known, multiple, ratio / coefficient / share, steps)
+                    if found:
+                        return "+" if (strict and sign == "+") or found == "+" else "0+"
         return ""
+
+    def _without(self, p: fmpq_mpoly, known: fmpq_mpoly, multiple: Monomial, ratio: fmpq, steps: int) -> str:
+        """Return the sign, if it is not negative, of p minus a multiple of a fact ("0+" if nothing is left)."""
+        factor = self.tower.constant(ratio)
+        for k, e in multiple:
+            factor = factor * self.tower.monomial(k, e)
+        rest = self.tower.reduce(p - self.tower.product(known, factor))
+        if rest.is_zero():
+            return "0+"
+        found = self._by_terms(rest)
+        if found or steps == 1 or len(rest) > len(p) + 1:
+            return found if found.endswith("+") else ""
+        return self._by_facts(rest, steps - 1)
 
     def _by_factors(self, p: fmpq_mpoly, depth: int) -> str:
         """The sign of a product is the product of the signs."""
@@ -185,6 +210,16 @@ class Signs:
             if comparison.endswith("+"):
                 return leading if comparison == "+" else "0" + leading
         return ""
+
+
+def _quotient(monomial: Monomial, divisor: Monomial) -> Monomial | None:
+    """Return monomial/divisor if it is a monomial."""
+    left = dict(monomial)
+    for k, e in divisor:
+        if left.get(k, 0) < e:
+            return None
+        left[k] -= e
+    return tuple((k, e) for k, e in left.items() if e)
 
 
 def _opposite(sign: str) -> str:

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Case", "cases", "settle_equalities"]
 
+MOST_VALUES = 24
+"""Values or residues of an integer that are gone through one by one."""
+
 NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.AccumBounds)
 
 
@@ -42,8 +45,42 @@ def cases(expr: Expr, domain: Domain) -> list[Case] | None:
         found = sorted(expr.atoms(kind), key=sp.default_sort_key)
         found = [e for e in found if not any(map(declared_complex, e.free_symbols)) and e.free_symbols]
         if found:
-            return _by_kind(expr, domain, _innermost(found, kind))
-    return _by_symbol(expr, domain)
+            innermost = _innermost(found, kind)
+            plain = all(a.is_polynomial() for a in innermost.args)
+            by_symbol = None if plain else _by_symbol(innermost, domain)
+            if by_symbol is not None and len(innermost.free_symbols) == 1:
+                return _by_symbol(innermost, domain, expr)
+            return _by_kind(expr, domain, innermost)
+    return _by_integer(expr, domain) or _by_symbol(expr, domain)
+
+
+def _by_integer(expr: Expr, domain: Domain) -> list[Case] | None:
+    """Cut by the few values of a bounded integer, or by its residue where it turns angles of πn/d."""
+    for n in sorted(expr.free_symbols, key=lambda s: s.name):
+        if not n.is_integer or expr.has(sp.Derivative, sp.Subs):
+            continue
+        low, high, _ = domain.interval(n)
+        if low.is_finite and high.is_finite and high - low <= MOST_VALUES:
+            values = range(int(sp.ceiling(low)), int(sp.floor(high)) + 1)
+            return [_substituted(expr, domain, n, sp.Integer(k), f"{n} = {k}") for k in values]
+        period = 2 * _angle_denominator(expr, n)
+        if period > 2 and period <= MOST_VALUES:
+            turns = sp.Dummy("k", integer=True)
+            return [
+                _substituted(expr, domain, n, period * turns + r, f"{n} = {period}k + {r}")
+                for r in range(period)
+            ]
+    return None
+
+
+def _angle_denominator(expr: Expr, n: Symbol) -> int:
+    """Return the common denominator d of the angles πn·p/d in an expression."""
+    denominator = 1
+    for turned in expr.atoms(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
+        slope = turned.args[0].diff(n) / sp.pi
+        if isinstance(slope, sp.Rational):
+            denominator = int(sp.ilcm(denominator, slope.q))
+    return denominator
 
 
 def _innermost(found: list[sp.Basic], kind: type[sp.Basic]) -> sp.Basic:
@@ -57,7 +94,7 @@ def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | Non
         larger = isinstance(function, sp.Max)
         return [
             _case(expr, {function: first if larger else rest}, domain, sp.Ge(first, rest)),
-            _case(expr, {function: rest if larger else first}, domain, sp.Le(first, rest)),
+            _case(expr, {function: rest if larger else first}, domain, sp.Lt(first, rest)),
         ]
     u = function.args[0]
     if u.is_real is False or u.has(sp.I):
@@ -65,7 +102,7 @@ def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | Non
     if isinstance(function, sp.Abs):
         return [
             _case(expr, {function: u}, domain, sp.Ge(u, 0)),
-            _case(expr, {function: -u}, domain, sp.Le(u, 0)),
+            _case(expr, {function: -u}, domain, sp.Lt(u, 0)),
         ]
     above, at_zero, below = (1, 0, -1) if isinstance(function, sp.sign) else (1, sp.Rational(1, 2), 0)
     at_zero = function.func(0) if isinstance(function, sp.Heaviside) else sp.Integer(at_zero)
@@ -104,12 +141,13 @@ def _pieces(expr: Expr, domain: Domain, function: sp.Basic) -> Iterator[Case]:
         failed.append(condition)
 
 
-def _by_symbol(expr: Expr, domain: Domain) -> list[Case] | None:
-    """Cut by the sign of a real symbol under a root, a logarithm or an inverse function."""
+def _by_symbol(deciding: sp.Basic, domain: Domain, expr: Expr | None = None) -> list[Case] | None:
+    """Cut by the sign of a real symbol under a root, a logarithm or an inverse function in ``deciding``."""
+    expr = deciding if expr is None else expr
     if expr.has(sp.Derivative, sp.Subs):
         return None
     candidates: dict[Symbol, int] = {}
-    for part in sp.preorder_traversal(expr):
+    for part in sp.preorder_traversal(deciding):
         branching = isinstance(part, sp.Function) and not isinstance(
             part,
             sp.sin | sp.cos | sp.tan | sp.exp | sp.sinh | sp.cosh | sp.tanh | sp.core.function.AppliedUndef,

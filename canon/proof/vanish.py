@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["equal", "vanishes"]
 
+PROOF_SHARE = 0.6
+"""Part of the time left that the proving rungs may use before the wider search."""
+
 
 def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: float = 10.0) -> Verdict:
     """Decide whether an expression, or every entry of a matrix, is zero on a domain.
@@ -129,7 +132,8 @@ def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict
     search = look_for_counterexample(left, right, domain.points(symbols, 3), highest=64, deadline=deadline)
     proof = Attempt()
     if search.counterexample is None:
-        proof = prove_zero(left - right, domain, deadline)
+        now = time.monotonic()
+        proof = prove_zero(left - right, domain, now + PROOF_SHARE * (deadline - now))
         if proof.holds:
             return Verdict(Status.HOLDS, certificate=" + ".join(proof.rungs) or "exact")
         search = search_widely(left, right, domain, deadline)

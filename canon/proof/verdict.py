@@ -193,5 +193,9 @@ def all_hold(verdicts: Iterable[Verdict], question: str = "") -> Verdict:
     if open_ is None:
         return rest
     return replace(
-        open_, question=question or open_.question, assumed=rest.assumed, evidence=rest.evidence, seconds=seconds
+        open_,
+        question=question or open_.question,
+        assumed=rest.assumed,
+        evidence=rest.evidence,
+        seconds=seconds,
     )
