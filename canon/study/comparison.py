@@ -180,6 +180,8 @@ def drift_study(
     if not (math.isfinite(span) and span > 0.0):
         raise StudyError(f"a run over a time of {span} makes no sense: give a positive, finite duration")
     h = step if step is not None else _usual_step(chosen, known_period)
+    if h is not None and not (math.isfinite(h) and h > 0.0):
+        raise StudyError(f"a step of {h} makes no sense: give a positive, finite one")
     kept = samples if samples is not None else _usual_samples(span, known_period)
     if kept < FEWEST:
         raise StudyError(f"{kept} samples are too few to judge growth: keep at least {FEWEST}")

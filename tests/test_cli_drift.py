@@ -1,0 +1,72 @@
+"""``canon drift`` from its arguments to its table, lines, figure and exit status."""
+
+import json
+
+import pytest
+
+from canon.cli import main
+
+
+def drift(*arguments):
+    return main(["drift", "henon-heiles", "--periods", "100", *arguments])
+
+
+def test_the_table_tells_symplectic_from_not(capsys):
+    assert drift("--method", "kahan-li-8", "--method", "rk4") == 0
+    printed = capsys.readouterr().out
+    rows = {line.split()[0]: line for line in printed.splitlines() if line.startswith(("kahan-li-8", "RK4"))}
+    assert "bounded" in rows["kahan-li-8"]
+    assert "secular" in rows["RK4"]
+
+
+def test_lines_are_json_with_numbers_only(capsys):
+    assert drift("--json", "--method", "verlet", "--method", "taylor", "--tolerance", "1e-10") == 0
+    lines = [
+        json.loads(line, parse_constant=pytest.fail)  # NaN and Infinity are no JSON and no data
+        for line in capsys.readouterr().out.splitlines()
+    ]
+    assert [line["method"] for line in lines] == ["verlet", "Taylor(1e-10)"]
+    assert lines[0]["order"] == 2
+    assert lines[0]["bound"] > lines[1]["bound"] > 0
+    assert lines[0]["span"] == pytest.approx(100 * lines[0]["period"])
+
+
+def test_a_figure_is_written(tmp_path, capsys):
+    file = tmp_path / "energy.png"
+    assert drift("--method", "verlet", "--plot", str(file)) == 0
+    assert file.read_bytes().startswith(b"\x89PNG")
+    assert str(file) in capsys.readouterr().out
+
+
+def test_a_run_that_fails_is_a_row_and_an_exit_status(capsys):
+    """Verlet with a step beyond its stability limit h ω = 2 blows up; RK4 at that step does too."""
+    assert drift("--method", "verlet", "--method", "taylor", "--step", "4") == 1
+    printed = capsys.readouterr().out
+    assert "failed" in printed
+    assert "nan" not in printed.lower()
+
+
+def test_scenes_are_listed(capsys):
+    assert main(["drift", "list"]) == 0
+    printed = capsys.readouterr().out
+    assert "henon-heiles" in printed
+    assert "double-pendulum" in printed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["drift", "henon-heile"], "did you mean henon-heiles"),
+        (["drift", "kepler", "--method", "leapfrog"], "no splitting is called 'leapfrog'"),
+        (["drift", "simple-pendulum", "--set", "l"], "--set l: write a parameter's name"),
+        (["drift", "simple-pendulum", "--set", "l=nan"], "--set l=nan"),
+        (["drift", "simple-pendulum", "--set", "l=-1"], "must be positive"),
+        (["drift", "simple-pendulum", "--set", "size=1"], "has no parameter 'size'"),
+        (["drift", "henon-heiles", "--step", "-0.1"], "positive"),
+        (["drift", "henon-heiles", "--periods", "0"], "positive"),
+        (["drift", "henon-heiles", "--periods", "nan"], "positive"),
+    ],
+)
+def test_bad_usage_says_what_to_do(arguments, told, capsys):
+    assert main(arguments) == 2
+    assert told in capsys.readouterr().err
