@@ -235,7 +235,8 @@ def coordinate(assumption: str, box: list[float] | None, rng: random.Random) -> 
     """Return a dyadic number that the assumption allows."""
     if box is not None and rng.random() < 0.7:
         low, high = (mpf(str(end)) for end in box)
-        value = mp.floor((low + (high - low) * rng.random()) * 2**20) / 2**20
+        grid = 1 if assumption == "integer" else 2**20
+        value = mp.floor((low + (high - low) * rng.random()) * grid + mpf(1) / 2) / grid
     elif assumption == "integer":
         value = mpf(rng.randint(-9, 9))
     elif rng.random() < 0.25:
