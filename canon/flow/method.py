@@ -8,13 +8,14 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from canon.kernel.gauss import HIGHEST_STAGES
 from canon.kernel.order import order
 from canon.kernel.scheme import SCHEMES, Scheme
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["DOP853", "RK4", "Method", "Splitting", "Taylor"]
+__all__ = ["DOP853", "RK4", "FixedStep", "Gauss", "Method", "Splitting", "Taylor"]
 
 Coefficient = float | int | str | Fraction
 """Text is read as the exact decimal or quotient it spells, a float as the binary number it is."""
@@ -116,6 +117,40 @@ def _exact(x: Coefficient) -> Fraction:
 
 
 @dataclass(frozen=True)
+class Gauss:
+    """A Gauss–Legendre method: implicit, symplectic and symmetric for every Hamiltonian, of order 2s.
+
+    Parameters
+    ----------
+    stages
+        s = 1 (the implicit midpoint rule) … 8.
+
+    Examples
+    --------
+    >>> Gauss(6).order
+    12
+    """
+
+    stages: int = 6
+    citation = (
+        "E. Hairer, R. I. McLachlan, A. Razakarivony, Achieving Brouwer’s law with implicit Runge–Kutta methods, "
+        "BIT 48 (2008) 231–243, doi:10.1007/s10543-008-0170-3"
+    )
+
+    def __post_init__(self) -> None:
+        if self.stages not in range(1, HIGHEST_STAGES + 1):
+            raise ValueError(f"Gauss({self.stages}): the number of stages is 1 … {HIGHEST_STAGES}")
+
+    def __str__(self) -> str:
+        return f"Gauss({self.stages})"
+
+    @property
+    def order(self) -> int:
+        """2s."""
+        return 2 * self.stages
+
+
+@dataclass(frozen=True)
 class RK4:
     """The classical fourth-order Runge–Kutta method: not symplectic, its energy error grows with time.
 
@@ -199,7 +234,10 @@ class DOP853:
         return f"DOP853({self.tolerance:g})"
 
 
-Method = Splitting | RK4 | Taylor | DOP853
+FixedStep = Splitting | Gauss | RK4
+"""Methods that take steps of one size."""
+
+Method = FixedStep | Taylor | DOP853
 """What ``propagate`` takes as ``method``."""
 
 

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import replace
-from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from canon.flow.adaptive import integrate_dop853, integrate_taylor
-from canon.flow.method import DOP853, RK4, Method, Splitting, Taylor
-from canon.flow.stepping import NonFiniteStateError, run
-from canon.flow.trajectory import Array, Samples, Trajectory, measured
-from canon.kernel.loop import Loop, runge_kutta_loop, splitting_loop
+from canon.flow.fixed import compiled_loop, fixed_steps
+from canon.flow.method import DOP853, FixedStep, Method, Taylor
+from canon.flow.stepping import NonFiniteStateError
+from canon.flow.trajectory import Array, Trajectory, measured
 from canon.kernel.structure import Equations, equations, exact
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from fractions import Fraction
 
     import numpy.typing as npt
     from sympy import Expr, Symbol
@@ -79,7 +78,7 @@ def propagate(
     t_span
         The first and the last time; the last may be the earlier one.
     method
-        ``Splitting(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where not given.
+        ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where not given.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
         span; ``Trajectory.step`` has it.
@@ -110,7 +109,8 @@ def propagate(
         The state's shape is wrong or it is not finite; a step is missing or makes no sense; the Hamiltonian
         is not separable and the method a splitting.
     NonFiniteStateError
-        The motion ran into a collision or out of H's domain; the error has the last good time and state.
+        The motion ran into a collision or out of H's domain, or the stages of an implicit method did not
+        converge; the error has the last good time and state.
 
     Examples
     --------
@@ -133,9 +133,9 @@ def propagate(
     if samples < 1:
         raise ValueError(f"samples={samples}: keep at least one state after the first")
     _check_start(system, state, start)
-    if isinstance(method, Splitting | RK4):
-        loop = _loop(system, method, compensated=_is_compensated(precision))
-        found = _fixed_step(loop, method, state, start, end, step, samples, progress)
+    if isinstance(method, FixedStep):
+        loop = compiled_loop(system, method, compensated=_is_compensated(precision))
+        found = fixed_steps(loop, method, state, (start, end), step, samples, progress)
     else:
         if step is not None:
             raise ValueError(f"{method} chooses its own steps: leave step out and set its tolerance")
@@ -225,76 +225,3 @@ def _check_start(system: Equations, state: Array, start: Fraction) -> None:
     found = system.graph.evaluate([system.hamiltonian, *system.velocity, *system.force], values)
     if not np.isfinite(np.array(found, dtype=np.float64)).all():
         raise ValueError(f"H or its derivatives are not finite at y0 = {state}: start inside H's domain")
-
-
-# fixed steps ---------------------------------------------------------------------------------------
-
-
-def _loop(system: Equations, method: Splitting | RK4, *, compensated: bool) -> Loop:
-    if isinstance(method, RK4):
-        return _kept_runge_kutta(system, compensated=compensated)
-    if not system.separable:
-        raise ValueError(
-            "H is not a sum T(p, t) + V(q, t), so it does not split into drifts and kicks; use Taylor()"
-        )
-    if method.scheme.nystrom and not system.quadratic_kinetic:
-        raise ValueError(
-            f"{method} keeps its order only for kinetic energies quadratic in p with constant coefficients; "
-            "use Splitting('blanes-moan-6') or Splitting('kahan-li-8')"
-        )
-    return _kept_splitting(system, len(method.scheme.b), compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_splitting(system: Equations, stages: int, *, compensated: bool) -> Loop:
-    return splitting_loop(system, stages, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_runge_kutta(system: Equations, *, compensated: bool) -> Loop:
-    return runge_kutta_loop(system, compensated=compensated)
-
-
-def _fixed_step(
-    loop: Loop,
-    method: Splitting | RK4,
-    state: Array,
-    start: Fraction,
-    end: Fraction,
-    step: float | None,
-    samples: int,
-    progress: Callable[[float], None] | None,
-) -> Samples:
-    steps = _steps(start, end, step, method)
-    h = (end - start) / steps
-    stops = np.unique(np.linspace(0, steps, min(samples, steps) + 1).round().astype(np.int64))
-    coefficients = np.array([float(start), float(h), *(float(h * c) for c in _coefficients(method))])
-    done = run(loop, state, coefficients, [int(stop) for stop in stops], progress)
-    return Samples(
-        t=np.array([float(start + int(stop) * h) for stop in stops]),
-        y=done.y,
-        carried=done.carried if loop.compensated else None,
-        steps=steps,
-        evaluations=steps * method.stages,
-        step=float(h),
-        cpu_seconds=done.cpu_seconds,
-        compile_seconds=loop.code.seconds,
-    )
-
-
-def _steps(start: Fraction, end: Fraction, step: float | None, method: Method) -> int:
-    if step is None:
-        raise ValueError(f"{method} takes fixed steps: give step=, in the units of time")
-    if not (math.isfinite(step) and step > 0):
-        raise ValueError(f"step={step}: give a positive number; the direction of time follows from t_span")
-    ratio = abs(end - start) / Fraction(step)
-    nearest = max(1, round(ratio))
-    # A span that is a whole number of steps up to the rounding of its ends and of the step counts as one.
-    return nearest if abs(ratio - nearest) <= nearest * Fraction(1, 10**9) else math.ceil(ratio)
-
-
-def _coefficients(method: Splitting | RK4) -> list[Fraction]:
-    if isinstance(method, RK4):
-        return [Fraction(1, 2), Fraction(1, 6), Fraction(1, 3)]
-    a, b = method.scheme.a, method.scheme.b
-    return [c for pair in zip(a, b, strict=False) for c in pair] + [a[-1]]

@@ -47,12 +47,15 @@ class Run:
     ----------
     y, carried
         Shape (2n, times).
+    memory
+        What else the method kept in its carry at the end.
     cpu_seconds
         Processor time of this thread.
     """
 
     y: Array
     carried: Array
+    memory: Array
     cpu_seconds: float
 
 
@@ -83,7 +86,7 @@ def run(
     NonFiniteStateError
         A state is not finite; the error knows the last finite one.
     """
-    y, e = y0.copy(), np.zeros_like(y0)
+    y, e = y0.copy(), np.zeros(loop.carry)
     kept, kept_e = np.empty((len(y), len(stops))), np.empty((len(y), len(stops)))
     started, done, slice_steps = time.thread_time(), 0, 64
     for sample, stop in enumerate(stops):
@@ -102,8 +105,8 @@ def run(
                 slice_steps //= 2
             if progress is not None:
                 progress(done / stops[-1])
-        kept[:, sample], kept_e[:, sample] = y, e
-    return Run(kept, kept_e, time.thread_time() - started)
+        kept[:, sample], kept_e[:, sample] = y, e[: len(y)]
+    return Run(kept, kept_e, e[len(y) :], time.thread_time() - started)
 
 
 def _advance(loop: Loop, y: Array, e: Array, coefficients: Array, first: int, steps: int) -> None:
@@ -121,11 +124,14 @@ def _last_finite(
             y, e, first, steps = half, half_e, first + steps // 2, steps - steps // 2
         else:
             steps //= 2
+    after = e.copy()
+    _advance(loop, y.copy(), after, coefficients, first, 1)
+    if loop.implicit and after[len(y) + 1]:
+        what = f"the stages of step {first + 1} do not converge (last change {after[len(y) + 1]:.2g})"
+        why = "the step is too large for the iteration; take a smaller one, or Taylor()"
+    else:
+        what = f"the state stops being finite in step {first + 1}"
+        why = "a collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()"
     t = float(coefficients[0] + first * coefficients[1])
     state = ", ".join(f"{x:.6g}" for x in y[:8]) + (", …" if len(y) > 8 else "")
-    return NonFiniteStateError(
-        f"the state stops being finite in step {first + 1}, after t = {t:.9g} where (q, p) = ({state}): a "
-        "collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()",
-        t,
-        y,
-    )
+    return NonFiniteStateError(f"{what}, after t = {t:.9g} where (q, p) = ({state}): {why}", t, y)

@@ -31,7 +31,7 @@ __all__ = ["Loop", "field_function", "runge_kutta_loop", "splitting_loop"]
 _POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
 _SIGNATURE = (_POINTER, _POINTER, _POINTER, _INTEGER, _INTEGER)
 _PARAMETERS = "ptr noalias %y, ptr noalias %e, ptr noalias %c, i64 %first, i64 %steps"
-_METHOD = 2
+METHOD = 2
 """Where the method's own coefficients start in c."""
 
 
@@ -49,12 +49,19 @@ class Loop:
         Whether it carries round-off along.
     number
         The type it computes in.
+    carry
+        Numbers in ``e``: compensation, and what else a method keeps between calls.
+    implicit
+        Whether after the compensation ``e`` holds the number of iterations and the last change of one that
+        did not converge (0 where all did).
     """
 
     code: MachineCode
     dimension: int
     compensated: bool
     number: MachineType
+    carry: int
+    implicit: bool = False
 
 
 def splitting_loop(
@@ -68,7 +75,7 @@ def splitting_loop(
     """
     n = len(system.q)
     w = Writer(number)
-    y, e = _local(w, 2 * n, compensated=compensated)
+    y, e = local_state(w, 2 * n, compensated=compensated)
     rate = w.array(n)
     drift_clock, kick_clock = w.array(1), w.array(1)
 
@@ -82,28 +89,28 @@ def splitting_loop(
         for i, value in enumerate(w.program(system.program(nodes), arguments)):
             w.store(value, rate, i)
         with w.loop(0, n) as i:
-            _increase(w, y, e, w.let(f"add i64 {i}, {moves}"), coefficient, w.load(rate, i))
+            increase(w, y, e, w.let(f"add i64 {i}, {moves}"), coefficient, w.load(rate, i))
         if not system.autonomous:
             w.store(w.algebra("add", w.load(own_clock, 0), coefficient), own_clock, 0)
 
-    with _steps(w, system) as time:
+    with steps_of(w, system) as time:
         w.store(time, drift_clock, 0)
         w.store(time, kick_clock, 0)
         with w.loop(0, stages) as s:
             pair = w.let(f"shl i64 {s}, 1")
-            drift = w.load("%c", w.let(f"add i64 {pair}, {_METHOD}"))
+            drift = w.load("%c", w.let(f"add i64 {pair}, {METHOD}"))
             substep(system.velocity, n, 0, drift, kick_clock, drift_clock)
-            kick = w.load("%c", w.let(f"add i64 {pair}, {_METHOD + 1}"))
+            kick = w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}"))
             substep(system.force, 0, n, kick, drift_clock, kick_clock)
-        substep(system.velocity, n, 0, w.load("%c", _METHOD + 2 * stages), kick_clock, drift_clock)
-    return _finished(w, y, e, n, compensated=compensated)
+        substep(system.velocity, n, 0, w.load("%c", METHOD + 2 * stages), kick_clock, drift_clock)
+    return finished(w, y, e, n, compensated=compensated)
 
 
 def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
     """Compile the classical fourth-order Runge–Kutta method; its coefficients are h/2, h/6, h/3."""
     n = len(system.q)
     w = Writer(number)
-    y, e = _local(w, 2 * n, compensated=compensated)
+    y, e = local_state(w, 2 * n, compensated=compensated)
     stage, rate, total = w.array(2 * n), w.array(2 * n), w.array(2 * n)
     field = system.program((*system.velocity, *system.force))
     full, half, sixth, third = (w.load("%c", i) for i in range(1, 5))
@@ -113,7 +120,7 @@ def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineTyp
         for i, value in enumerate(w.program(field, arguments)):
             w.store(value, rate, i)
 
-    with _steps(w, system) as time:
+    with steps_of(w, system) as time:
         midway, end = w.algebra("add", time, half), w.algebra("add", time, full)
         evaluate(y, time)
         with w.loop(0, 2 * n) as i:
@@ -125,8 +132,8 @@ def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineTyp
             with w.loop(0, 2 * n) as i:
                 w.store(w.intrinsic("fma", weight, w.load(rate, i), w.load(total, i)), total, i)
         with w.loop(0, 2 * n) as i:
-            _increase(w, y, e, i, w.constant(Fraction(1)), w.load(total, i))
-    return _finished(w, y, e, n, compensated=compensated)
+            increase(w, y, e, i, w.constant(Fraction(1)), w.load(total, i))
+    return finished(w, y, e, n, compensated=compensated)
 
 
 def field_function(field: Program, number: MachineType = DOUBLE) -> MachineCode:
@@ -141,7 +148,7 @@ def field_function(field: Program, number: MachineType = DOUBLE) -> MachineCode:
 # pieces of loops -------------------------------------------------------------------------------------
 
 
-def _local(w: Writer, length: int, *, compensated: bool) -> tuple[str, str]:
+def local_state(w: Writer, length: int, *, compensated: bool) -> tuple[str, str]:
     y, e = w.array(length), w.array(length)
     w.copy("%y", y, length)
     if compensated:
@@ -150,7 +157,7 @@ def _local(w: Writer, length: int, *, compensated: bool) -> tuple[str, str]:
 
 
 @contextlib.contextmanager
-def _steps(w: Writer, system: Equations) -> Generator[str]:
+def steps_of(w: Writer, system: Equations) -> Generator[str]:
     """Repeat what is written inside for every step and yield the time at which the step starts."""
     start, h = w.load("%c", 0), w.load("%c", 1)
     last = w.let("add i64 %first, %steps")
@@ -158,7 +165,7 @@ def _steps(w: Writer, system: Equations) -> Generator[str]:
         yield start if system.autonomous else w.intrinsic("fma", w.whole(step), h, start)
 
 
-def _increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> None:
+def increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> None:
     """Write y_i ← y_i + coefficient · rate, compensated where there is an e."""
     old = w.load(y, i)
     if not e:
@@ -166,15 +173,18 @@ def _increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) ->
         return
     increment = w.intrinsic("fma", coefficient, rate, w.load(e, i))
     new = w.algebra("add", old, increment)
-    w.store(w.algebra("sub", increment, w.algebra("sub", new, old)), e, i)
+    kept = w.algebra("sub", new, increment)
+    lost = w.algebra("sub", old, kept)
+    w.store(w.algebra("add", lost, w.algebra("sub", increment, w.algebra("sub", new, kept))), e, i)
     w.store(new, y, i)
 
 
-def _finished(w: Writer, y: str, e: str, n: int, *, compensated: bool) -> Loop:
+def finished(w: Writer, y: str, e: str, n: int, *, compensated: bool, carry: int = 0) -> Loop:
+    """Write the state back and compile."""
     w.copy(y, "%y", 2 * n)
     if compensated:
         w.copy(e, "%e", 2 * n)
-    return Loop(_compiled(w, _PARAMETERS, _SIGNATURE), n, compensated, w.number)
+    return Loop(_compiled(w, _PARAMETERS, _SIGNATURE), n, compensated, w.number, carry or 2 * n, bool(carry))
 
 
 def _compiled(w: Writer, parameters: str, signature: Sequence[object]) -> MachineCode:

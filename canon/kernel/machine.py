@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from dataclasses import dataclass
 from fractions import Fraction
@@ -47,17 +48,32 @@ class MachineType:
         return short if self.lanes == 1 else f"v{self.lanes}{short}"
 
     @property
-    def bytes(self) -> int:
-        """Bytes that a value takes in memory."""
-        return np.dtype(self.dtype).itemsize * self.lanes
+    def alignment(self) -> int:
+        """Bytes of one scalar in memory, to which arrays from Python are aligned at least."""
+        return np.dtype(self.dtype).itemsize
 
     def literal(self, value: Fraction) -> str:
         """Return the LLVM constant nearest to an exact number, in every lane."""
-        one = _extended_literal(value) if self.scalar == "x86_fp80" else self._literal(value)
+        return self._in_every_lane(
+            _extended_literal(value) if self.scalar == "x86_fp80" else self._literal(value)
+        )
+
+    def special(self, name: str) -> str:
+        """Return the LLVM constant for ``"inf"`` or ``"nan"``, in every lane."""
+        ieee, extended = {
+            "inf": ("0x7FF0000000000000", "0xK7FFF8000000000000000"),
+            "nan": ("0x7FF8000000000000", "0xK7FFFC000000000000000"),
+        }[name]
+        return self._in_every_lane(extended if self.scalar == "x86_fp80" else ieee)
+
+    def _in_every_lane(self, one: str) -> str:
         return one if self.lanes == 1 else "<" + ", ".join([f"{self.scalar} {one}"] * self.lanes) + ">"
 
     def _literal(self, value: Fraction) -> str:
-        nearest = float(value) if self.scalar == "double" else float(np.float32(float(value)))
+        with np.errstate(over="ignore"):
+            nearest = float(value) if self.scalar == "double" else float(np.float32(float(value)))
+        if not math.isfinite(nearest):
+            raise OverflowError(f"the constant {float(value):g} is too large for {self.scalar} numbers")
         return f"0x{struct.unpack('<Q', struct.pack('<d', nearest))[0]:016X}"
 
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import copy
+import dataclasses
+import itertools
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -37,7 +40,8 @@ class Writer:
         self.reserved: list[str] = []
         self.lines: list[str] = []
         self.declarations: set[str] = set()
-        self._count = 0
+        self._names = itertools.count(1)
+        self._ends: list[str] = []
 
     def line(self, text: str) -> None:
         """Write an instruction without a result."""
@@ -45,9 +49,15 @@ class Writer:
 
     def let(self, text: str) -> str:
         """Write an instruction and return the register of its result."""
-        self._count += 1
-        self.line(f"%r{self._count} = {text}")
-        return f"%r{self._count}"
+        name = f"%r{next(self._names)}"
+        self.line(f"{name} = {text}")
+        return name
+
+    def side_by_side(self, lanes: int) -> Writer:
+        """Return a writer of the same function that computes in so many SIMD lanes."""
+        wide = copy.copy(self)
+        wide.number = dataclasses.replace(self.number, lanes=lanes)
+        return wide
 
     # numbers -------------------------------------------------------------------------------------
 
@@ -82,16 +92,65 @@ class Writer:
 
     def whole(self, integer: str) -> str:
         """Turn an i64 register into a number."""
-        one = self.let(f"sitofp i64 {integer} to {self.number.scalar}")
+        return self.splat(self.let(f"sitofp i64 {integer} to {self.number.scalar}"))
+
+    def splat(self, scalar: str) -> str:
+        """Put a scalar into every lane."""
         if self.number.lanes == 1:
-            return one
-        first = self.let(f"insertelement {self.number.name} poison, {self.number.scalar} {one}, i32 0")
+            return scalar
+        first = self.let(f"insertelement {self.number.name} poison, {self.number.scalar} {scalar}, i32 0")
         mask = f"<{self.number.lanes} x i32> zeroinitializer"
         return self.let(f"shufflevector {self.number.name} {first}, {self.number.name} poison, {mask}")
 
     def body(self) -> str:
         """Return what was written, as the inside of a function that returns nothing."""
         return "\n".join(["entry:", *self.reserved, *self.lines, "  ret void"])
+
+    # lanes and choices ---------------------------------------------------------------------------
+
+    def lane(self, value: str, index: int) -> str:
+        """Take one lane of a value."""
+        if self.number.lanes == 1:
+            return value
+        return self.let(f"extractelement {self.number.name} {value}, i32 {index}")
+
+    def greatest(self, value: str) -> str:
+        """Return the greatest lane."""
+        kind, full = self.number, f"@llvm.vector.reduce.fmax.{self.number.intrinsic}"
+        if kind.lanes == 1:
+            return value
+        self.declarations.add(f"declare {kind.scalar} {full}({kind.name})")
+        return self.let(f"call {kind.scalar} {full}({kind.name} {value})")
+
+    def less(self, a: str, b: str) -> str:
+        """Compare: a < b, false where either is NaN; one flag a lane."""
+        return self.let(f"fcmp olt {self.number.name} {a}, {b}")
+
+    def equal(self, a: str, b: str) -> str:
+        """Compare: a = b; one flag a lane."""
+        return self.let(f"fcmp oeq {self.number.name} {a}, {b}")
+
+    def any_lane(self, flags: str) -> str:
+        """Return whether a flag is set in some lane."""
+        if self.number.lanes == 1:
+            return flags
+        full = f"@llvm.vector.reduce.or.v{self.number.lanes}i1"
+        self.declarations.add(f"declare i1 {full}(<{self.number.lanes} x i1>)")
+        return self.let(f"call i1 {full}(<{self.number.lanes} x i1> {flags})")
+
+    def select(self, flag: str, where_true: str, where_false: str) -> str:
+        """Choose between two values, lane by lane."""
+        flags = "i1" if self.number.lanes == 1 else f"<{self.number.lanes} x i1>"
+        kind = self.number.name
+        return self.let(f"select {flags} {flag}, {kind} {where_true}, {kind} {where_false}")
+
+    def infinity(self) -> str:
+        """Return +∞ as an operand."""
+        return self.number.special("inf")
+
+    def nan(self) -> str:
+        """Return NaN as an operand."""
+        return self.number.special("nan")
 
     # memory --------------------------------------------------------------------------------------
 
@@ -101,9 +160,9 @@ class Writer:
 
     def _reserve(self, what: str) -> str:
         # All in the function's first block: memory reserved inside a loop would pile up.
-        self._count += 1
-        self.reserved.append(f"  %r{self._count} = alloca {what}")
-        return f"%r{self._count}"
+        name = f"%r{next(self._names)}"
+        self.reserved.append(f"  {name} = alloca {what}")
+        return name
 
     def at(self, array: str, index: str | int) -> str:
         """Return the address of an array's element."""
@@ -111,19 +170,22 @@ class Writer:
 
     def load(self, array: str, index: str | int) -> str:
         """Read an array's element."""
-        return self.let(f"load {self.number.name}, ptr {self.at(array, index)}")
+        return self.let(
+            f"load {self.number.name}, ptr {self.at(array, index)}, align {self.number.alignment}"
+        )
 
     def store(self, value: str, array: str, index: str | int) -> None:
         """Write an array's element."""
-        self.line(f"store {self.number.name} {value}, ptr {self.at(array, index)}")
+        self.line(
+            f"store {self.number.name} {value}, ptr {self.at(array, index)}, align {self.number.alignment}"
+        )
 
     # loops ---------------------------------------------------------------------------------------
 
     @contextlib.contextmanager
     def loop(self, start: str | int, stop: str | int) -> Generator[str]:
         """Repeat what is written inside for i = start … stop − 1 and yield i."""
-        self._count += 1
-        label = f"loop{self._count}"
+        label = f"loop{next(self._names)}"
         counter = self._reserve("i64")
         self.line(f"store i64 {start}, ptr {counter}")
         self.line(f"br label %{label}.test")
@@ -132,11 +194,19 @@ class Writer:
         more = self.let(f"icmp slt i64 {index}, {stop}")
         self.line(f"br i1 {more}, label %{label}.body, label %{label}.end")
         self.lines.append(f"{label}.body:")
+        self._ends.append(f"{label}.end")
         yield index
+        self._ends.pop()
         following = self.let(f"add i64 {index}, 1")
         self.line(f"store i64 {following}, ptr {counter}")
         self.line(f"br label %{label}.test")
         self.lines.append(f"{label}.end:")
+
+    def leave_if(self, condition: str) -> None:
+        """Leave the innermost loop where an i1 register is true."""
+        onward = f"on{next(self._names)}"
+        self.line(f"br i1 {condition}, label %{self._ends[-1]}, label %{onward}")
+        self.lines.append(f"{onward}:")
 
     def copy(self, source: str, target: str, length: int) -> None:
         """Copy an array of so many numbers."""
@@ -170,7 +240,5 @@ class Writer:
         if operation == "sign":
             zero, one = self.constant(Fraction(0)), self.constant(Fraction(1))
             unit = self.intrinsic("copysign", one, x[0])
-            vanishes = self.let(f"fcmp oeq {kind} {x[0]}, {zero}")
-            flags = "i1" if self.number.lanes == 1 else f"<{self.number.lanes} x i1>"
-            return self.let(f"select {flags} {vanishes}, {kind} {zero}, {kind} {unit}")
+            return self.select(self.equal(x[0], zero), zero, unit)
         return self.library(operation, *x)

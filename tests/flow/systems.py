@@ -50,6 +50,11 @@ DOUBLE_PENDULUM = System(
 DOUBLE_PENDULUM_START = [1.0, 0.4, 0.1, -0.2]
 
 
+RELATIVISTIC = System(sp.sqrt(1 + x.momentum**2) * (1 + x**2 / 2), (x,), (x.momentum,))
+"""A particle whose speed stays below 1 in a well that scales its energy; one degree, so errors are smooth in h."""
+RELATIVISTIC_START = [1.0, 0.5]
+
+
 def kepler_start(eccentricity):
     """At the pericentre of an orbit with semi-major axis 1 and period 2π."""
     e = eccentricity

@@ -6,13 +6,15 @@ import pytest
 import sympy as sp
 
 from canon.expression.arithmetic import multiprecision
-from canon.flow.method import RK4, Splitting, Taylor
+from canon.flow.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
+from canon.flow.stepping import NonFiniteStateError
 from canon.kernel.program import run
 from canon.kernel.scheme import SCHEMES
 from canon.kernel.structure import equations
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
+    DOUBLE_PENDULUM_START,
     DRIVEN,
     DRIVEN_START,
     HENON_HEILES,
@@ -122,6 +124,62 @@ def test_time_reversal(name):
         assert there_and_back(DRIVEN, DRIVEN_START, Splitting(name), 30, 0.125) < 1e-12
 
 
+@pytest.mark.parametrize("stages", range(1, 9))
+def test_gauss_methods_reverse_time(stages):
+    assert there_and_back(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(stages), 6, 0.05) < 1e-12
+
+
+def compiled_jacobian(system, start, method, step, delta=2.0**-9):
+    """The Jacobian of one compiled step, by differences of sixth order: good to about 1e-12."""
+
+    def at(i, distance):
+        state = np.array(start, dtype=float)
+        state[i] += distance
+        return propagate(system, state, (0, step), method=method, step=step, samples=1).final
+
+    weights = ((1, 45), (2, -9), (3, 1))
+    columns = [
+        sum(w * (at(i, k * delta) - at(i, -k * delta)) for k, w in weights) / (60 * delta)
+        for i in range(len(start))
+    ]
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize(
+    ("method", "symplectic"), [*((Gauss(s), True) for s in range(1, 9)), (RK4(), False)], ids=str
+)
+def test_gauss_methods_are_symplectic_where_h_does_not_split(method, symplectic):
+    m = compiled_jacobian(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, method, 0.2)
+    j = np.kron([[0, 1], [-1, 0]], np.eye(2))
+    defect = abs(m.T @ j @ m - j).max()
+    assert defect < 1e-9 if symplectic else defect > 1e-5
+
+
+def test_gauss_keeps_quadratic_integrals():
+    x, y, px, py = *KEPLER.q, *KEPLER.p
+    arguments = {"method": Gauss(2), "step": 0.05, "observables": {"L": x * py - y * px}}
+    motion = propagate(KEPLER, kepler_start(0.5), (0, 100), **arguments)
+    assert abs(motion.energy_error).max() > 1e-6
+    assert abs(motion.changes["L"]).max() < 1e-15
+
+
+def test_round_off_of_gauss_methods_is_small_and_unbiased():
+    u, n = 2.0**-53, 40_000
+    ends = []
+    for k in range(6):
+        start = [v * (1 + 1e-3 * k * (k + 1)) for v in HENON_HEILES_START]
+        motion = propagate(HENON_HEILES, start, (0, n * 0.25), method=Gauss(8), step=0.25, samples=50)
+        ends.append(motion.energy_error[-1])
+    assert np.sqrt(np.mean(np.square(ends))) < 0.3 * u * n**0.5
+
+
+def test_stages_that_do_not_converge_are_an_error_with_time_state_and_remedy():
+    with pytest.raises(NonFiniteStateError, match=r"do not converge .*smaller") as caught:
+        propagate(KEPLER, kepler_start(0.6), (0, 100), method=Gauss(1), step=0.5)
+    assert caught.value.time == 0
+    np.testing.assert_array_equal(caught.value.state, kepler_start(0.6))
+
+
 def test_runge_kutta_does_not_reverse():
     assert there_and_back(HENON_HEILES, HENON_HEILES_START, RK4(), 30, 0.25) > 1e-6
 
@@ -213,7 +271,7 @@ def test_kepler_angular_momentum_is_kept_by_every_splitting():
 
 
 def test_a_hamiltonian_that_does_not_split_says_what_to_use():
-    with pytest.raises(ValueError, match=r"not a sum T\(p, t\) \+ V\(q, t\)"):
+    with pytest.raises(ValueError, match=r"not a sum T\(p, t\) \+ V\(q, t\).*Gauss"):
         propagate(DOUBLE_PENDULUM, [1.0, 0.4, 0.1, -0.2], (0, 1), method=Splitting("verlet"), step=0.1)
 
 

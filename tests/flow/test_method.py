@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from canon.flow.method import DOP853, RK4, Splitting, Taylor
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.kernel.scheme import SCHEMES
 
 
@@ -52,6 +52,10 @@ def test_tolerances_are_checked_and_shown():
     assert str(Taylor(1e-9)) == "Taylor(1e-09)"
     assert Taylor(1e-9).order < Taylor().order
     assert str(RK4()) == "RK4"
+    assert (Gauss(6).order, str(Gauss(6))) == (12, "Gauss(6)")
+    for stages in (0, 9, 2.5):
+        with pytest.raises(ValueError, match="1 … 8"):
+            Gauss(stages)
     for wrong in (0.0, -1e-9, 2.0, float("nan")):
         with pytest.raises(ValueError, match="between 0 and 1"):
             Taylor(wrong)

@@ -3,20 +3,27 @@
 import numpy as np
 import pytest
 
-from canon.flow.method import DOP853, RK4, Splitting, Taylor
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
 from canon.kernel.scheme import SCHEMES
-from tests.flow.systems import DRIVEN, DRIVEN_START, HENON_HEILES, HENON_HEILES_START
+from tests.flow.systems import (
+    DRIVEN,
+    DRIVEN_START,
+    HENON_HEILES,
+    HENON_HEILES_START,
+    RELATIVISTIC,
+    RELATIVISTIC_START,
+)
 
 SPAN = 12.0
 
 
-def fitted_order(system, start, method, window=(3e-12, 1e-4), span=SPAN):
+def fitted_order(system, start, method, window=(3e-12, 1e-4), span=SPAN, longest=0.5):
     """Fit errors inside a window: below it is round-off, above it the steps are too long for a power law."""
     floor, ceiling = window
     true = propagate(system, start, (0, span), method=Taylor(), samples=1).final
     steps, errors = [], []
-    for n in np.unique(np.geomspace(24, 6000, 90).astype(int)):
+    for n in np.unique(np.geomspace(span / longest, 500 * span, 120).astype(int)):
         found = propagate(system, start, (0, span), method=method, step=span / n, samples=1)
         error = abs(found.final - true).max()
         if floor < error < ceiling:
@@ -41,6 +48,19 @@ def test_fitted_order(method):
 def test_fitted_order_where_both_parts_of_h_depend_on_time(method):
     slope = fitted_order(DRIVEN, DRIVEN_START, method)
     assert slope == pytest.approx(method.order, abs=0.05 * method.order)
+
+
+@pytest.mark.parametrize("stages", range(1, 9))
+def test_fitted_order_of_gauss_methods_on_a_hamiltonian_that_does_not_split(stages):
+    window = (1e-7, 1e-4) if stages == 1 else (3e-13, 1e-6)
+    slope = fitted_order(
+        RELATIVISTIC, RELATIVISTIC_START, Gauss(stages), window=window, span=40.0, longest=1.0
+    )
+    assert slope == pytest.approx(2 * stages, abs=0.1 * stages)
+
+
+def test_gauss_methods_follow_a_driven_system():
+    assert fitted_order(DRIVEN, DRIVEN_START, Gauss(2)) == pytest.approx(4, abs=0.1)
 
 
 def test_the_users_own_coefficients_run():

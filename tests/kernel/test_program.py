@@ -123,8 +123,8 @@ def test_constants_that_are_not_real_are_refused():
 
 
 fractions = st.one_of(
-    st.fractions(max_denominator=10**30),
-    st.tuples(st.integers(1, 10**40), st.integers(1, 10**40)).map(lambda t: Fraction(*t)),
+    st.fractions(-(10**38), 10**38, max_denominator=10**30),
+    st.tuples(st.integers(1, 10**38), st.integers(1, 10**38)).map(lambda t: Fraction(*t)),
 )
 
 
@@ -138,6 +138,11 @@ def test_constants_print_as_the_nearest_machine_number(value):
     printed = Fraction(mantissa) * Fraction(2) ** (exponent - 16383 - 63) if mantissa else Fraction(0)
     assert abs(printed - abs(value)) <= Fraction(2) ** -64 * abs(value)
     assert (int(digits[:4], 16) >= 0x8000) == (value < 0)
+
+
+def test_constants_too_large_for_a_type_are_refused():
+    with pytest.raises(OverflowError, match="too large for float"):
+        SINGLE.literal(Fraction(10**39))
 
 
 def test_exact_numbers():

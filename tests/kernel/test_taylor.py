@@ -30,7 +30,21 @@ def test_hamiltons_equations_agree_with_heyokas(system):
 
 def test_every_function_reaches_heyoka():
     real = sp.Symbol("x", real=True)
-    names = ["sin", "cos", "tan", "exp", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "atanh", "Abs"]
+    names = [
+        "sin",
+        "cos",
+        "tan",
+        "exp",
+        "asin",
+        "acos",
+        "atan",
+        "sinh",
+        "cosh",
+        "tanh",
+        "asinh",
+        "atanh",
+        "Abs",
+    ]
     functions = [getattr(sp, name) for name in names]
     graph_of = equations(sum(f(real) for f in functions), (real,), (sp.Symbol("p"),), sp.Symbol("t"), {})
     terms = [graph_of.node(f(real), "f") for f in functions]
