@@ -77,7 +77,7 @@ def _study() -> DriftStudy:
     from canon.study.comparison import drift_study
 
     scene = find("henon-heiles")
-    print(f"2. Does its simulation stay right?  {scene.title}\n", flush=True)
+    print("2. Does its simulation stay right, and what does that cost?\n", flush=True)
     methods = (Splitting("kahan-li-8"), Splitting("verlet"), RK4(), Taylor())
     step = scene.period / STEPS_PER_PERIOD
     with Progress() as progress:
@@ -85,12 +85,13 @@ def _study() -> DriftStudy:
 
 
 def _show_study(study: DriftStudy) -> None:
+    from canon.study.drift import Growth
     from canon.study.table import drift_table
 
     print(drift_table(study))
     print()
     for row in study.rows:
-        if row.drift is not None:
+        if row.drift is not None and row.drift.verdict is not Growth.BOUNDED:
             told = f"{row.method}: {row.drift.verdict.value}; {row.drift.reason}."
             print(textwrap.fill(told, 100, subsequent_indent="  "))
     print()
