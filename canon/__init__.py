@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from canon.expression.symbol import time_derivative as time_derivative
     from canon.flow.method import DOP853 as DOP853
     from canon.flow.method import RK4 as RK4
+    from canon.flow.method import Gauss as Gauss
     from canon.flow.method import Splitting as Splitting
     from canon.flow.method import Taylor as Taylor
     from canon.flow.propagate import Trajectory as Trajectory
@@ -58,6 +59,7 @@ __all__ = [
     "Domain",
     "Drift",
     "Evidence",
+    "Gauss",
     "GeneratingFunction",
     "Hamiltonian",
     "Lagrangian",
@@ -93,7 +95,7 @@ _ROOMS = {
     "canon.exercise.sheet": ("Claim", "Sheet", "read_sheet"),
     "canon.expression.language": ("parse_expression",),
     "canon.expression.symbol": ("Coordinate", "coordinates", "parameters", "time", "time_derivative"),
-    "canon.flow.method": ("DOP853", "RK4", "Splitting", "Taylor"),
+    "canon.flow.method": ("DOP853", "RK4", "Gauss", "Splitting", "Taylor"),
     "canon.flow.propagate": ("Trajectory", "propagate"),
     "canon.mechanics.bracket": ("lagrange_bracket", "lie_bracket", "poisson_bracket"),
     "canon.mechanics.generating": ("GeneratingFunction", "generating_function"),
