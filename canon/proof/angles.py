@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from functools import cache
 from math import lcm
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from flint import fmpq, fmpz_poly
 
+from canon.proof.lattice import Angle, Lattice
 from canon.proof.tower import Fraction, TooLarge
 
 if TYPE_CHECKING:
@@ -18,10 +19,22 @@ if TYPE_CHECKING:
 
     from canon.proof.normal_form import NormalForm
 
-__all__ = ["Refine", "combination", "cos_sin", "divided", "elementary", "imaginary_split", "phase_of_pi"]
+__all__ = [
+    "Refine",
+    "combination",
+    "cos_sin",
+    "divided",
+    "elementary",
+    "imaginary_split",
+    "phase_of_pi",
+    "sign_of_wave",
+]
 
-LARGEST_MULTIPLE = 200
+LARGEST_MULTIPLE = 1100
 """Multiples of an angle or exponent that are still written out."""
+
+LARGEST_FIELD = 400
+"""Order of the roots of unity that are still computed with."""
 
 BY_RADICALS = frozenset({1, 2, 3, 4, 5, 6, 10, 12})
 """Denominators q for which cos(πp/q) is written in square roots; others go through cyclotomic fields."""
@@ -118,8 +131,15 @@ def cos_sin(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
     t = n.tower
     a, b = imaginary_split(n, f)
     pair = (t.number(1), t.number(0))
+    rest: list[tuple[Fraction, fmpq]] = []
     for atom, r in combination(n, a):
-        pair = turned(n, pair, _multiple_angle(n, atom, r))
+        known = _special_angle(n, atom, r)
+        if known is None:
+            rest.append((atom, r))
+        else:
+            pair = turned(n, pair, known)
+    for angle, times in _in_base_angles(n, rest):
+        pair = turned(n, pair, multiple(n, _base_angle(n, angle), times))
     if not b.num.is_zero():
         cosh, sinh = cosh_sinh(n, b)
         pair = turned(n, pair, (cosh, t.times(n.imaginary_unit, sinh)))
@@ -148,21 +168,40 @@ def multiple(n: NormalForm, pair: tuple[Fraction, Fraction], times: int) -> tupl
     return (result[0], n.negative(result[1])) if times < 0 else result
 
 
-def _multiple_angle(n: NormalForm, atom: Fraction, r: fmpq) -> tuple[Fraction, Fraction]:
+def _special_angle(n: NormalForm, atom: Fraction, r: fmpq) -> tuple[Fraction, Fraction] | None:
+    """Return cos and sin of r·atom for multiples of π and of arcs, which need no base angle."""
     from canon.proof.arcs import cos_sin_of_arc
 
     kernel = n.only_kernel(atom)
     if kernel == ("pi",):
         return phase_of_pi(n, r)
-    key = n.fraction_key(atom)
     if kernel is not None and (known := cos_sin_of_arc(n, kernel, r)) is not None:
         return known
-    if r.q == 1 and n.parts.get(("angle", key), 1) == 1 and _whole_multiple_of_pi(n, atom):
-        return _alternating(n, key, atom, int(r.p))
-    if abs(r) > LARGEST_MULTIPLE:
-        return _base_angle(n, (key, int(r.p), int(r.q)), n.scaled(r, atom), 1)
-    parts = divided(n, "angle", key, r)
-    return multiple(n, _base_angle(n, key, atom, parts), int((r * parts).p))
+    if r.q == 1 and _whole_multiple_of_pi(n, atom):
+        return _alternating(n, n.fraction_key(atom), atom, int(r.p))
+    return None
+
+
+def _in_base_angles(n: NormalForm, terms: list[tuple[Fraction, fmpq]]) -> list[tuple[Angle, int]]:
+    """Write an argument as whole multiples of base angles, a basis of the lattice of all arguments met.
+
+    An argument outside the lattice widens it, and the work starts again.
+    """
+    if not terms:
+        return []
+    for atom, _ in terms:
+        n.atoms.setdefault(n.fraction_key(atom), atom)
+    wanted: Angle = frozenset((n.fraction_key(atom), int(r.p), int(r.q)) for atom, r in terms)
+    lattice = n.parts.setdefault("angles", Lattice())
+    found = lattice.coordinates(wanted)
+    if found is None:
+        lattice.add(wanted)
+        for key, _, _ in wanted:
+            lattice.meaning.setdefault(key, n.fraction_expression(n.atoms[key]))
+        raise Refine
+    if any(abs(k) > LARGEST_MULTIPLE for _, k in found):
+        return [(wanted, 1)]
+    return found
 
 
 def _whole_multiple_of_pi(n: NormalForm, atom: Fraction) -> bool:
@@ -187,41 +226,63 @@ def _alternating(n: NormalForm, key: Hashable, atom: Fraction, k: int) -> tuple[
     return t.power(c, k % 2), t.number(0)
 
 
-def _base_angle(n: NormalForm, key: Hashable, atom: Fraction, parts: int) -> tuple[Fraction, Fraction]:
-    """Return cos and sin of a part of one atom as two generators with s² = 1 − c².
+def _base_angle(n: NormalForm, angle: Angle) -> tuple[Fraction, Fraction]:
+    """Return cos and sin of a base angle as two generators with s² = 1 − c².
 
     Their signs follow from the range of the angle on the domain.
     """
     t = n.tower
-    sin_kernel = ("sin", key, parts)
-    fresh = not t.knows(sin_kernel)
-    real = n.is_real(atom)
-    angle = lambda: n.fraction_expression(atom) / parts  # noqa: E731
-    signs = _quadrant(n, atom, parts) if fresh and real else ("real", "real") if real else ("", "")
-    c = n.atom(("cos", key, parts), signs[0], lambda: sp.cos(angle()))
-    s = n.atom(sin_kernel, signs[1], lambda: sp.sin(angle()))
+    fresh = not t.knows(("sin", angle))
     if fresh:
-        n.arguments[("cos", key, parts)] = n.arguments[sin_kernel] = n.scaled(fmpq(1, parts), atom)
-        t.relate(t.generator(sin_kernel), 2, 1 - c.num**2)
+        for key, _, _ in angle:
+            if key not in n.atoms:
+                n.atoms[key] = n.form(n.parts["angles"].meaning[key])
+        argument = t.sum(n.scaled(fmpq(p, q), n.atoms[key]) for key, p, q in angle)
+        n.arguments["cos", angle] = n.arguments["sin", angle] = argument
+        real = n.is_real(argument)
         if real:
-            n.signs.learn(1 - c.num, strict=False, combine=False)
-            n.signs.learn(1 + c.num, strict=False, combine=False)
+            n.ranges[angle] = _range(n, angle)
+        signs = _quadrant(n, angle) if real else ("", "")
+    else:
+        real, signs = False, ("", "")
+    c = n.atom(("cos", angle), signs[0], lambda: sp.cos(n.fraction_expression(n.arguments["cos", angle])))
+    s = n.atom(("sin", angle), signs[1], lambda: sp.sin(n.fraction_expression(n.arguments["sin", angle])))
+    if fresh:
+        t.relate(t.generator(("sin", angle)), 2, 1 - c.num**2)
+        if real:
+            for bound in (1 - c.num, 1 + c.num, 1 - c.num**2, 1 - s.num, 1 + s.num):
+                n.signs.learn(bound, strict=False, combine=False)
     return c, s
 
 
-def _quadrant(n: NormalForm, atom: Fraction, parts: int) -> tuple[str, str]:
-    """Return the signs of cos and sin of atom/parts where the domain bounds a single symbol."""
-    kernel = n.only_kernel(atom)
-    if kernel is None or kernel[0] != "symbol":
-        return "real", "real"
-    low, high, strict = n.domain.interval(kernel[1])
-    low, high = low / parts, high / parts
+def _range(n: NormalForm, angle: Angle) -> tuple[Expr, Expr, bool]:
+    """Return the bounds of a base angle that is a multiple of one symbol, and whether both are excluded."""
+    if len(angle) == 1:
+        ((key, p, q),) = angle
+        kernel = n.only_kernel(n.atoms[key])
+        if kernel is not None and kernel[0] == "symbol":
+            low, high, strict = n.domain.interval(kernel[1])
+            ends = (low * sp.Rational(p, q), high * sp.Rational(p, q))
+            return (*(ends if p > 0 else ends[::-1]), strict)
+    return -sp.oo, sp.oo, True
+
+
+def _quadrant(n: NormalForm, angle: Angle) -> tuple[str, str]:
+    """Return the signs of cos and sin on the range of a base angle."""
+    return sign_of_wave(n, angle, 1, 0) or "real", sign_of_wave(n, angle, 0, 1) or "real"
+
+
+def sign_of_wave(n: NormalForm, angle: Angle, a: Any, b: Any) -> str:
+    """Return the sign of a cos φ + b sin φ = R cos(φ − δ), R > 0, on the range of φ, if it has one."""
+    low, high, strict = n.ranges.get(angle, (-sp.oo, sp.oo, True))
     if not (low.is_finite and high.is_finite):
-        return "real", "real"
-    return (
-        _sign_between(low, high, -sp.pi / 2, strict=strict),
-        _sign_between(low, high, sp.Integer(0), strict=strict),
-    )
+        return ""
+    shift = sp.atan2(_rational(b), _rational(a))
+    return _sign_between(low - shift, high - shift, -sp.pi / 2, strict=strict)
+
+
+def _rational(number: Any) -> sp.Rational:
+    return sp.Rational(int(number.p), int(number.q)) if isinstance(number, fmpq) else sp.Rational(number)
 
 
 def _sign_between(low: Expr, high: Expr, rise: Expr, *, strict: bool) -> str:
@@ -233,7 +294,7 @@ def _sign_between(low: Expr, high: Expr, rise: Expr, *, strict: bool) -> str:
             sign = "+" if turn % 2 == 0 else "-"
             inside = (low - start).is_positive and (end - high).is_positive
             return sign if strict or inside else "0" + sign
-    return "real"
+    return ""
 
 
 # -- rational multiples of π ---------------------------------------------------------------------------
@@ -278,7 +339,7 @@ def _cosine_in_field(n: NormalForm, k: int, order: int) -> Fraction:
 @cache
 def _minimal_polynomial(m: int) -> tuple[int, ...]:
     """Return the minimal polynomial of 2cos(2π/m) from Φ_m(z) = z^(φ/2) ψ(z + 1/z), constant term first."""
-    if m > 2 * LARGEST_MULTIPLE:
+    if m > LARGEST_FIELD:
         raise TooLarge(f"the field of the {m}-th roots of unity")
     phi = [int(c) for c in fmpz_poly.cyclotomic(m)]
     middle = len(phi) // 2

@@ -234,6 +234,15 @@ def _sign(z: acb) -> acb:
     return z / acb(abs(z))
 
 
+def _heaviside(z: acb, at_zero: acb) -> acb:
+    if z.is_zero():
+        return at_zero
+    real = _real(z)
+    if real.contains(0):
+        raise NotDecided("the step of something near zero")
+    return acb(1 if real > 0 else 0)
+
+
 def _atan2(y: acb, x: acb) -> acb:
     if y.is_zero() and x.is_zero():
         raise Undefined("atan2(0, 0)")
@@ -316,6 +325,7 @@ _FUNCTIONS: dict[Any, Callable[..., acb]] = {
     sp.atan2: _atan2,
     sp.Abs: lambda z: acb(abs(z)),
     sp.sign: _sign,
+    sp.Heaviside: _heaviside,
     sp.re: lambda z: acb(z.real),
     sp.im: lambda z: acb(z.imag),
     sp.conjugate: lambda z: z.conjugate(),

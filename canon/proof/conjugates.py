@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["radicals_cancel"]
 
-LARGEST_DEGREE = 96
-"""Product of the degrees of the radicals in one number."""
-
 DEEPEST = 4
 
 LONGEST_NORM = 40
@@ -103,4 +100,4 @@ def _is_algebraic(n: NormalForm, p: fmpq_mpoly) -> bool:
         seen.add(k)
         degree *= relation[0]
         open_ |= set(t.used(relation[1])) - seen
-    return degree <= LARGEST_DEGREE and bool(seen)
+    return degree <= t.limits.eliminated_degree and bool(seen)

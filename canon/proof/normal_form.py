@@ -17,7 +17,7 @@ from canon.proof import angles, arcs, powers
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import declared_complex
 from canon.proof.signs import Signs
-from canon.proof.tower import LARGEST_PRODUCT, Fraction, TooLarge, Tower
+from canon.proof.tower import THOROUGH, Fraction, Limits, TooLarge, Tower
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable
@@ -45,23 +45,25 @@ class NormalForm:
         is raised, after which the work starts again.
     deadline
         Value of :func:`time.monotonic` to stop at.
-    largest_product, capacity
+    limits, capacity
         See :class:`~canon.proof.tower.Tower`.
     """
 
     def __init__(
         self,
         domain: Domain,
-        parts: dict[Hashable, int],
+        parts: dict[Hashable, Any],
         deadline: float = float("inf"),
-        largest_product: int = LARGEST_PRODUCT,
+        limits: Limits = THOROUGH,
         capacity: int = 16,
     ) -> None:
         self.domain = domain
-        self.tower = Tower(deadline, largest_product, capacity)
+        self.tower = Tower(deadline, limits, capacity)
         self.signs = Signs(self.tower, self._sign_of_constant)
         self.parts = parts
         self.arguments: dict[Hashable, Fraction] = {}
+        self.atoms: dict[Hashable, Fraction] = {}
+        self.ranges: dict[Hashable, tuple[Expr, Expr, bool]] = {}
         self.known_roots: dict[Hashable, Fraction] = {}
         self._meaning: dict[int, Callable[[], Expr]] = {}
         self._memo: dict[sp.Basic, Fraction] = {}
@@ -91,7 +93,7 @@ class NormalForm:
 
     def _sign_of_constant(self, p: fmpq_mpoly) -> str:
         if not all(self._is_constant(k) for k in self.tower.used(p)):
-            return ""
+            return self._sign_of_wave(p)
         expr = self.expression(p)
         for bits in (64, 256, 1024):
             with precision(bits):
@@ -107,6 +109,17 @@ class NormalForm:
                 if real < 0:
                     return "-"
         return ""
+
+    def _sign_of_wave(self, p: fmpq_mpoly) -> str:
+        """Return the sign of a cos φ + b sin φ with rational a, b on the range of φ."""
+        terms = self.tower.terms(p)
+        kernels = [self.tower.generators[m[0][0]] for m, _ in terms if len(m) == 1 and m[0][1] == 1]
+        if len(kernels) != len(terms) or len(terms) > 2:
+            return ""
+        weights = {kernel[0]: c for kernel, (_, c) in zip(kernels, terms, strict=True)}
+        if not set(weights) <= {"cos", "sin"} or len({kernel[1] for kernel in kernels}) > 1:
+            return ""
+        return angles.sign_of_wave(self, kernels[0][1], weights.get("cos", 0), weights.get("sin", 0))
 
     def _is_constant(self, generator: int) -> bool:
         """Tell whether a generator is a number."""

@@ -130,17 +130,21 @@ def _group_vanishes(n: NormalForm, h: Fraction) -> bool:
         (t.generators[k][0], any(t.generators[j] == ("I",) for j, _ in m)) for m, _ in terms for k, _ in m
     }
     turns = any((arc, False) in kinds for arc in ARCS) or ("log", True) in kinds
-    whole = 1
-    for monomial, coefficient in terms:
-        if any(t.generators[k][0] in ARCS for k, _ in monomial) and int(coefficient.q) > 2:
-            whole = lcm(whole, int(coefficient.q))
-    w = n.scaled(whole, t.times(n.imaginary_unit, h) if turns else h)
-    if not t.is_zero(n.minus(exponential(n, w), t.number(1))):
-        return False
-    bound = POINT
-    for monomial, coefficient in t.terms(w.num):
-        bound = bound.plus(_range(n, monomial).times(Rational(int(coefficient.p), int(coefficient.q))))
-    return bound.only_zero_turns() or _zero_by_continuity(n, h, w)
+    denominators = [int(c.q) for m, c in terms if any(t.generators[k][0] in ARCS for k, _ in m)]
+    common = lcm(*denominators) if denominators else 1
+    multiples = {1 if common <= 2 else common, common, 2 * common} if denominators else {1}
+    w = h
+    for multiple in sorted(multiples):
+        w = n.scaled(multiple, t.times(n.imaginary_unit, h) if turns else h)
+        if not t.is_zero(n.minus(exponential(n, w), t.number(1))):
+            continue
+        bound = POINT
+        for monomial, coefficient in t.terms(w.num):
+            part = _range(n, monomial).times(Rational(int(coefficient.p), int(coefficient.q)))
+            bound = bound.plus(part)
+        if bound.only_zero_turns() or _zero_by_continuity(n, h, w):
+            return True
+    return False
 
 
 def _range(n: NormalForm, monomial: Monomial) -> Range:

@@ -122,7 +122,7 @@ def _factors(n: NormalForm, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly,
         kernel = t.generators[k]
         if kernel[0] != "cos":
             continue
-        homogeneous = _homogeneous(n, p, k, t.generator(("sin", *kernel[1:])))
+        homogeneous = _homogeneous(n, p, k, t.generator(("sin", kernel[1])))
         if homogeneous is not None:
             unit, factors = t.factors(homogeneous)
             if len(factors) > 1 or factors[0][1] > 1:

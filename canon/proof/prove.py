@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from canon.proof.angles import Refine
 from canon.proof.conjugates import radicals_cancel
 from canon.proof.normal_form import NormalForm
 from canon.proof.phases import arcs_cancel
 from canon.proof.split import cases, settle_equalities
-from canon.proof.tower import LARGEST_PRODUCT, Full, OutOfTime, TooLarge
+from canon.proof.tower import THOROUGH, Full, Limits, OutOfTime, TooLarge
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Attempt", "prove_zero"]
 
-MOST_CASES = 27
+MOST_STARTS = 60
+"""Times that the normal form is begun anew because a kernel had to be refined."""
+
+MOST_CASES = 64
 """Cases into which one claim is cut at most."""
 
 
@@ -34,6 +37,7 @@ class Attempt:
     rungs: list[str] = field(default_factory=list[str])
     obstacles: list[str] = field(default_factory=list[str])
     cases: int = 1
+    capped: bool = False
 
     def reach(self, rung: str) -> None:
         """Note a rung that was needed."""
@@ -46,18 +50,16 @@ class Attempt:
             self.obstacles.append(obstacle)
 
 
-def prove_zero(
-    expr: Expr, domain: Domain, deadline: float, largest_product: int = LARGEST_PRODUCT
-) -> Attempt:
+def prove_zero(expr: Expr, domain: Domain, deadline: float, limits: Limits = THOROUGH) -> Attempt:
     """Try to prove that an expression vanishes wherever it is defined on the domain."""
     attempt = Attempt()
     case = settle_equalities(expr, domain)
-    attempt.holds = case.expr is None or _prove(case.expr, case.domain, deadline, largest_product, attempt)
+    attempt.holds = case.expr is None or _prove(case.expr, case.domain, deadline, limits, attempt)
     return attempt
 
 
-def _prove(expr: Expr, domain: Domain, deadline: float, largest: int, attempt: Attempt) -> bool:
-    if _without_cases(expr, domain, deadline, largest, attempt):
+def _prove(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt: Attempt) -> bool:
+    if _without_cases(expr, domain, deadline, limits, attempt):
         return True
     pieces = cases(expr, domain)
     if pieces is None or time.monotonic() > deadline:
@@ -67,20 +69,20 @@ def _prove(expr: Expr, domain: Domain, deadline: float, largest: int, attempt: A
         attempt.stop(f"more than {MOST_CASES} cases")
         return False
     for piece in pieces:
-        if piece.expr is not None and not _prove(piece.expr, piece.domain, deadline, largest, attempt):
+        if piece.expr is not None and not _prove(piece.expr, piece.domain, deadline, limits, attempt):
             attempt.stop(f"not proved for {piece.where}")
             return False
     attempt.reach("cases")
     return True
 
 
-def _without_cases(expr: Expr, domain: Domain, deadline: float, largest: int, attempt: Attempt) -> bool:
+def _without_cases(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt: Attempt) -> bool:
     """Reduce to the normal form, refining kernels until every argument is a whole multiple."""
-    parts: dict[Hashable, int] = {}
+    parts: dict[Hashable, Any] = {}
     capacity = 16
-    for _ in range(20):
+    for _ in range(MOST_STARTS):
         try:
-            forms = NormalForm(domain, parts, deadline, largest, capacity)
+            forms = NormalForm(domain, parts, deadline, limits, capacity)
             if forms.empty:
                 return True
             f = forms.form(expr)
@@ -98,12 +100,16 @@ def _without_cases(expr: Expr, domain: Domain, deadline: float, largest: int, at
         except Full:
             capacity *= 2
             continue
-        except OutOfTime:
-            attempt.stop("not finished in time")
-        except (TooLarge, ZeroDivisionError) as reason:
-            attempt.stop(str(reason))
-        else:
+            attempt.capped = attempt.capped or forms.tower.capped
             attempt.stop("the normal form is not zero")
+        except OutOfTime:
+            attempt.capped = True
+            attempt.stop("not finished in time")
+        except TooLarge as reason:
+            attempt.capped = True
+            attempt.stop(f"too large: {reason}")
+        except ZeroDivisionError as reason:
+            attempt.stop(str(reason))
         return False
     attempt.stop("arguments without a common part")
     return False

@@ -22,8 +22,8 @@ Monomial = tuple[tuple[int, int], ...]
 MOST_SEARCHES = 1500
 """Polynomials whose sign is looked for by more than their terms, in one tower."""
 
-MOST_CONDITIONS = 6
-MOST_FACTS = 48
+MOST_CONDITIONS = 8
+MOST_FACTS = 80
 DEEPEST = 4
 LONGEST = 60
 

@@ -21,6 +21,11 @@ __all__ = ["Case", "cases", "settle_equalities"]
 MOST_VALUES = 24
 """Values or residues of an integer that are gone through one by one."""
 
+KINKED = (sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside)
+
+MONOTONIC = (sp.exp, sp.sinh, sp.tanh, sp.atan, sp.asinh)
+"""Functions that grow on the whole real line."""
+
 NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.AccumBounds)
 
 
@@ -40,17 +45,17 @@ def cases(expr: Expr, domain: Domain) -> list[Case] | None:
     """
     piecewise = sorted(expr.atoms(sp.Piecewise), key=sp.default_sort_key)
     if piecewise:
-        return list(_pieces(expr, domain, _innermost(piecewise, sp.Piecewise)))
-    for kind in (sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside):
-        found = sorted(expr.atoms(kind), key=sp.default_sort_key)
-        found = [e for e in found if not any(map(declared_complex, e.free_symbols)) and e.free_symbols]
-        if found:
-            innermost = _innermost(found, kind)
-            plain = all(a.is_polynomial() for a in innermost.args)
-            by_symbol = None if plain else _by_symbol(innermost, domain)
-            if by_symbol is not None and len(innermost.free_symbols) == 1:
-                return _by_symbol(innermost, domain, expr)
-            return _by_kind(expr, domain, innermost)
+        innermost = next(e for e in piecewise if not any(a.has(sp.Piecewise) for a in e.args))
+        return list(_pieces(expr, domain, innermost))
+    found = sorted(expr.atoms(*KINKED), key=sp.default_sort_key)
+    found = [e for e in found if not any(map(declared_complex, e.free_symbols)) and e.free_symbols]
+    if found:
+        innermost = next(e for e in found if not any(a.has(*KINKED) for a in e.args))
+        if len(innermost.free_symbols) == 1 and not all(a.is_polynomial() for a in innermost.args):
+            by_symbol = _by_symbol(innermost, domain, expr)
+            if by_symbol is not None:
+                return by_symbol
+        return _by_kind(expr, domain, innermost)
     return _by_integer(expr, domain) or _by_symbol(expr, domain)
 
 
@@ -83,19 +88,9 @@ def _angle_denominator(expr: Expr, n: Symbol) -> int:
     return denominator
 
 
-def _innermost(found: list[sp.Basic], kind: type[sp.Basic]) -> sp.Basic:
-    return next(e for e in found if not any(a.has(kind) for a in e.args))
-
-
 def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | None:
     if isinstance(function, sp.Max | sp.Min):
-        first, *others = function.args
-        rest = type(function)(*others)
-        larger = isinstance(function, sp.Max)
-        return [
-            _case(expr, {function: first if larger else rest}, domain, sp.Ge(first, rest)),
-            _case(expr, {function: rest if larger else first}, domain, sp.Lt(first, rest)),
-        ]
+        return [_extreme(expr, domain, function, i) for i in range(len(function.args))]
     u = function.args[0]
     if u.is_real is False or u.has(sp.I):
         return None
@@ -113,8 +108,26 @@ def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | Non
     ]
 
 
+def _extreme(expr: Expr, domain: Domain, function: sp.Basic, i: int) -> Case:
+    """Return the case in which argument i is the first that is largest (smallest)."""
+    chosen = function.args[i]
+    conditions: list[sp.Basic] = []
+    for j, other in enumerate(function.args):
+        if j != i:
+            larger, smaller = (chosen, other) if isinstance(function, sp.Max) else (other, chosen)
+            conditions.append(_without_monotonic(larger, smaller, strict=j < i))
+    return _case(expr, {function: chosen}, domain, sp.And(*conditions))
+
+
+def _without_monotonic(larger: Expr, smaller: Expr, *, strict: bool) -> sp.Basic:
+    while larger.func == smaller.func and isinstance(larger, MONOTONIC):
+        larger, smaller = larger.args[0], smaller.args[0]
+    return sp.Gt(larger, smaller) if strict else sp.Ge(larger, smaller)
+
+
 def _case(expr: Expr, replaced: dict[sp.Basic, Expr], domain: Domain, condition: sp.Basic) -> Case:
-    return settle_equalities(expr.xreplace(replaced), _narrowed(domain, condition), str(condition))
+    known = Domain(tuple(c.xreplace(replaced) for c in domain.conditions), domain.box)
+    return settle_equalities(expr.xreplace(replaced), _narrowed(known, condition), str(condition))
 
 
 def _narrowed(domain: Domain, *conditions: sp.Basic) -> Domain:
@@ -183,7 +196,7 @@ def _substituted(expr: Expr, domain: Domain, symbol: Symbol, by: Expr, where: st
 
 def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
     """Use an equality of the domain to remove a symbol that it holds linearly with a constant slope."""
-    for condition in domain.conditions:
+    for condition in (*domain.conditions, *_pinched(domain)):
         if not isinstance(condition, sp.Eq):
             continue
         gap = condition.lhs - condition.rhs
@@ -205,6 +218,14 @@ def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
                 else Case(None, narrowed, where)
             )
     return Case(expr, domain, where)
+
+
+def _pinched(domain: Domain) -> list[sp.Basic]:
+    """Return g = 0 where the domain says both g ≥ 0 and g ≤ 0."""
+    gaps = [
+        sp.expand(c.gts - c.lts) for c in domain.conditions if isinstance(c, sp.GreaterThan | sp.LessThan)
+    ]
+    return [sp.Eq(gap, 0) for gap in gaps if -gap in gaps and gap != 0][:1]
 
 
 def _assumed(s: Symbol, solution: Expr) -> tuple[Boolean, ...]:

@@ -18,13 +18,34 @@ from flint.utils.flint_exceptions import DomainError
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable
 
-__all__ = ["Fraction", "Full", "OutOfTime", "TooLarge", "Tower"]
+__all__ = ["QUICK", "THOROUGH", "Fraction", "Full", "Limits", "OutOfTime", "TooLarge", "Tower"]
 
-LARGEST_PRODUCT = 3_000_000
-"""Term products that are multiplied out at most in one step (about a second)."""
 
-FACTORED_UP_TO = (40, 16)
-"""Terms and total degree of a polynomial that is still factored; larger ones are kept whole."""
+@dataclass(frozen=True)
+class Limits:
+    """Sizes that are checked before an operation that cannot be interrupted.
+
+    Parameters
+    ----------
+    product
+        Products of terms in one multiplication.
+    factored_terms, factored_degree
+        Size of a polynomial that is still factored; larger ones are kept whole.
+    eliminated_degree
+        Product of the degrees of the radicals in one number.
+    """
+
+    product: int
+    factored_terms: int
+    factored_degree: int
+    eliminated_degree: int
+
+
+QUICK = Limits(product=100_000, factored_terms=40, factored_degree=16, eliminated_degree=48)
+"""Limits in the user's own process: no operation takes more than some milliseconds."""
+
+THOROUGH = Limits(product=20_000_000, factored_terms=200, factored_degree=40, eliminated_degree=128)
+"""Limits in the worker, which can be killed."""
 
 
 class TooLarge(Exception):
@@ -54,17 +75,16 @@ class Tower:
     ----------
     deadline
         Value of :func:`time.monotonic` after which arithmetic raises :class:`OutOfTime`.
-    largest_product
-        Term products beyond which a multiplication raises :class:`TooLarge`.
+    limits
+        Sizes beyond which :class:`TooLarge` is raised.
     capacity
         Number of generators beyond which :class:`Full` is raised.
     """
 
-    def __init__(
-        self, deadline: float = float("inf"), largest_product: int = LARGEST_PRODUCT, capacity: int = 16
-    ) -> None:
+    def __init__(self, deadline: float = float("inf"), limits: Limits = THOROUGH, capacity: int = 16) -> None:
         self.deadline = deadline
-        self.largest_product = largest_product
+        self.limits = limits
+        self.capped = False
         self.generators: list[Any] = []
         self._index: dict[Hashable, int] = {}
         self._relations: dict[int, tuple[int, fmpq_mpoly]] = {}
@@ -151,7 +171,7 @@ class Tower:
     def product(self, a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:
         """Multiply and reduce, after checking time and size."""
 
-        if len(a) * len(b) > self.largest_product:
+        if len(a) * len(b) > self.limits.product:
             raise TooLarge(f"a product of {len(a)} by {len(b)} terms")
         self.check_time()
         return self.reduce(a * b)
@@ -172,11 +192,11 @@ class Tower:
 
     def factors(self, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
         """Write p as a number times powers of irreducible factors; a large p stays one factor."""
-        terms, degree = FACTORED_UP_TO
         self.check_time()
-        if len(p) <= terms and p.total_degree() <= degree:
+        if len(p) <= self.limits.factored_terms and p.total_degree() <= self.limits.factored_degree:
             unit, found = p.factor()
             return unit, [(factor, int(e)) for factor, e in found]
+        self.capped = self.capped or len(p) <= THOROUGH.factored_terms
         unit = p.leading_coefficient()
         return unit, [(p * self.constant(1 / unit), 1)]
 

@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.proof.budget import prove_in_worker
 from canon.proof.domain import EVERYWHERE, Domain
 from canon.proof.prove import Attempt, prove_zero
-from canon.proof.refute import evaluated, look_for_counterexample, search_widely
+from canon.proof.refute import Search, evaluated, look_for_counterexample, search_widely
+from canon.proof.tower import QUICK
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
@@ -22,8 +24,11 @@ if TYPE_CHECKING:
 
 __all__ = ["equal", "vanishes"]
 
-PROOF_SHARE = 0.6
-"""Part of the time left that the proving rungs may use before the wider search."""
+QUICK_SECONDS = 0.5
+"""Time for the proving rungs in the user's own process."""
+
+SEARCH_SHARE = 0.3
+"""Part of the time left that the wider search for a counterexample may use."""
 
 
 def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: float = 10.0) -> Verdict:
@@ -128,20 +133,37 @@ def _exact(expr: object) -> Expr:
 
 
 def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
+    """Climb the ladder: a few balls, the quick proof, many balls, the thorough proof in the worker."""
     symbols = left.free_symbols | right.free_symbols
     search = look_for_counterexample(left, right, domain.points(symbols, 3), highest=64, deadline=deadline)
-    proof = Attempt()
-    if search.counterexample is None:
-        now = time.monotonic()
-        proof = prove_zero(left - right, domain, now + PROOF_SHARE * (deadline - now))
-        if proof.holds:
-            return Verdict(Status.HOLDS, certificate=" + ".join(proof.rungs) or "exact")
-        search = search_widely(left, right, domain, deadline)
     if search.counterexample is not None:
-        return Verdict(
-            Status.FAILS, certificate="ball", counterexample=search.counterexample, residual=left - right
-        )
-    tried = tuple(Evidence("tried", obstacle) for obstacle in proof.obstacles)
+        return _refuted(left, right, search)
+    proof = prove_zero(left - right, domain, min(deadline, time.monotonic() + QUICK_SECONDS), QUICK)
+    if proof.holds:
+        return _proved(proof)
+    now = time.monotonic()
+    search = search_widely(left, right, domain, now + SEARCH_SHARE * (deadline - now))
+    if search.counterexample is not None:
+        return _refuted(left, right, search)
+    obstacles = proof.obstacles
+    if proof.capped and (seconds := deadline - time.monotonic()) > 0:
+        thorough = prove_in_worker(left - right, domain, seconds)
+        if isinstance(thorough, str):
+            obstacles = [*obstacles, thorough]
+        elif thorough.holds:
+            return _proved(thorough)
+        else:
+            obstacles = thorough.obstacles
+    tried = tuple(Evidence("tried", obstacle) for obstacle in obstacles)
+    known = Evidence("balls", search.known)
+    return Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, known))
+
+
+def _refuted(left: Expr, right: Expr, search: Search) -> Verdict:
     return Verdict(
-        Status.UNDECIDED, residual=left - right, evidence=(*tried, Evidence("balls", search.known))
+        Status.FAILS, certificate="ball", counterexample=search.counterexample, residual=left - right
     )
+
+
+def _proved(proof: Attempt) -> Verdict:
+    return Verdict(Status.HOLDS, certificate=" + ".join(proof.rungs) or "exact")
