@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, cast
 from canon.proof.worker import read_message, write_message
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from sympy import Expr
 
     from canon.proof.domain import Domain
@@ -31,22 +33,22 @@ POLL = 0.1
 """Seconds between looks for an interrupt while waiting."""
 
 
-def prove_in_worker(expr: Expr, domain: Domain, seconds: float) -> Attempt | str:
-    """Try to prove in the worker that an expression vanishes.
+def prove_in_worker(exprs: Sequence[Expr], domain: Domain, seconds: float) -> list[Attempt] | str:
+    """Try to prove in the worker that each of some expressions vanishes.
 
     Parameters
     ----------
-    expr, domain
-        As for :func:`canon.proof.prove.prove_zero`.
+    exprs, domain
+        As for :func:`canon.proof.prove.prove_each`.
     seconds
         Time limit, the start of the worker included where it is not running yet.
 
     Returns
     -------
-    Attempt or str
-        What the proving rungs did, or why there is no answer.
+    list of Attempt, or str
+        What the proving rungs did for each, or why there is no answer.
     """
-    return _worker(os.getpid()).ask(expr, domain, seconds)
+    return _worker(os.getpid()).ask(exprs, domain, seconds)
 
 
 @cache
@@ -65,10 +67,10 @@ class _Worker:
         self._conversation: threading.Thread | None = None
         self._lock = threading.Lock()
 
-    def ask(self, expr: Expr, domain: Domain, seconds: float) -> Attempt | str:
+    def ask(self, exprs: Sequence[Expr], domain: Domain, seconds: float) -> list[Attempt] | str:
         """Send one request and wait for the reply, at most as long as it may take."""
         deadline = time.monotonic() + seconds + GRACE
-        request = (expr, type(domain)(domain.conditions, dict(domain.box)), max(0.0, seconds - GRACE))
+        request = (tuple(exprs), type(domain)(domain.conditions, dict(domain.box)), max(0.0, seconds - GRACE))
         replies: queue.SimpleQueue[object] = queue.SimpleQueue()
         with self._lock:
             process = self._running()
@@ -87,7 +89,7 @@ class _Worker:
             if isinstance(reply, OSError | EOFError):
                 self.stop()
                 return "the worker ended, for lack of memory or otherwise"
-            return cast("Attempt | str", reply)
+            return cast("list[Attempt] | str", reply)
 
     def stop(self) -> None:
         """Kill the process, if there is one."""

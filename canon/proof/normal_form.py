@@ -78,6 +78,12 @@ class NormalForm:
         elif isinstance(condition, sp.And):
             for part in condition.args:
                 self._learn(part)
+        elif isinstance(condition, sp.Ne) and isinstance(condition.lhs, sp.Expr):
+            gap = self.form(condition.lhs - condition.rhs)
+            if gap.num.is_zero():
+                self.empty = True
+            else:
+                self.signs.learn_nonzero(gap.num)
         elif isinstance(condition, sp.StrictLessThan | sp.LessThan | sp.StrictGreaterThan | sp.GreaterThan):
             gap = self.form(condition.gts - condition.lts)
             strict = isinstance(condition, sp.StrictLessThan | sp.StrictGreaterThan)

@@ -6,21 +6,22 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from sympy import Ne, Piecewise, Pow, default_sort_key, false, true
+
 from canon.proof.angles import Refine
 from canon.proof.conjugates import radicals_cancel
+from canon.proof.domain import Domain
 from canon.proof.normal_form import NormalForm
 from canon.proof.phases import arcs_cancel
 from canon.proof.split import cases, settle_equalities
 from canon.proof.tower import THOROUGH, Full, Limits, OutOfTime, TooLarge
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
+    from collections.abc import Hashable, Sequence
 
     from sympy import Expr
 
-    from canon.proof.domain import Domain
-
-__all__ = ["Attempt", "prove_zero"]
+__all__ = ["Attempt", "prove_each", "prove_zero"]
 
 MOST_STARTS = 60
 """Times that the normal form is begun anew because a kernel had to be refined."""
@@ -53,9 +54,55 @@ class Attempt:
 def prove_zero(expr: Expr, domain: Domain, deadline: float, limits: Limits = THOROUGH) -> Attempt:
     """Try to prove that an expression vanishes wherever it is defined on the domain."""
     attempt = Attempt()
-    case = settle_equalities(expr, domain)
+    case = settle_equalities(expr, _where_defined(expr, domain))
     attempt.holds = case.expr is None or _prove(case.expr, case.domain, deadline, limits, attempt)
     return attempt
+
+
+def prove_each(
+    exprs: Sequence[Expr], domain: Domain, deadline: float, limits: Limits = THOROUGH
+) -> list[Attempt]:
+    """Try to prove of each expression that it vanishes: over one tower first, then one by one."""
+    if len(exprs) == 1:
+        return [prove_zero(exprs[0], domain, deadline, limits)]
+    reduced = _zero_together(exprs, domain, deadline, limits)
+    return [
+        Attempt(holds=True, rungs=["exact"]) if zero else prove_zero(expr, domain, deadline, limits)
+        for expr, zero in zip(exprs, reduced, strict=True)
+    ]
+
+
+def _zero_together(exprs: Sequence[Expr], domain: Domain, deadline: float, limits: Limits) -> list[bool]:
+    """Tell which expressions have the normal form zero, subexpressions being reduced once for all."""
+    parts: dict[Hashable, Any] = {}
+    capacity = 16
+    found = [False] * len(exprs)
+    for _ in range(MOST_STARTS):
+        try:
+            forms = NormalForm(domain, parts, deadline, limits, capacity)
+            for place, expr in enumerate(exprs):
+                try:
+                    found[place] = found[place] or forms.tower.is_zero(forms.form(expr))
+                except (TooLarge, ZeroDivisionError):
+                    continue
+        except Refine:
+            continue
+        except Full:
+            capacity *= 2
+            continue
+        except (OutOfTime, TooLarge, ZeroDivisionError):
+            pass
+        return found
+    return found
+
+
+def _where_defined(expr: Expr, domain: Domain) -> Domain:
+    """Add that the denominators do not vanish: the claim is about points where the expression is defined."""
+    if expr.has(Piecewise):
+        return domain
+    below = {power.base for power in expr.atoms(Pow) if power.exp.is_negative}
+    nonzero = [Ne(b, 0) for b in sorted(below, key=default_sort_key) if b.is_zero is None]
+    return Domain((*domain.conditions, *(c for c in nonzero if c not in (true, false))), domain.box)
 
 
 def _prove(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt: Attempt) -> bool:

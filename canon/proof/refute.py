@@ -23,7 +23,14 @@ if TYPE_CHECKING:
 
     from canon.proof.domain import Domain
 
-__all__ = ["Search", "evaluated", "look_for_counterexample", "search_widely", "with_example_functions"]
+__all__ = [
+    "Search",
+    "evaluated",
+    "first_counterexample",
+    "look_for_counterexample",
+    "search_widely",
+    "with_example_functions",
+]
 
 HIGHEST_PRECISION = 3200
 """Bits after which a point that has not decided is left."""
@@ -91,6 +98,31 @@ def look_for_counterexample(
         if not point and not has_functions:
             break
     return result
+
+
+def first_counterexample(
+    exprs: Sequence[Expr], domain: Domain, deadline: float, *, points: int = 2
+) -> tuple[Search, int | None]:
+    """Look for an expression that is certainly not zero at a point, values of common parts being shared."""
+    symbols = set[sp.Symbol]().union(*(e.free_symbols for e in exprs))
+    result = Search()
+    shown: Sequence[Expr] = exprs
+    for number, point in enumerate(domain.points(symbols, points)):
+        if any(e.has(AppliedUndef) for e in exprs):
+            shown, result.functions = with_example_functions(exprs, random.Random(number))
+        with precision(128):
+            memo: dict[sp.Basic, acb] = {}
+            for place, expr in enumerate(shown):
+                if time.monotonic() > deadline:
+                    return result, None
+                try:
+                    ball = value(expr, point, memo)
+                except (Undefined, NotDecided, Unmodelled):
+                    continue
+                if not ball.contains(0):
+                    _record(ball, acb(0), point, result)
+                    return result, place
+    return result, None
 
 
 def search_widely(left: Expr, right: Expr, domain: Domain, deadline: float) -> Search:

@@ -46,6 +46,7 @@ class Signs:
         self._facts: list[tuple[fmpq_mpoly, bool]] = []
         self._conditions: list[tuple[fmpq_mpoly, bool]] = []
         self._found: dict[Hashable, str] = {}
+        self._nonzero: set[Hashable] = set()
         self._searches = 0
 
     def declare(self, generator: int, sign: str) -> None:
@@ -67,6 +68,11 @@ class Signs:
             self._facts.append((p, strict))
         self._found.clear()
 
+    def learn_nonzero(self, p: fmpq_mpoly) -> None:
+        """Record that p ≠ 0 wherever the claim is about."""
+        for factor, _ in self.tower.factors(p)[1]:
+            self._nonzero.add(self.tower.key(factor))
+
     def real(self, p: fmpq_mpoly) -> bool:
         """Tell whether every generator of ``p`` is real on the domain."""
         return all(self._of.get(k, "") for k in self.tower.used(p))
@@ -82,10 +88,18 @@ class Signs:
         found = self._found.get(key)
         if found is None:
             self._found[key] = ""
-            found = self._found[key] = self._search(p, depth)
+            found = self._search(p, depth)
+            if found.startswith("0") and self._known_nonzero(p):
+                found = found[1:]
+            self._found[key] = found
             if not found and depth < DEEPEST:
                 del self._found[key]
         return found
+
+    def _known_nonzero(self, p: fmpq_mpoly) -> bool:
+        return bool(self._nonzero) and all(
+            self.tower.key(f) in self._nonzero for f, _ in self.tower.factors(p)[1]
+        )
 
     def _search(self, p: fmpq_mpoly, depth: int) -> str:
         by_terms = self._by_terms(p)

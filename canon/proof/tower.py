@@ -153,7 +153,6 @@ class Tower:
 
     def reduce(self, p: fmpq_mpoly) -> fmpq_mpoly:
         """Replace every power that a relation covers, highest generator first."""
-
         if not self._relations or p.is_constant():
             return p
         last = self._capacity - 1
@@ -170,7 +169,6 @@ class Tower:
 
     def product(self, a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly:
         """Multiply and reduce, after checking time and size."""
-
         if len(a) * len(b) > self.limits.product:
             raise TooLarge(f"a product of {len(a)} by {len(b)} terms")
         self.check_time()
@@ -209,7 +207,6 @@ class Tower:
 
     def coefficients(self, p: fmpq_mpoly, generator: int) -> list[fmpq_mpoly]:
         """Return the coefficients of ``p`` as a polynomial in one generator, constant term first."""
-
         place = self._capacity - 1 - generator
         parts: dict[int, dict[tuple[int, ...], fmpq]] = {}
         for exponents, coefficient in p.terms():

@@ -14,8 +14,8 @@ import sympy as sp
 
 from canon.proof.budget import prove_in_worker
 from canon.proof.domain import EVERYWHERE, Domain
-from canon.proof.prove import Attempt, prove_zero
-from canon.proof.refute import Search, evaluated, look_for_counterexample, search_widely
+from canon.proof.prove import Attempt, prove_each, prove_zero
+from canon.proof.refute import Search, evaluated, first_counterexample, look_for_counterexample, search_widely
 from canon.proof.tower import QUICK
 from canon.proof.verdict import Evidence, Status, Verdict
 
@@ -99,22 +99,32 @@ def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget
     for i in range(matrix.rows):
         for j in range(matrix.cols):
             if matrix[i, j] != 0:
-                places.setdefault(matrix[i, j], (i, j))
-    evidence: list[Evidence] = []
+                places.setdefault(_exact(matrix[i, j]), (i, j))
+    entries = list(places)
+    search, number = first_counterexample(entries, domain, start + budget)
+    if number is not None:
+        failed = _refuted(entries[number], sp.Integer(0), search)
+        return _at_entry(failed, places[entries[number]], "does not vanish", start)
+    proofs = prove_each(entries, domain, min(start + budget, time.monotonic() + QUICK_SECONDS), QUICK)
+    rungs = {rung: None for proof in proofs if proof.holds for rung in proof.rungs}
+    left = [entry for entry, proof in zip(entries, proofs, strict=True) if not proof.holds]
     undecided: Verdict | None = None
-    for entry, (i, j) in places.items():
+    for entry in left:
         verdict = _decide(entry, sp.Integer(0), domain, start + budget)
-        seconds = time.monotonic() - start
         if verdict.fails:
-            return replace(verdict, feedback=f"entry ({i}, {j}) does not vanish", seconds=seconds)
-        if verdict.undecided:
-            if undecided is None:
-                undecided = replace(verdict, feedback=f"entry ({i}, {j}) was not decided")
-            evidence.extend(verdict.evidence)
-    seconds = time.monotonic() - start
+            return _at_entry(verdict, places[entry], "does not vanish", start)
+        if verdict.holds:
+            rungs[verdict.certificate] = None
+        elif undecided is None:
+            undecided = _at_entry(verdict, places[entry], "was not decided", start)
     if undecided is not None:
-        return replace(undecided, evidence=tuple(evidence), seconds=seconds)
-    return Verdict(Status.HOLDS, certificate="exact", seconds=seconds)
+        return undecided
+    return Verdict(Status.HOLDS, certificate=" + ".join(rungs) or "exact", seconds=time.monotonic() - start)
+
+
+def _at_entry(verdict: Verdict, place: tuple[int, int], what: str, start: float) -> Verdict:
+    feedback = f"entry ({place[0]}, {place[1]}) {what}"
+    return replace(verdict, feedback=feedback, seconds=time.monotonic() - start)
 
 
 def _exact(expr: object) -> Expr:
@@ -147,13 +157,13 @@ def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict
         return _refuted(left, right, search)
     obstacles = proof.obstacles
     if proof.capped and (seconds := deadline - time.monotonic()) > 0:
-        thorough = prove_in_worker(left - right, domain, seconds)
-        if isinstance(thorough, str):
-            obstacles = [*obstacles, thorough]
-        elif thorough.holds:
-            return _proved(thorough)
+        answer = prove_in_worker([left - right], domain, seconds)
+        if isinstance(answer, str):
+            obstacles = [*obstacles, answer]
+        elif answer[0].holds:
+            return _proved(answer[0])
         else:
-            obstacles = thorough.obstacles
+            obstacles = answer[0].obstacles
     tried = tuple(Evidence("tried", obstacle) for obstacle in obstacles)
     known = Evidence("balls", search.known)
     return Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, known))

@@ -46,12 +46,12 @@ def read_message(stream: BinaryIO) -> object:
     return pickle.loads(body)
 
 
-def attempt(expr: Expr, domain: Domain, seconds: float) -> Attempt:
-    """Try to prove that an expression vanishes, with the caps on sizes that fit a killable process."""
-    from canon.proof.prove import prove_zero
+def attempt(exprs: tuple[Expr, ...], domain: Domain, seconds: float) -> list[Attempt]:
+    """Try to prove that each expression vanishes, with the caps on sizes that fit a killable process."""
+    from canon.proof.prove import prove_each
     from canon.proof.tower import THOROUGH
 
-    return prove_zero(expr, domain, time.monotonic() + seconds, THOROUGH)
+    return prove_each(exprs, domain, time.monotonic() + seconds, THOROUGH)
 
 
 def limit_memory() -> None:
@@ -73,11 +73,13 @@ def main() -> None:
     limit_memory()
     while True:
         try:
-            expr, domain, seconds = cast("tuple[Expr, Domain, float]", read_message(sys.stdin.buffer))
+            exprs, domain, seconds = cast(
+                "tuple[tuple[Expr, ...], Domain, float]", read_message(sys.stdin.buffer)
+            )
         except EOFError:
             return
         try:
-            reply: object = attempt(expr, domain, seconds)
+            reply: object = attempt(exprs, domain, seconds)
         except (MemoryError, RecursionError) as reason:
             reply = f"{type(reason).__name__} in the worker"
         write_message(replies, reply)
