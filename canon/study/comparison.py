@@ -168,7 +168,7 @@ def drift_study(
     --------
     >>> from canon import RK4, Splitting
     >>> from canon.scene import find
-    >>> study = drift_study(find("henon-heiles"), methods=[Splitting("kahan-li-8"), RK4()], periods=200)
+    >>> study = drift_study(find("henon-heiles"), methods=[Splitting("verlet"), RK4()], periods=200)
     >>> [row.drift.verdict.value for row in study.rows]
     ['bounded', 'secular']
     """

@@ -59,7 +59,9 @@ class Drift:
     bound
         max |error| over the samples.
     slope, slope_error
-        Drift of the error per unit of time and its standard error, a random walk allowed for.
+        Drift of the error per unit of time and its standard error, a random walk allowed for. The error is
+        right for a walk and twice too large for a mere oscillation; at worst, for both together, it is 1.4
+        times too small (benchmarks/drift_calibration.py).
     amplitude_slope, amplitude_slope_error
         The same for the size of the oscillation about the mean.
     exponent, exponent_interval

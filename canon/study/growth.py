@@ -31,8 +31,11 @@ __all__ = ["Exponent", "Slope", "Walk", "power_of_time", "power_of_wandering", "
 PURE_WALK_WEIGHT = 0.5
 """Prior weight of "nothing but walk"; the other half is spread evenly over the logarithm of the ratio."""
 
-LIKELIHOOD_DROP = 2.1
+WALK_DROP = 2.1
 """Half of the 95 % quantile of a likelihood ratio with one parameter and about 30 degrees of freedom."""
+
+POWER_DROP = 3.2
+"""The same for a power of time: larger, because the ratio of walk to scatter is estimated from the same windows."""
 
 DETECTED = 0.95
 """Probability with which a slope as large as the detection limit is found."""
@@ -80,9 +83,7 @@ def slope_of(means: Array, false_alarm: float) -> Slope:
     """
     family = local_level(means.size)
     found = _fit(means, family)
-    prior = np.full(family.ratio.size, (1.0 - PURE_WALK_WEIGHT) / (family.ratio.size - 1))
-    prior[-1] = PURE_WALK_WEIGHT
-    posterior = prior * np.exp(found.log_likelihood - found.log_likelihood.max())
+    posterior = _prior(family) * np.exp(found.log_likelihood - found.log_likelihood.max())
     posterior /= posterior.sum()
     value = float(posterior @ found.slope)
     widening = found.freedom / (found.freedom - 2.0)
@@ -134,7 +135,7 @@ def power_of_wandering(means: Array, beside_scatter: bool) -> Exponent:
     family = (wandering if beside_scatter else fractional)(means.size)
     found = _fit(means, family)
     exponents = np.unique(family.exponent)
-    return _interval(exponents, found.log_likelihood.reshape(exponents.size, -1).max(axis=1))
+    return _interval(exponents, found.log_likelihood.reshape(exponents.size, -1).max(axis=1), WALK_DROP)
 
 
 def power_of_time(means: Array) -> Exponent:
@@ -146,7 +147,14 @@ def power_of_time(means: Array) -> Exponent:
     squares = np.sum((y - slope[:, None, :] * x) ** 2, axis=1)
     scale = squares / (means.size - 2) + _floor(means)
     likelihood = -0.5 * (family.log_determinant[:, None] + means.size * np.log(scale))
-    return _interval(exponents, likelihood.max(axis=0))
+    return _interval(exponents, likelihood.max(axis=0), POWER_DROP)
+
+
+def _prior(family: Family) -> Array:
+    """Return the prior weight of each ratio of walk to scatter of a local level model."""
+    prior = np.full(family.ratio.size, (1.0 - PURE_WALK_WEIGHT) / (family.ratio.size - 1))
+    prior[-1] = PURE_WALK_WEIGHT
+    return prior
 
 
 def _fit(means: Array, family: Family) -> Fit:
@@ -165,11 +173,13 @@ def _powers(windows: int) -> tuple[Array, Array]:
     return exponents, local_level(windows).whitener @ increments.T
 
 
-def _interval(exponents: Array, log_likelihood: Array) -> Exponent:
+def _interval(exponents: Array, log_likelihood: Array, drop: float) -> Exponent:
+    """Return the best exponent of a grid and its interval, never finer than the grid."""
     finer = np.linspace(exponents[0], exponents[-1], 2001)
     profile = np.interp(finer, exponents, log_likelihood)
-    inside = finer[profile >= profile.max() - LIKELIHOOD_DROP]
-    return Exponent(float(exponents[log_likelihood.argmax()]), float(inside[0]), float(inside[-1]))
+    inside = finer[profile >= profile.max() - drop]
+    best, step = float(exponents[log_likelihood.argmax()]), float(exponents[1] - exponents[0])
+    return Exponent(best, min(float(inside[0]), best - step), max(float(inside[-1]), best + step))
 
 
 def _floor(means: Array) -> float:
