@@ -14,6 +14,7 @@ from canon.exercise import (
     judge_hamiltonian,
     judge_lagrangian,
 )
+from canon.exercise.manifold import EmptyDomainError
 from canon.exercise.question import Deadline, Question, decide
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.sheet import Claim, ClaimError
@@ -119,8 +120,8 @@ def examine(claim: Claim) -> Finding:
                 break
     except Undecided as reason:
         answered.append(Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),)))
-    except SingularMatrixError as singular:
-        raise InvalidClaim(ClaimError(claim.id, "", str(singular))) from singular
+    except (SingularMatrixError, EmptyDomainError) as error:
+        raise InvalidClaim(ClaimError(claim.id, "", str(error))) from error
     seconds = claim.budget - (deadline.left if deadline.left > 0.05 else 0.0)
     verdict = replace(all_hold(answered), seconds=seconds)
     verdict = verdict if verdict.question else verdict.about(_title(claim))

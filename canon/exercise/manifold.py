@@ -22,9 +22,13 @@ from canon.proof.verdict import Undecided
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-__all__ = ["Branch", "on_manifold", "transported"]
+__all__ = ["Branch", "EmptyDomainError", "on_manifold", "transported"]
 
 MAX_BRANCHES = 16
+
+
+class EmptyDomainError(ValueError):
+    """No point satisfies the assumptions and conditions."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +101,11 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
     >>> p = sp.Symbol("p", positive=True)
     >>> transported(Domain(), {p: x}).conditions
     (x > 0,)
+
+    Raises
+    ------
+    EmptyDomainError
+        Where a condition is false at every point.
     """
     conditions = [condition.subs(values, simultaneous=True) for condition in domain.conditions]
     for symbol, value in values.items():
@@ -106,6 +115,8 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
             conditions.append(sp.Lt(value, 0))
         elif symbol.is_nonzero and not value.is_nonzero:
             conditions.append(sp.Ne(value, 0))
+    if sp.false in conditions:
+        raise EmptyDomainError("no point satisfies the assumptions and conditions")
     kept = {symbol: ends for symbol, ends in domain.box.items() if symbol not in values}
     return Domain(tuple(dict.fromkeys(c for c in conditions if c is not sp.true)), kept)
 
@@ -122,9 +133,10 @@ def _restricted(
         if solution is None:
             raise Undecided(f"{factor} = 0 could not be solved for any of its symbols in closed form")
         for value in solution.values:
-            part = branch.and_then(solution.symbol, value, solution.conditions)
-            if sp.false not in part.domain.conditions:
-                yield part
+            try:
+                yield branch.and_then(solution.symbol, value, solution.conditions)
+            except EmptyDomainError:
+                continue
 
 
 def _factors(expression: Expr) -> list[Expr]:

@@ -47,6 +47,10 @@ class Reading:
         The claim as written; its form has been checked.
     names
         Symbols that the judge of a kind adds to the declared ones, such as ``d_x`` and ``delta_x``.
+    instead
+        Expressions that are read in place of what stands under a key, such as ``"Q[0]"``.
+    at
+        Values put in for parameters.
 
     Raises
     ------
@@ -56,6 +60,8 @@ class Reading:
 
     claim: Claim
     names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
+    instead: Mapping[str, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    at: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
 
     def has(self, key: str) -> bool:
         """Whether the claim has this key."""
@@ -73,6 +79,10 @@ class Reading:
         """Return the same claim read with more names."""
         return replace(self, names=MappingProxyType({**self.names, **names}))
 
+    def with_instead(self, key: str, expression: Expr) -> Reading:
+        """Return the same claim with another expression under one key."""
+        return replace(self, instead=MappingProxyType({**self.instead, key: expression}))
+
     @cached_property
     def time(self) -> Symbol:
         """The symbol of the time."""
@@ -87,7 +97,7 @@ class Reading:
         keys = self.claim.keys
         names: dict[str, Symbol] = {}
         for key in _NAME_KEYS:
-            if not self._is_list_of_names(key):
+            if not self.is_names(key):
                 continue
             for name in _as_list(keys[key]):
                 if name == self.time.name:
@@ -101,7 +111,7 @@ class Reading:
         for name in keys.get("parameters", {}):
             if name not in functions and name != self.time.name:
                 names.setdefault(name, Symbol(name, **self._assumptions(name)))
-        if self._is_list_of_names("quasi"):
+        if self.is_names("quasi"):
             rates = {f"{u}_dot": velocity(names[u]) for u in _as_list(keys["quasi"])}
             names = {**rates, **names}
         for name in functions:
@@ -207,7 +217,8 @@ class Reading:
             )
         return found
 
-    def _is_list_of_names(self, key: str) -> bool:
+    def is_names(self, key: str) -> bool:
+        """Whether a list of names stands under a key."""
         kind = KINDS[self.claim.kind]
         return self.has(key) and {**kind.required, **kind.optional}.get(key) is Shape.NAMES
 
@@ -216,8 +227,11 @@ class Reading:
         return {"real": True} if word == "real" else {"real": True, word: True}
 
     def _parse(self, parse: Callable[[str, Scope], Any], text: Any, key: str) -> Any:
+        if key in self.instead:
+            return self.instead[key]
         try:
-            return parse(str(text), self.scope)
+            parsed = parse(str(text), self.scope)
+            return parsed.xreplace(dict(self.at)) if self.at else parsed
         except LanguageError as error:
             raise InvalidClaim(
                 ClaimError(self.claim.id, key, error.message, error.column, error.caret())
