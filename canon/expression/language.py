@@ -136,7 +136,7 @@ def parse_expression(text: str, scope: Scope) -> Expr:
     x.__class__
      ^
     """
-    return _Builder(text, scope).expression(parse_syntax(_plain(text)))
+    return _Builder(text, scope).expression(_tree(text, scope))
 
 
 def parse_condition(text: str, scope: Scope) -> Boolean:
@@ -147,7 +147,7 @@ def parse_condition(text: str, scope: Scope) -> Boolean:
     LanguageError
         With the column, the reason and a remedy.
     """
-    return _Builder(text, scope).condition(parse_syntax(_plain(text)))
+    return _Builder(text, scope).condition(_tree(text, scope))
 
 
 def parse_equation(text: str, scope: Scope) -> Expr:
@@ -159,7 +159,7 @@ def parse_equation(text: str, scope: Scope) -> Expr:
         With the column, the reason and a remedy.
     """
     builder = _Builder(text, scope)
-    node = parse_syntax(_plain(text))
+    node = _tree(text, scope)
     if not isinstance(node, syntax.Comparison):
         return builder.expression(node)
     if node.relations != ("=",):
@@ -168,12 +168,12 @@ def parse_equation(text: str, scope: Scope) -> Expr:
     return left - right
 
 
-def _plain(text: str) -> str:
+def _tree(text: str, scope: Scope) -> syntax.Node:
     if text.lstrip().startswith("$"):
-        raise LanguageError(
-            text, 1, "LaTeX is not read yet", "write it in the plain spelling, theta'' + sin(theta)"
-        )
-    return text
+        from canon.expression.latex import parse_latex  # only here: it loads a parser generator
+
+        return parse_latex(text, scope)
+    return parse_syntax(text)
 
 
 class _Builder:
