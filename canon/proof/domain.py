@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Rational, Symbol, oo
+from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
 
@@ -136,13 +136,16 @@ class Domain:
         return low, high, open_low and open_high
 
     def is_connected(self, symbols: Iterable[Symbol]) -> bool:
-        """Tell whether the domain is certainly connected: an intersection of half spaces is convex."""
+        """Tell whether the domain, points excluded by ≠ added, is certainly connected.
+
+        An intersection of half spaces is convex.
+        """
         for s in symbols:
             if s.is_integer or declared_complex(s):
                 return False
-            if s.is_zero is False and not (s.is_positive or s.is_negative):
-                return False
         for condition in _parts(self.conditions):
+            if isinstance(condition, Ne):
+                continue
             if not isinstance(condition, Lt | Le | Gt | Ge):
                 return False
             gap = condition.lhs - condition.rhs

@@ -68,8 +68,11 @@ class NormalForm:
         self._meaning: dict[int, Callable[[], Expr]] = {}
         self._memo: dict[sp.Basic, Fraction] = {}
         self.empty = False
+        self._gaps: list[tuple[fmpq_mpoly, bool]] = []
         for condition in domain.conditions:
             self._learn(condition)
+        if len(self._gaps) > 1:
+            self.empty = self.empty or any(self.signs.contradicts(p, strict=s) for p, s in self._gaps)
 
     def _learn(self, condition: sp.Basic) -> None:
         """Take p > 0 or p ≥ 0 from an inequality; notice when the facts before contradict it."""
@@ -95,6 +98,7 @@ class NormalForm:
             known = self.signs.of(gap.num)
             self.empty = self.empty or known == "-" or (strict and (known == "0-" or gap.num.is_zero()))
             if not known.endswith("+"):
+                self._gaps.append((gap.num, strict))
                 self.signs.learn(gap.num, strict=strict)
 
     def _sign_of_constant(self, p: fmpq_mpoly) -> str:

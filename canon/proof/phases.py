@@ -251,9 +251,13 @@ def _constant_range(n: NormalForm, kernel: tuple[Hashable, ...]) -> Range | None
 
 
 def _zero_by_continuity(n: NormalForm, h: Fraction, w: Fraction) -> bool:
-    """Tell whether w, a multiple of 2πi everywhere, is continuous on a connected domain and 0 at a point."""
+    """Tell whether w, a multiple of 2πi everywhere, is continuous on a connected domain and 0 at a point.
+
+    Points that the domain excludes by ≠ may be ignored: w is shown to be continuous there as well.
+    """
     expr = n.expression(h.num)
     symbols = expr.free_symbols
+    n.signs.forget_nonzero()
     if not n.domain.is_connected(symbols) or not is_continuous(n, h):
         return False
     turns = n.expression(w.num) / (2 * sp.pi * sp.I)

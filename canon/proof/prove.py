@@ -142,13 +142,13 @@ def _without_cases(expr: Expr, domain: Domain, deadline: float, limits: Limits, 
             if radicals_cancel(forms, f):
                 attempt.reach("conjugates")
                 return True
+            attempt.capped = attempt.capped or forms.tower.capped
+            attempt.stop("the normal form is not zero")
         except Refine:
             continue
         except Full:
             capacity *= 2
             continue
-            attempt.capped = attempt.capped or forms.tower.capped
-            attempt.stop("the normal form is not zero")
         except OutOfTime:
             attempt.capped = True
             attempt.stop("not finished in time")

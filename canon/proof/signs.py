@@ -22,9 +22,15 @@ Monomial = tuple[tuple[int, int], ...]
 MOST_SEARCHES = 1500
 """Polynomials whose sign is looked for by more than their terms, in one tower."""
 
+MOST_SUBTRACTIONS = 60
+"""Multiples of facts that are subtracted in one search."""
+
 MOST_CONDITIONS = 8
 MOST_FACTS = 80
 DEEPEST = 4
+WIDEST = 6
+"""Terms of a fact that are tried to cancel a term."""
+
 LONGEST = 60
 
 
@@ -48,6 +54,7 @@ class Signs:
         self._found: dict[Hashable, str] = {}
         self._nonzero: set[Hashable] = set()
         self._searches = 0
+        self._left = MOST_SUBTRACTIONS
 
     def declare(self, generator: int, sign: str) -> None:
         """Record the sign of a generator: one of the signs above, "real", or "" where it may be complex."""
@@ -73,6 +80,11 @@ class Signs:
         for factor, _ in self.tower.factors(p)[1]:
             self._nonzero.add(self.tower.key(factor))
 
+    def forget_nonzero(self) -> None:
+        """Forget what :meth:`learn_nonzero` recorded: excluded points may cut a domain in two."""
+        self._nonzero.clear()
+        self._found.clear()
+
     def real(self, p: fmpq_mpoly) -> bool:
         """Tell whether every generator of ``p`` is real on the domain."""
         return all(self._of.get(k, "") for k in self.tower.used(p))
@@ -96,6 +108,14 @@ class Signs:
                 del self._found[key]
         return found
 
+    def contradicts(self, p: fmpq_mpoly, *, strict: bool) -> bool:
+        """Tell whether p > 0 (strict) or p ≥ 0 is refuted by the signs of p's factors."""
+        p = self.tower.reduce(p)
+        if p.is_constant() or len(p) > LONGEST or not self.real(p):
+            return False
+        found = self._by_factors(p, DEEPEST)
+        return found == "-" or (strict and found == "0-")
+
     def _known_nonzero(self, p: fmpq_mpoly) -> bool:
         return bool(self._nonzero) and all(
             self.tower.key(f) in self._nonzero for f, _ in self.tower.factors(p)[1]
@@ -103,13 +123,20 @@ class Signs:
 
     def _search(self, p: fmpq_mpoly, depth: int) -> str:
         by_terms = self._by_terms(p)
+        if by_terms.startswith("0"):
+            return by_terms[1:] if self._strictly(p if by_terms == "0+" else -p) else by_terms
         if by_terms or not self.real(p):
             return by_terms
         constant = self._of_constant(p)
         self._searches += 1
         if constant or len(p) > LONGEST or self._searches > MOST_SEARCHES:
             return constant
-        by_facts = self._by_facts(p, 3) or _opposite(self._by_facts(-p, 3))
+        by_facts = ""
+        for steps in (1, 2, 3):
+            self._left = MOST_SUBTRACTIONS
+            by_facts = self._by_facts(p, steps) or _opposite(self._by_facts(-p, steps))
+            if by_facts:
+                break
         if by_facts or depth == 0:
             return by_facts
         return self._by_factors(p, depth) or self._by_root(p, depth) or self._by_square(p, depth)
@@ -139,27 +166,45 @@ class Signs:
     def _by_facts(self, p: fmpq_mpoly, steps: int) -> str:
         """p ≥ 0 where p minus nonnegative multiples of known facts is so.
 
-        A multiple is a positive number, or half of it, times a monomial that is not negative; it is chosen to
-        cancel a term of p.
+        Each step cancels the first term of p that may be negative, by a fact times a positive number and
+        a monomial that is not negative; half of the number is tried too.
         """
         terms = self.tower.terms(p)
+        open_ = ((m, c) for m, c in terms if not self._of_term(m, positive=c > 0).endswith("+"))
+        bad, ratio = next(open_, ((), None))
+        if ratio is None:
+            return ""
         for known, strict in self._facts:
-            leading, coefficient = self.tower.terms(known)[0]
-            for monomial, ratio in terms:
-                multiple = _quotient(monomial, leading)
+            for cancelled, coefficient in self.tower.terms(known)[:WIDEST]:
+                multiple = _quotient(bad, cancelled)
                 if multiple is None or (ratio > 0) != (coefficient > 0):
                     continue
                 sign = self._of_term(multiple, positive=True)
                 if not sign.endswith("+"):
                     continue
-                for share in (1, 2) if len(multiple) == 0 else (1,):
+                for share in (1, 2) if steps > 1 and not multiple else (1,):
                     found = self._without(p, known, multiple, ratio / coefficient / share, steps)
                     if found:
                         return "+" if (strict and sign == "+") or found == "+" else "0+"
         return ""
 
+    def _strictly(self, p: fmpq_mpoly) -> bool:
+        """Tell whether p, a sum of nonnegative terms, stays one less a multiple of a positive fact."""
+        wanted = dict(self.tower.terms(p)[:WIDEST])
+        for known, strict in self._facts:
+            for monomial, coefficient in self.tower.terms(known)[:WIDEST] if strict else ():
+                ratio = wanted.get(monomial)
+                if ratio is not None and (ratio > 0) == (coefficient > 0):
+                    rest = p - known * self.tower.constant(ratio / coefficient)
+                    if rest.is_zero() or self._by_terms(rest).endswith("+"):
+                        return True
+        return False
+
     def _without(self, p: fmpq_mpoly, known: fmpq_mpoly, multiple: Monomial, ratio: fmpq, steps: int) -> str:
         """Return the sign, if it is not negative, of p minus a multiple of a fact ("0+" if nothing is left)."""
+        self._left -= 1
+        if self._left < 0:
+            return ""
         factor = self.tower.constant(ratio)
         for k, e in multiple:
             factor = factor * self.tower.monomial(k, e)
