@@ -109,5 +109,7 @@ def _one_rule(parts: Sequence[Part], domain: Domain) -> str:
     half = len(parts) // 2
     for right, other in ((parts[:half], parts[half:]), (parts[half:], parts[:half])):
         if _proved(right, sp.S.One, domain) and _proved(other, sp.S.NegativeOne, domain):
-            return f"right under the opposite sign of a rule: here {' and '.join(part.name for part in other)}"
+            return (
+                f"right under the opposite sign of a rule: here {' and '.join(part.name for part in other)}"
+            )
     return ""

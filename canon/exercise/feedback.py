@@ -29,7 +29,14 @@ if TYPE_CHECKING:
 __all__ = ["corrected", "feedback"]
 
 MOST_SENTENCES = 3
-_DERIVED = ("gibbs-appell", "canonicity", "generating", "transformed", "constant-of-motion", "lagrangian-equivalence")
+_DERIVED = (
+    "gibbs-appell",
+    "canonicity",
+    "generating",
+    "transformed",
+    "constant-of-motion",
+    "lagrangian-equivalence",
+)
 """Kinds whose components are derivatives of what was answered, so that a component is no answer to repair."""
 
 
@@ -64,7 +71,11 @@ def corrected(finding: Finding) -> str:
     if not isinstance(question, Same | SameEquations):
         return ""
     if question.answer is None:
-        shown = [p for p in question.parts if not p.through and p.residual != 0] if isinstance(question, Same) else []
+        shown = (
+            [p for p in question.parts if not p.through and p.residual != 0]
+            if isinstance(question, Same)
+            else []
+        )
         shown = [] if finding.reading.claim.kind.startswith(_DERIVED) else shown
         return "; ".join(f"{p.name} = {p.right}" for p in shown[:MOST_SENTENCES])
     try:
@@ -102,8 +113,14 @@ def _hints(question: Same | SameEquations) -> list[tuple[Expr, ...]]:
             for u in question.unknowns:
                 above, below = claimed.diff(u), right.diff(u)
                 if above != 0 and below != 0:
-                    scale = sp.cancel(above / below) if sp.count_ops(above) + sp.count_ops(below) < 60 else above / below
-                    scaled = (scale * t for t in sp.Add.make_args(sp.expand(right)) if not t.has(*question.unknowns))
+                    scale = (
+                        sp.cancel(above / below)
+                        if sp.count_ops(above) + sp.count_ops(below) < 60
+                        else above / below
+                    )
+                    scaled = (
+                        scale * t for t in sp.Add.make_args(sp.expand(right)) if not t.has(*question.unknowns)
+                    )
                     terms |= dict.fromkeys(scaled)
         hints.append(tuple(terms))
     return hints

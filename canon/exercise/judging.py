@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["judgements"]
 
-FEEDBACK_SECONDS = 1.5
+FEEDBACK_SECONDS = 1.2
 
 
 def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:

@@ -127,7 +127,9 @@ def _all_vanish(parts: Sequence[Part], domain: Domain, deadline: Deadline) -> Ve
     verdict = replace(vanishes(sp.Matrix(residuals), domain, budget=deadline.left), feedback="")
     if verdict.holds:
         return verdict
-    turned = (part.name for part, residual in zip(parts, residuals, strict=True) if residual == verdict.residual)
+    turned = (
+        part.name for part, residual in zip(parts, residuals, strict=True) if residual == verdict.residual
+    )
     return verdict.about(next(turned, ""))
 
 

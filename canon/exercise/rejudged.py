@@ -13,8 +13,8 @@ import sympy as sp
 from canon.exercise.manifold import EmptyDomainError
 from canon.exercise.question import Deadline, decide
 from canon.exercise.reading import InvalidClaim, Reading
-from canon.expression.symbol import velocity
 from canon.exercise.variants import common_slips, times, variants
+from canon.expression.symbol import velocity
 from canon.mechanics.linear import SingularMatrixError
 from canon.proof.verdict import Undecided
 
@@ -73,7 +73,11 @@ def only_where(reading: Reading, deadline: float) -> str:
     """Return a region, or a value of a parameter, for which the claim does hold."""
     keys = reading.claim.keys
     assumed = dict(keys.get("parameters", {}))
-    free = [s for s in reading.scope.names.values() if s.is_positive is None and s.is_negative is None and not s.is_integer]
+    free = [
+        s
+        for s in reading.scope.names.values()
+        if s.is_positive is None and s.is_negative is None and not s.is_integer
+    ]
     for symbol in free[:6]:
         for word, sign in (("positive", ">"), ("negative", "<")):
             if time.monotonic() > deadline:
@@ -81,7 +85,9 @@ def only_where(reading: Reading, deadline: float) -> str:
             changed = {**keys, "parameters": {**assumed, symbol.name: word}}
             if _holds(_read_anew(reading, reading.claim.kind, changed), deadline):
                 return f"right only for {symbol} {sign} 0"
-    variables = {name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))}
+    variables = {
+        name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
+    }
     for name in [n for n in assumed if n not in variables and n in reading.scope.names][:8]:
         if time.monotonic() > deadline:
             return ""
@@ -150,7 +156,9 @@ def _inverted(reading: Reading) -> Reading:
     keys = {key: value for key, value in reading.claim.keys.items() if key != "map"}
     symbols = [reading.symbols(key) for key in ("q", "p", "new_q", "new_p")]
     swap = dict(zip((*symbols[0], *symbols[1]), (*symbols[2], *symbols[3]), strict=True))
-    inverted = _read_anew(reading, reading.claim.kind, {**keys, "inverse_map": {k: ["0"] * len(symbols[0]) for k in "qp"}})
+    inverted = _read_anew(
+        reading, reading.claim.kind, {**keys, "inverse_map": {k: ["0"] * len(symbols[0]) for k in "qp"}}
+    )
     for part, name in (("Q", "q"), ("P", "p")):
         for i, f in enumerate(reading.inside(f"map.{part}", reading.claim.keys["map"][part])):
             inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", f.xreplace(swap))
@@ -180,4 +188,10 @@ def _holds(reading: Reading, deadline: float) -> bool:
 
 
 def _names(value: object) -> list[str]:
-    return [value] if isinstance(value, str) else [v for v in value if isinstance(v, str)] if isinstance(value, list) else []
+    return (
+        [value]
+        if isinstance(value, str)
+        else [v for v in value if isinstance(v, str)]
+        if isinstance(value, list)
+        else []
+    )

@@ -66,7 +66,11 @@ def repair(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = (
     for candidate in _candidates(part, screen, hints):
         if time.monotonic() > deadline:
             return None
-        if _says_something(part, candidate.right) and screen.passes(candidate.right) and _is_right(part, candidate.right, domain):
+        if (
+            _says_something(part, candidate.right)
+            and screen.passes(candidate.right)
+            and _is_right(part, candidate.right, domain)
+        ):
             return candidate
     return None
 
@@ -162,7 +166,9 @@ class Screen:
     def __init__(self, part: Part, domain: Domain) -> None:
         self.part = part
         symbols = set[Symbol]().union(
-            part.right.free_symbols, part.claimed.free_symbols, *(v.free_symbols for v in part.through.values())
+            part.right.free_symbols,
+            part.claimed.free_symbols,
+            *(v.free_symbols for v in part.through.values()),
         )
         self.points: list[dict[sp.Basic, acb]] = []
         with precision(PRECISION):

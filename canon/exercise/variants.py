@@ -54,7 +54,9 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     yield from _everywhere(expression, symbols)
 
 
-def common_slips(expressions: Sequence[Expr], symbols: Sequence[Symbol]) -> Iterator[tuple[Mapping[Expr, Expr], str]]:
+def common_slips(
+    expressions: Sequence[Expr], symbols: Sequence[Symbol]
+) -> Iterator[tuple[Mapping[Expr, Expr], str]]:
     """Yield substitutions that a person may have got wrong in all components of an answer alike."""
     own = sorted(set[Expr]().union(*(e.free_symbols for e in expressions)), key=str)
     for symbol in own:
@@ -145,11 +147,19 @@ def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, st
     """One symbol for another in one function, or as one factor."""
     places = node.args if node.is_Mul or node.is_Add else (node,) if node.is_Function else ()
     for place in places:
-        for old in sorted(place.free_symbols, key=str) if place.is_Function or place.is_Pow or place.is_Symbol else ():
+        for old in (
+            sorted(place.free_symbols, key=str)
+            if place.is_Function or place.is_Pow or place.is_Symbol
+            else ()
+        ):
             for new in symbols:
                 if new != old:
                     changed = place.xreplace({old: new})
-                    rest = node.func(*(changed if p == place else p for p in node.args)) if place != node else changed
+                    rest = (
+                        node.func(*(changed if p == place else p for p in node.args))
+                        if place != node
+                        else changed
+                    )
                     yield rest, f"{place} should be {changed}"
 
 
@@ -165,6 +175,10 @@ def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[E
     """The same slip in all places at once."""
     for old, new in chain(
         ((a, b) for a in sorted(expression.free_symbols, key=str) for b in symbols if a != b),
-        ((f, twin(*f.args)) for f in sorted(expression.atoms(sp.Function), key=str) if (twin := _TWINS.get(f.func))),
+        (
+            (f, twin(*f.args))
+            for f in sorted(expression.atoms(sp.Function), key=str)
+            if (twin := _TWINS.get(f.func))
+        ),
     ):
         yield expression.xreplace({old: new}), f"{old} should be {new} everywhere"

@@ -1,0 +1,201 @@
+"""``canon check`` from end to end, in a process of its own, on good, wrong and hostile sheets."""
+
+import json
+import math
+import subprocess
+import sys
+import time
+from fractions import Fraction
+
+import pytest
+
+from canon.cli import main
+from canon.exercise.sheet import Claim
+from canon.exercise.worker import GRACE, Worker
+
+TRUE = {"id": "yes", "kind": "equality-only", "title": "double angle", "lhs": "sin(2*x)", "rhs": "2*sin(x)*cos(x)",
+        "parameters": {"x": "real"}}  # fmt: skip
+FALSE = {**TRUE, "id": "no", "rhs": "sin(x)*cos(x)"}
+INVALID = {**TRUE, "id": "bad", "rhs": "2*sin(y)"}
+
+
+def write(folder, *claims, name="sheet.json"):
+    path = folder / name
+    path.write_text(json.dumps({"title": "A sheet", "claims": list(claims)}), "utf-8")
+    return str(path)
+
+
+def run(*arguments, stdin=None):
+    return subprocess.run(
+        [sys.executable, "-m", "canon.cli", *arguments],
+        capture_output=True, text=True, encoding="utf-8", input=stdin, check=False, timeout=120,
+    )  # fmt: skip
+
+
+def test_a_table_for_people(tmp_path):
+    done = run("check", write(tmp_path, TRUE, FALSE, INVALID))
+    assert done.returncode == 2
+    assert done.stderr == ""
+    assert "A sheet" in done.stdout
+    assert "✓ holds     yes" in done.stdout
+    assert "✗ fails     no" in done.stdout
+    assert "lhs should be half what it is" in done.stdout
+    assert "! invalid   bad" in done.stdout
+    assert "key rhs, column 7: y is not declared" in done.stdout
+    assert "2*sin(y)\n          ^" in done.stdout
+    assert "3 claims: 1 holds, 1 fails, 1 invalid" in done.stdout
+
+
+def test_json_lines_for_programs(tmp_path):
+    done = run("check", "--json", write(tmp_path, TRUE, FALSE))
+    yes, no = map(json.loads, done.stdout.splitlines())
+    assert done.returncode == 1
+    assert {
+        "id",
+        "kind",
+        "status",
+        "seconds",
+        "certificate",
+        "counterexample",
+        "residual",
+        "feedback",
+        "corrected",
+    } <= set(no)
+    assert (yes["status"], no["status"]) == ("holds", "fails")
+    assert yes["certificate"]
+    assert yes["counterexample"] is None
+    example = no["counterexample"]
+    x = float(Fraction(example["point"]["x"]))
+    difference = float(example["left"]) - float(example["right"])
+    assert difference == pytest.approx(math.sin(2 * x) - math.sin(x) * math.cos(x), rel=1e-9)
+    assert no["feedback"]
+
+
+@pytest.mark.parametrize(
+    ("claims", "arguments", "status"),
+    [
+        ([TRUE], [], 0),
+        ([TRUE, FALSE], [], 1),
+        ([TRUE, FALSE, INVALID], [], 2),
+        ([TRUE, FALSE], ["--only", "yes"], 0),
+        ([TRUE, FALSE], ["--only", "maybe"], 2),
+        ([{**TRUE, "expect": "holds"}, {**FALSE, "expect": "fails"}], ["--expect"], 0),
+        ([{**TRUE, "expect": "holds"}, {**FALSE, "expect": "holds"}], ["--expect"], 1),
+        ([{**TRUE, "expect": "fails"}], ["--expect"], 1),
+        ([TRUE, INVALID], ["--expect"], 2),
+    ],
+)
+def test_exit_status(tmp_path, capsys, claims, arguments, status):
+    assert main(["check", *arguments, write(tmp_path, *claims)]) == status
+    capsys.readouterr()
+
+
+def test_an_undecided_claim_gives_3(tmp_path, capsys):
+    hard = {"id": "hard", "kind": "equality-only", "lhs": "LambertW(exp(sin(1) + LambertW(2)))", "budget": 0.5,
+            "rhs": "LambertW(exp(sin(1) + LambertW(2))) + LambertW(3)*exp(LambertW(3)) - 3 + 0*t"}  # fmt: skip
+    status = main(["check", "--json", write(tmp_path, hard)])
+    told = json.loads(capsys.readouterr().out)
+    assert (told["status"], status) in (("undecided", 3), ("holds", 0))
+    if told["status"] == "undecided":
+        assert told["known"]
+
+
+def test_several_sheets_and_standard_input(tmp_path):
+    one = write(tmp_path, TRUE)
+    done = run("check", "--json", one, "-", stdin=json.dumps({"claims": [FALSE]}))
+    assert [json.loads(line)["id"] for line in done.stdout.splitlines()] == ["yes", "no"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["check"], "SHEET"),
+        (["check", "missing.toml"], "can't be read"),
+        (["check", "--budget", "no", "x.toml"], "seconds"),
+        (["judge"], "invalid choice"),
+        ([], "command"),
+    ],
+)
+def test_bad_usage_is_2_and_says_why(arguments, said):
+    done = run(*arguments)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_help_teaches():
+    overview, check = run("--help").stdout, run("check", "--help").stdout
+    assert "canon tour" in overview
+    for word in ("[[claim]]", "euler-lagrange", "exit status", "--expect"):
+        assert word in check
+    assert run("--version").stdout.startswith("canon ")
+
+
+def test_a_reader_that_leaves_early_is_no_error(tmp_path):
+    many = write(tmp_path, *({**TRUE, "id": f"c{i}"} for i in range(300)))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "canon.cli", "check", many],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    process.stdout.readline()
+    process.stdout.close()
+    error = process.stderr.read()
+    process.stderr.close()
+    assert process.wait(timeout=120) == 141
+    assert error == ""
+
+
+HOSTILE = {
+    "tower": {"lhs": "9**9**9", "rhs": "1"},
+    "late tower": {"lhs": "exp(exp(exp(exp(exp(9)))))", "rhs": "1"},
+    "sine of a tower": {"lhs": "sign(sin(exp(exp(exp(9)))))", "rhs": "1"},
+    "deep": {"lhs": "sin(" * 63 + "x" + ")" * 63, "rhs": "x"},
+    "deeper": {"lhs": "(" * 20_000, "rhs": "x"},
+    "long sum": {"lhs": "+".join(["x"] * 100_000), "rhs": "x"},
+    "long sum of powers": {"lhs": "+".join(f"sin({i}*x)**{i % 9}" for i in range(1, 3000)), "rhs": "0*x"},
+    "power of a sum": {"lhs": "(x + t + 1)**900", "rhs": "(x + t)**900 + 1"},
+    "nested powers": {"lhs": "((((x+1)**99+1)**99+1)**99+1)**99", "rhs": "x"},
+    "big numbers": {"lhs": "7" * 900 + "**30 + sqrt(" + "3" * 900 + ")", "rhs": "x"},
+    "attributes": {"lhs": "x.__class__.__mro__", "rhs": "x"},
+    "string": {"lhs": "__import__('os').system('touch /tmp/owned')", "rhs": "x"},
+    "lambda": {"lhs": "(lambda: x)()", "rhs": "x"},
+    "lookalike": {"lhs": "ｅｖａｌ(x)", "rhs": "x"},
+    "null": {"lhs": "x\x00", "rhs": "x"},
+    "many maxima": {"lhs": "Max(" + ",".join(f"sin(x+{i})" for i in range(16)) + ")", "rhs": "x"},
+    "pieces": {
+        "lhs": "Piecewise(" + ",".join(f"(x**{i}, sin(x) < {i}/9)" for i in range(15)) + ",(0,True))",
+        "rhs": "x",
+    },
+    "not real": {"lhs": "sqrt(-1-x**2)", "rhs": "log(-1-x**2)"},
+}
+
+
+def test_hostile_claims_are_answered_within_their_budget_and_the_next_is_judged():
+    budget = 2.0
+    with Worker() as worker:
+        assert worker.judge(Claim("warm", "equality-only", TRUE)).status == "holds"
+        for name, change in HOSTILE.items():
+            start = time.monotonic()
+            told = worker.judge(Claim(name, "equality-only", {**TRUE, **change}, budget=budget))
+            # a worker that was killed before is started again at the next claim, before its clock runs
+            assert told.seconds < budget + 1, name
+            assert time.monotonic() - start < budget + GRACE + 15, name
+            assert told.status in ("invalid", "undecided", "fails"), (name, told)
+            assert "Traceback" not in told.known
+            assert len(json.dumps(told.to_dict())) < 20_000, name
+        assert worker.judge(Claim("after", "equality-only", TRUE)).status == "holds"
+
+
+def test_a_budget_that_is_spent_kills_the_worker_and_says_so():
+    with Worker() as worker:
+        slow = {
+            **TRUE,
+            "lhs": "(x + t + cos(x) + 1)**60*sin(x)**40",
+            "rhs": "(x + t + cos(x) + 1)**60*(1 - cos(x)**2)**20 + 0*x",
+        }
+        told = worker.judge(Claim("slow", "equality-only", slow, budget=0.02))
+        assert told.status in ("undecided", "holds")
+        assert told.seconds < 1.02
+        assert worker.judge(Claim("after", "equality-only", TRUE)).status == "holds"
