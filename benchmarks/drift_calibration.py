@@ -4,8 +4,8 @@ Run:  python -m benchmarks.drift_calibration [series per kind, default 1000]
 
 Synthetic series (4097 samples over one run) are those of tests/study/series.py and some harder ones; real ones
 come from Hénon–Heiles orbits on random points of the section at energy 1/12, 500 periods each. "right" is the
-verdict that the kind deserves. Secular is claimed falsely in at most 1 %, a walk in about 1 % of bounded series. The harder kinds
-show where the assumptions end.
+verdict that the kind deserves. Secular is claimed falsely in at most 1 %, a walk in about 1 % of bounded series.
+The harder kinds show where the assumptions end.
 """
 
 from __future__ import annotations
