@@ -13,6 +13,7 @@ degrees of freedom differ in type, ``kind`` is a tuple with one number each.
 
 from __future__ import annotations
 
+import time as clock
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -202,22 +203,21 @@ class GeneratingFunction:
         """
         domain = domain or transformation.domain
         there = self._on(transformation)
-
-        def claims() -> Iterator[tuple[str, Expr]]:
-            for rule in self.rules:
-                due = there.get(rule.variable, rule.variable)
-                yield rule.text, due - substitute(rule.value, there)
+        end = clock.monotonic() + budget
 
         def verdicts() -> Iterator[Verdict]:
-            for rule, claim in zip(self.rules, claims(), strict=True):
-                verdict = all_vanish([claim], rule.text, domain, budget)
+            for rule in self.rules:
+                due = there.get(rule.variable, rule.variable)
+                found = substitute(rule.value, there)
+                left = max(0.0, end - clock.monotonic())
+                verdict = all_vanish([(rule.text, due - found)], rule.text, domain, left)
                 if verdict.fails:
-                    due = there.get(rule.variable, rule.variable)
-                    found = substitute(rule.value, there)
                     verdict = replace(
                         verdict, feedback=f"on the map {rule.text} should be {due}, but is {found}"
                     )
                 yield verdict
+                if verdict.undecided:
+                    return
             yield is_regular(self.mixed_hessian.xreplace(there), domain, "the mixed Hessian")
 
         return all_hold(verdicts(), f"F of type {self._named_kind} generates the map")
@@ -284,6 +284,7 @@ def generating_function(
     kind: int | Sequence[int] = 1,
     new_q: Sequence[Symbol] | Symbol | None = None,
     new_p: Sequence[Symbol] | Symbol | None = None,
+    budget: float = 10.0,
 ) -> GeneratingFunction | ParametricGeneratingFunction:
     """Find the generating function of a canonical map, up to a constant and a function of time.
 
@@ -298,6 +299,8 @@ def generating_function(
         1, 2, 3 or 4; or one of them for each degree of freedom.
     new_q, new_p
         Symbols for the new variables; Q, P (or Q1, Q2 … and P1, P2 …) unless given.
+    budget
+        Seconds for the verification of closed forms.
 
     Returns
     -------
@@ -335,10 +338,12 @@ def generating_function(
             exists,
         )
     T = transformation
-    for F, conditions in recovery.closed_forms():
+    end = clock.monotonic() + budget
+    for F, conditions in recovery.closed_forms(clock.monotonic() + 0.3 * budget):
         for domain in _narrowed(T.domain, conditions):
             found = GeneratingFunction(kinds, F, T.q, T.p, Q, P, T.t, domain)
-            if found.generates(T, domain).holds:
+            left = end - clock.monotonic()
+            if left > 0 and found.generates(T, domain, left).holds:
                 return found
     relations = tuple((b, recovery.meaning[b]) for b in recovery.given)
     return ParametricGeneratingFunction(kinds, recovery.converted_along_map(), relations, T)

@@ -7,6 +7,8 @@ witness is taken, and what it takes for granted is noted as a condition (cos y =
 
 from __future__ import annotations
 
+import math
+import time as clock
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Inversion", "isolate", "solve_system"]
 
+_LARGEST = 80
+"""Operations in an equation above which it is not treated as a polynomial in a generator."""
 _HALF = sp.pi / 2
 
 
@@ -68,6 +72,10 @@ _INVERSES: dict[Any, Callable[[Expr], Expr]] = {
 }
 
 
+class UnstatableError(Exception):
+    """The condition that tells a branch from its neighbour is too long to be stated."""
+
+
 @dataclass
 class Inversion:
     """An inversion under way.
@@ -80,11 +88,14 @@ class Inversion:
         What the branch takes for granted, in the old variables, noted on the way.
     known
         Values found on the way for expressions that hold the unknowns, such as √q before q.
+    deadline
+        When to give up, on the monotonic clock; equations too large for one step are not begun.
     """
 
     witness: Witness
     conditions: list[Boolean] = field(default_factory=list)
     known: dict[Expr, Expr] = field(default_factory=dict)
+    deadline: float = math.inf
 
     def choose(self, inner: Expr, candidates: Sequence[Expr], x: Symbol) -> Expr | None:
         """Take the candidate that is right at the witness; of ± pairs, note the sign of ``inner``."""
@@ -100,7 +111,8 @@ class Inversion:
         value = self.witness.number(f)
         f, positive = substitute(f, self.witness.meaning), value is not None and value > 0
         remaining: list[Expr] = []
-        for factor in sp.Mul.make_args(sp.factor_terms(f)):
+        numerator, denominator = sp.fraction(sp.together(f))
+        for factor in sp.Mul.make_args(sp.factor_terms(numerator * denominator)):
             base, exponent = factor.as_base_exp()
             if factor.is_negative:
                 positive = not positive
@@ -118,6 +130,8 @@ class Inversion:
         self._note(sp.Lt(f, high))
 
     def _note(self, condition: Boolean) -> None:
+        if int(sp.count_ops(condition)) > _LARGEST:
+            raise UnstatableError
         if condition not in (sp.true, sp.false) and condition not in self.conditions:
             self.conditions.append(condition)
 
@@ -149,8 +163,10 @@ def solve_system(
     pairs = [(lhs, rhs, x) for lhs, rhs in equations for x in unknowns if lhs.has(x)]
     pairs.sort(key=lambda pair: (len(pair[0].free_symbols & set(unknowns)), int(sp.count_ops(pair[0]))))
     for lhs, rhs, x in pairs:
+        if clock.monotonic() > inversion.deadline:
+            return None
         before = len(inversion.conditions)
-        found = isolate(lhs, rhs, x, inversion)
+        found = _on_statable_branch(lhs, rhs, x, inversion)
         if found is None or found.has(x) or not inversion.witness.agree(found, x):
             del inversion.conditions[before:]
             continue
@@ -163,6 +179,13 @@ def solve_system(
             return {**solved, x: substitute(found, solved)}
         del inversion.conditions[before:]
     return None
+
+
+def _on_statable_branch(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | None:
+    try:
+        return isolate(lhs, rhs, x, inversion)
+    except UnstatableError:
+        return None
 
 
 def isolate(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | None:
@@ -184,6 +207,8 @@ def isolate(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | Non
         free, bound = lhs.as_independent(x, as_Add=lhs.is_Add)
         if free != (0 if lhs.is_Add else 1):
             return isolate(bound, rhs - free if lhs.is_Add else rhs / free, x, inversion)
+        if sp.count_ops(lhs - rhs) > _LARGEST:
+            return None
         for kernel, value, sign in generator_values(lhs - rhs, x):
             if inversion.witness.agree(value, kernel):
                 if sign is not None:

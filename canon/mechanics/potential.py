@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 import sympy as sp
 from sympy import Expr, Symbol
+from sympy.integrals.manualintegrate import manualintegrate
 
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.substitution import exchanged
@@ -70,21 +71,18 @@ def _candidates(
     form: Sequence[Expr], z: Sequence[Symbol], domain: Domain, hints: Mapping[Expr, Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
     """Yield what may be the potential, in z and in the names of the hints."""
-    fitted = _by_fitting(form, z, domain, list(hints.values()))
-    if fitted is not None:
-        yield (
-            sp.Add(*(c * f for c, f in zip(fitted, hints.values(), strict=True))),
-            sp.Add(*(c * name for c, name in zip(fitted, hints, strict=True))),
-        )
-    symbols = set(z).union(*(a.atoms(Symbol) for a in form))
-    points = list(witnesses(symbols, {}, domain, 2))
-    for candidate in _by_scaling(form, z, points):
-        yield candidate, candidate
-    basis = _basis(form, z, list(hints.values()))
-    fitted = _by_fitting(form, z, domain, basis)
-    if fitted is not None:
-        candidate = sp.Add(*(c * f for c, f in zip(fitted, basis, strict=True)))
-        yield candidate, candidate
+    for basis in (hints, None, _antiderivatives(form, z, hints), _products(form, z, hints)):
+        if basis is None:
+            symbols = set(z).union(*(a.atoms(Symbol) for a in form))
+            points = list(witnesses(symbols, {}, domain, 2))
+            yield from ((candidate, candidate) for candidate in _by_scaling(form, z, points))
+            continue
+        fitted = _by_fitting(form, z, domain, list(basis.values()))
+        if fitted is not None:
+            yield (
+                sp.Add(*(c * f for c, f in zip(fitted, basis.values(), strict=True))),
+                sp.Add(*(c * name for c, name in zip(fitted, basis, strict=True))),
+            )
 
 
 def _without_vanishing(a: Expr, z: Sequence[Symbol], domain: Domain) -> Expr:
@@ -178,15 +176,42 @@ def _by_fitting(
     return _rational_fit(np.array(rows)) if len(rows) > len(basis) else None
 
 
-def _basis(form: Sequence[Expr], z: Sequence[Symbol], hints: Sequence[Expr]) -> list[Expr]:
-    """Return products of variables with the terms of the form, the hints, and their functions."""
-    terms = {
-        term.as_coeff_Mul()[1] for a in form for term in sp.Add.make_args(cast("Expr", sp.expand_mul(a)))
+def _terms(a: Expr) -> list[Expr]:
+    return [cast("Expr", term) for term in sp.Add.make_args(cast("Expr", sp.expand_mul(a)))]
+
+
+def _antiderivatives(
+    form: Sequence[Expr], z: Sequence[Symbol], hints: Mapping[Expr, Expr]
+) -> dict[Expr, Expr]:
+    """Return the hints times the constants of the form, and the elementary integrals of its simple terms."""
+    constants = {
+        term.as_independent(*z, as_Add=False)[0].as_coeff_Mul()[1] for a in form for term in _terms(a)
     }
-    kernels = _functions((*form, *hints), z)
-    basis: dict[Expr, None] = {}
+    basis = {
+        c * name: c * hint for c in sorted(constants, key=sp.count_ops)[:4] for name, hint in hints.items()
+    }
+    for a, s in zip(form, z, strict=True):
+        for term in _terms(a)[:12]:
+            integral = _elementary_integral(term, s)
+            if integral is not None:
+                basis[integral] = integral
+    return dict(sorted(basis.items(), key=lambda item: int(sp.count_ops(item[0])))[:40])
+
+
+def _elementary_integral(term: Expr, s: Symbol) -> Expr | None:
+    """Integrate one small term by the rules of a table, up to a factor; None where it has no short integral."""
+    if sp.count_ops(term) > 30:
+        return None
+    integral = manualintegrate(term, s)
+    return None if integral.has(sp.Integral, sp.Piecewise) else integral.as_coeff_Mul()[1]
+
+
+def _products(form: Sequence[Expr], z: Sequence[Symbol], hints: Mapping[Expr, Expr]) -> dict[Expr, Expr]:
+    """Return the hints, and products of variables with the terms of the form and with their functions."""
+    terms = {term.as_coeff_Mul()[1] for a in form for term in _terms(a)}
+    kernels = _functions((*form, *hints.values()), z)
+    basis: dict[Expr, Expr] = dict(hints)
     for f in (
-        *hints,
         *(s * term for s in z for term in terms),
         *terms,
         *kernels,
@@ -195,8 +220,8 @@ def _basis(form: Sequence[Expr], z: Sequence[Symbol], hints: Sequence[Expr]) -> 
     ):
         plain = f.as_coeff_Mul()[1]
         if plain.has(*z):
-            basis[plain] = None
-    return sorted(basis, key=sp.count_ops)[:60]
+            basis[plain] = plain
+    return dict(sorted(basis.items(), key=lambda item: int(sp.count_ops(item[0])))[:60])
 
 
 def _functions(sources: Sequence[Expr], z: Sequence[Symbol]) -> set[Expr]:

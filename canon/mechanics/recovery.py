@@ -111,7 +111,7 @@ class Recovery:
         """Return the function of the wanted type in the old variables only."""
         return None if self.converted is None else substitute(self.converted, self.meaning)
 
-    def closed_forms(self) -> Iterator[tuple[Expr, tuple[Boolean, ...]]]:
+    def closed_forms(self, deadline: float) -> Iterator[tuple[Expr, tuple[Boolean, ...]]]:
         """Yield F in the variables of its type, with the conditions of the branch it is on."""
         if self.converted is None:
             return
@@ -122,7 +122,7 @@ class Recovery:
         points = sorted(witnesses(symbols, self.meaning, self.map.domain, 12), key=far_from_principal)
         seen: set[Expr] = set()
         for witness in points[:3]:
-            inversion = Inversion(witness)
+            inversion = Inversion(witness, deadline=deadline)
             solved = solve_system([(self.meaning[b], b) for b in self.given], self.eliminated, inversion)
             if solved is None:
                 continue

@@ -1,0 +1,207 @@
+"""The five tests of canonicity on the collection of maps and their twins."""
+
+import pytest
+import sympy as sp
+from map_collection import MAPS, MOVING, NOTES, E, linear_symplectic, m, p, q, qp, t, w, x, y, px, py
+
+from canon.mechanics.bilinear import bilinear_covariant, canonical_covariant, displacements, is_exact
+from canon.mechanics.implicit import ImplicitTransformation
+from canon.mechanics.inverse import NoClosedInverseError, inverse_transformation
+from canon.mechanics.linear import SingularMatrixError
+from canon.mechanics.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
+from canon.mechanics.transformation import CanonicalTransformation, point_transformation
+from canon.proof.domain import Domain
+from canon.proof.vanish import vanishes
+
+Q, P = sp.symbols("Q P", real=True)
+TESTS = ["poisson", "lagrange", "symplectic", "bilinear", "contact"]
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_canonical_maps_are_recognized(name):
+    assert MAPS[name].map.is_canonical().holds
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_twins_are_refused(name):
+    for twin in MAPS[name].twins:
+        assert twin.is_canonical().fails
+
+
+@pytest.mark.parametrize("test", TESTS)
+@pytest.mark.parametrize("name", NOTES)
+def test_every_test_agrees_on_the_maps_of_the_notes(name, test):
+    assert NOTES[name].map.is_canonical(by=test).holds
+    assert all(twin.is_canonical(by=test).fails for twin in NOTES[name].twins)
+
+
+@pytest.mark.parametrize("name", MOVING)
+def test_all_tests_together_on_moving_maps(name):
+    verdict = MOVING[name].map.is_canonical(by="all")
+    assert verdict.holds
+    assert [e.kind for e in verdict.evidence] == [f"{test} test" for test in TESTS]
+    assert MOVING[name].twins[0].is_canonical(by="all").fails
+
+
+def test_the_linear_map_of_ten_degrees():
+    case = linear_symplectic(10)
+    assert case.map.is_canonical().holds
+    assert case.twins[0].is_canonical().fails
+
+
+def test_valence_is_found_and_told():
+    T = CanonicalTransformation(q, p, 3 * q, p * m)
+    assert T.is_canonical().fails
+    assert T.is_canonical().feedback.startswith(
+        "{Q, P} = 3*m, not 1: canonical with valence 3*m; multiply P by 1/(3*m)"
+    )
+    assert T.valence == 3 * m
+    assert T.is_canonical(valence=3 * m).holds
+    assert T.is_canonical(valence=3).fails
+    assert T.is_canonical(valence=None).holds
+    assert CanonicalTransformation(q, p, q**2, p).is_canonical(valence=None).fails
+    assert CanonicalTransformation(q, p, q, q).is_canonical(valence=None).fails
+
+
+@pytest.mark.parametrize(
+    ("T", "words"),
+    [
+        (CanonicalTransformation(q, p, p, q), "exchange Q and P, or change the sign"),
+        (CanonicalTransformation((x, y), (px, py), (x, y), (py, px)), "P1 = old P2, P2 = old P1"),
+        (
+            CanonicalTransformation((x, y), (px, py), (x, y), (px, 2 * py)),
+            "{Q2, P2} = 2, not 1: multiply P2 by 1/2",
+        ),
+        (CanonicalTransformation(q, p, q * p, q * p), "Q and P depend on each other"),
+        (NOTES["oscillator"].twins[0], "valence 2; multiply P by 1/2"),
+    ],
+)
+def test_feedback_says_what_would_mend(T, words):
+    verdict = T.is_canonical()
+    assert verdict.fails
+    assert words in verdict.feedback
+
+
+def test_composition_and_inversion():
+    oscillator = CanonicalTransformation(qp, p, NOTES["oscillator"].map.Q, E, domain=Domain((p > 0,)))
+    back = inverse_transformation(oscillator, [Q], [P])
+    assert vanishes(
+        back.Q[0] - sp.sqrt(2 * P / (m * w)) * sp.sin(Q), Domain((P > 0, Q > 0, Q < sp.pi / 2))
+    ).holds
+    both = oscillator.then(back)
+    assert vanishes(both.Q[0] - qp, oscillator.domain).holds
+    assert vanishes(both.P[0] - p, oscillator.domain).holds
+    with pytest.raises(ValueError, match="degrees of freedom"):
+        oscillator.then(point_transformation((x, y), (px, py), (x + y, y)))
+
+
+def test_composed_leapfrog_steps_stay_canonical():
+    step = MAPS["leapfrog step"].map
+    assert step.then(step).is_canonical().holds
+    assert step.then(MAPS["leapfrog step"].twins[0]).is_canonical().fails
+
+
+def test_an_inverse_that_is_no_formula_is_refused():
+    with pytest.raises(NoClosedInverseError, match="narrow the domain"):
+        inverse_transformation(CanonicalTransformation(q, p, q**5 + q, p / (5 * q**4 + 1)), [Q], [P])
+
+
+def test_dependent_new_coordinates_are_refused_with_their_direction():
+    with pytest.raises(SingularMatrixError) as caught:
+        point_transformation((x, y), (px, py), (x + y, (x + y) ** 2))
+    assert len(caught.value.null_direction) == 2
+    with pytest.raises(ValueError, match="q and t only"):
+        point_transformation(q, p, q * p)
+
+
+def rk4(f, h):
+    k1 = f((q, p))
+    k2 = f((q + h / 2 * k1[0], p + h / 2 * k1[1]))
+    k3 = f((q + h / 2 * k2[0], p + h / 2 * k2[1]))
+    k4 = f((q + h * k3[0], p + h * k3[1]))
+    return tuple(
+        z + h / 6 * (a + 2 * b + 2 * c + d) for z, a, b, c, d in zip((q, p), k1, k2, k3, k4, strict=True)
+    )
+
+
+def test_a_runge_kutta_step_is_not_canonical():
+    h = sp.Symbol("h", positive=True)
+    step = rk4(lambda s: (s[1], -s[0]), h)
+    verdict = CanonicalTransformation(q, p, step[0], step[1]).is_canonical()
+    assert verdict.fails
+    # det M of RK4 on the oscillator is 1 − h⁶/72 + h⁸/576
+    bracket = CanonicalTransformation(q, p, step[0], step[1]).poisson_brackets[0, 1]
+    assert vanishes(bracket - (1 - h**6 / 72 + h**8 / 576)).holds
+
+
+def implicit(equations):
+    h = sp.Symbol("h", positive=True)
+    return ImplicitTransformation((q,), (p,), (Q,), (P,), tuple(e.subs("h", h) for e in equations))
+
+
+def test_implicit_steps():
+    h, f = sp.Symbol("h"), sp.sin
+    assert implicit([Q - q - h * (p + P) / 2, P - p + h * f((q + Q) / 2)]).is_canonical().holds
+    assert implicit([Q - q - h * (p + P) / 2, P - p + h * (f(q) + f(Q)) / 2]).is_canonical().fails
+    # symplectic Euler in its implicit form, and the backward Euler rule
+    assert implicit([Q - q - h * P, P - p + h * f(q)]).is_canonical().holds
+    assert implicit([Q - q - h * P, P - p + h * f(Q)]).is_canonical().fails
+
+
+def test_new_hamiltonians_of_moving_maps():
+    H = p**2 / (2 * m)
+    boost = MOVING["Galilean boost"].map
+    b = sp.Symbol("b", real=True)
+    K = P**2 / (2 * m)
+    assert is_new_hamiltonian(boost, H, K, [Q, P]).holds
+    assert is_new_hamiltonian(boost, H, K + b * P, [Q, P]).fails
+    motion = MOVING["oscillator's motion"].map
+    assert is_new_hamiltonian(motion, -(H + m * w**2 * q**2 / 2), sp.S.Zero, [Q, P]).holds
+    assert is_new_hamiltonian(motion, H + m * w**2 * q**2 / 2, sp.S.Zero, [Q, P]).fails
+
+
+def test_new_hamiltonian_of_the_moving_scale_without_its_generating_function():
+    """The damped-scale map with an arbitrary ρ(t) turns p²/2m + m w² q²/2 into a K whose equations agree."""
+    T = MOVING["moving scale"].map
+    H = p**2 / (2 * m)
+    K = new_hamiltonian(T, H)
+    assert K is not None
+    rho = sp.Function("rho")(t)
+    # second route: dQ/dt along H must be ∂K/∂P, with ∂/∂P = (1/ρ) ∂/∂p at fixed Q
+    along = T.Q[0].diff(q) * H.diff(p) + T.Q[0].diff(t)
+    assert vanishes(along - K.diff(p) / rho).holds
+
+
+def test_the_inverse_map_serves_as_well():
+    """K(Q, P) = ω P for the oscillator, with the map given as q(Q, P), p(Q, P)."""
+    P_ = sp.Symbol("P", positive=True)
+    back = CanonicalTransformation(
+        Q, P_, sp.sqrt(2 * P_ / (m * w)) * sp.sin(Q), sp.sqrt(2 * m * w * P_) * sp.cos(Q)
+    )
+    H = p**2 / (2 * m) + m * w**2 * q**2 / 2
+    assert is_new_hamiltonian(back, w * P_, H, [q, p]).holds
+    assert is_new_hamiltonian(back, w * P_ / 2, H, [q, p]).fails
+
+
+def test_bilinear_covariants():
+    (dq, dp), (ddq, ddp) = displacements((q, p))
+    assert vanishes(bilinear_covariant([p, 0], [q, p]) - (ddp * dq - dp * ddq)).holds
+    assert vanishes(bilinear_covariant([p, 0], [q, p]) - (dp * ddq - ddp * dq)).fails
+    T = NOTES["square roots"].map
+    difference = canonical_covariant(T.Q, T.P, (qp, p)) - canonical_covariant([qp], [p], (qp, p))
+    assert vanishes(difference, T.domain).holds
+    assert is_exact(T.contact_form(), (qp, p), T.domain).holds
+    assert is_exact(NOTES["square roots"].twins[0].contact_form(), (qp, p), T.domain).fails
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: CanonicalTransformation((x, y), (px,), (x, y), (px, py)), "2 q, 1 p"),
+        (lambda: CanonicalTransformation(q, q, q, p), "not all different"),
+        (lambda: CanonicalTransformation(q, p, q, p).is_canonical(by="determinant"), "no test is called"),
+    ],
+)
+def test_refusals_say_what_is_wrong(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
