@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.method import RK4, Splitting, Taylor
+from canon.flow.method import RK4, FixedStep, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
 from canon.scene.scene import Scene
 from canon.study.drift import FEWEST, Drift, drift
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from canon.flow.method import Method
     from canon.flow.propagate import HamiltonianSystem
 
-__all__ = ["DriftRow", "DriftStudy", "StudyError", "drift_study"]
+__all__ = ["DriftRow", "DriftStudy", "StudyError", "drift_row", "drift_study"]
 
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 
@@ -39,7 +40,8 @@ SAMPLES_PER_PERIOD = 14.0 + GOLDEN
 MOST_SAMPLES = 2**17
 """Samples that are kept at most unless more are asked for."""
 
-UNIT_ROUND_OFF = 2.0**-53
+UNIT_ROUND_OFF = {"single": 2.0**-24, "extended": 2.0**-64, "quad": 2.0**-113, "double-double": 2.0**-106}
+"""Unit round-off by precision; 2⁻⁵³ for the others."""
 
 
 class StudyError(ValueError):
@@ -70,6 +72,8 @@ class DriftRow:
         Processor time of the run, and the time that compiling its loop took.
     precision
         The arithmetic.
+    final
+        The state at the end, shape (2n,); empty where the run failed.
     """
 
     method: Method
@@ -84,6 +88,7 @@ class DriftRow:
     cpu_seconds: float = 0.0
     compile_seconds: float = 0.0
     precision: str = ""
+    final: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -186,18 +191,19 @@ def drift_study(
     if kept < FEWEST:
         raise StudyError(f"{kept} samples are too few to judge growth: keep at least {FEWEST}")
     hamiltonian = system.hamiltonian if isinstance(system, Scene) else system
+    state, values = _state(system, y0), _parameters(system, parameters)
     rows = tuple(
-        _run(
+        drift_row(
             hamiltonian,
-            _state(system, y0),
+            state,
             span,
             method,
             step=h if _is_fixed(method) else None,
             tolerance=None if _is_fixed(method) else tolerance,
             precision=precision if _is_fixed(method) else None,
-            parameters=_parameters(system, parameters),
+            parameters=values,
             samples=kept,
-            progress=progress,
+            progress=partial(progress, str(method)) if progress is not None else None,
         )
         for method in chosen
     )
@@ -207,23 +213,23 @@ def drift_study(
     return DriftStudy(_title(system, y0), span, known_period, _time_unit(system), rows)
 
 
-def _run(
+def drift_row(
     hamiltonian: HamiltonianSystem,
     y0: NDArray[np.float64],
     span: float,
     method: Method,
     *,
-    step: float | None,
-    tolerance: float | None,
-    precision: str | None,
-    parameters: Mapping[Symbol | str, float],
     samples: int,
-    progress: Callable[[str, float], None] | None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    precision: str | None = None,
+    parameters: Mapping[Symbol | str, float] | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> DriftRow:
-    def report(done: float) -> None:
-        if progress is not None:
-            progress(str(method), done)
+    """Run one method and judge its energy error; a run that fails is a row with the reason.
 
+    The parameters are those of :func:`drift_study` and :func:`canon.flow.propagate.propagate`.
+    """
     try:
         found = propagate(
             hamiltonian,
@@ -235,11 +241,12 @@ def _run(
             precision=precision,
             parameters=parameters,
             samples=samples,
-            progress=report,
+            progress=progress,
         )
         error = found.energy_error
-        roundoff = UNIT_ROUND_OFF * math.sqrt(found.steps) if found.relative else None
-        judged = drift(found.t, error, roundoff=roundoff)
+        unit = UNIT_ROUND_OFF.get(found.precision, 2.0**-53)
+        roundoff = unit * math.sqrt(found.steps) if found.relative else None
+        judged = drift(found.t, error, roundoff=roundoff, resolution=unit)
     except (NonFiniteStateError, ValueError) as failed:
         return DriftRow(method, step, np.empty(0), np.empty(0), failure=str(failed))
     return DriftRow(
@@ -254,6 +261,7 @@ def _run(
         cpu_seconds=found.cpu_seconds,
         compile_seconds=found.compile_seconds,
         precision=found.precision,
+        final=found.final,
     )
 
 
@@ -262,7 +270,7 @@ def _usual_methods() -> tuple[Method, ...]:
 
 
 def _is_fixed(method: Method) -> bool:
-    return isinstance(method, Splitting | RK4)
+    return isinstance(method, FixedStep)
 
 
 def _period(system: Scene | HamiltonianSystem) -> float | None:
