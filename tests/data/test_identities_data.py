@@ -6,6 +6,7 @@ import random
 from collections import Counter
 from typing import Any
 
+import mpmath as mp
 import pytest
 
 from tests.data.identities import verify
@@ -76,3 +77,11 @@ def test_the_numerical_check_refuses_what_is_not_in_the_language() -> None:
     entry = {"id": "x", "lhs": "x.real", "rhs": "0", "symbols": {"x": "real"}, "truth": True}
     with pytest.raises(ValueError, match="not in the language"):
         verify.verdict(entry)
+
+
+def test_the_stand_in_for_an_arbitrary_function_knows_its_derivatives() -> None:
+    f = verify.arbitrary(2, random.Random(1))
+    x, y = mp.mpf("0.3"), mp.mpf("-0.7")
+    with mp.workdps(60):
+        for orders in ((1, 0), (0, 2), (1, 1), (2, 1), (3, 0)):
+            assert mp.almosteq(f.derivative((x, y), orders), mp.diff(f, (x, y), orders), 1e-50)

@@ -22,6 +22,7 @@ import random
 import sys
 import time
 import tomllib
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +30,7 @@ import mpmath as mp
 from mpmath import mpc, mpf
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
 HERE = Path(__file__).parent
 WANTED_POINTS = 200
@@ -37,7 +38,7 @@ STEADY, ZERO, NONZERO = mpf(10) ** -60, mpf(10) ** -55, mpf(10) ** -50
 DIGITS = (80, 160, 320, 640, 1280, 2560, 5120)
 
 Number = Any
-Functions = dict[str, "Callable[..., Number]"]
+Functions = dict[str, "Arbitrary"]
 
 
 class UndefinedError(ArithmeticError):
@@ -117,6 +118,13 @@ class Evaluation:
             name, order = variable.elts if isinstance(variable, ast.Tuple) else (variable, ast.Constant(1))
             key = ast.unparse(name)
             orders[key] = orders.get(key, 0) + int(ast.literal_eval(order))
+
+        match expression:
+            case ast.Call(func=ast.Name(id=function), args=inner) if function in self.functions:
+                names = [ast.unparse(arg) for arg in inner]
+                if set(orders) <= set(names) <= set(self.point) and len(set(names)) == len(names):
+                    xs = [self.point[name] for name in names]
+                    return self.functions[function].derivative(xs, [orders.get(name, 0) for name in names])
 
         def along(*values: Number) -> Number:
             shifted = Evaluation({**self.point, **dict(zip(orders, values, strict=True))}, self.functions)
@@ -211,24 +219,41 @@ FUNCTIONS: dict[str, Callable[..., Number]] = {
 }
 
 
-def arbitrary_function(arity: int, rng: random.Random) -> Callable[..., Number]:
-    """Return a smooth function without symmetry, standing for an arbitrary one."""
+@dataclass(frozen=True)
+class Arbitrary:
+    """A smooth function without symmetry, standing for an arbitrary one: an exponential, squares and waves."""
 
-    def coefficient() -> Number:
-        return mpf(rng.randint(-64, 64)) / 32 + mpf(1) / 128
+    slopes: tuple[Number, ...]
+    squares: tuple[Number, ...]
+    waves: tuple[tuple[Number, tuple[Number, ...], Number], ...]
 
-    waves = [(coefficient(), [coefficient() for _ in range(arity)], coefficient()) for _ in range(3)]
-    slopes = [coefficient() / 8 for _ in range(arity)]
-    squares = [coefficient() for _ in range(arity)]
+    def __call__(self, *xs: Number) -> Number:
+        return self.derivative(xs, (0,) * len(xs))
 
-    def function(*xs: Number) -> Number:
-        total = mp.exp(sum(s * x for s, x in zip(slopes, xs, strict=True)))
-        total += sum(s * x * x for s, x in zip(squares, xs, strict=True))
-        for amplitude, numbers, phase in waves:
-            total += amplitude * mp.sin(phase + sum(k * x for k, x in zip(numbers, xs, strict=True)))
+    def derivative(self, xs: Sequence[Number], orders: Sequence[int]) -> Number:
+        total = mp.exp(mp.fdot(self.slopes, xs)) * powers(self.slopes, orders)
+        for x, factor, order in zip(xs, self.squares, orders, strict=True):
+            if order == sum(orders):
+                total += factor * (x * x, 2 * x, mpf(2), mpf(0))[min(order, 3)]
+        for amplitude, numbers, phase in self.waves:
+            angle = phase + mp.fdot(numbers, xs) + sum(orders) * mp.pi / 2
+            total += amplitude * powers(numbers, orders) * mp.sin(angle)
         return total
 
-    return function
+
+def powers(bases: Sequence[Number], orders: Sequence[int]) -> Number:
+    return mp.fprod(base**order for base, order in zip(bases, orders, strict=True))
+
+
+def arbitrary(arity: int, rng: random.Random) -> Arbitrary:
+    def coefficients() -> tuple[Number, ...]:
+        return tuple(mpf(rng.randint(-64, 64)) / 32 + mpf(1) / 128 for _ in range(arity))
+
+    return Arbitrary(
+        slopes=tuple(s / 8 for s in coefficients()),
+        squares=coefficients(),
+        waves=tuple((coefficients()[0], coefficients(), coefficients()[0]) for _ in range(3)),
+    )
 
 
 def coordinate(assumption: str, box: list[float] | None, rng: random.Random) -> Number:
@@ -285,9 +310,7 @@ def difference(entry: dict[str, Any], point: dict[str, Number], seed: int) -> Nu
     for digits in DIGITS:
         with mp.workdps(digits):
             rng = random.Random(seed)
-            functions = {
-                name: arbitrary_function(len(args), rng) for name, args in entry.get("functions", {}).items()
-            }
+            functions = {name: arbitrary(len(args), rng) for name, args in entry.get("functions", {}).items()}
             evaluation = Evaluation(point, functions)
             try:
                 values = [evaluation.value(side) for side in sides]
