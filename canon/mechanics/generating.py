@@ -25,12 +25,12 @@ from canon.expression.symbol import time
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import is_regular
 from canon.mechanics.recovery import Recovery
-from canon.mechanics.substitution import as_tuple, substitute
+from canon.mechanics.substitution import as_tuple, entry, exchanged, substitute
 from canon.proof.domain import Domain
 from canon.proof.verdict import Verdict, all_hold
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from sympy.logic.boolalg import Boolean
 
@@ -201,8 +201,23 @@ class GeneratingFunction:
         >>> GeneratingFunction(1, -q*Q, q, p, Q, P).generates(exchange).feedback
         'on the map p = ∂F/∂q should be p, but is -p'
         """
-        domain = domain or transformation.domain
-        there = self._on(transformation)
+        return self.holds_on(self._on(transformation), domain or transformation.domain, budget)
+
+    def holds_on(
+        self, there: Mapping[Symbol, Expr], domain: Domain | None = None, budget: float = 10.0
+    ) -> Verdict:
+        """Tell whether the rules hold where the variables have these values, with regular mixed Hessian.
+
+        Parameters
+        ----------
+        there
+            Variables as functions of others; those not named stand for themselves.
+        domain
+            Where the claim is meant.
+        budget
+            Seconds for the rules.
+        """
+        domain = domain or Domain()
         end = clock.monotonic() + budget
 
         def verdicts() -> Iterator[Verdict]:
@@ -277,6 +292,49 @@ class ParametricGeneratingFunction:
     F: Expr | None
     relations: tuple[tuple[Symbol, Expr], ...]
     transformation: CanonicalTransformation
+
+    def is_right(self, domain: Domain | None = None) -> Verdict:
+        """Tell whether dF along the map is the differential of its type, at fixed t.
+
+        For type 1, dF = Σ p dq − Σ P dQ as forms in (dq, dp), with + Q dP for types 2 and 4 in place of − P dQ
+        and − q dp for types 3 and 4 in place of p dq.
+        """
+        T = self.transformation
+        F = sp.nan if self.F is None else self.F
+
+        def due(z: Symbol) -> Expr:
+            pairs = zip(self.kind, T.q, T.p, T.Q, T.P, strict=True)
+            return sp.Add(
+                *(
+                    (p * q.diff(z) if k in (1, 2) else -q * p.diff(z))
+                    + (-P * Q.diff(z) if k in (1, 3) else Q * P.diff(z))
+                    for k, q, p, Q, P in pairs
+                )
+            )
+
+        claims = [(f"the coefficient of d{z} in dF", F.diff(z) - due(z)) for z in T.variables]
+        return all_vanish(claims, "F is the generating function along the map", domain or T.domain)
+
+    def evaluate(self, values: Mapping[Symbol, float], start: Mapping[Symbol, float]) -> float:
+        """Return the number F(old, new) by solving the relations with Newton's method.
+
+        Parameters
+        ----------
+        values
+            Numbers for all variables of the type, the time and the parameters.
+        start
+            First guesses for the old variables that the type does not hold.
+        """
+        unknowns = list(start)
+        known = {s: sp.Float(value, 30) for s, value in values.items()}
+        equations = [exchanged(f - b, known) for b, f in self.relations]
+        root = sp.nsolve(equations, unknowns, [start[s] for s in unknowns], prec=30)
+        found = {s: entry(sp.Matrix(root), i, 0) for i, s in enumerate(unknowns)}
+        if self.F is None:
+            raise NoGeneratingFunctionError(
+                "the contact form of this map has no closed integral", self.is_right()
+            )
+        return float(exchanged(self.F, {**known, **found}))
 
 
 def generating_function(

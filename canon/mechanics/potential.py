@@ -177,7 +177,7 @@ def _by_fitting(
 
 
 def _terms(a: Expr) -> list[Expr]:
-    return [cast("Expr", term) for term in sp.Add.make_args(cast("Expr", sp.expand_mul(a)))]
+    return list(sp.Add.make_args(cast("Expr", sp.expand_mul(a))))
 
 
 def _antiderivatives(

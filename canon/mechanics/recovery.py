@@ -17,7 +17,7 @@ from sympy import Expr, Symbol
 from canon.mechanics.inversion import Inversion, solve_system
 from canon.mechanics.linear import is_regular
 from canon.mechanics.potential import potential
-from canon.mechanics.substitution import exchanged, substitute
+from canon.mechanics.substitution import exchanged, shortened, substitute
 from canon.mechanics.witness import far_from_principal, witnesses
 
 if TYPE_CHECKING:
@@ -126,17 +126,10 @@ class Recovery:
             solved = solve_system([(self.meaning[b], b) for b in self.given], self.eliminated, inversion)
             if solved is None:
                 continue
-            F = _tidied(substitute(exchanged(self.converted, inversion.known), solved))
+            F = shortened(substitute(exchanged(self.converted, inversion.known), solved))
             if F not in seen:
                 seen.add(F)
                 yield F, tuple(inversion.conditions)
-
-
-def _tidied(F: Expr) -> Expr:
-    """Return the shortest of a few plain forms of F: as it stands, over one denominator, multiplied out."""
-    if sp.count_ops(F) > 150:
-        return F
-    return min((F, sp.factor_terms(F), sp.expand(F), sp.cancel(sp.together(F))), key=sp.count_ops)
 
 
 def _listed(symbols: Sequence[Symbol]) -> str:

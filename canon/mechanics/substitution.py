@@ -10,7 +10,7 @@ from sympy import Expr
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-__all__ = ["as_tuple", "entry", "exchanged", "substitute"]
+__all__ = ["as_tuple", "entry", "exchanged", "shortened", "substitute"]
 
 
 def substitute(f: Expr, values: Mapping[sp.Symbol, Expr]) -> Expr:
@@ -47,3 +47,10 @@ def as_tuple(given: Sequence[Expr] | Expr) -> tuple[Expr, ...]:
     if isinstance(given, Expr):
         return (given,)
     return tuple(sp.sympify(f) for f in given)
+
+
+def shortened(F: Expr) -> Expr:
+    """Return the shortest of a few plain forms of F: as it stands, over one denominator, multiplied out."""
+    if sp.count_ops(F) > 150:
+        return F
+    return min((F, sp.factor_terms(F), sp.expand(F), sp.cancel(sp.together(F))), key=sp.count_ops)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from flint import acb, arb
@@ -38,7 +38,7 @@ class Witness:
     point: Mapping[Symbol, sp.Rational]
     meaning: Mapping[Symbol, Expr]
 
-    def value(self, f: Expr) -> acb | None:
+    def value(self, f: Expr) -> Any:
         """Return a ball around the value of f, or None where it has none."""
         whole = _without_functions(substitute(f, self.meaning))
         point = {s: self.point.get(s, _stand_in(s)) for s in whole.atoms(Symbol)}
