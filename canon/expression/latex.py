@@ -13,6 +13,7 @@ Conventions
   ``\sin a(b+c)``, ``\sin\theta^2`` and ``\sin\theta/2`` are refused.
 * With brackets or braces it takes exactly these: ``\sin(a)b`` is sin(a) b, ``\sin(a)^2`` is sin(a)².
 * ``\sin^2 x`` is sin(x)², ``\sin^{-1}x`` the inverse function; ``\log`` is the natural logarithm.
+* Braces are not seen in print: ``{x^a}^b`` and ``\frac{a}{b}^2`` are refused.
 * ``a/b c`` is refused; ``\frac{d}{dt}`` is read of coordinates and of functions of the time only.
 """
 
@@ -197,7 +198,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def power(self, children: list[Any]) -> Powered:
         base, _, exponent = children
-        return Powered(base, self.meaning.node(exponent), base.column)
+        return self.meaning.raised(base, self.meaning.node(exponent))
 
     def head(self, children: list[Any]) -> Head:
         function, *scripts = children
@@ -252,7 +253,7 @@ def _unexpected(text: str, before: Word | None, word: Word | None, end: int) -> 
     elif last in ("SIGN", "TIMES", "SLASH") and kind == "SIGN":
         reason, remedy = "two signs in a row", "write brackets, a - (-b)"
     elif kind == "CARET" and last not in ("SIGN", "TIMES", "SLASH", "RELATION", "LPAR", "LBRACE", ""):
-        reason, remedy = "a second exponent, or one of nothing", "write {x^a}^b or x^{a b}"
+        reason, remedy = "a second exponent, or one of nothing", "write (x^a)^b or x^{a b}"
     elif kind == "UNDER":
         reason, remedy = "a subscript belongs directly after a name", "write x_1^2, q_{12}"
     elif kind == "COMMA":
@@ -265,9 +266,7 @@ def _unexpected(text: str, before: Word | None, word: Word | None, end: int) -> 
             r"write \frac{a}{b}, \sqrt{x}",
         )
     elif word is None or kind in ("RPAR", "RBRACE", "RBAR", "RINDEX"):
-        reason = (
-            "the formula ends too early" if word is None else f"something is missing before {word.shown!r}"
-        )
+        reason = "the formula ends too early" if word is None else f"something is missing before {word.shown}"
     else:
-        reason = f"{word.shown!r} where a number, a name or a bracket should be"
+        reason = f"{word.shown} where a number, a name or a bracket should be"
     return LanguageError(text, column, reason, remedy)

@@ -26,7 +26,8 @@ from canon.expression.latex_pieces import (
     items_of,
     names_in,
     raised,
-)  # fmt: skip
+    unbraced,
+)
 from canon.expression.symbol import Coordinate, Momentum, Rate
 from canon.expression.syntax import Call, LanguageError, Name, Node, Number, Power, Product, Tuple
 
@@ -118,31 +119,36 @@ class Meaning:
 
     def _neighbours(self, left: Piece, right: Piece) -> None:
         """Refuse two factors that side by side look like something else."""
-        first = right.base if isinstance(right, Powered) else right
-        if isinstance(first, Number) and isinstance(left, Name | Number):
+        column = right.column
+        hidden = isinstance(left, Group) and not left.printed
+        left, right = unbraced(left), unbraced(right)
+        first = unbraced(right.base) if isinstance(right, Powered) else right
+        if isinstance(first, Number) and (hidden or isinstance(left, Name | Number)):
+            self.refuse(column, "a number after a factor", r"write x_2, x^2, 2x or \cdot, whichever is meant")
+        if isinstance(left, Number) and isinstance(first, Fraction) and first.numbers:
             self.refuse(
-                right.column, "a number after a factor", r"write x_2, x^2, 2x or \cdot, whichever is meant"
+                column, "a number before a fraction of numbers: a product or a mixed number?", r"put \cdot"
             )
-        if isinstance(left, Number) and isinstance(right, Fraction) and right.numbers:
-            self.refuse(
-                right.column,
-                "a number before a fraction of numbers: a product or a mixed number?",
-                r"put \cdot",
-            )
-        if not (isinstance(left, Name) and isinstance(right, Group) and right.printed):
-            return
-        inner = right.inner
-        if isinstance(inner, Tuple | Number | Name):
+        inner = first.inner if isinstance(left, Name) and isinstance(first, Group) else None
+        if isinstance(left, Name) and isinstance(inner, Tuple | Number | Name):
             symbol = self.scope.symbol(left.text)
-            if (
-                isinstance(symbol, Coordinate | Rate)
-                and isinstance(inner, Name)
-                and inner.text == self.scope.time.name
-            ):
-                self.refuse(right.column, f"{left.text} is a symbol here, its dependence on the time is understood",
-                            "leave the argument out")  # fmt: skip
-            self.refuse(right.column, f"{left.text} is a declared symbol and can't be applied to anything",
-                        "leave the brackets out for a product, or declare it in functions")  # fmt: skip
+            time = isinstance(inner, Name) and inner.text == self.scope.time.name
+            if time and isinstance(symbol, Coordinate | Rate):
+                reason = f"{left.text} is a symbol here, its dependence on the time is understood"
+                self.refuse(column, reason, "leave the argument out")
+            reason = f"{left.text} is a declared symbol and can't be applied to anything"
+            self.refuse(column, reason, "leave the brackets out for a product, or declare it in functions")
+
+    def raised(self, base: Piece, exponent: Node) -> Powered:
+        """Return a factor with its exponent, where print shows what is raised."""
+        hidden = (
+            isinstance(base, Group) and not base.printed and not isinstance(unbraced(base), Name | Number)
+        )
+        if hidden or isinstance(base, Fraction):
+            self.refuse(
+                base.column, "print does not show what is raised here", r"write \left( \right) around it"
+            )
+        return Powered(base, exponent, base.column)
 
     def _application(
         self, items: tuple[Piece, ...], at: int, head: Head, function: Function, chain: int = 1

@@ -218,6 +218,8 @@ class Names:
 
     def _unknown(self, letters: str, column: int, start: int, pieces: Pieces, order: int) -> NoReturn:
         rest = letters[start:]
+        if rest[0].isdigit():
+            self._refuse(column + start, "a number after a name", "write x_2, x^2 or 2x, whichever is meant")
         name = spellings(rest, pieces)[0]
         if self.spelled((rest,), pieces, 0, column + start) and order:
             self.no_rate(name, column + start)

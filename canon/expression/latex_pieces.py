@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Fraction", "Group", "Head", "Operator", "Piece", "Powered", "Run", "is_function", "is_minus_one",
-    "items_of", "mark_of", "names_in", "raised", "whole",
+    "items_of", "mark_of", "names_in", "raised", "unbraced", "whole",
 ]  # fmt: skip
 
 
@@ -99,10 +99,16 @@ def raised(node: Node, exponent: Node | None) -> Node:
     return node if exponent is None else Power(node, exponent, node.column)
 
 
-def items_of(piece: Piece) -> tuple[Piece, ...]:
-    """Return what stands side by side in a piece, seen through braces."""
+def unbraced(piece: Piece) -> Piece:
+    """Return what stands in braces, which are not seen in print."""
     while isinstance(piece, Group) and piece.braces:
         piece = piece.inner
+    return piece
+
+
+def items_of(piece: Piece) -> tuple[Piece, ...]:
+    """Return what stands side by side in a piece, seen through braces."""
+    piece = unbraced(piece)
     return piece.items if isinstance(piece, Run) else (piece,)
 
 

@@ -111,7 +111,7 @@ def words_of(text: str, scope: Scope) -> Words:
     while reader.at < reader.end:
         reader.step()
     if reader.open:
-        reader.refuse(reader.open[-1].column, f"{reader.open[-1].shown!r} is never closed")
+        reader.refuse(reader.open[-1].column, f"{reader.open[-1].shown} is never closed")
     return Words(tuple(reader.words), frozenset(reader.spaced), reader.end + 1)
 
 
@@ -341,11 +341,11 @@ class _Reader:
 
     def closed(self, shown: str, column: int) -> bool:
         if not self.open:
-            self.refuse(column, f"{shown!r} closes nothing")
+            self.refuse(column, f"{shown} closes nothing")
         bracket = self.open.pop()
         if bracket.closing != shown:
-            where = f"{bracket.shown!r} of column {bracket.column}"
-            self.refuse(column, f"{shown!r} where {bracket.closing!r} should close the {where}")
+            where = f"{bracket.shown} of column {bracket.column}"
+            self.refuse(column, f"{shown} where {bracket.closing} should close the {where}")
         self.emit("R" + bracket.kind, shown, column)
         self.singles = bracket.singles
         return True

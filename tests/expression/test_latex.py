@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from canon import coordinates, parameters, time
 from canon.expression.language import LanguageError, Scope, parse_condition, parse_equation, parse_expression
+from canon.expression.latex import parse_latex
 from canon.expression.symbol import Momentum
 
 COORDINATES = "theta theta_1 theta2 phi x y q_1 q_2 r q_12"
@@ -73,7 +74,7 @@ PAIRS = [
     (r"x^{n+1} + x^n", "x**(n+1) + x**n"),
     (r"x^{-1} + x^\frac12", "1/x + x**(1/2)"),
     (r"x^2y", "x**2*y"),
-    (r"{x^a}^b", "(x**a)**b"),
+    (r"(x^a)^b + {x}^a", "(x**a)**b + x**a"),
     (r"a/b", "a/b"),
     (r"a/(bc)", "a/(b*c)"),
     (r"a/b\cdot c", "a/b*c"),
@@ -141,3 +142,426 @@ def test_latex_reads_like_its_plain_spelling(latex, plain, closing):
         latex = latex[1:-1]
     found = parse_expression(f"{opening}{latex}{closing}", SCOPE)
     assert sp.expand(found - expected) == 0
+
+
+EQUATIONS = [
+    (r"$\ddot\theta + \frac{g}{l}\sin\theta = 0", "theta_ddot + g/l*sin(theta)"),
+    (r"$m\ddot x = -kx$", "m*x_ddot + k*x"),
+    (r"$$ml^2\ddot\theta_1 = mgl\,\sin\theta_1$$", "m*l**2*theta_1_ddot - m*g*l*sin(theta_1)"),
+]
+
+
+@pytest.mark.parametrize(("latex", "plain"), EQUATIONS)
+def test_equations(latex, plain):
+    assert sp.expand(parse_equation(latex, SCOPE) - parse_equation(plain, SCOPE)) == 0
+
+
+@pytest.mark.parametrize(
+    ("latex", "plain"),
+    [
+        (r"$0 < \theta < \pi$", "0 < theta < pi"),
+        (r"$x \le a", "x <= a"),
+        (r"$x \geq a", "x >= a"),
+        (r"$p_x \ne 0$", "Ne(p_x, 0)"),
+    ],
+)
+def test_conditions(latex, plain):
+    assert parse_condition(latex, SCOPE) == parse_condition(plain, SCOPE)
+
+
+# -- what is declared decides
+
+
+def test_a_run_of_letters_is_the_longest_declared_name():
+    names = {name: sp.Symbol(name, real=True) for name in ("m", "g", "l", "mgl")}
+    assert parse_expression("$mgl", Scope(names)) == names["mgl"]
+    del names["mgl"]
+    assert parse_expression("$mgl", Scope(names)) == names["m"] * names["g"] * names["l"]
+
+
+def test_a_run_that_splits_in_two_ways_is_refused():
+    names = {name: sp.Symbol(name, real=True) for name in ("a", "ab", "b", "c")}
+    assert fault("$ab c", Scope(names)) is None
+    assert "ab c and as a b c" in fault("$2 abc", Scope(names)).reason
+    assert fault("$2 abc", Scope(names)).column == 4
+
+
+def test_e_is_eulers_number_only_where_it_is_not_declared_and_raised():
+    assert parse_expression("$e^{2}", SCOPE) == sp.exp(2)
+    eccentricity = sp.Symbol("e", real=True)
+    assert parse_expression("$e^{2}", Scope({"e": eccentricity})) == eccentricity**2
+    assert fault("$1 - e", SCOPE).column == 6
+
+
+def test_a_declared_name_overrides_what_a_letter_means():
+    pi = sp.Symbol("pi", real=True)
+    assert parse_expression(r"$2\pi", Scope({"pi": pi})) == 2 * pi
+
+
+def test_varphi_is_phi_only_where_varphi_is_not_declared():
+    names = {name: sp.Symbol(name, real=True) for name in ("phi", "varphi")}
+    assert parse_expression(r"$\varphi", Scope(names)) == names["varphi"]
+    assert parse_expression(r"$\varphi", Scope({"phi": names["phi"]})) == names["phi"]
+
+
+def test_a_subscript_that_two_declared_names_share_is_refused():
+    names = {name: sp.Symbol(name, real=True) for name in ("x1", "x_1")}
+    assert "x_1 or x1" in fault("$x_1", Scope(names)).reason
+
+
+def test_the_d_of_a_declared_distance_is_not_guessed_at():
+    with_d = scope("d")
+    assert parse_expression(r"$\frac{d}{l}", with_d) == with_d.names["d"] / with_d.names["l"]
+    assert "d is declared" in fault(r"$\frac{d x}{d y}", with_d).reason
+    x = with_d.names["x"]
+    assert parse_expression(r"$\frac{\mathrm{d}V}{\mathrm{d}x}", with_d) == sp.Function("V", real=True)(
+        x
+    ).diff(x)
+
+
+def test_the_imaginary_unit_is_no_moment_of_inertia():
+    assert parse_expression(r"$\mathrm{i}", SCOPE) == sp.I
+    assert fault(r"$\mathrm{i}", scope("I")).column == 2
+
+
+# -- what SymPy prints is read back
+
+X, Y, THETA, THETA_1, Q_12 = (SCOPE.names[name] for name in ("x", "y", "theta", "theta_1", "q_12"))
+V, U, RHO = (sp.Function(name, real=True) for name in ("V", "U", "rho"))
+ATOMS = [
+    X, Y, THETA, THETA_1, Q_12, THETA.dot, THETA_1.dot, X.ddot, time, sp.pi,
+    *(SCOPE.names[name] for name in ("m", "omega_0", "lambda", "m_eff", "p_theta", "p_theta_1", "theta2")),
+    V(X), U(X, Y), V(X).diff(X), V(X).diff(X, 2), U(X, Y).diff(X, Y), RHO(time).diff(time),
+]  # fmt: skip
+NUMBERS = st.builds(sp.Rational, st.integers(-9, 9), st.integers(1, 9))
+FUNCTIONS = [
+    sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc, sp.asin, sp.acos, sp.atan, sp.acot, sp.sinh, sp.cosh, sp.tanh,
+    sp.asinh, sp.acosh, sp.atanh, sp.exp, sp.log, sp.sqrt, sp.Abs, sp.sign, sp.cbrt,
+]  # fmt: skip
+
+
+def is_readable(f):
+    """Whether an expression has a place in the subset; SymPy prints exp(1) as a bare e, which is refused."""
+    return not f.has(sp.E, sp.zoo, sp.nan, sp.oo, sp.S.NegativeInfinity, sp.I, sp.Piecewise, sp.Heaviside)
+
+
+def grown(anything):
+    smaller = anything.filter(is_readable)
+    return st.one_of(
+        st.builds(sp.Add, smaller, smaller),
+        st.builds(sp.Mul, smaller, smaller),
+        st.builds(lambda f, g: sp.Mul(f, sp.Pow(g, -1)), smaller, smaller),
+        st.builds(sp.Pow, smaller, st.sampled_from([2, 3, -1, -2, sp.Rational(1, 2), sp.Rational(-3, 2)])),
+        st.builds(lambda base, f: sp.Pow(base, f), st.sampled_from([2, 3, sp.Rational(2, 3)]), smaller),
+        st.builds(lambda function, f: function(f), st.sampled_from(FUNCTIONS), smaller),
+        st.builds(lambda f, g: sp.Max(f, g) if f.is_real and g.is_real else f + g, smaller, smaller),
+    )
+
+
+EXPRESSIONS = st.recursive(st.sampled_from(ATOMS) | NUMBERS, grown, max_leaves=6)
+
+
+@settings(max_examples=150, deadline=None)
+@given(EXPRESSIONS.filter(is_readable))
+def test_what_sympy_prints_is_read_back(f):
+    found = parse_expression(f"${sp.latex(f)}$", SCOPE)
+    assert found == f or same_values(found, f), sp.latex(f)
+
+
+def same_values(f, g):
+    """Whether two expressions agree at three points, in 30 digits."""
+    applied = sorted((f.atoms(sp.Derivative) | g.atoms(sp.Derivative)), key=sp.default_sort_key)
+    f, g = (h.xreplace({a: sp.Symbol(f"A{i}") for i, a in enumerate(applied)}) for h in (f, g))
+    applied = sorted(f.atoms(sp.core.function.AppliedUndef) | g.atoms(sp.core.function.AppliedUndef), key=str)
+    f, g = (h.xreplace({a: sp.Symbol(f"B{i}") for i, a in enumerate(applied)}) for h in (f, g))
+    symbols = sorted(f.free_symbols | g.free_symbols, key=str)
+    for k in range(3):
+        point = {s: sp.Rational(3 + 7 * i + 11 * k, 17 + 3 * i) for i, s in enumerate(symbols)}
+        difference = abs(sp.N((f - g).xreplace(point), 30, maxn=400))
+        size = 1 + abs(sp.N(f.xreplace(point), 30, maxn=400))
+        if not difference < 1e-20 * size:
+            return False
+    return True
+
+
+def test_the_comparison_of_values_sees_a_difference():
+    assert not same_values(X * THETA + V(X), X * THETA_1 + V(X))
+    assert same_values((X + 1) ** 2, X**2 + 2 * X + 1)
+
+
+@given(EXPRESSIONS.filter(is_readable))
+@settings(max_examples=60, deadline=None)
+def test_sympys_printing_of_a_nested_product_is_not_swallowed_by_a_function(f):
+    product = sp.Mul(sp.sin(X), sp.log(Y) ** 2, sp.cos(THETA) ** 3, f, evaluate=False)
+    found = parse_expression(f"${sp.latex(product)}$", SCOPE)
+    assert found == product.doit(deep=False) or same_values(found, product)
+
+
+# -- errors: where, why, what instead
+
+
+def fault(text, within=SCOPE, parse=parse_expression):
+    """Return the error of a text, None where it is read."""
+    try:
+        parse(text, within)
+    except LanguageError as error:
+        return error
+    return None
+
+
+FAULTS = [
+    # unknown or not read, with the column in the LaTeX text
+    (r"$a + b + zeta", 10, "zeta is not declared"),
+    (r"$mgz", 4, "z is not declared"),
+    (r"$a + \zeta x", 6, "is not declared"),
+    (r"$\theta_7", 2, "is not declared"),
+    (r"$x_{77} + a", 2, "x_77 is not declared"),
+    (r"$\dot m x", 2, "no such rate"),
+    (r"$x + m'", 6, "no such rate"),
+    (r"$x'''", 2, "no such rate"),
+    (r"$\dddot x", 2, "not read"),
+    (r"$x < \infty", 6, "not read"),
+    (r"$\foo{x}", 2, "not read"),
+    (r"$\int x", 2, "not read"),
+    (r"$\begin{cases} x \end{cases}", 2, "not read"),
+    (r"$\vec r", 2, "not read"),
+    (r"$a \pm b", 4, "not read"),
+    (r"$\input{/etc/passwd}", 2, "not read"),
+    (r"$a \\ b", 4, "not read"),
+    (r"$a + θ", 6, "not part of a formula"),
+    (r"$a & b", 4, "not part of a formula"),
+    (r"$x.", 3, "not part of a formula"),
+    (r"$x!", 3, "not part of a formula"),
+    (r"$\text{if } x", 2, "is not declared"),
+    (r"$\text{where} x", 2, "is not declared"),
+    (r"$sin x", 2, "sin is not declared"),
+    (r"$sinx", 2, "sinx is not declared"),
+    (r"$2 pi", 4, "pi is not declared"),
+    (r"$i x", 2, "i is not declared"),
+    # shape
+    (r"$", 2, "ends too early"),
+    (r"$$", 3, "ends too early"),
+    (r"$a +", 5, "ends too early"),
+    (r"$a + $", 6, "ends too early"),
+    (r"$(a + b", 2, "never closed"),
+    (r"$a + b)", 7, "closes nothing"),
+    (r"$\frac{a}{b", 10, "never closed"),
+    (r"$\left(a + b\right]", 19, "should close"),
+    (r"$(a + |b) + c|", 9, "should close"),
+    (r"$\frac{a}", 10, "ends too early"),
+    (r"$\frac(a)(b)", 7, "needs its arguments"),
+    (r"$\frac{}{b}", 8, "missing before"),
+    (r"$\sqrt{}", 8, "missing before"),
+    (r"$x^a^b", 5, "second exponent"),
+    (r"$x^-1", 4, "raises only the sign"),
+    (r"$x^10", 4, "first digit"),
+    (r"$x^ab", 4, "first letter"),
+    (r"$q_12", 4, "lowers only the 1"),
+    (r"$\frac123", 7, "first digit"),
+    (r"$x^a_1", 5, "directly after a name"),
+    (r"$a - -b", 6, "two signs"),
+    (r"$a \cdot -b", 10, "two signs"),
+    (r"$a, b", 3, "comma"),
+    (r"$(a < b)", 5, "where an expression should be"),
+    (r"$[a, b]", 2, "bracket of two"),
+    (r"$\{x, p_x\}", 2, "bracket of two"),
+    (r"$a$ + $b$", 3, "one formula only"),
+    (r"$\sin", 2, "needs its argument"),
+    (r"$\sin + 1", 2, "needs its argument"),
+    (r"$\dot{x^2}", 6, "one name"),
+    (r"$\dot{}", 7, "a name is missing"),
+    (r"$x_{a+b}", 6, "subscript is made of"),
+    (r"$q_1_2", 5, "directly after a name"),
+    # two readings
+    (r"$\sin\theta\dot\theta", 12, "still belong"),
+    (r"$\sin\theta\,a", 14, "still belong"),
+    (r"$\sin\theta x", 13, "still belong"),
+    (r"$\sin a\,b", 10, "still belong"),
+    (r"$\sin a(b+c)", 8, "still belong"),
+    (r"$\sin a\frac{b}{c}", 8, "still belong"),
+    (r"$\sin\theta^2", 6, "squared, or its argument"),
+    (r"$\sin{\theta}^2", 6, "squared, or its argument"),
+    (r"$\sin\theta/2", 12, "does this divide"),
+    (r"$\sin 2\cos x", 8, "still belong"),
+    (r"$p_x^2/2m", 7, "end after one factor"),
+    (r"$1/2\pi", 3, "end after one factor"),
+    (r"$2\frac{1}{3}", 3, "mixed number"),
+    (r"$x 2", 4, "a number after a factor"),
+    (r"$a2", 3, "a number after a name"),
+    (r"$2 3", 4, "a number after a factor"),
+    (r"$m(x)", 3, "can't be applied"),
+    (r"$m(x)^2", 3, "can't be applied"),
+    (r"$m{(x)}", 3, "can't be applied"),
+    (r"$a{2}", 3, "a number after a factor"),
+    (r"${a b}2", 7, "a number after a factor"),
+    (r"${x^a}^b", 2, "print does not show"),
+    (r"$a\frac{b}{c}^2", 3, "print does not show"),
+    (r"$\theta(t)", 8, "dependence on the time"),
+    (r"$\exp^{-1} x", 2, "inverse"),
+    (r"$\sin^2(x)^3", 12, "two exponents"),
+    (r"$\sin_2 x", 2, "no subscript"),
+    # derivatives
+    (r"$\frac{d}{dt}\frac{\partial U}{\partial x}", 2, "derivative of what"),
+    (r"$\frac{d}{dt}(m\dot x)", 2, "total derivative"),
+    (r"$\frac{dV}{dt}", 2, "total derivative"),
+    (r"$\frac{dU}{dx}", 2, "more than one argument"),
+    (r"$\frac{d}{dt}", 2, "derivative of what"),
+    (r"$\frac{d^2V}{dx}", 2, "neither a quotient"),
+    (r"$\frac{x}{dx}", 2, "neither a quotient"),
+    (r"$\frac{dm}{dx}", 9, "symbol of its own"),
+    (r"$\frac{\partial x}{\partial t}", 17, "symbol of its own"),
+    (r"$\partial x", 2, "not complete"),
+    (r"$dy", 2, "d is not declared"),
+    (r"$V'(a+b)", 2, "with respect to what"),
+    (r"$U'(x,y)", 2, "with respect to what"),
+    (r"$\dot V", 2, "function of the time"),
+    (r"$a + V", 6, "V is a function"),
+    (r"$a + V(x,y)", 6, "1 argument"),
+    (r"$a + \sin(x, y)", 6, "1 argument"),
+    (r"$(a, b)", 2, "pair"),
+    (r"$a + \frac{b}{0}", 15, "division by zero"),
+]
+
+
+@pytest.mark.parametrize(("latex", "column", "reason"), FAULTS)
+def test_errors_name_the_column_of_the_latex_text(latex, column, reason):
+    error = fault(latex)
+    assert error is not None, parse_expression(latex, SCOPE)
+    assert error.text == latex
+    assert (error.column, reason) == (column, reason if reason in error.reason else error.reason)
+
+
+def test_an_error_of_the_meaning_shows_its_caret_in_the_latex_text():
+    error = fault(r"$\frac{a}{b} + 9^{9^{9}}$")
+    assert error.caret() == "$\\frac{a}{b} + 9^{9^{9}}$\n               ^"
+
+
+def test_white_space_before_the_dollar_counts():
+    assert fault("  $a + zz").column == 8
+
+
+# -- attacks
+
+DEEP = 60
+ATTACKS = [
+    "$" + "(" * 5000, "$" + "{" * 5000, "$" + r"\frac{" * 3000, "$" + r"\sqrt" * 5000, "$" + r"\sin" * 5000,
+    "$" + r"\sin^2" * 3000 + "x", "$" + r"\left(" * 4000, "$" + "|" * 5000, "$" + "-" * 5000 + "x", "$" + "^" * 5000,
+    "$" + "x^" * 5000 + "x", "$" + r"\dot" * 5000 + "x", "$x_" + "{" * 10000, "$x_{" + "a " * 5000 + "}",
+    "$" + "m" * 40000, "$" + "9" * 40000, "$x'" + "'" * 40000, "$x^{" + r"\prime" * 5000 + "}",
+    "$" + "x^" + " " * 40000,
+    "$" + "x " * 21000, "$" + "$" * 40000, "$" + "\\" * 40001, "$" + r"\mathrm{" + "a" * 40000, "$x" * 20000,
+    "$" + "x^{9" * 60 + "}" * 60 + "_", "$x^{" + "9" * 20000 + "}_1", "$" + r"x_{\text{" * 5000, "$" + "a" * 60000,
+    "$" + r"\ddot" * 3000 + "{" * 3000, "$\x00", "$\ud800", "$x\u0307", "$9^{9^{9}}", r"$9^{9}^{9}",
+    "$" + r"\frac{d}{dx}" * 3000 + "V(x)", "$" + r"\varphi_{" + r"\varphi" * 1000 + "}", "$e^{" * 63 + "9" + "}" * 63,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ATTACKS, ids=range(len(ATTACKS)))
+def test_hostile_text_is_refused_at_once(text):
+    start = clock.perf_counter()
+    assert fault(text) is not None
+    assert clock.perf_counter() - start < 2
+
+
+@pytest.mark.parametrize(
+    ("opening", "closing"),
+    [
+        ("(-2 x+", ")"),
+        (r"\sqrt{", "}"),
+        (r"\frac{1}{1+", "}"),
+        ("x^{", "}"),
+        (r"\sin{-2a", "}"),
+        (r"{", "}"),
+        ("a{-", "}"),
+    ],
+)
+def test_deep_but_allowed_nesting_is_read(opening, closing):
+    assert fault(f"${opening * DEEP}x{closing * DEEP}$") is None
+
+
+def test_a_long_sum_takes_linear_time():
+    def seconds(terms):
+        text = "$" + "+".join([r"\frac{g}{l}\sin\theta"] * terms)
+        start = clock.perf_counter()
+        parse_latex(text, SCOPE)
+        return clock.perf_counter() - start
+
+    seconds(10)
+    assert seconds(1600) < 12 * max(seconds(400), 0.02)
+
+
+@given(st.text(alphabet=r"$\{}()[]|^_'+-*/=<,. 12abdefxtV&" + "\n", max_size=40))
+@settings(max_examples=200, deadline=None)
+def test_any_text_is_read_or_refused_with_a_column(text):
+    error = fault("$" + text, parse=parse_latex)
+    assert error is None or (1 <= error.column <= len(text) + 2 and error.reason)
+
+
+SIGNS = [
+    "{",
+    "}",
+    "(",
+    ")",
+    "[",
+    "]",
+    "|",
+    "^",
+    "_",
+    "'",
+    "+",
+    "-",
+    "/",
+    "=",
+    ",",
+    r"\,",
+    r"\left(",
+    r"\right)",
+    r"\cdot",
+]
+COMMANDS = [
+    r"\frac",
+    r"\sqrt",
+    r"\sin",
+    r"\ln",
+    r"\log",
+    r"\max",
+    r"\operatorname{atan}",
+    r"\partial",
+    r"\mathrm{d}",
+]
+NAMES = [
+    "x",
+    "m",
+    "V",
+    "U",
+    "d",
+    "e",
+    "t",
+    "1",
+    "2",
+    "0.5",
+    r"\theta",
+    r"\varphi",
+    r"\pi",
+    r"\delta",
+    r"\dot",
+    r"\bar",
+]
+WORDS = st.sampled_from([*SIGNS, *COMMANDS, *NAMES, r"\left|", r"\right|", r"\ddot", r"\text{eff}"])
+
+
+@given(st.lists(WORDS, max_size=14))
+@settings(max_examples=200, deadline=None)
+def test_any_words_are_read_or_refused_with_a_column(words):
+    text = "$" + " ".join(words)
+    error = fault(text, parse=parse_latex)
+    assert error is None or (1 <= error.column <= len(text) + 1 and error.reason)
+
+
+def test_plain_text_never_loads_the_parser_generator():
+    code = (
+        "import sys; from canon.expression.language import Scope, parse_expression as p\n"
+        "p('1 + 1', Scope()); assert 'lark' not in sys.modules\n"
+        "p('$1 + 1', Scope()); assert 'lark' in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
