@@ -193,12 +193,16 @@ def _in_base_angles(n: NormalForm, terms: list[tuple[Fraction, fmpq]]) -> list[t
         n.atoms.setdefault(n.fraction_key(atom), atom)
     wanted: Angle = frozenset((n.fraction_key(atom), int(r.p), int(r.q)) for atom, r in terms)
     lattice = n.parts.setdefault("angles", Lattice())
+    for atom, _ in terms:
+        lattice.number(n.fraction_key(atom))
     found = lattice.coordinates(wanted)
     if found is None:
-        lattice.add(wanted)
         for key, _, _ in wanted:
-            lattice.meaning.setdefault(key, n.fraction_expression(n.atoms[key]))
-        raise Refine
+            if key not in lattice.meaning:
+                lattice.meaning[key] = n.fraction_expression(n.atoms[key])
+        if not lattice.add(wanted):
+            raise Refine
+        found = [(wanted, 1)]
     if any(abs(k) > LARGEST_MULTIPLE for _, k in found):
         return [(wanted, 1)]
     return found

@@ -30,9 +30,11 @@ class Lattice:
     >>> lattice = Lattice()
     >>> x, third = frozenset({("x", 1, 1)}), frozenset({("x", 1, 3)})
     >>> lattice.add(x)
+    True
     >>> lattice.coordinates(third) is None
     True
     >>> lattice.add(third)
+    False
     >>> [times for _, times in lattice.coordinates(x)]
     [3]
     """
@@ -42,26 +44,43 @@ class Lattice:
         self._atoms: dict[Hashable, int] = {}
         self._rows: list[Angle] = []
         self._basis: list[Angle] = []
+        self._known: dict[Angle, list[tuple[Angle, int]]] = {}
 
-    def add(self, angle: Angle) -> None:
-        """Widen the lattice by one argument."""
-        for key, _, _ in sorted(angle, key=str):
-            self._atoms.setdefault(key, len(self._atoms))
+    def number(self, key: Hashable) -> int:
+        """Return the place of an atom, in the order in which they are first met."""
+        return self._atoms.setdefault(key, len(self._atoms))
+
+    def add(self, angle: Angle) -> bool:
+        """Widen the lattice by one argument; tell whether the basis before is still part of the basis."""
+        for key, _, _ in angle:
+            self.number(key)
         self._rows.append(angle)
         common = lcm(*(q for row in self._rows for _, _, q in row))
         matrix = fmpz_mat([[int(c * common) for c in self._vector(row)] for row in self._rows])
         if matrix.rank() == len(self._rows):
+            kept = self._basis == self._rows[:-1]
             self._basis = list(self._rows)
-            return
+            self._known = self._known if kept else {}
+            return kept
         reduced = matrix.hnf()
         rank = reduced.rank()
-        kept = fmpz_mat([[reduced[i, j] for j in range(reduced.ncols())] for i in range(rank)]).lll()
-        self._basis = [
-            self._angle([int(kept[i, j]) for j in range(kept.ncols())], common) for i in range(rank)
-        ]
+        short = fmpz_mat([[reduced[i, j] for j in range(reduced.ncols())] for i in range(rank)]).lll()
+        rows = [[int(short[i, j]) for j in range(short.ncols())] for i in range(rank)]
+        self._basis = [self._angle(row, common) for row in rows]
+        self._rows = list(self._basis)
+        self._known = {}
+        return False
 
     def coordinates(self, angle: Angle) -> list[tuple[Angle, int]] | None:
         """Return base angles and whole multiples that add up to an argument, if it lies in the lattice."""
+        found = self._known.get(angle) or self._solved(angle)
+        if found is not None:
+            self._known[angle] = found
+        return found
+
+    def _solved(self, angle: Angle) -> list[tuple[Angle, int]] | None:
+        if angle in self._basis:
+            return [(angle, 1)]
         if not self._basis or any(key not in self._atoms for key, _, _ in angle):
             return None
         columns = [self._vector(row) for row in (*self._basis, angle)]

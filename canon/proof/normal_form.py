@@ -65,7 +65,9 @@ class NormalForm:
         self.atoms: dict[Hashable, Fraction] = {}
         self.ranges: dict[Hashable, tuple[Expr, Expr, bool]] = {}
         self.known_roots: dict[Hashable, Fraction] = {}
+        self._numbers: dict[Hashable, int] = parts.setdefault("numbers", {})
         self._meaning: dict[int, Callable[[], Expr]] = {}
+        self._expressions: dict[int, Expr] = {}
         self._memo: dict[sp.Basic, Fraction] = {}
         self.empty = False
         self._gaps: list[tuple[fmpq_mpoly, bool]] = []
@@ -277,8 +279,9 @@ class NormalForm:
         return total
 
     def fraction_key(self, f: Fraction) -> Hashable:
-        """Return a hashable value equal for equal canonical fractions."""
-        return (self.tower.key(f.num), frozenset((self.tower.key(self.tower.base(i)), e) for i, e in f.den))
+        """Return a number that is the same for equal canonical fractions, also when work starts again."""
+        bases = frozenset((self.tower.key(self.tower.base(i)), e) for i, e in f.den)
+        return self._numbers.setdefault((self.tower.key(f.num), bases), len(self._numbers))
 
     def is_real(self, f: Fraction) -> bool:
         """Tell whether a fraction is proven real wherever it is defined."""
@@ -301,9 +304,15 @@ class NormalForm:
         terms: list[Expr] = []
         for monomial, coefficient in self.tower.terms(p):
             factors: list[Expr] = [sp.Rational(int(coefficient.p), int(coefficient.q))]
-            factors.extend(self._meaning[k]() ** e for k, e in monomial)
+            factors.extend(self._kernel_expression(k) ** e for k, e in monomial)
             terms.append(sp.Mul(*factors))
         return sp.Add(*terms)
+
+    def _kernel_expression(self, generator: int) -> Expr:
+        found = self._expressions.get(generator)
+        if found is None:
+            found = self._expressions[generator] = self._meaning[generator]()
+        return found
 
     def fraction_expression(self, f: Fraction) -> Expr:
         """Return a fraction as a SymPy expression."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from sympy import Ne, Piecewise, Pow, default_sort_key, false, true
 
+from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.angles import Refine
 from canon.proof.conjugates import radicals_cancel
 from canon.proof.domain import Domain
@@ -26,6 +27,9 @@ __all__ = ["Attempt", "prove_each", "prove_zero"]
 MOST_STARTS = 60
 """Times that the normal form is begun anew because a kernel had to be refined."""
 
+LARGE = 20_000
+"""Size of a tree beyond which no cases are tried."""
+
 MOST_CASES = 64
 """Cases into which one claim is cut at most."""
 
@@ -39,6 +43,7 @@ class Attempt:
     obstacles: list[str] = field(default_factory=list[str])
     cases: int = 1
     capped: bool = False
+    large: bool = False
 
     def reach(self, rung: str) -> None:
         """Note a rung that was needed."""
@@ -54,7 +59,9 @@ class Attempt:
 def prove_zero(expr: Expr, domain: Domain, deadline: float, limits: Limits = THOROUGH) -> Attempt:
     """Try to prove that an expression vanishes wherever it is defined on the domain."""
     attempt = Attempt()
-    case = settle_equalities(expr, _where_defined(expr, domain))
+    found = anatomy([expr])
+    attempt.large = found.tree > LARGE
+    case = settle_equalities(expr, _where_defined(found, domain))
     attempt.holds = case.expr is None or _prove(case.expr, case.domain, deadline, limits, attempt)
     return attempt
 
@@ -66,10 +73,15 @@ def prove_each(
     if len(exprs) == 1:
         return [prove_zero(exprs[0], domain, deadline, limits)]
     reduced = _zero_together(exprs, domain, deadline, limits)
-    return [
-        Attempt(holds=True, rungs=["exact"]) if zero else prove_zero(expr, domain, deadline, limits)
-        for expr, zero in zip(exprs, reduced, strict=True)
-    ]
+    attempts: list[Attempt] = []
+    for expr, zero in zip(exprs, reduced, strict=True):
+        if zero:
+            attempts.append(Attempt(holds=True, rungs=["exact"]))
+        elif time.monotonic() > deadline:
+            attempts.append(Attempt(capped=True, obstacles=["not finished in time"]))
+        else:
+            attempts.append(prove_zero(expr, domain, deadline, limits))
+    return attempts
 
 
 def _zero_together(exprs: Sequence[Expr], domain: Domain, deadline: float, limits: Limits) -> list[bool]:
@@ -96,11 +108,12 @@ def _zero_together(exprs: Sequence[Expr], domain: Domain, deadline: float, limit
     return found
 
 
-def _where_defined(expr: Expr, domain: Domain) -> Domain:
+def _where_defined(found: Anatomy, domain: Domain) -> Domain:
     """Add that the denominators do not vanish: the claim is about points where the expression is defined."""
-    if expr.has(Piecewise):
+    if found.has(Piecewise):
         return domain
-    below = {power.base for power in expr.atoms(Pow) if power.exp.is_negative}
+    below = {power.base for power in found.of(Pow) if power.exp.is_negative}
+    below = {b for b in below if anatomy([b]).tree <= LARGE // 20}
     nonzero = [Ne(b, 0) for b in sorted(below, key=default_sort_key) if b.is_zero is None]
     return Domain((*domain.conditions, *(c for c in nonzero if c not in (true, false))), domain.box)
 
@@ -108,8 +121,10 @@ def _where_defined(expr: Expr, domain: Domain) -> Domain:
 def _prove(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt: Attempt) -> bool:
     if _without_cases(expr, domain, deadline, limits, attempt):
         return True
+    if attempt.large or time.monotonic() > deadline:
+        return False
     pieces = cases(expr, domain)
-    if pieces is None or time.monotonic() > deadline:
+    if pieces is None:
         return False
     attempt.cases += len(pieces) - 1
     if attempt.cases > MOST_CASES:

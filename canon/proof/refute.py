@@ -13,6 +13,7 @@ from flint import acb, arb
 from sympy.core.function import AppliedUndef, Derivative, Subs
 from sympy.core.relational import Relational
 
+from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.verdict import Counterexample
 
@@ -34,6 +35,10 @@ __all__ = [
 
 HIGHEST_PRECISION = 3200
 """Bits after which a point that has not decided is left."""
+
+
+LARGEST_GAP = 200
+"""Size of an argument whose zeros are looked for."""
 
 
 @dataclass
@@ -83,7 +88,7 @@ def look_for_counterexample(
     """
     result = search or Search()
     sides = (left, right)
-    has_functions = any(e.has(AppliedUndef) for e in sides)
+    has_functions = anatomy(sides).has(AppliedUndef)
     for number, point in enumerate(points):
         if time.monotonic() > deadline:
             break
@@ -104,11 +109,11 @@ def first_counterexample(
     exprs: Sequence[Expr], domain: Domain, deadline: float, *, points: int = 2
 ) -> tuple[Search, int | None]:
     """Look for an expression that is certainly not zero at a point, values of common parts being shared."""
-    symbols = set[sp.Symbol]().union(*(e.free_symbols for e in exprs))
+    found = anatomy(exprs)
     result = Search()
     shown: Sequence[Expr] = exprs
-    for number, point in enumerate(domain.points(symbols, points)):
-        if any(e.has(AppliedUndef) for e in exprs):
+    for number, point in enumerate(domain.points(found.symbols, points)):
+        if found.has(AppliedUndef):
             shown, result.functions = with_example_functions(exprs, random.Random(number))
         with precision(128):
             memo: dict[sp.Basic, acb] = {}
@@ -127,8 +132,9 @@ def first_counterexample(
 
 def search_widely(left: Expr, right: Expr, domain: Domain, deadline: float) -> Search:
     """Look for a counterexample with high precision, outside the box, and where pieces meet."""
-    symbols = left.free_symbols | right.free_symbols
-    marks = landmarks((left, right), domain, symbols)
+    found = anatomy([left, right])
+    symbols = found.symbols
+    marks = landmarks(found, domain)
     rounds = (
         (domain.points(symbols, 6, seed=1), 512),
         (domain.points(symbols, 40, seed=2, in_box=False), 128),
@@ -144,19 +150,16 @@ def search_widely(left: Expr, right: Expr, domain: Domain, deadline: float) -> S
     return search
 
 
-def landmarks(
-    sides: Iterable[Expr], domain: Domain, symbols: Iterable[Symbol]
-) -> dict[Symbol, list[sp.Rational]]:
+def landmarks(sides: Anatomy, domain: Domain) -> dict[Symbol, list[sp.Rational]]:
     """Return values at which a symbol may reach a boundary, a kink or a cut, and values beyond them."""
-    found: dict[Symbol, set[sp.Rational]] = {s: set(_EVERYWHERE) for s in symbols}
-    places: set[sp.Basic] = set()
-    for condition in domain.conditions:
-        places |= {r.lhs - r.rhs for r in condition.atoms(Relational)}
-    for side in sides:
-        places |= {r.lhs - r.rhs for r in side.atoms(Relational) if isinstance(r.lhs, sp.Expr)}
-        places |= {e.args[0] for e in side.atoms(sp.Abs, sp.sign, sp.Heaviside, sp.acot, sp.log)}
-        places |= {a - b for e in side.atoms(sp.Max, sp.Min) for a, b in combinations(e.args, 2)}
-        places |= {e.base for e in side.atoms(sp.Pow) if not e.exp.is_integer}
+    found: dict[Symbol, set[sp.Rational]] = {s: set(_EVERYWHERE) for s in sides.symbols}
+    relations = [r for condition in domain.conditions for r in condition.atoms(Relational)]
+    relations.extend(sides.of(Relational))
+    places: set[sp.Basic] = {r.lhs - r.rhs for r in relations if isinstance(r.lhs, sp.Expr)}
+    places |= {e.args[0] for e in sides.of(sp.Abs, sp.sign, sp.Heaviside, sp.acot, sp.log)}
+    places |= {a - b for e in sides.of(sp.Max, sp.Min) for a, b in combinations(e.args, 2)}
+    places |= {e.base for e in sides.of(sp.Pow) if not e.exp.is_integer}
+    places = {gap for gap in places if anatomy([gap]).tree <= LARGEST_GAP}
     for gap in places:
         for s in gap.free_symbols:
             found.setdefault(s, set()).update(_crossings(gap, s))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.proof.anatomy import anatomy
 from canon.proof.budget import prove_in_worker
 from canon.proof.domain import EVERYWHERE, Domain
 from canon.proof.prove import Attempt, prove_each, prove_zero
@@ -26,6 +27,9 @@ __all__ = ["equal", "vanishes"]
 
 QUICK_SECONDS = 0.5
 """Time for the proving rungs in the user's own process."""
+
+WORKER_SHARE = 0.8
+"""Part of the time left that a matrix may use in the worker as a whole."""
 
 SEARCH_SHARE = 0.3
 """Part of the time left that the wider search for a counterexample may use."""
@@ -107,9 +111,21 @@ def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget
         return _at_entry(failed, places[entries[number]], "does not vanish", start)
     proofs = prove_each(entries, domain, min(start + budget, time.monotonic() + QUICK_SECONDS), QUICK)
     rungs = {rung: None for proof in proofs if proof.holds for rung in proof.rungs}
-    left = [entry for entry, proof in zip(entries, proofs, strict=True) if not proof.holds]
+    open_ = [entry for entry, proof in zip(entries, proofs, strict=True) if not proof.holds]
+    if len(open_) > 1 and (seconds := start + budget - time.monotonic()) > 0:
+        answer = prove_in_worker(open_, domain, WORKER_SHARE * seconds)
+        if not isinstance(answer, str):
+            rungs |= {rung: None for proof in answer if proof.holds for rung in proof.rungs}
+            open_ = [entry for entry, proof in zip(open_, answer, strict=True) if not proof.holds]
     undecided: Verdict | None = None
-    for entry in left:
+    for entry in open_:
+        if time.monotonic() > start + budget:
+            late = Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "not finished in time"),))
+            return (
+                undecided
+                if undecided is not None
+                else _at_entry(late, places[entry], "was not decided", start)
+            )
         verdict = _decide(entry, sp.Integer(0), domain, start + budget)
         if verdict.fails:
             return _at_entry(verdict, places[entry], "does not vanish", start)
@@ -133,19 +149,22 @@ def _exact(expr: object) -> Expr:
         return sp.Integer(expr)
     if not isinstance(expr, sp.Expr):
         raise TypeError(f"an expression is needed, not {type(expr).__name__}: {expr!r}")
-    floats = expr.atoms(sp.Float)
+    found = anatomy([expr])
+    floats = found.of(sp.Float)
     if floats:
         raise ValueError(
             f"{min(floats, key=str)} is a rounded number and nothing exact can be said of it; "
             "write it as a fraction, such as Rational('0.1') or Rational(1, 10)"
         )
-    return evaluated(expr)
+    return evaluated(expr) if found.has(sp.Derivative, sp.Subs) else expr
 
 
 def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
     """Climb the ladder: a few balls, the quick proof, many balls, the thorough proof in the worker."""
-    symbols = left.free_symbols | right.free_symbols
-    search = look_for_counterexample(left, right, domain.points(symbols, 3), highest=64, deadline=deadline)
+    found = anatomy([left, right])
+    search = look_for_counterexample(
+        left, right, domain.points(found.symbols, 3), highest=64, deadline=deadline
+    )
     if search.counterexample is not None:
         return _refuted(left, right, search)
     proof = prove_zero(left - right, domain, min(deadline, time.monotonic() + QUICK_SECONDS), QUICK)
