@@ -59,7 +59,7 @@ def test_every_case_has_its_numbers(uninterrupted):
         assert row["seconds"] > 0.0
 
 
-def test_what_is_finished_is_not_run_again(uninterrupted, monkeypatch):
+def test_what_is_finished_is_not_run_again(uninterrupted, monkeypatch, tmp_path):
     def never(case):
         raise AssertionError(f"{case} was run again")
 
@@ -68,7 +68,7 @@ def test_what_is_finished_is_not_run_again(uninterrupted, monkeypatch):
     run_study(SHORT, uninterrupted)
     assert outcomes(uninterrupted) == before
     with pytest.raises(AssertionError, match="was run again"):
-        run_study(Study((replace(SHORT.cases[0], samples=600),)), uninterrupted)
+        run_study(Study((replace(SHORT.cases[0], samples=600),)), tmp_path / "new.sqlite")
 
 
 PROGRAM = """
