@@ -1,23 +1,30 @@
-"""Methods of fixed step size: their compiled loops, their coefficients, and sampling."""
+"""Methods of fixed step size: their compiled loops, their coefficients, ensembles and sampling."""
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
+import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from canon.flow.method import RK4, FixedStep, Gauss
-from canon.flow.stepping import run
+from canon.flow.stepping import Run, run
 from canon.flow.trajectory import Array, Samples
 from canon.kernel.gauss import gauss_coefficients, gauss_loop
+from canon.kernel.llvm import simd_bytes
 from canon.kernel.loop import Loop, runge_kutta_loop, splitting_loop
+from canon.kernel.machine import DOUBLE, MachineType, double_pair
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
+    from canon.flow.precision import Precision
     from canon.kernel.structure import Equations
 
 __all__ = ["compiled_loop", "fixed_steps"]
@@ -25,20 +32,38 @@ __all__ = ["compiled_loop", "fixed_steps"]
 _KEPT = 64
 """Compiled loops kept for the next call."""
 
+_INTERLEAVED = 4
+"""SIMD registers' worth of orbits stepped together: while one waits for a root or a quotient, others compute."""
 
-def compiled_loop(system: Equations, method: FixedStep, *, compensated: bool) -> Loop:
+_SMALL = 200
+"""Up to this many operations in the force the registers hold that many orbits."""
+
+
+def compiled_loop(system: Equations, method: FixedStep, precision: Precision, orbits: int = 1) -> Loop:
     """Return the machine code that steps a system with a method, kept from an earlier call if there was one.
+
+    Parameters
+    ----------
+    system, method, precision
+        What to integrate, how, and in which numbers.
+    orbits
+        How many orbits will be stepped together: several run side by side in SIMD lanes.
 
     Raises
     ------
     ValueError
-        A splitting is asked of a Hamiltonian that does not split, or a Nyström method of one whose kinetic
-        energy is not quadratic.
+        A splitting is asked of a Hamiltonian that does not split; a Nyström method of one whose kinetic energy
+        is not quadratic; or a Gauss method in other numbers than doubles.
     """
+    number = _with_lanes(precision.number, system) if orbits > 1 else precision.number
     if isinstance(method, Gauss):
-        return _kept_gauss(system, method.stages, compensated=compensated)
+        if precision.number != DOUBLE:
+            raise ValueError(
+                f"precision={precision.name!r}: Gauss methods have 'double' and 'compensated'; Taylor() has more"
+            )
+        return _kept_gauss(system, method.stages, compensated=precision.compensated)
     if isinstance(method, RK4):
-        return _kept_runge_kutta(system, compensated=compensated)
+        return _kept_runge_kutta(system, number, compensated=precision.compensated)
     if not system.separable:
         raise ValueError(
             "H is not a sum T(p, t) + V(q, t), so it does not split into drifts and kicks; use Gauss(6), which is "
@@ -49,17 +74,26 @@ def compiled_loop(system: Equations, method: FixedStep, *, compensated: bool) ->
             f"{method} keeps its order only for kinetic energies quadratic in p with constant coefficients; "
             "use Splitting('blanes-moan-6') or Splitting('kahan-li-8')"
         )
-    return _kept_splitting(system, len(method.scheme.b), compensated=compensated)
+    return _kept_splitting(system, len(method.scheme.b), number, compensated=precision.compensated)
+
+
+def _with_lanes(number: MachineType, system: Equations) -> MachineType:
+    if number.scalar == "x86_fp80":  # x87 numbers have no SIMD instructions
+        return number
+    small = len(system.program(system.force).instructions) <= _SMALL
+    return dataclasses.replace(
+        number, lanes=simd_bytes() // number.alignment * (_INTERLEAVED if small else 1)
+    )
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_splitting(system: Equations, stages: int, *, compensated: bool) -> Loop:
-    return splitting_loop(system, stages, compensated=compensated)
+def _kept_splitting(system: Equations, stages: int, number: MachineType, *, compensated: bool) -> Loop:
+    return splitting_loop(system, stages, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_runge_kutta(system: Equations, *, compensated: bool) -> Loop:
-    return runge_kutta_loop(system, compensated=compensated)
+def _kept_runge_kutta(system: Equations, number: MachineType, *, compensated: bool) -> Loop:
+    return runge_kutta_loop(system, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=_KEPT)
@@ -70,29 +104,86 @@ def _kept_gauss(system: Equations, stages: int, *, compensated: bool) -> Loop:
 def fixed_steps(
     loop: Loop,
     method: FixedStep,
-    state: Array,
+    states: tuple[Array, Array],
     span: tuple[Fraction, Fraction],
     step: float | None,
     samples: int,
-    progress: Callable[[float], None] | None,
+    progress: Callable[[float], None],
 ) -> Samples:
-    """Step from the first time of a span to the last and sample on the way."""
+    """Step from the first time of a span to the last and sample on the way.
+
+    Parameters
+    ----------
+    loop
+        The compiled loop.
+    method
+        The method it was compiled for.
+    states
+        The starting states as sums of two doubles, each of shape (2n, orbits).
+    span, step, samples, progress
+        As :func:`canon.flow.propagate.propagate` takes them.
+    """
     start, end = span
     steps = _steps(start, end, step, method)
     h = (end - start) / steps
-    stops = np.unique(np.linspace(0, steps, min(samples, steps) + 1).round().astype(np.int64))
-    coefficients = np.array([float(start), float(h), *_coefficients(method, h)])
-    done = run(loop, state, coefficients, [int(stop) for stop in stops], progress)
+    stops = np.unique(np.linspace(0, steps, min(samples, steps) + 1).round().astype(np.int64)).tolist()
+    numbers = [double_pair(c) for c in (start, h, *_coefficients(method, h))]
+    coefficients = np.array([high for high, _ in numbers]), np.array([low for _, low in numbers])
+    runs = _on_threads(loop, *states, coefficients, stops, progress)
+    high, low = (np.concatenate(parts, axis=2) for parts in ([r.high for r in runs], [r.low for r in runs]))
+    orbits = states[0].shape[1]
+    iterations = sum(r.iterations for r in runs) if isinstance(method, Gauss) else steps * orbits
     return Samples(
-        t=np.array([float(start + int(stop) * h) for stop in stops]),
-        y=done.y,
-        carried=done.carried if loop.compensated else None,
+        t=np.array([float(start + stop * h) for stop in stops]),
+        y=high[:, :, :orbits],
+        carried=low[:, :, :orbits],
         steps=steps,
-        evaluations=(int(done.memory[0]) if isinstance(method, Gauss) else steps) * method.stages,
+        evaluations=iterations * method.stages,
         step=float(h),
-        cpu_seconds=done.cpu_seconds,
+        cpu_seconds=sum(r.cpu_seconds for r in runs),
         compile_seconds=loop.code.seconds,
     )
+
+
+def _on_threads(
+    loop: Loop,
+    high: Array,
+    low: Array,
+    coefficients: tuple[Array, Array],
+    stops: Sequence[int],
+    progress: Callable[[float], None],
+) -> list[Run]:
+    """Run orbits on as many threads as there are processors, each a whole number of blocks."""
+    lanes = loop.number.lanes
+    orbits = high.shape[1]
+    blocks = -(-orbits // lanes)
+    if blocks == 1 and lanes == 1:
+        return [run(loop, high, low, coefficients, stops, progress)]
+    # The last block is filled up with copies of the last orbit.
+    filled = np.minimum(np.arange(blocks * lanes), orbits - 1)
+    parts = np.array_split(filled.reshape(blocks, lanes), min(os.cpu_count() or 1, blocks))
+    stopped, done, lock = threading.Event(), [0.0] * len(parts), threading.Lock()
+
+    def part(k: int) -> Run:
+        def report(fraction: float) -> None:
+            if stopped.is_set():
+                raise InterruptedError
+            with lock:
+                done[k] = fraction
+                if k == 0:
+                    progress(min(done))
+
+        chosen = parts[k].ravel()
+        return run(loop, high[:, chosen], low[:, chosen], coefficients, stops, report)
+
+    with ThreadPoolExecutor(len(parts)) as pool:
+        futures = [pool.submit(part, k) for k in range(len(parts))]
+        try:
+            found = [future.result() for future in futures]
+        finally:
+            stopped.set()
+    progress(1.0)
+    return found
 
 
 def _steps(start: Fraction, end: Fraction, step: float | None, method: FixedStep) -> int:
@@ -106,10 +197,10 @@ def _steps(start: Fraction, end: Fraction, step: float | None, method: FixedStep
     return nearest if abs(ratio - nearest) <= nearest * Fraction(1, 10**9) else math.ceil(ratio)
 
 
-def _coefficients(method: FixedStep, h: Fraction) -> list[float]:
+def _coefficients(method: FixedStep, h: Fraction) -> list[Fraction]:
     if isinstance(method, Gauss):
-        return gauss_coefficients(method.stages, h)
+        return [Fraction(x) for x in gauss_coefficients(method.stages, h)]
     if isinstance(method, RK4):
-        return [float(h / 2), float(h / 6), float(h / 3)]
+        return [h / 2, h / 6, h / 3]
     a, b = method.scheme.a, method.scheme.b
-    return [float(h * c) for pair in zip(a, b, strict=False) for c in pair] + [float(h * a[-1])]
+    return [h * c for pair in zip(a, b, strict=False) for c in pair] + [h * a[-1]]

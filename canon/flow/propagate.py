@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from canon.flow.adaptive import integrate_dop853, integrate_taylor
+from canon.flow.adaptive import adaptive_steps
 from canon.flow.fixed import compiled_loop, fixed_steps
 from canon.flow.method import DOP853, FixedStep, Method, Taylor
+from canon.flow.precision import fixed_precision
 from canon.flow.stepping import NonFiniteStateError
 from canon.flow.trajectory import Array, Trajectory, measured
+from canon.kernel.machine import double_pair
 from canon.kernel.structure import Equations, equations, exact
 
 if TYPE_CHECKING:
@@ -61,7 +63,7 @@ def propagate(
     method: Method | None = None,
     step: float | None = None,
     tolerance: float | None = None,
-    precision: str | None = None,
+    precision: str | int | None = None,
     parameters: Mapping[Symbol | str, Any] | None = None,
     samples: int = 1000,
     observables: Mapping[str, Expr] | None = None,
@@ -74,7 +76,8 @@ def propagate(
     hamiltonian
         The Hamiltonian, in any consistent units.
     y0
-        The starting state (q, p), shape (2n,).
+        The starting state (q, p), shape (2n,), or many of them, shape (2n, orbits). Floats are taken for the
+        numbers they are; text, fractions and long doubles keep what a double would lose.
     t_span
         The first and the last time; the last may be the earlier one.
     method
@@ -85,8 +88,10 @@ def propagate(
     tolerance
         Relative tolerance of an adaptive method, in place of the method's own.
     precision
-        ``"compensated"``, the fixed-step methods' default: round-off is carried along, Kahan's way, so that
-        little of it accumulates; or ``"double"``.
+        Fixed steps: ``"single"``, ``"double"``, ``"compensated"`` (the default: doubles, what rounding takes
+        from the state being carried along so that little is lost), ``"extended"`` (64 bits, x86 only),
+        ``"double-double"`` (106 bits; H of sums, products, quotients and square roots); Gauss methods have
+        the second and third. Taylor: ``"double"``, ``"extended"``, ``"quad"`` or a number of decimal digits.
     parameters
         A number for every parameter of H, by symbol or name.
     samples
@@ -99,7 +104,9 @@ def propagate(
     Returns
     -------
     Trajectory
-        Sampled states, energies evaluated in higher precision than the states, and the cost.
+        Sampled states, energies evaluated in higher precision than the states, and the cost. Many orbits
+        run side by side in SIMD lanes and on threads (splittings and RK4) and give arrays with a last axis
+        for the orbits.
 
     Raises
     ------
@@ -129,31 +136,32 @@ def propagate(
     system = _system(hamiltonian, _numbers(parameters or {}))
     watched = dict(observables or {})
     nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in watched.items())]
-    state, (start, end) = _state(y0, len(system.q)), _span(t_span)
+    high, low = _states(y0, len(system.q))
+    span = _span(t_span)
     if samples < 1:
         raise ValueError(f"samples={samples}: keep at least one state after the first")
-    _check_start(system, state, start)
+    _check_start(system, high, span[0])
+    report = progress or (lambda _: None)
     if isinstance(method, FixedStep):
-        loop = compiled_loop(system, method, compensated=_is_compensated(precision))
-        found = fixed_steps(loop, method, state, (start, end), step, samples, progress)
+        kind = fixed_precision(precision)
+        loop = compiled_loop(system, method, kind, high.shape[1])
+        found, name = fixed_steps(loop, method, (high, low), span, step, samples, report), kind.name
     else:
         if step is not None:
             raise ValueError(f"{method} chooses its own steps: leave step out and set its tolerance")
-        if precision not in (None, "double"):
-            raise ValueError(f"precision={precision!r}: {method} runs in double precision")
-        times = np.linspace(float(start), float(end), samples + 1)
-        if isinstance(method, Taylor):
-            found = integrate_taylor(system, state, times, method, progress)
-        else:
-            found = integrate_dop853(system, state, times, method, progress)
-    (energy, change), *rest = measured(system, nodes, found)
+        times, name = np.linspace(float(span[0]), float(span[1]), samples + 1), str(precision or "double")
+        found = adaptive_steps(system, (high, low), times, method, precision or "double", report)
+    if np.ndim(y0) == 1:
+        found = replace(found, y=found.y[:, :, 0], carried=found.carried[:, :, 0])
+    (energy, change), *rest = measured(system, nodes, found, name)
     return Trajectory(
         t=found.t,
         y=found.y,
+        carried=found.carried,
         energy=energy,
         energy_change=change,
         method=method,
-        precision="double" if found.carried is None else "compensated",
+        precision=name,
         step=found.step,
         steps=found.steps,
         evaluations=found.evaluations,
@@ -176,12 +184,6 @@ def _with_tolerance(method: Method, tolerance: float | None) -> Method:
     raise ValueError(f"{method} takes fixed steps: give step=, not tolerance=")
 
 
-def _is_compensated(precision: str | None) -> bool:
-    if precision not in (None, "compensated", "double"):
-        raise ValueError(f"precision={precision!r}: there are 'compensated' and 'double'")
-    return precision != "double"
-
-
 def _numbers(parameters: Mapping[Symbol | str, Any]) -> frozenset[tuple[str, Fraction]]:
     return frozenset((str(name), exact(value, str(name))) for name, value in parameters.items())
 
@@ -201,16 +203,21 @@ def _kept_system(
     return equations(H, q, p, t, dict(parameters))
 
 
-def _state(y0: Sequence[float] | npt.NDArray[Any], n: int) -> Array:
-    state = np.array(y0, dtype=np.float64)
-    if state.shape != (2 * n,):
+def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]:
+    """Return the starting states as sums of two doubles, each of shape (2n, orbits)."""
+    given = np.asarray(y0)
+    if given.ndim not in (1, 2) or given.shape[0] != 2 * n or not given.size:
         raise ValueError(
-            f"y0 has shape {state.shape}; {n} coordinates and {n} momenta make a state (q, p) of shape "
-            f"({2 * n},)"
+            f"y0 has shape {given.shape}; {n} coordinates and {n} momenta make a state (q, p) of shape ({2 * n},), "
+            f"several of them ({2 * n}, orbits)"
         )
-    if not np.isfinite(state).all():
-        raise ValueError(f"y0 = {state} is not finite")
-    return state
+    if given.dtype == np.float64 and not np.isfinite(given).all():
+        raise ValueError(f"y0 = {given} is not finite")
+    if given.dtype != np.float64:
+        pairs = [double_pair(exact(x, "a component of y0")) for x in given.ravel().tolist()]
+        high, low = (np.array(part).reshape(2 * n, -1) for part in zip(*pairs, strict=True))
+        return high, low
+    return given.reshape(2 * n, -1), np.zeros((2 * n, given.size // (2 * n)))
 
 
 def _span(t_span: tuple[float, float]) -> tuple[Fraction, Fraction]:
@@ -220,8 +227,10 @@ def _span(t_span: tuple[float, float]) -> tuple[Fraction, Fraction]:
     return start, end
 
 
-def _check_start(system: Equations, state: Array, start: Fraction) -> None:
-    values = dict(zip(system.inputs, (*state, np.float64(start)), strict=True))
+def _check_start(system: Equations, states: Array, start: Fraction) -> None:
+    values = dict(zip(system.inputs, (*states, np.float64(start)), strict=True))
     found = system.graph.evaluate([system.hamiltonian, *system.velocity, *system.force], values)
-    if not np.isfinite(np.array(found, dtype=np.float64)).all():
-        raise ValueError(f"H or its derivatives are not finite at y0 = {state}: start inside H's domain")
+    finite = np.logical_and.reduce([np.isfinite(np.broadcast_to(x, states.shape[1:])) for x in found])
+    if not finite.all():
+        wrong = states[:, np.argmin(finite)]
+        raise ValueError(f"H or its derivatives are not finite at y0 = {wrong}: start inside H's domain")

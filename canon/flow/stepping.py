@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["NonFiniteStateError", "Run", "run"]
 
 Array = npt.NDArray[np.float64]
+Memory = npt.NDArray[Any]
 
 _SLICE_SECONDS = 0.1
 """Between calls of compiled code Python can handle an interruption and report progress."""
@@ -41,43 +42,44 @@ class NonFiniteStateError(ArithmeticError):
 
 @dataclass(frozen=True)
 class Run:
-    """States at the wanted steps, what compensation carried there, and the processor time.
+    """States at the wanted steps, and what they cost.
 
     Parameters
     ----------
-    y, carried
-        Shape (2n, times).
-    memory
-        What else the method kept in its carry at the end.
+    high, low
+        The states are high + low, shape (2n, times, orbits).
+    iterations
+        Iterations of an implicit method, 0 of others.
     cpu_seconds
         Processor time of this thread.
     """
 
-    y: Array
-    carried: Array
-    memory: Array
+    high: Array
+    low: Array
+    iterations: int
     cpu_seconds: float
 
 
 def run(
     loop: Loop,
-    y0: Array,
-    coefficients: Array,
+    high: Array,
+    low: Array,
+    coefficients: tuple[Array, Array],
     stops: Sequence[int],
-    progress: Callable[[float], None] | None = None,
+    progress: Callable[[float], None] = lambda _: None,
 ) -> Run:
-    """Advance a state step by step and keep it at the wanted step numbers.
+    """Advance orbits step by step and keep their states at the wanted step numbers.
 
     Parameters
     ----------
     loop
         The compiled loop.
-    y0
-        The state at step 0, shape (2n,).
+    high, low
+        The states at step 0 are high + low, shape (2n, orbits); orbits a multiple of the loop's lanes.
     coefficients
-        t0, h and the method's coefficients times h.
+        t0, h and the method's coefficients times h, likewise as sums of two doubles.
     stops
-        Rising step numbers at which to keep the state; the last is the end.
+        Rising step numbers at which to keep the states; the last is the end.
     progress
         Called now and then with the fraction done, 0 … 1.
 
@@ -86,52 +88,107 @@ def run(
     NonFiniteStateError
         A state is not finite; the error knows the last finite one.
     """
-    y, e = y0.copy(), np.zeros(loop.carry)
-    kept, kept_e = np.empty((len(y), len(stops))), np.empty((len(y), len(stops)))
+    job = _Job(loop, high, low, coefficients)
+    kept = np.empty((2, len(high), len(stops), high.shape[1]))
     started, done, slice_steps = time.thread_time(), 0, 64
     for sample, stop in enumerate(stops):
         while done < stop:
             steps = min(slice_steps, stop - done)
-            before = y.copy(), e.copy()
+            before = job.y.copy(), job.e.copy()
             clock = time.perf_counter()
-            _advance(loop, y, e, coefficients, done, steps)
+            job.advance(done, steps)
             spent = time.perf_counter() - clock
-            if not np.isfinite(y).all():
-                raise _last_finite(loop, *before, coefficients, done, steps)
+            if not np.isfinite(job.y).all():
+                raise job.lost(*before, done, steps)
             done += steps
             if steps == slice_steps and spent < _SLICE_SECONDS / 2:
                 slice_steps *= 2
             elif spent > _SLICE_SECONDS and slice_steps > 1:
                 slice_steps //= 2
-            if progress is not None:
-                progress(done / stops[-1])
-        kept[:, sample], kept_e[:, sample] = y, e[: len(y)]
-    return Run(kept, kept_e, e[len(y) :], time.thread_time() - started)
+            progress(done / stops[-1])
+        kept[:, :, sample] = job.states()
+    return Run(kept[0], kept[1], job.iterations(), time.thread_time() - started)
 
 
-def _advance(loop: Loop, y: Array, e: Array, coefficients: Array, first: int, steps: int) -> None:
-    loop.code.call(y.ctypes.data, e.ctypes.data, coefficients.ctypes.data, first, steps)
+class _Job:
+    """The memory of one run: blocks of as many orbits as the number type has lanes."""
+
+    def __init__(self, loop: Loop, high: Array, low: Array, coefficients: tuple[Array, Array]) -> None:
+        self.loop, number = loop, loop.number
+        self.size, self.orbits = high.shape
+        self.blocks = self.orbits // number.lanes
+        # A compensated state starts with its low part in the compensation, any other rounds it to its type.
+        into_y, into_e = (np.zeros_like(low), low) if loop.compensated else (low, np.zeros_like(low))
+        self.y = number.packed(self._by_block(high), self._by_block(into_y))
+        scalars = self.y.size // (self.blocks * self.size)
+        self.e = np.zeros((self.blocks, loop.carry * scalars), dtype=number.dtype)
+        carried = self._by_block(into_e)
+        self.e[:, : self.size * scalars] = number.packed(carried, np.zeros_like(carried)).reshape(
+            self.blocks, -1
+        )
+        self.c = number.packed(*(np.repeat(part, number.lanes) for part in coefficients))
+        self.t0, self.h = (float(part) for part in coefficients[0][:2])
+
+    def _by_block(self, states: Array) -> Array:
+        """Reorder (2n, orbits) as blocks, components, lanes: shape (blocks · 2n, lanes)."""
+        lanes = self.loop.number.lanes
+        return states.reshape(self.size, self.blocks, lanes).transpose(1, 0, 2).reshape(-1, lanes)
+
+    def _by_orbit(self, numbers: Array) -> Array:
+        lanes = self.loop.number.lanes
+        return numbers.reshape(self.blocks, self.size, lanes).transpose(1, 0, 2).reshape(self.size, -1)
+
+    def advance(self, first: int, steps: int) -> None:
+        self._call(self.y, self.e, first, steps, self.blocks)
+
+    def _call(self, y: Memory, e: Memory, first: int, steps: int, blocks: int) -> None:
+        self.loop.code.call(y.ctypes.data, e.ctypes.data, self.c.ctypes.data, first, steps, blocks)
+
+    def states(self) -> tuple[Array, Array]:
+        """Return the states as sums of two doubles, each of shape (2n, orbits)."""
+        high, low = (self._by_orbit(part) for part in self.loop.number.unpacked(self.y))
+        if self.loop.compensated:
+            scalars = self.y.size // (self.blocks * self.size)
+            carried, _ = self.loop.number.unpacked(self.e[:, : self.size * scalars].copy())
+            low = low + self._by_orbit(carried)
+        return high, low
+
+    def iterations(self) -> int:
+        return int(self.e[:, self.size].sum()) if self.loop.implicit else 0
+
+    def lost(self, y: Memory, e: Memory, first: int, steps: int) -> NonFiniteStateError:
+        """Find the last finite state of the first orbit that was lost, halving the slice of steps."""
+        number = self.loop.number
+        lost = np.argwhere(~np.isfinite(self.y.reshape(self.blocks, self.size, -1, number.lanes)))
+        block, _, _, lane = (int(index) for index in lost[0])
+        length = self.y.size // self.blocks
+        y, e = y[block * length : (block + 1) * length].copy(), e[block].copy()
+
+        def finite(memory: Memory) -> bool:
+            return bool(np.isfinite(number.unpacked(memory)[0][:, lane]).all())
+
+        while steps > 1:
+            half, half_e = y.copy(), e.copy()
+            self._call(half, half_e, first, steps // 2, 1)
+            if finite(half):
+                y, e, first, steps = half, half_e, first + steps // 2, steps - steps // 2
+            else:
+                steps //= 2
+        after = e.copy()
+        self._call(y.copy(), after, first, 1, 1)
+        state = number.unpacked(y)[0][:, lane]
+        change = float(after[self.size + 1]) if self.loop.implicit else 0.0
+        orbit = block * number.lanes + lane if self.orbits > 1 else None
+        return _complaint(self.t0 + first * self.h, first + 1, state, change, orbit)
 
 
-def _last_finite(
-    loop: Loop, y: Array, e: Array, coefficients: Array, first: int, steps: int
-) -> NonFiniteStateError:
-    """Find the last step with a finite state by halving the slice in which it was lost."""
-    while steps > 1:
-        half, half_e = y.copy(), e.copy()
-        _advance(loop, half, half_e, coefficients, first, steps // 2)
-        if np.isfinite(half).all():
-            y, e, first, steps = half, half_e, first + steps // 2, steps - steps // 2
-        else:
-            steps //= 2
-    after = e.copy()
-    _advance(loop, y.copy(), after, coefficients, first, 1)
-    if loop.implicit and after[len(y) + 1]:
-        what = f"the stages of step {first + 1} do not converge (last change {after[len(y) + 1]:.2g})"
+def _complaint(t: float, step: int, state: Array, change: float, orbit: int | None) -> NonFiniteStateError:
+    if change:
+        what = f"the stages of step {step} do not converge (last change {change:.2g})"
         why = "the step is too large for the iteration; take a smaller one, or Taylor()"
     else:
-        what = f"the state stops being finite in step {first + 1}"
+        what = f"the state stops being finite in step {step}"
         why = "a collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()"
-    t = float(coefficients[0] + first * coefficients[1])
-    state = ", ".join(f"{x:.6g}" for x in y[:8]) + (", …" if len(y) > 8 else "")
-    return NonFiniteStateError(f"{what}, after t = {t:.9g} where (q, p) = ({state}): {why}", t, y)
+    which = "" if orbit is None else f" of orbit {orbit}"
+    shown = ", ".join(f"{x:.6g}" for x in state[:8]) + (", …" if len(state) > 8 else "")
+    return NonFiniteStateError(f"{what}{which}, after t = {t:.9g} where (q, p) = ({shown}): {why}", t, state)

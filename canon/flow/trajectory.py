@@ -37,7 +37,7 @@ class Samples:
     y
         States, shape (2n, times).
     carried
-        What compensation carries at those times: the state is y + carried, shape (2n, times).
+        What the states are beyond doubles: the state is y + carried, shape (2n, times).
     steps, evaluations
         Steps taken, and evaluations of the force (Taylor: of the series).
     step
@@ -48,7 +48,7 @@ class Samples:
 
     t: Array
     y: Array
-    carried: Array | None
+    carried: Array
     steps: int
     evaluations: int
     step: float | None
@@ -65,7 +65,10 @@ class Trajectory:
     t
         Sample times, shape (times,).
     y
-        States (q, p), shape (2n, times).
+        States (q, p), shape (2n, times); of many orbits, shape (2n, times, orbits), and so on below.
+    carried
+        What the states are beyond doubles (compensation, or the digits of a higher precision): the state is
+        y + carried, shape (2n, times).
     energy
         H at the samples, evaluated in higher precision than the states and then rounded, shape (times,).
     energy_change
@@ -73,7 +76,7 @@ class Trajectory:
     method
         The method that was used.
     precision
-        ``"double"`` or ``"compensated"``.
+        The precision of the states.
     step
         The step size of a fixed-step method, as adjusted to end at the last time; None for adaptive methods.
     steps, evaluations
@@ -89,6 +92,7 @@ class Trajectory:
 
     t: Array
     y: Array
+    carried: Array
     energy: Array
     energy_change: Array
     method: Method
@@ -125,8 +129,8 @@ class Trajectory:
 
     @property
     def relative(self) -> bool:
-        """Whether ``energy_error`` is relative: the starting energy is not zero."""
-        return bool(self.energy[0] != 0)
+        """Whether ``energy_error`` is relative: the starting energy is not zero (of no orbit)."""
+        return bool(np.all(self.energy[0] != 0))
 
     @cached_property
     def energy_error(self) -> Array:
@@ -142,38 +146,49 @@ class Trajectory:
         return self.energy_change / abs(self.energy[0]) if self.relative else self.energy_change
 
 
-def measured(system: Equations, nodes: Sequence[int], samples: Samples) -> list[tuple[Array, Array]]:
+def measured(
+    system: Equations, nodes: Sequence[int], samples: Samples, precision: str
+) -> list[tuple[Array, Array]]:
     """Return each node's values along a trajectory and their changes since the start.
 
-    They are evaluated with a 64-bit mantissa where the platform's long double has one (x86), with 40
-    digits elsewhere, at the state with what compensation carries: what is reported is the trajectory's
-    error, not the evaluation's.
+    They are evaluated with a 64-bit mantissa where the states are doubles and the platform's long double has
+    one (x86), with 40 digits otherwise, at the state with what it is beyond doubles: what is reported is
+    the trajectory's error, not the evaluation's.
     """
-    carried = np.zeros_like(samples.y) if samples.carried is None else samples.carried
-    values = _wide_values if _WIDE else _many_digits
-    return [
-        (np.array(value, dtype=np.float64), np.array(value - value[0], dtype=np.float64))
-        for value in values(system, nodes, samples.t, samples.y, carried)
-    ]
+    doubles = precision in ("single", "double", "compensated")
+    values = _wide_values if _WIDE and doubles else _many_digits
+    found = values(system, nodes, samples.t, samples.y, samples.carried)
+    return [(_rounded(value), _rounded(value - value[0])) for value in found]
+
+
+def _rounded(values: npt.NDArray[Any]) -> Array:
+    rounded = np.array(values, dtype=np.float64)
+    if not np.isfinite(rounded).all():
+        raise ArithmeticError(
+            "the energy or an observable is not finite at a sample: it left its own domain there"
+        )
+    return rounded
 
 
 def _wide_values(
     system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
 ) -> list[npt.NDArray[Any]]:
     state = y.astype(np.longdouble) + carried.astype(np.longdouble)
-    values = dict(zip(system.inputs, (*state, t.astype(np.longdouble)), strict=True))
-    found = system.graph.evaluate(nodes, values, LONGDOUBLE)
-    return [np.broadcast_to(np.asarray(value, dtype=np.longdouble), t.shape) for value in found]
+    times = t.astype(np.longdouble).reshape((-1,) + (1,) * (y.ndim - 2))
+    found = system.graph.evaluate(nodes, dict(zip(system.inputs, (*state, times), strict=True)), LONGDOUBLE)
+    return [np.broadcast_to(np.asarray(value, dtype=np.longdouble), y.shape[1:]) for value in found]
 
 
 def _many_digits(
     system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
 ) -> list[npt.NDArray[Any]]:
     digits = multiprecision(40)
-    rows: list[list[Any]] = []
-    for i, time in enumerate(t):
-        pairs = zip(y[:, i].tolist(), carried[:, i].tolist(), strict=True)
-        point = [Fraction(x) + Fraction(e) for x, e in pairs] + [Fraction(float(time))]
+    found = np.empty((len(nodes), *y.shape[1:]), dtype=object)
+    for place in np.ndindex(y.shape[1:]):
+        pairs = zip(y[(slice(None), *place)].tolist(), carried[(slice(None), *place)].tolist(), strict=True)
+        point = [*(Fraction(high) + Fraction(low) for high, low in pairs), Fraction(float(t[place[0]]))]
         values = dict(zip(system.inputs, map(digits.number, point), strict=True))
-        rows.append(system.graph.evaluate(nodes, values, digits))
-    return [np.array(column, dtype=object) for column in zip(*rows, strict=True)]
+        for k, value in enumerate(system.graph.evaluate(nodes, values, digits)):
+            # Outside a function's real domain mpmath goes on with complex numbers.
+            found[(k, *place)] = value if hasattr(value, "man_exp") else np.nan
+    return list(found)

@@ -22,12 +22,11 @@ import numpy as np
 import sympy as sp
 from mpmath import MPContext
 
-from canon.kernel.loop import METHOD, Loop, finished, increase, local_state, steps_of
+from canon.kernel.loop import METHOD, Loop, blocks_of, finished, increase, steps_of
 from canon.kernel.machine import DOUBLE
 from canon.kernel.writer import Writer
 
 if TYPE_CHECKING:
-    from canon.kernel.machine import MachineType
     from canon.kernel.structure import Equations
 
 __all__ = ["HIGHEST_STAGES", "Tableau", "gauss_coefficients", "gauss_loop", "gauss_tableau"]
@@ -127,7 +126,7 @@ def _lanes(stages: int) -> int:
     return 1 << (stages - 1).bit_length()
 
 
-def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
+def gauss_loop(system: Equations, stages: int, *, compensated: bool) -> Loop:
     """Compile Gauss–Legendre steps, the stages side by side in SIMD lanes.
 
     After the 2n numbers of compensation, ``e`` keeps the number of iterations, the last change of an iteration
@@ -135,55 +134,57 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: Mac
     iteration does not converge makes the state NaN.
     """
     size, lanes = 2 * len(system.q), _lanes(stages)
-    w = Writer(number)
+    w = Writer(DOUBLE)
     v = w.side_by_side(lanes)
-    y, e = local_state(w, size, compensated=compensated)
+    carry = size + 2 + size * lanes
+    y, e = w.array(size), w.array(size) if compensated else ""
     method = _Stages(v, w.at("%c", METHOD), stages)
     stage, place, least = v.array(size), v.array(size), v.array(size)
     done, change, reach = w.array(1), v.array(1), v.array(1)
     zero, none = w.constant(Fraction(0)), v.constant(Fraction(0))
     field = system.program((*system.velocity, *system.force))
-    v.copy(w.at("%e", size + 2), stage, size)
-    with steps_of(w, system) as time:
-        clock = v.algebra("add", v.splat(time), method.node)
-        with w.loop(0, size) as i:
-            v.store(method.predicted(v.load(stage, i)), stage, i)
-            v.store(v.infinity(), least, i)
-        w.store(zero, done, 0)
-        with w.loop(0, _ITERATIONS):
-            last = w.less(zero, w.load(done, 0))
+    with blocks_of(w, y, e, size, carry) as kept:
+        v.copy(w.at(kept, size + 2), stage, size)
+        with steps_of(w, system) as time:
+            clock = v.algebra("add", v.splat(time), method.node)
             with w.loop(0, size) as i:
-                moved = method.moved(v.splat(w.load(e, i)) if e else none, v.load(stage, i))
-                v.store(v.algebra("add", v.splat(w.load(y, i)), moved), place, i)
-            v.store(none, change, 0)
-            v.store(none, reach, 0)
-            w.store(w.constant(Fraction(1)), done, 0)
-            for i, rate in enumerate(v.program(field, [*(v.load(place, i) for i in range(size)), clock])):
-                new = v.algebra("mul", method.weight, rate)
-                difference = v.intrinsic("fabs", v.algebra("sub", new, v.load(stage, i)))
-                before = v.load(least, i)
-                decreasing = v.any_lane(v.less(difference, before))
-                v.store(new, stage, i)
-                v.store(v.intrinsic("minnum", before, difference), least, i)
-                v.store(v.intrinsic("maxnum", v.load(change, 0), difference), change, 0)
-                far = v.algebra("add", v.intrinsic("fabs", new), v.intrinsic("fabs", v.load(place, i)))
-                v.store(v.intrinsic("maxnum", v.load(reach, 0), far), reach, 0)
-                w.store(w.select(decreasing, zero, w.load(done, 0)), done, 0)
-            w.store(w.algebra("add", w.load("%e", size), w.constant(Fraction(1))), "%e", size)
+                v.store(method.predicted(v.load(stage, i)), stage, i)
+                v.store(v.infinity(), least, i)
+            w.store(zero, done, 0)
+            with w.loop(0, _ITERATIONS):
+                last = w.less(zero, w.load(done, 0))
+                with w.loop(0, size) as i:
+                    moved = method.moved(v.splat(w.load(e, i)) if e else none, v.load(stage, i))
+                    v.store(v.algebra("add", v.splat(w.load(y, i)), moved), place, i)
+                v.store(none, change, 0)
+                v.store(none, reach, 0)
+                w.store(w.constant(Fraction(1)), done, 0)
+                for i, rate in enumerate(v.program(field, [*(v.load(place, i) for i in range(size)), clock])):
+                    new = v.algebra("mul", method.weight, rate)
+                    difference = v.intrinsic("fabs", v.algebra("sub", new, v.load(stage, i)))
+                    before = v.load(least, i)
+                    decreasing = v.any_lane(v.less(difference, before))
+                    v.store(new, stage, i)
+                    v.store(v.intrinsic("minnum", before, difference), least, i)
+                    v.store(v.intrinsic("maxnum", v.load(change, 0), difference), change, 0)
+                    far = v.algebra("add", v.intrinsic("fabs", new), v.intrinsic("fabs", v.load(place, i)))
+                    v.store(v.intrinsic("maxnum", v.load(reach, 0), far), reach, 0)
+                    w.store(w.select(decreasing, zero, w.load(done, 0)), done, 0)
+                w.store(w.algebra("add", w.load(kept, size), w.constant(Fraction(1))), kept, size)
+                moves, scale = v.greatest(v.load(change, 0)), v.greatest(v.load(reach, 0))
+                coarse = w.less(w.algebra("mul", scale, w.constant(_ROUND_OFF)), moves)
+                w.store(w.select(coarse, zero, w.load(done, 0)), done, 0)
+                w.leave_if(w.let(f"or i1 {last}, {w.equal(moves, zero)}"))
             moves, scale = v.greatest(v.load(change, 0)), v.greatest(v.load(reach, 0))
-            coarse = w.less(w.algebra("mul", scale, w.constant(_ROUND_OFF)), moves)
-            w.store(w.select(coarse, zero, w.load(done, 0)), done, 0)
-            w.leave_if(w.let(f"or i1 {last}, {w.equal(moves, zero)}"))
-        moves, scale = v.greatest(v.load(change, 0)), v.greatest(v.load(reach, 0))
-        diverges = w.less(w.algebra("mul", scale, w.constant(_NOT_CONVERGED)), moves)
-        w.store(w.select(diverges, moves, w.load("%e", size + 1)), "%e", size + 1)
-        w.store(w.select(diverges, w.nan(), w.load(y, 0)), y, 0)
-        with w.loop(0, size) as i:
-            found = v.load(stage, i)
-            for j in range(stages):
-                increase(w, y, e, i, w.constant(Fraction(1)), v.lane(found, j))
-    v.copy(stage, w.at("%e", size + 2), size)
-    return finished(w, y, e, len(system.q), compensated=compensated, carry=size + 2 + size * lanes)
+            diverges = w.less(w.algebra("mul", scale, w.constant(_NOT_CONVERGED)), moves)
+            w.store(w.select(diverges, moves, w.load(kept, size + 1)), kept, size + 1)
+            w.store(w.select(diverges, w.nan(), w.load(y, 0)), y, 0)
+            with w.loop(0, size) as i:
+                found = v.load(stage, i)
+                for j in range(stages):
+                    increase(w, y, e, i, w.constant(Fraction(1)), v.lane(found, j))
+        v.copy(stage, w.at(kept, size + 2), size)
+    return finished(w, len(system.q), compensated=compensated, carry=carry)
 
 
 class _Stages:

@@ -21,9 +21,12 @@ if TYPE_CHECKING:
 
     import llvmlite.binding as binding
 
-__all__ = ["MachineCode", "compiled"]
+__all__ = ["MachineCode", "compiled", "simd_bytes"]
 
 _COMPILING = threading.Lock()
+
+_LARGE = 700_000
+"""Above this size of a module the search for parallel scalars (SLP) takes longer than it saves."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,8 @@ def compiled(ir: str, function: str, arguments: Sequence[Any], libm: Sequence[st
         module = llvm.parse_assembly(ir)
         module.verify()
         tuning = llvm.create_pipeline_tuning_options(speed_level=3)
-        tuning.loop_vectorization = tuning.slp_vectorization = tuning.loop_unrolling = True
+        tuning.loop_vectorization = tuning.loop_unrolling = True
+        tuning.slp_vectorization = len(ir) < _LARGE
         builder = llvm.create_pass_builder(machine, tuning)
         builder.getModulePassManager().run(module, builder)
         engine = llvm.create_mcjit_compiler(module, machine)
@@ -82,6 +86,15 @@ def compiled(ir: str, function: str, arguments: Sequence[Any], libm: Sequence[st
         address = engine.get_function_address(function)
     call = ctypes.CFUNCTYPE(None, *arguments)(address)
     return MachineCode(call, time.perf_counter() - started, engine)
+
+
+@functools.cache
+def simd_bytes() -> int:
+    """Return how many bytes this processor's SIMD registers hold."""
+    import llvmlite.binding as llvm
+
+    features = llvm.get_host_cpu_features()
+    return 64 if features.get("avx512f") else 32 if features.get("avx") else 16
 
 
 def _target_machine() -> binding.TargetMachine:

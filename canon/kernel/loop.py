@@ -1,11 +1,13 @@
 """The compiled loops: many steps of one method in one call, for one Hamiltonian.
 
-Every loop has the signature ``advance(y, e, c, first, steps)``: ``y`` holds q then p, ``e`` what
+Every loop has the signature ``advance(y, e, c, first, steps, blocks)``: ``y`` holds q then p, ``e`` what
 compensation carries (y + e is the state), ``c`` the numbers t0, h and then the method's coefficients times h,
-``first`` the number of the first step, so that time is t0 + n·h and never accumulates.
+``first`` the number of the first step, so that time is t0 + n·h and never accumulates. A block is as many
+orbits as the number type has lanes; ``y`` and ``e`` hold one block after the other.
 
-Kahan's compensation of an increment d: d ← d + e; s ← y + d; e ← d − (s − y); y ← s. The product of a
-coefficient and a rate enters through ``fma``, rounded once together with e.
+Compensation (W. Kahan, Comm. ACM 8 (1965) 40) of an increment d = c·f, without assuming |d| < |y| (D. E. Knuth's
+two-sum): d ← d + e; s ← y + d; e ← the error of that sum; y ← s. The product c·f enters through ``fma``,
+rounded once together with e.
 """
 
 from __future__ import annotations
@@ -29,8 +31,8 @@ if TYPE_CHECKING:
 __all__ = ["Loop", "field_function", "runge_kutta_loop", "splitting_loop"]
 
 _POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
-_SIGNATURE = (_POINTER, _POINTER, _POINTER, _INTEGER, _INTEGER)
-_PARAMETERS = "ptr noalias %y, ptr noalias %e, ptr noalias %c, i64 %first, i64 %steps"
+_SIGNATURE = (_POINTER, _POINTER, _POINTER, _INTEGER, _INTEGER, _INTEGER)
+_PARAMETERS = "ptr noalias %y, ptr noalias %e, ptr noalias %c, i64 %first, i64 %steps, i64 %blocks"
 METHOD = 2
 """Where the method's own coefficients start in c."""
 
@@ -75,7 +77,7 @@ def splitting_loop(
     """
     n = len(system.q)
     w = Writer(number)
-    y, e = local_state(w, 2 * n, compensated=compensated)
+    y, e = w.array(2 * n), w.array(2 * n) if compensated else ""
     rate = w.array(n)
     drift_clock, kick_clock = w.array(1), w.array(1)
 
@@ -93,7 +95,7 @@ def splitting_loop(
         if not system.autonomous:
             w.store(w.algebra("add", w.load(own_clock, 0), coefficient), own_clock, 0)
 
-    with steps_of(w, system) as time:
+    with blocks_of(w, y, e, 2 * n, 2 * n), steps_of(w, system) as time:
         w.store(time, drift_clock, 0)
         w.store(time, kick_clock, 0)
         with w.loop(0, stages) as s:
@@ -103,14 +105,14 @@ def splitting_loop(
             kick = w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}"))
             substep(system.force, 0, n, kick, drift_clock, kick_clock)
         substep(system.velocity, n, 0, w.load("%c", METHOD + 2 * stages), kick_clock, drift_clock)
-    return finished(w, y, e, n, compensated=compensated)
+    return finished(w, n, compensated=compensated)
 
 
 def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
     """Compile the classical fourth-order Runge–Kutta method; its coefficients are h/2, h/6, h/3."""
     n = len(system.q)
     w = Writer(number)
-    y, e = local_state(w, 2 * n, compensated=compensated)
+    y, e = w.array(2 * n), w.array(2 * n) if compensated else ""
     stage, rate, total = w.array(2 * n), w.array(2 * n), w.array(2 * n)
     field = system.program((*system.velocity, *system.force))
     full, half, sixth, third = (w.load("%c", i) for i in range(1, 5))
@@ -120,25 +122,25 @@ def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineTyp
         for i, value in enumerate(w.program(field, arguments)):
             w.store(value, rate, i)
 
-    with steps_of(w, system) as time:
+    with blocks_of(w, y, e, 2 * n, 2 * n), steps_of(w, system) as time:
         midway, end = w.algebra("add", time, half), w.algebra("add", time, full)
         evaluate(y, time)
         with w.loop(0, 2 * n) as i:
             w.store(w.algebra("mul", sixth, w.load(rate, i)), total, i)
         for weight, reach, clock in ((third, half, midway), (third, half, midway), (sixth, full, end)):
             with w.loop(0, 2 * n) as i:
-                w.store(w.intrinsic("fma", reach, w.load(rate, i), w.load(y, i)), stage, i)
+                w.store(w.multiply_add(reach, w.load(rate, i), w.load(y, i)), stage, i)
             evaluate(stage, clock)
             with w.loop(0, 2 * n) as i:
-                w.store(w.intrinsic("fma", weight, w.load(rate, i), w.load(total, i)), total, i)
+                w.store(w.multiply_add(weight, w.load(rate, i), w.load(total, i)), total, i)
         with w.loop(0, 2 * n) as i:
             increase(w, y, e, i, w.constant(Fraction(1)), w.load(total, i))
-    return finished(w, y, e, n, compensated=compensated)
+    return finished(w, n, compensated=compensated)
 
 
-def field_function(field: Program, number: MachineType = DOUBLE) -> MachineCode:
-    """Compile a program as ``f(x, out)``: x holds its inputs, out gets its outputs."""
-    w = Writer(number)
+def field_function(field: Program) -> MachineCode:
+    """Compile a program as ``f(x, out)`` in doubles: x holds its inputs, out gets its outputs."""
+    w = Writer(DOUBLE)
     arguments = [w.load("%x", i) for i in range(len(field.inputs))]
     for i, value in enumerate(w.program(field, arguments)):
         w.store(value, "%out", i)
@@ -148,12 +150,19 @@ def field_function(field: Program, number: MachineType = DOUBLE) -> MachineCode:
 # pieces of loops -------------------------------------------------------------------------------------
 
 
-def local_state(w: Writer, length: int, *, compensated: bool) -> tuple[str, str]:
-    y, e = w.array(length), w.array(length)
-    w.copy("%y", y, length)
-    if compensated:
-        w.copy("%e", e, length)
-    return y, e if compensated else ""
+@contextlib.contextmanager
+def blocks_of(w: Writer, y: str, e: str, size: int, carry: int) -> Generator[str]:
+    """Repeat what is written inside for every block, on local copies y and e, and yield the block's outer e."""
+    with w.loop(0, "%blocks") as block:
+        outer_y = w.at("%y", w.let(f"mul i64 {block}, {size}"))
+        outer_e = w.at("%e", w.let(f"mul i64 {block}, {carry}"))
+        w.copy(outer_y, y, size)
+        if e:
+            w.copy(outer_e, e, size)
+        yield outer_e
+        w.copy(y, outer_y, size)
+        if e:
+            w.copy(e, outer_e, size)
 
 
 @contextlib.contextmanager
@@ -162,16 +171,16 @@ def steps_of(w: Writer, system: Equations) -> Generator[str]:
     start, h = w.load("%c", 0), w.load("%c", 1)
     last = w.let("add i64 %first, %steps")
     with w.loop("%first", last) as step:
-        yield start if system.autonomous else w.intrinsic("fma", w.whole(step), h, start)
+        yield start if system.autonomous else w.multiply_add(w.whole(step), h, start)
 
 
 def increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> None:
     """Write y_i ← y_i + coefficient · rate, compensated where there is an e."""
     old = w.load(y, i)
     if not e:
-        w.store(w.intrinsic("fma", coefficient, rate, old), y, i)
+        w.store(w.multiply_add(coefficient, rate, old), y, i)
         return
-    increment = w.intrinsic("fma", coefficient, rate, w.load(e, i))
+    increment = w.multiply_add(coefficient, rate, w.load(e, i))
     new = w.algebra("add", old, increment)
     kept = w.algebra("sub", new, increment)
     lost = w.algebra("sub", old, kept)
@@ -179,11 +188,8 @@ def increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> 
     w.store(new, y, i)
 
 
-def finished(w: Writer, y: str, e: str, n: int, *, compensated: bool, carry: int = 0) -> Loop:
-    """Write the state back and compile."""
-    w.copy(y, "%y", 2 * n)
-    if compensated:
-        w.copy(e, "%e", 2 * n)
+def finished(w: Writer, n: int, *, compensated: bool, carry: int = 0) -> Loop:
+    """Compile what was written."""
     return Loop(_compiled(w, _PARAMETERS, _SIGNATURE), n, compensated, w.number, carry or 2 * n, bool(carry))
 
 

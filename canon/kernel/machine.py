@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+import platform
 import struct
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-__all__ = ["DOUBLE", "EXTENDED", "SINGLE", "MachineType"]
+__all__ = ["DOUBLE", "DOUBLE_DOUBLE", "EXTENDED", "SINGLE", "MachineType", "double_pair"]
+
+Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -28,6 +33,8 @@ class MachineType:
         What libm appends to a function's name for this type.
     lanes
         Numbers side by side.
+    pair
+        Whether a number is the sum of two of these: double-double.
     """
 
     scalar: str
@@ -35,11 +42,22 @@ class MachineType:
     dtype: str
     library_suffix: str
     lanes: int = 1
+    pair: bool = False
+
+    @property
+    def base(self) -> str:
+        """The LLVM type of a value, or of each of its two parts."""
+        return self.scalar if self.lanes == 1 else f"<{self.lanes} x {self.scalar}>"
 
     @property
     def name(self) -> str:
         """The LLVM type of a value."""
-        return self.scalar if self.lanes == 1 else f"<{self.lanes} x {self.scalar}>"
+        return f"{{ {self.base}, {self.base} }}" if self.pair else self.base
+
+    @property
+    def flags(self) -> str:
+        """The LLVM type of a comparison's result."""
+        return "i1" if self.lanes == 1 else f"<{self.lanes} x i1>"
 
     @property
     def intrinsic(self) -> str:
@@ -54,9 +72,38 @@ class MachineType:
 
     def literal(self, value: Fraction) -> str:
         """Return the LLVM constant nearest to an exact number, in every lane."""
-        return self._in_every_lane(
-            _extended_literal(value) if self.scalar == "x86_fp80" else self._literal(value)
-        )
+        one = _extended_literal(value) if self.scalar == "x86_fp80" else self._literal(value)
+        if not self.pair:
+            return self._in_every_lane(one)
+        rest = self._literal(value - Fraction(float(value)))
+        return f"{{ {self.base} {self._in_every_lane(one)}, {self.base} {self._in_every_lane(rest)} }}"
+
+    def packed(self, high: Array, low: Array) -> npt.NDArray[Any]:
+        """Return numbers high + low as they lie in memory.
+
+        Parameters
+        ----------
+        high, low
+            Shape (count, lanes), or (count,) for one lane.
+        """
+        high, low = high.reshape(-1, self.lanes), low.reshape(-1, self.lanes)
+        if self.pair:
+            return np.stack([high, low], axis=1).ravel()
+        return (high.astype(self.dtype) + low.astype(self.dtype)).ravel()
+
+    def unpacked(self, memory: npt.NDArray[Any]) -> tuple[Array, Array]:
+        """Return numbers in memory as sums high + low of doubles, each of shape (count, lanes)."""
+        if self.pair:
+            parts = memory.reshape(-1, 2, self.lanes)
+            return parts[:, 0].copy(), parts[:, 1].copy()
+        numbers = memory.reshape(-1, self.lanes)
+        high = numbers.astype(np.float64)
+        with np.errstate(invalid="ignore"):
+            return high, (numbers - high).astype(np.float64)
+
+    def available(self) -> bool:
+        """Return whether this platform has the type: only x87's long double is missing on some."""
+        return self.scalar != "x86_fp80" or (np.finfo(np.longdouble).nmant == 63 and _is_x86())
 
     def special(self, name: str) -> str:
         """Return the LLVM constant for ``"inf"`` or ``"nan"``, in every lane."""
@@ -90,6 +137,17 @@ def _extended_literal(value: Fraction) -> str:
     return f"0xK{biased:04X}{mantissa:016X}"
 
 
+def _is_x86() -> bool:
+    return platform.machine().lower() in ("x86_64", "amd64")
+
+
+def double_pair(value: Fraction) -> tuple[float, float]:
+    """Return an exact number as a sum of two doubles."""
+    high = float(value)
+    return high, float(value - Fraction(high))
+
+
 DOUBLE = MachineType("double", 53, "float64", "")
 SINGLE = MachineType("float", 24, "float32", "f")
 EXTENDED = MachineType("x86_fp80", 64, "longdouble", "l")
+DOUBLE_DOUBLE = MachineType("double", 106, "float64", "", pair=True)

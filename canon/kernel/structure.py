@@ -123,7 +123,7 @@ def _equations(
         velocity=velocity,
         force=force,
         separable=not (_depends(graph, velocity, q) or _depends(graph, force, p)),
-        quadratic_kinetic=not any(_depends(graph, graph.gradient(v, p), (*q, *p, t)) for v in velocity),
+        quadratic_kinetic=_is_linear(graph, velocity, p, (*q, t)),
         autonomous=t not in graph.symbols(node),
     )
 
@@ -131,6 +131,20 @@ def _equations(
 def _depends(graph: Graph, nodes: Sequence[int], symbols: Sequence[Symbol]) -> bool:
     wanted = frozenset[Any](symbols)
     return any(wanted & graph.symbols(node) for node in nodes)
+
+
+def _is_linear(
+    graph: Graph, velocity: Sequence[int], p: tuple[Symbol, ...], others: tuple[Symbol, ...]
+) -> bool:
+    """Return whether velocities are linear in the momenta with constant coefficients."""
+    if _depends(graph, velocity, others):
+        return False
+    momenta = frozenset[Any](p)
+    return not any(
+        graph.symbols(slope)
+        for v in velocity
+        for slope in graph.gradient(v, tuple(momenta & graph.symbols(v)))
+    )
 
 
 def _with_numbers(

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import decimal
+import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from canon.expression.arithmetic import LONGDOUBLE
+from canon.kernel.program import exact_value
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from sympy import Symbol
 
     from canon.expression.graph import Graph
     from canon.kernel.structure import Equations
 
-__all__ = ["heyoka_equations", "heyoka_expressions", "taylor_integrator"]
+__all__ = ["heyoka_equations", "heyoka_expressions", "heyoka_number", "taylor_integrator"]
 
 _SAME_NAME = (
     "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
@@ -24,8 +31,47 @@ _COMPACT_FROM = 300
 """Graphs with more nodes are compiled in heyoka's compact mode, which keeps compile times short."""
 
 
-def heyoka_expressions(graph: Graph, nodes: Sequence[int], variables: Mapping[Symbol, Any]) -> list[Any]:
-    """Return nodes as heyoka expressions in given heyoka variables.
+def heyoka_number(precision: str | int) -> Callable[[Fraction], Any]:
+    """Return what turns exact numbers into heyoka's numbers of a precision.
+
+    Parameters
+    ----------
+    precision
+        ``"double"``, ``"extended"`` (the platform's long double), ``"quad"`` (113 bits) or decimal digits.
+
+    Raises
+    ------
+    ValueError
+        There is no such precision.
+    """
+    import heyoka as hy
+
+    if precision == "double":
+        return float
+    if precision == "extended":
+        return LONGDOUBLE.number
+    if precision == "quad":
+        return lambda value: hy.real128(_decimal(value, 40))
+    if not isinstance(precision, int) or not 16 <= precision <= 1000:
+        raise ValueError(
+            f"precision={precision!r}: Taylor() has 'double', 'extended', 'quad' and decimal digits, 16 … 1000"
+        )
+    bits = math.ceil(precision * math.log2(10)) + 2
+    return lambda value: hy.real(_decimal(value, precision + 5), bits)
+
+
+def _decimal(value: Fraction, digits: int) -> str:
+    with decimal.localcontext(prec=digits):
+        return str(decimal.Decimal(value.numerator) / decimal.Decimal(value.denominator))
+
+
+def heyoka_expressions(
+    graph: Graph,
+    nodes: Sequence[int],
+    variables: Mapping[Symbol, Any],
+    number: Callable[[Fraction], Any] = float,
+) -> list[Any]:
+    """Return nodes as heyoka expressions in given heyoka variables, constants as numbers of one kind.
 
     Raises
     ------
@@ -41,9 +87,9 @@ def heyoka_expressions(graph: Graph, nodes: Sequence[int], variables: Mapping[Sy
         if kind == "symbol":
             done[each] = variables[value]
         elif kind == "number":
-            done[each] = hy.expression(float(value))
+            done[each] = hy.expression(number(value))
         elif kind == "named":
-            done[each] = hy.pi if value == "pi" else hy.exp(hy.expression(1.0))
+            done[each] = hy.pi if value == "pi" else hy.expression(number(exact_value(graph, each)))
         elif kind == "add":
             done[each] = hy.sum(x)
         elif kind == "mul":
@@ -63,20 +109,26 @@ def heyoka_expressions(graph: Graph, nodes: Sequence[int], variables: Mapping[Sy
     return [done[node] for node in nodes]
 
 
-def heyoka_equations(system: Equations) -> list[tuple[Any, Any]]:
+def heyoka_equations(system: Equations, number: Callable[[Fraction], Any] = float) -> list[tuple[Any, Any]]:
     """Return Hamilton's equations as heyoka takes them: pairs of a variable and its rate, (q, p) in order."""
     import heyoka as hy
 
     names = [f"{letter}{i}" for letter in "qp" for i in range(len(system.q))]
     variables = dict(zip((*system.q, *system.p), map(hy.expression, names), strict=True))
     rates = heyoka_expressions(
-        system.graph, (*system.velocity, *system.force), {**variables, system.t: hy.time}
+        system.graph, (*system.velocity, *system.force), {**variables, system.t: hy.time}, number
     )
     return list(zip(variables.values(), rates, strict=True))
 
 
-def taylor_integrator(system: Equations, y0: Sequence[float], t0: float, tolerance: float | None) -> Any:
-    """Return heyoka's adaptive integrator of Hamilton's equations, double precision.
+def taylor_integrator(
+    system: Equations,
+    y0: Sequence[Fraction],
+    t0: Fraction,
+    tolerance: float | None,
+    number: Callable[[Fraction], Any] = float,
+) -> Any:
+    """Return heyoka's adaptive integrator of Hamilton's equations.
 
     Parameters
     ----------
@@ -86,11 +138,19 @@ def taylor_integrator(system: Equations, y0: Sequence[float], t0: float, toleran
         The state (q, p) and the time to start from.
     tolerance
         Relative tolerance of a step; the rounding unit where None.
+    number
+        Makes the numbers it computes with; see :func:`heyoka_number`.
     """
     import heyoka as hy
 
     size = len(system.graph.reachable((*system.velocity, *system.force)))
-    options: dict[str, Any] = {} if tolerance is None else {"tol": tolerance}
+    state = [number(x) for x in y0]
+    options: dict[str, Any] = {} if tolerance is None else {"tol": number(Fraction(tolerance))}
     return hy.taylor_adaptive(
-        heyoka_equations(system), list(y0), time=t0, compact_mode=size > _COMPACT_FROM, **options
+        heyoka_equations(system, number),
+        np.array(state),
+        time=number(t0),
+        fp_type=type(state[0]),
+        compact_mode=number is not float or size > _COMPACT_FROM,
+        **options,
     )

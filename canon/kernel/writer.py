@@ -9,6 +9,8 @@ import itertools
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from canon.kernel.pair import pair_functions
+
 if TYPE_CHECKING:
     from collections.abc import Generator
 
@@ -67,7 +69,33 @@ class Writer:
 
     def algebra(self, operation: str, a: str, b: str) -> str:
         """Write a + b, a − b, a · b or a / b."""
-        return self.let(f"{_ALGEBRA[operation]} {self.number.name} {a}, {b}")
+        if not self.number.pair:
+            return self.let(f"{_ALGEBRA[operation]} {self.number.name} {a}, {b}")
+        if operation == "sub":
+            return self._of_pairs("add", a, self.negative(b))
+        return self._of_pairs(operation, a, b)
+
+    def _of_pairs(self, function: str, *operands: str) -> str:
+        kind = self.number.name
+        self.declarations.add(pair_functions(self.number.base, self.number.intrinsic, self.number.flags))
+        return self.let(f"call {kind} @pair.{function}({', '.join(f'{kind} {o}' for o in operands)})")
+
+    def negative(self, a: str) -> str:
+        """Write −a."""
+        kind, base = self.number.name, self.number.base
+        if not self.number.pair:
+            return self.let(f"fneg {kind} {a}")
+        result = "poison"
+        for part in (0, 1):
+            negated = self.let(f"fneg {base} {self.let(f'extractvalue {kind} {a}, {part}')}")
+            result = self.let(f"insertvalue {kind} {result}, {base} {negated}, {part}")
+        return result
+
+    def multiply_add(self, a: str, b: str, c: str) -> str:
+        """Write a · b + c, rounded once where the hardware does that."""
+        if self.number.pair or self.number.scalar == "x86_fp80":
+            return self.algebra("add", self.algebra("mul", a, b), c)
+        return self.intrinsic("fma", a, b, c)
 
     def intrinsic(self, name: str, *operands: str) -> str:
         """Write a call of one of LLVM's own functions, such as ``fma`` or ``sqrt``."""
@@ -92,15 +120,18 @@ class Writer:
 
     def whole(self, integer: str) -> str:
         """Turn an i64 register into a number."""
-        return self.splat(self.let(f"sitofp i64 {integer} to {self.number.scalar}"))
+        high = self.splat(self.let(f"sitofp i64 {integer} to {self.number.scalar}"))
+        if not self.number.pair:
+            return high
+        return self.let(f"insertvalue {self.number.name} zeroinitializer, {self.number.base} {high}, 0")
 
     def splat(self, scalar: str) -> str:
         """Put a scalar into every lane."""
         if self.number.lanes == 1:
             return scalar
-        first = self.let(f"insertelement {self.number.name} poison, {self.number.scalar} {scalar}, i32 0")
+        first = self.let(f"insertelement {self.number.base} poison, {self.number.scalar} {scalar}, i32 0")
         mask = f"<{self.number.lanes} x i32> zeroinitializer"
-        return self.let(f"shufflevector {self.number.name} {first}, {self.number.name} poison, {mask}")
+        return self.let(f"shufflevector {self.number.base} {first}, {self.number.base} poison, {mask}")
 
     def body(self) -> str:
         """Return what was written, as the inside of a function that returns nothing."""
@@ -140,9 +171,8 @@ class Writer:
 
     def select(self, flag: str, where_true: str, where_false: str) -> str:
         """Choose between two values, lane by lane."""
-        flags = "i1" if self.number.lanes == 1 else f"<{self.number.lanes} x i1>"
         kind = self.number.name
-        return self.let(f"select {flags} {flag}, {kind} {where_true}, {kind} {where_false}")
+        return self.let(f"select {self.number.flags} {flag}, {kind} {where_true}, {kind} {where_false}")
 
     def infinity(self) -> str:
         """Return +∞ as an operand."""
@@ -228,13 +258,16 @@ class Writer:
         return [registers[o] for o in steps.outputs]
 
     def _operation(self, operation: str, x: list[str]) -> str:
-        kind = self.number.name
         if operation in _ALGEBRA:
             return self.algebra(operation, *x)
         if operation == "neg":
-            return self.let(f"fneg {kind} {x[0]}")
+            return self.negative(x[0])
         if operation == "sqrt":
-            return self.intrinsic("sqrt", *x)
+            return self._of_pairs("sqrt", *x) if self.number.pair else self.intrinsic("sqrt", *x)
+        if self.number.pair:
+            raise ValueError(
+                f"there is no {operation} in double-double; use precision='extended', or Taylor()"
+            )
         if operation == "Abs":
             return self.intrinsic("fabs", *x)
         if operation == "sign":

@@ -1,0 +1,234 @@
+"""Compiled loops against hand-written C: processor time of one trajectory, ratios of medians.
+
+Run ``python benchmarks/kernels.py``; where there is no C compiler only canon's own times are printed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import itertools
+import shutil
+import statistics
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import sympy as sp
+
+from canon.expression.symbol import coordinates
+from canon.expression.symbol import time as t
+from canon.flow.fixed import compiled_loop
+from canon.flow.method import Splitting
+from canon.flow.precision import FIXED
+from canon.kernel.scheme import SCHEMES
+from canon.kernel.structure import equations
+
+REPEATS = 7
+
+FORCES = {
+    "Kepler": """
+        double r2 = q[0]*q[0] + q[1]*q[1], k = -1.0/(r2*sqrt(r2));
+        f[0] = k*q[0]; f[1] = k*q[1];""",
+    "Hénon–Heiles": """
+        f[0] = -q[0] - 2.0*q[0]*q[1]; f[1] = -q[1] - q[0]*q[0] + q[1]*q[1];""",
+    "FPUT": """
+        double pull[N+1];
+        pull[0] = q[0] + 0.25*q[0]*q[0];
+        for (int i = 1; i < N; i++) { double d = q[i] - q[i-1]; pull[i] = d + 0.25*d*d; }
+        pull[N] = -q[N-1] + 0.25*q[N-1]*q[N-1];
+        for (int i = 0; i < N; i++) f[i] = pull[i+1] - pull[i];""",
+    "N-body": """
+        for (int i = 0; i < N; i++) f[i] = 0.0;
+        for (int i = 0; i < B; i++) for (int j = 0; j < i; j++) {
+            double x = q[3*i]-q[3*j], y = q[3*i+1]-q[3*j+1], z = q[3*i+2]-q[3*j+2];
+            double r2 = x*x + y*y + z*z, k = m[i]*m[j]/(r2*sqrt(r2));
+            f[3*i] -= k*x; f[3*i+1] -= k*y; f[3*i+2] -= k*z;
+            f[3*j] += k*x; f[3*j+1] += k*y; f[3*j+2] += k*z;
+        }""",
+}
+
+PROGRAM = """
+#include <math.h>
+#define N {n}
+#define B {bodies}
+static const double m[B] = {{ {masses} }};
+static inline __attribute__((always_inline)) void force(const double *q, double *f) {{ {force} }}
+void run(double *q, double *p, const double *a, const double *b, int stages, long steps) {{
+    double f[N];
+    for (long k = 0; k < steps; k++) {{
+        for (int s = 0; s < stages; s++) {{
+            for (int i = 0; i < N; i++) q[i] += a[s]*p[i]/m[i*B/N];
+            force(q, f);
+            for (int i = 0; i < N; i++) p[i] += b[s]*f[i];
+        }}
+        for (int i = 0; i < N; i++) q[i] += a[stages]*p[i]/m[i*B/N];
+    }}
+}}
+"""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A Hamiltonian, its C force, a starting state, and a step."""
+
+    name: str
+    force: str
+    H: sp.Expr
+    q: tuple[sp.Symbol, ...]
+    start: np.ndarray
+    step: float
+    masses: tuple[float, ...] = (1.0,)
+
+
+def kepler() -> Case:
+    x, y = q = coordinates("x y")
+    H = (x.momentum**2 + y.momentum**2) / 2 - 1 / sp.sqrt(x**2 + y**2)
+    return Case("Kepler", FORCES["Kepler"], H, q, np.array([0.4, 0.0, 0.0, 2.0]), 2 * np.pi / 1000)
+
+
+def henon_heiles() -> Case:
+    x, y = q = coordinates("x y")
+    H = (x.momentum**2 + y.momentum**2 + x**2 + y**2) / 2 + x**2 * y - y**3 / 3
+    return Case("Hénon–Heiles", FORCES["Hénon–Heiles"], H, q, np.array([0.1, 0.2, 0.3, 0.1]), 0.05)
+
+
+def fput(n: int) -> Case:
+    """A chain with fixed ends, H = Σ p²/2 + Σ d²/2 + d³/12 of the neighbours' distances d."""
+    q = coordinates(" ".join(f"x{i}" for i in range(n)))
+    ends = [sp.Integer(0), *q, sp.Integer(0)]
+    distances = [right - left for left, right in itertools.pairwise(ends)]
+    H = sp.Add(*(s.momentum**2 / 2 for s in q), *(d**2 / 2 + d**3 / 12 for d in distances))
+    start = np.concatenate([np.sin(np.pi * np.arange(1, n + 1) / (n + 1)), np.zeros(n)])
+    return Case(f"FPUT {n}", FORCES["FPUT"], H, q, start, 0.05)
+
+
+def bodies(count: int) -> Case:
+    """Equal masses but one, on a helix, attracting each other by Newton's law."""
+    masses = (1.0, *[1e-3] * (count - 1))
+    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xyz"))
+    H = sp.Add(*(q[k].momentum ** 2 / (2 * sp.Rational(masses[k // 3])) for k in range(3 * count)))
+    for i in range(count):
+        for j in range(i):
+            r2 = sum((q[3 * i + k] - q[3 * j + k]) ** 2 for k in range(3))
+            H -= sp.Rational(masses[i]) * sp.Rational(masses[j]) / sp.sqrt(r2)
+    k = np.arange(count)
+    radius, angle = np.where(k > 0, 1.0 + k, 0), 2.4 * k
+    positions = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0.01 * k], axis=1)
+    speed = np.where(k > 0, 1 / np.sqrt(np.maximum(radius, 1)), 0) * np.array(masses)
+    momenta = np.stack([-speed * np.sin(angle), speed * np.cos(angle), 0 * k], axis=1)
+    return Case(
+        f"{count} bodies",
+        FORCES["N-body"],
+        H,
+        q,
+        np.concatenate([positions.ravel(), momenta.ravel()]),
+        0.05,
+        masses,
+    )
+
+
+def c_function(case: Case, folder: Path) -> ctypes._CFuncPtr | None:
+    """Compile the hand-written loop."""
+    compiler = shutil.which("gcc") or shutil.which("cc")
+    if compiler is None:
+        return None
+    n = len(case.q)
+    source, library = folder / f"{case.name}.c", folder / f"{case.name}.so"
+    masses = ", ".join(map(repr, case.masses))
+    source.write_text(PROGRAM.format(n=n, bodies=len(case.masses), masses=masses, force=case.force))
+    subprocess.run(
+        [
+            compiler,
+            "-O3",
+            "-march=native",
+            "-fno-math-errno",
+            "-shared",
+            "-fPIC",
+            str(source),
+            "-o",
+            str(library),
+            "-lm",
+        ],
+        check=True,
+    )
+    return ctypes.CDLL(str(library)).run
+
+
+def seconds_a_step(call, steps: int) -> float:
+    """The median processor time of a step."""
+    found = []
+    for _ in range(REPEATS):
+        begun = time.thread_time()
+        call(steps)
+        found.append((time.thread_time() - begun) / steps)
+    return statistics.median(found)
+
+
+def enough_steps(call) -> int:
+    """Steps that take about 30 ms."""
+    steps = 64
+    while True:
+        begun = time.thread_time()
+        call(steps)
+        if time.thread_time() - begun > 0.03:
+            return steps
+        steps *= 2
+
+
+def measure(case: Case, scheme: str, folder: Path) -> str:
+    """One row of the table."""
+    a, b = ([float(x) * case.step for x in half] for half in (SCHEMES[scheme].a, SCHEMES[scheme].b))
+    n, row = len(case.q), f"{case.name:14} {scheme:12}"
+    c_run = c_function(case, folder)
+    begun = time.perf_counter()
+    system = equations(case.H, case.q, tuple(s.momentum for s in case.q), t, {})
+    derived = time.perf_counter() - begun
+    coefficients = np.array([0.0, case.step, *(x for pair in zip(a, b, strict=False) for x in pair), a[-1]])
+    times, ends = {}, {}
+    for precision in ("double", "compensated"):
+        loop = compiled_loop(system, Splitting(scheme), FIXED[precision])
+
+        def call(steps, loop=loop):
+            y, e = case.start.copy(), np.zeros(loop.carry)
+            loop.code.call(y.ctypes.data, e.ctypes.data, coefficients.ctypes.data, 0, steps, 1)
+            return y
+
+        times[precision], ends[precision] = seconds_a_step(call, enough_steps(call)), call(100)
+        compiled = loop.code.seconds
+    row += f" derived {derived:6.3f} s, compiled {compiled:6.3f} s "
+    if c_run is None:
+        return row + " ".join(f"{name} {1e9 * value:9.1f} ns" for name, value in times.items())
+    arrays = np.array(a), np.array(b)
+
+    def c_call(steps):
+        q, p = case.start[:n].copy(), case.start[n:].copy()
+        pointers = (ctypes.c_void_p(x.ctypes.data) for x in (q, p, *arrays))
+        c_run(*pointers, ctypes.c_int(len(b)), ctypes.c_long(steps))
+        return np.concatenate([q, p])
+
+    c_time = seconds_a_step(c_call, enough_steps(c_call))
+    agree = abs(c_call(100) - ends["double"]).max()
+    ratios = " ".join(f"{name} {value / c_time:5.2f} × C" for name, value in times.items())
+    return row + f"C {1e9 * c_time:10.1f} ns a step; {ratios}; difference after 100 steps {agree:.1e}"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--large", action="store_true", help="also FPUT 128, 512 and 20, 50 bodies")
+    large = parser.parse_args().large
+    cases = [kepler(), henon_heiles(), bodies(6), fput(32)]
+    if large:
+        cases += [fput(128), fput(512), bodies(20), bodies(50)]
+    with tempfile.TemporaryDirectory() as folder:
+        for case in cases:
+            for scheme in ("verlet", "kahan-li-8"):
+                print(measure(case, scheme, Path(folder)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+"""The precisions a motion can be computed in, by one keyword."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, EXTENDED, SINGLE, MachineType
+
+__all__ = ["ADAPTIVE", "FIXED", "Precision", "fixed_precision"]
+
+
+@dataclass(frozen=True)
+class Precision:
+    """A machine number and whether round-off is carried along.
+
+    Parameters
+    ----------
+    name
+        The keyword.
+    number
+        The type of the state and of every operation.
+    compensated
+        Whether what rounding takes from the state is kept and added with the next increment.
+    """
+
+    name: str
+    number: MachineType
+    compensated: bool = False
+
+
+FIXED = {
+    precision.name: precision
+    for precision in (
+        Precision("single", SINGLE),
+        Precision("double", DOUBLE),
+        Precision("compensated", DOUBLE, compensated=True),
+        Precision("extended", EXTENDED),
+        Precision("double-double", DOUBLE_DOUBLE),
+    )
+}
+"""Precisions of fixed-step methods, lowest first: 24, 53, 53 + carried round-off, 64 and 106 bits."""
+
+ADAPTIVE = ("double", "extended", "quad")
+"""Precisions of heyoka's Taylor method beside a number of decimal digits: 53, 64 and 113 bits."""
+
+
+def fixed_precision(name: str | int | None) -> Precision:
+    """Return a fixed-step method's precision by its keyword; ``"compensated"`` where none is given.
+
+    Raises
+    ------
+    ValueError
+        There is no such precision, or the platform lacks the type.
+    """
+    precision = FIXED.get(str(name or "compensated"))
+    if precision is None:
+        raise ValueError(f"precision={name!r}: fixed-step methods have {', '.join(FIXED)}")
+    if not precision.number.available():
+        raise ValueError(
+            f"precision={name!r}: this platform has no 80-bit long double; use 'double-double' or Taylor()"
+        )
+    return precision

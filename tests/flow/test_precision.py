@@ -1,0 +1,176 @@
+"""Every precision reaches its floor; many orbits together give the bits that each gives alone."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.precision import ADAPTIVE, FIXED
+from canon.flow.propagate import propagate
+from canon.flow.stepping import NonFiniteStateError
+from canon.kernel.scheme import SCHEMES
+from tests.flow.systems import (
+    DOUBLE_PENDULUM,
+    DOUBLE_PENDULUM_START,
+    DRIVEN,
+    HENON_HEILES,
+    HENON_HEILES_START,
+    KEPLER,
+    PENDULUM,
+    kepler_start,
+)
+from tests.flow.test_geometry import exact_step
+
+SS10 = Splitting("sofroniou-spaletta-10")
+UNIT = {"single": 2.0**-24, "double": 2.0**-53, "compensated": 2.0**-53, "extended": 2.0**-64}
+
+
+@pytest.mark.parametrize("precision", UNIT)
+def test_fixed_step_precisions_end_at_their_own_round_off(precision):
+    n = 2_000
+    error = propagate(
+        KEPLER, kepler_start(0.2), (0, 50), method=SS10, step=50 / n, precision=precision
+    ).energy_error
+    floor = UNIT[precision] * n**0.5
+    bound = {"compensated": 0.3}.get(precision, 100)
+    assert abs(error).max() < bound * floor
+    if precision != "compensated":
+        assert abs(error).max() > 0.1 * floor
+
+
+def test_double_double_steps_are_exact_to_31_digits():
+    scheme = SCHEMES["kahan-li-8"]
+    for system, start in ((KEPLER, kepler_start(0.6)), (HENON_HEILES, HENON_HEILES_START)):
+        found = propagate(
+            system,
+            start,
+            (0, 0.25),
+            method=Splitting("kahan-li-8"),
+            step=0.125,
+            precision="double-double",
+            samples=2,
+        )
+        with mpmath.workdps(60):
+            state = [mpmath.mpf(x) for x in start]
+            for _ in range(2):
+                state = exact_step(system, scheme, state, mpmath.mpf(0.125))
+            both = zip(found.y[:, -1].tolist(), found.carried[:, -1].tolist(), state, strict=True)
+            assert max(abs(mpmath.mpf(a) + mpmath.mpf(b) - c) for a, b, c in both) < mpmath.mpf(10) ** -30
+
+
+def test_double_double_energy_error_is_the_methods_own():
+    arguments = {"method": SS10, "samples": 20}
+    errors = [
+        abs(
+            propagate(
+                KEPLER, kepler_start(0.2), (0, 10), step=step, precision="double-double", **arguments
+            ).energy_error
+        ).max()
+        for step in (1 / 16, 1 / 32)
+    ]
+    # Order 10 goes on below what doubles can show.
+    assert errors[1] < 1e-21
+    assert errors[0] / errors[1] == pytest.approx(2**10, rel=0.3)
+
+
+def test_a_start_beyond_doubles_is_kept():
+    exact = ["1/3", "0.1", "0", "1.1"]
+    motion = propagate(KEPLER, exact, (0, 1), method=SS10, step=0.01, precision="double-double", samples=1)
+    assert motion.y[0, 0] == 1 / 3
+    assert motion.carried[0, 0] == pytest.approx(1 / 3 * 2**-54, rel=1e-9)
+    rounded = propagate(
+        KEPLER, [1 / 3, 0.1, 0.0, 1.1], (0, 1), method=SS10, step=0.01, precision="double-double", samples=1
+    )
+    difference = (motion.y - rounded.y) + (motion.carried - rounded.carried)
+    assert 1e-18 < abs(difference[:, -1]).max() < 1e-14
+
+
+@pytest.mark.parametrize("precision", [*ADAPTIVE[1:], 30])
+def test_heyokas_precisions_go_below_doubles(precision):
+    motion = propagate(PENDULUM, [1.0, 0.0], (0, 20), precision=precision, samples=10)
+    double = propagate(PENDULUM, [1.0, 0.0], (0, 20), samples=10)
+    np.testing.assert_allclose(motion.y, double.y, atol=1e-13)
+    floor = {"extended": 1e-18, "quad": 1e-31, 30: 1e-28}[precision]
+    assert 0 < abs(motion.energy_error).max() < floor
+    assert abs(double.energy_error).max() > 1e-17
+
+
+@pytest.mark.parametrize(
+    ("method", "precision", "message"),
+    [
+        (SS10, "quadruple", "double-double"),
+        (SS10, 40, "double-double"),
+        (Gauss(2), "extended", "Gauss"),
+        (DOP853(), "quad", "double precision"),
+        (Taylor(), "compensated", "'quad'"),
+        (Taylor(), 5, "16 … 1000"),
+    ],
+)
+def test_precisions_that_a_method_does_not_have(method, precision, message):
+    fixed = {"step": 0.1} if method in (SS10, Gauss(2)) else {}
+    with pytest.raises(ValueError, match=message):
+        propagate(KEPLER, kepler_start(0.2), (0, 1), method=method, precision=precision, **fixed)
+
+
+def test_double_double_says_that_it_has_no_sine():
+    with pytest.raises(ValueError, match="no sin in double-double"):
+        propagate(PENDULUM, [1.0, 0.0], (0, 1), method=SS10, step=0.1, precision="double-double")
+
+
+def starts(base, orbits):
+    return np.array(base)[:, np.newaxis] * (1 + 0.2 * np.random.default_rng(3).random(orbits))
+
+
+@pytest.mark.parametrize("precision", FIXED)
+@pytest.mark.parametrize("method", [Splitting("verlet"), Splitting("kahan-li-8"), RK4()], ids=str)
+def test_orbits_together_give_the_bits_of_each_alone(method, precision):
+    many = starts(kepler_start(0.3), 37)
+    arguments = {"method": method, "step": 0.05, "precision": precision, "samples": 3}
+    together = propagate(KEPLER, many, (0, 3), **arguments)
+    assert together.y.shape == (4, 4, 37)
+    assert together.energy_error.shape == (4, 37)
+    for orbit in (0, 5, 36):
+        alone = propagate(KEPLER, many[:, orbit], (0, 3), **arguments)
+        np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
+        np.testing.assert_array_equal(together.carried[:, :, orbit], alone.carried)
+        np.testing.assert_array_equal(together.energy_error[:, orbit], alone.energy_error)
+
+
+@pytest.mark.parametrize("method", [Splitting("kahan-li-6"), RK4(), Gauss(3), Taylor(), DOP853()], ids=str)
+def test_ensembles_of_every_method_and_of_transcendental_hamiltonians(method):
+    fixed = {"step": 0.05} if isinstance(method, Splitting | RK4 | Gauss) else {}
+    system, base = (
+        (DRIVEN, [1.0, 0.5]) if isinstance(method, Splitting) else (DOUBLE_PENDULUM, DOUBLE_PENDULUM_START)
+    )
+    many = starts(base, 3)
+    together = propagate(system, many, (0, 2), method=method, samples=4, **fixed)
+    for orbit in range(3):
+        alone = propagate(system, many[:, orbit], (0, 2), method=method, samples=4, **fixed)
+        np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
+
+
+def test_an_orbit_that_is_lost_is_named():
+    # The first half drift takes orbit 2 into the centre.
+    many = np.array([[1.0, 1.0, 1.0, 1.0], [0.0] * 4, [0.0, 0.0, -2.0, 0.0], [1.0, 1.0, 0.0, 1.0]])
+    with pytest.raises(NonFiniteStateError, match="of orbit 2") as caught:
+        propagate(KEPLER, many, (0, 4), method=Splitting("verlet"), step=1.0)
+    np.testing.assert_array_equal(caught.value.state, many[:, 2])
+    with pytest.raises(ValueError, match="y0 has shape"):
+        propagate(KEPLER, many[:3], (0, 4), method=RK4(), step=0.1)
+
+
+def test_progress_of_ensembles_reaches_one_and_interruptions_stop_every_thread():
+    many = starts(HENON_HEILES_START, 300)
+    seen = []
+    propagate(
+        HENON_HEILES, many, (0, 20), method=Splitting("verlet"), step=0.01, samples=5, progress=seen.append
+    )
+    assert seen[-1] == 1
+
+    def impatient(fraction):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        propagate(
+            HENON_HEILES, many, (0, 1e9), method=Splitting("verlet"), step=0.01, samples=2, progress=impatient
+        )
