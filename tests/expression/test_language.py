@@ -162,7 +162,7 @@ def test_conditions_and_equations():
         ("х", 1, "not a letter"),  # Cyrillic
         ("x\u200b", 2, "not part"),
         ("x\x00", 2, "not part"),
-        ("$\\ddot\\theta$", 1, "LaTeX"),
+        ("$\\ddot\\zeta$", 2, "not declared"),
         ("exec(x)", 1, "not a function"),
         ("Symbol(x)", 1, "not a function"),
         ("And(x, x)", 1, "not a function"),
