@@ -1,0 +1,95 @@
+"""The time limit holds, the worker is reused, an interrupt gets through."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import pytest
+import sympy as sp
+
+from canon.proof import vanishes
+from canon.proof.budget import prove_in_worker
+from canon.proof.domain import EVERYWHERE
+
+x, y, z, t, u, v = sp.symbols("x y z t u v", real=True)
+
+
+def heavy_and_true():
+    """An identity that only expansion of very many terms proves."""
+    s = 1 + x + y + z + t + u + v
+    return (s**9 + x) * (s**9 - x) - s**18 + x**2 + (s**20 + y) ** 2 - s**40 - 2 * y * s**20 - y**2
+
+
+@pytest.mark.parametrize("budget", [0.4, 1.5])
+def test_budget_is_kept(budget):
+    prove_in_worker([x - x], EVERYWHERE, 10.0)
+    start = time.monotonic()
+    verdict = vanishes(heavy_and_true(), budget=budget)
+    assert time.monotonic() - start < budget + 0.5
+    assert verdict.undecided
+    assert verdict.evidence
+
+
+def test_worker_proves_and_is_reused():
+    proved = prove_in_worker([sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1, x], EVERYWHERE, 10.0)
+    assert [attempt.holds for attempt in proved] == [True, False]
+    start = time.monotonic()
+    for _ in range(10):
+        prove_in_worker([sp.cos(2 * x) - 1 + 2 * sp.sin(x) ** 2], EVERYWHERE, 10.0)
+    assert time.monotonic() - start < 1.0
+
+
+def test_worker_comes_back_after_being_killed():
+    assert isinstance(prove_in_worker([heavy_and_true()], EVERYWHERE, 0.5), str | list)
+    assert prove_in_worker([sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1], EVERYWHERE, 20.0)[0].holds
+
+
+PROGRAM = """
+import sympy as sp
+from canon.proof.budget import prove_in_worker
+from canon.proof.domain import EVERYWHERE
+x = sp.Symbol("x", real=True)
+print(prove_in_worker([sp.sin(x)**2 + sp.cos(x)**2 - 1], EVERYWHERE, 30.0)[0].holds)
+"""
+
+
+def test_works_from_standard_input():
+    done = subprocess.run(
+        [sys.executable, "-"], input=PROGRAM, capture_output=True, text=True, timeout=60, env=_environment()
+    )
+    assert done.stdout.strip() == "True", done.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_interrupt_gets_through():
+    program = textwrap.dedent("""
+        import sympy as sp
+        from canon.proof.budget import prove_in_worker
+        from canon.proof.domain import EVERYWHERE
+        names = sp.symbols("x y z t u v", real=True)
+        s = 1 + sum(names)
+        print(prove_in_worker([sp.Symbol("x") - 1], EVERYWHERE, 30.0)[0].holds, flush=True)
+        prove_in_worker([(s**20 + names[0])**2 - s**40], EVERYWHERE, 60.0)
+    """)
+    running = subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=_environment(),
+    )
+    with running:
+        assert running.stdout.readline().strip() == "False"
+        time.sleep(0.3)
+        start = time.monotonic()
+        running.send_signal(signal.SIGINT)
+        _, errors = running.communicate(timeout=10)
+    assert time.monotonic() - start < 2.0
+    assert "KeyboardInterrupt" in errors
+
+
+def _environment():
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(entry or os.getcwd() for entry in sys.path)}

@@ -1,0 +1,133 @@
+"""Where rewriting goes wrong: cuts, poles, negative radicands, boundaries of pieces."""
+
+import pytest
+import sympy as sp
+from sympy import (
+    Abs,
+    Eq,
+    I,
+    LambertW,
+    Max,
+    Ne,
+    Piecewise,
+    Rational,
+    acos,
+    acosh,
+    acot,
+    asin,
+    atan,
+    atan2,
+    cos,
+    cosh,
+    exp,
+    log,
+    pi,
+    root,
+    sign,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
+
+from canon.proof import Domain, equal
+from canon.proof.verdict import Status
+
+x, y, z = sp.symbols("x y z", real=True)
+a, b = sp.symbols("a b", positive=True)
+w = sp.Symbol("w", complex=True)
+n = sp.Symbol("n", integer=True)
+nonzero = sp.Symbol("k", real=True, nonzero=True)
+
+HOLDS, FAILS = Status.HOLDS, Status.FAILS
+
+CLAIMS = [
+    # negative radicands
+    (sqrt(x**2), x, (), FAILS),
+    (sqrt(x**2), Abs(x), (), HOLDS),
+    (sqrt(x) * sqrt(y), sqrt(x * y), (), FAILS),
+    (sqrt(x) * sqrt(y), sqrt(x * y), (x > 0,), HOLDS),
+    (sqrt(1 / x), 1 / sqrt(x), (), FAILS),
+    (sqrt(1 / x), 1 / sqrt(x), (x > 0,), HOLDS),
+    (sqrt(x - 1) * sqrt(x + 1), sqrt(x**2 - 1), (), FAILS),
+    (sqrt(x - 1) * sqrt(x + 1), sqrt(x**2 - 1), (x > 1,), HOLDS),
+    (root(x**3, 3), x, (), FAILS),
+    (sqrt(w**2), w, (), FAILS),
+    (sqrt(w) ** 2, w, (), HOLDS),
+    (sqrt(-a), I * sqrt(a), (), HOLDS),
+    (sqrt(-a), -I * sqrt(a), (), FAILS),
+    (sqrt(5 + 2 * sqrt(6)), sqrt(2) + sqrt(3), (), HOLDS),
+    (sqrt(5 - 2 * sqrt(6)), sqrt(2) - sqrt(3), (), FAILS),
+    # logarithms and powers
+    (log(x * y), log(x) + log(y), (), FAILS),
+    (log(x * y), log(x) + log(y), (y > 0,), HOLDS),
+    (log(x**2), 2 * log(x), (), FAILS),
+    (log(x**2), 2 * log(Abs(x)), (), HOLDS),
+    (log(exp(I * x)), I * x, (), FAILS),
+    ((x**2) ** a, x ** (2 * a), (), FAILS),
+    ((a**2) ** x, a ** (2 * x), (), HOLDS),
+    (x**0 * 0**a, sp.Integer(0), (), HOLDS),
+    ((x * y) ** n, x**n * y**n, (Ne(x, 0), Ne(y, 0)), HOLDS),
+    (cos(pi * n) ** 2, sp.Integer(1), (), HOLDS),
+    (cos(pi * n), sp.Integer(1), (), FAILS),
+    # acot is discontinuous at 0, where its value is π/2
+    (acot(x), atan(1 / x), (), HOLDS),
+    (acot(x), pi / 2 - atan(x), (), FAILS),
+    (acot(x), pi / 2 - atan(x), (x >= 0,), HOLDS),
+    (acot(x) + acot(1 / x), pi / 2, (), FAILS),
+    # atan2 has its cut on the negative x axis and no value at the origin
+    (atan2(y, x), atan(y / x), (), FAILS),
+    (atan2(y, x), atan(y / x), (x > 0,), HOLDS),
+    (atan2(y, x) + atan2(-y, x), sp.Integer(0), (), FAILS),
+    (atan2(y, x) + atan2(-y, x), sp.Integer(0), (y > 0,), HOLDS),
+    (atan2(a * y, a * x), atan2(y, x), (), HOLDS),
+    # inverse functions beyond their principal range
+    (atan(tan(x)), x, (), FAILS),
+    (atan(tan(x)), x, (x > -pi / 2, x < pi / 2), HOLDS),
+    (asin(sin(x)), x, (x >= -pi / 2, x <= pi / 2), HOLDS),
+    (asin(sin(x)), x, (x >= -pi / 2, x <= 2), FAILS),
+    (acos(x) + asin(x), pi / 2, (), HOLDS),
+    (atan(x) + atan(y), atan((x + y) / (1 - x * y)), (), FAILS),
+    (atan(x) + atan(1 / x), pi / 2 * sign(x), (), HOLDS),
+    (2 * atan(tanh(x / 2)), atan(sinh(x)), (), HOLDS),
+    (acosh(cosh(x)), x, (), FAILS),
+    (acosh(cosh(x)), Abs(x), (), HOLDS),
+    (LambertW(x * exp(x)), x, (x >= -1,), HOLDS),
+    (LambertW(x * exp(x)), x, (), FAILS),
+    # pieces and kinks
+    (Piecewise((x, x > 0), (-x, True)), Abs(x), (), HOLDS),
+    (Piecewise((1, x > 0), (0, True)), (1 + sign(x)) / 2, (), FAILS),
+    (Piecewise((1, Eq(x, 0)), (0, True)), sp.Integer(0), (), FAILS),
+    (Max(x, y), (x + y + Abs(x - y)) / 2, (), HOLDS),
+    (Max(x, y), (x + y - Abs(x - y)) / 2, (), FAILS),
+    (sign(x) ** 2, sp.Integer(1), (), FAILS),
+    (sign(nonzero) ** 2, sp.Integer(1), (), HOLDS),
+    (Abs(x) / x, sign(x), (), HOLDS),
+    # differences that rounding hides
+    (sqrt(10**10 + 1) + sqrt(10**10 - 1), 2 * sqrt(sp.Integer(10) ** 10), (), FAILS),
+    (sin(x) ** 2 + cos(x) ** 2, 1 + Rational(1, 10**40), (), FAILS),
+    (exp(pi * sqrt(163)), sp.Integer(262537412640768744), (), FAILS),
+    (x / 10**30, sp.Integer(0), (), FAILS),
+]
+
+
+@pytest.mark.parametrize(("left", "right", "conditions", "status"), CLAIMS, ids=str)
+def test_edge(left, right, conditions, status):
+    assert equal(left, right, Domain(conditions=conditions)).status is status
+
+
+def test_a_claim_defined_nowhere_is_not_refuted():
+    assert equal(1 / (sin(x) ** 2 + cos(x) ** 2 - 1), x).status is not FAILS
+
+
+def test_box_is_a_hint_only():
+    box = {x: (Rational(1, 10), Rational(1))}
+    assert equal(Abs(x), x, Domain(box=box)).status is FAILS
+    assert equal(Abs(x - 50), 50 - x, Domain(box=box)).status is FAILS
+
+
+def test_equalities_restrict_the_claim():
+    on_plane = Domain(conditions=(Eq(x + 2 * y + z, 0),))
+    assert equal((x + z) ** 2, 4 * y**2, on_plane).holds
+    assert equal((x + z) ** 2, y**2, on_plane).fails

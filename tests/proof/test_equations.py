@@ -1,0 +1,63 @@
+"""Systems of equations: the same solutions or not."""
+
+import pytest
+import sympy as sp
+from sympy import Function, cos, sin
+
+from canon.proof import equivalent_equations
+from canon.proof.verdict import Status
+
+m1, m2, l, g = sp.symbols("m1 m2 l g", positive=True)
+phi, v, x_acc, phi_acc = sp.symbols("phi v x_acc phi_acc", real=True)
+
+PENDULUM = [
+    (m1 + m2) * x_acc + m2 * l * (phi_acc * cos(phi) - v**2 * sin(phi)),
+    m2 * l * (l * phi_acc + x_acc * cos(phi) + g * sin(phi)),
+]
+
+
+def test_invertible_recombination_is_equivalent():
+    divided = [PENDULUM[0] - cos(phi) * PENDULUM[1] / l, PENDULUM[1] / (m2 * l)]
+    assert equivalent_equations(PENDULUM, divided, [x_acc, phi_acc]).status is Status.HOLDS
+
+
+def test_solved_form_is_equivalent():
+    solved = sp.solve(PENDULUM, [x_acc, phi_acc], dict=True)[0]
+    explicit = [u - solved[u] for u in (x_acc, phi_acc)]
+    assert equivalent_equations(PENDULUM, explicit, [x_acc, phi_acc]).holds
+
+
+def test_wrong_sign_names_the_equation():
+    wrong = [PENDULUM[0], PENDULUM[1].xreplace({g: -g})]
+    verdict = equivalent_equations(PENDULUM, wrong, [x_acc, phi_acc])
+    assert verdict.fails
+    assert verdict.counterexample is not None
+    assert "equation 2 of the second system" in verdict.feedback
+
+
+def test_missing_equation_is_reported():
+    verdict = equivalent_equations(PENDULUM, PENDULUM[:1], [x_acc, phi_acc])
+    assert verdict.fails
+    assert "equation 2 of the first system does not follow from the second" in verdict.feedback
+
+
+def test_redundant_equations_do_no_harm():
+    redundant = [*PENDULUM, PENDULUM[0] + 3 * PENDULUM[1]]
+    assert equivalent_equations(redundant, PENDULUM, [x_acc, phi_acc]).holds
+
+
+def test_dependent_combination_is_not_equivalent():
+    dependent = [PENDULUM[0], 2 * PENDULUM[0]]
+    assert equivalent_equations(PENDULUM, dependent, [x_acc, phi_acc]).fails
+
+
+def test_arbitrary_functions_in_the_coefficients():
+    V = Function("V")
+    force = [m1 * x_acc + V(phi).diff(phi)]
+    assert equivalent_equations(force, [x_acc + V(phi).diff(phi) / m1], [x_acc]).holds
+    assert equivalent_equations(force, [x_acc - V(phi).diff(phi) / m1], [x_acc]).fails
+
+
+def test_unknowns_must_enter_affinely():
+    with pytest.raises(ValueError, match="not affine"):
+        equivalent_equations([x_acc**2 - 1], [x_acc - 1], [x_acc])
