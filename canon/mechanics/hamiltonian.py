@@ -45,7 +45,7 @@ class Hamiltonian:
     >>> m, k = parameters("m k", positive=True)
     >>> oscillator = Hamiltonian(x.momentum**2/(2*m) + k*x**2/2, [x], [x.momentum])
     >>> oscillator.q_dot, oscillator.p_dot
-    ((p_x/m,), (-x*k,))
+    ((p_x/m,), (-k*x,))
     """
 
     H: Expr
@@ -195,7 +195,7 @@ def legendre(
     >>> (r, phi) = coordinates("r phi")
     >>> (m,) = parameters("m", positive=True)
     >>> legendre(Lagrangian(m*(r.dot**2 + r**2*phi.dot**2)/2, [r, phi])).H
-    p_r**2/(2*m) + p_phi**2/(2*r**2*m)
+    p_phi**2/(2*m*r**2) + p_r**2/(2*m)
     """
     if any(Q != 0 for Q in lagrangian.forces):
         raise LegendreError(

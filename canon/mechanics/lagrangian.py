@@ -59,7 +59,7 @@ class Lagrangian:
     >>> m, l, g = parameters("m l g", positive=True)
     >>> pendulum = Lagrangian(m*l**2*theta.dot**2/2 + m*g*l*cos(theta), [theta])
     >>> pendulum.equations
-    (theta_ddot*l**2*m + g*l*m*sin(theta),)
+    (g*l*m*sin(theta) + l**2*m*theta_ddot,)
     >>> pendulum.accelerations
     (-g*sin(theta)/l,)
     """

@@ -1,0 +1,184 @@
+"""Constraints and their multipliers: d/dt ∂L/∂q̇ − ∂L/∂q = Q + Σ λₐ aₐ.
+
+For f(q, t) = 0 the direction is a = ∂f/∂q, for g(q, q̇, t) = 0 affine in the velocities it is a = ∂g/∂q̇: the
+reactions of ideal constraints do no work in virtual displacements (d'Alembert, not vakonomic). With the
+constraints differentiated to A q̈ + b = 0, the multipliers follow from (A M⁻¹ Aᵀ) λ = A M⁻¹ bias − b.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.expression.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.linear import SingularMatrixError, solve
+from canon.mechanics.substitution import as_tuple, entry, exchanged
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.mechanics.lagrangian import Lagrangian
+
+__all__ = ["ConstrainedLagrangian", "generalized_forces"]
+
+
+@dataclass(frozen=True)
+class ConstrainedLagrangian:
+    """A Lagrangian with ideal constraints.
+
+    Parameters
+    ----------
+    lagrangian
+        L and the given forces, in coordinates that need not be independent.
+    holonomic
+        Expressions f(q, t), each = 0.
+    nonholonomic
+        Expressions g(q, q̇, t), each = 0 and affine in the velocities.
+
+    Raises
+    ------
+    ValueError
+        Where a holonomic constraint holds velocities, or another is not affine in them.
+
+    Examples
+    --------
+    A pendulum in Cartesian coordinates, y downwards:
+
+    >>> from canon import Lagrangian, coordinates, parameters
+    >>> x, y = coordinates("x y")
+    >>> m, l, g = parameters("m l g", positive=True)
+    >>> L = Lagrangian(m*(x.dot**2 + y.dot**2)/2 + m*g*y, [x, y])
+    >>> pendulum = ConstrainedLagrangian(L, holonomic=[x**2 + y**2 - l**2])
+    >>> pendulum.multipliers[0].factor()
+    -m*(g*y + x_dot**2 + y_dot**2)/(2*(x**2 + y**2))
+    """
+
+    lagrangian: Lagrangian
+    holonomic: tuple[Expr, ...]
+    nonholonomic: tuple[Expr, ...]
+
+    def __init__(
+        self,
+        lagrangian: Lagrangian,
+        holonomic: Sequence[Expr] = (),
+        nonholonomic: Sequence[Expr] = (),
+    ) -> None:
+        object.__setattr__(self, "lagrangian", lagrangian)
+        object.__setattr__(self, "holonomic", as_tuple(holonomic))
+        object.__setattr__(self, "nonholonomic", as_tuple(nonholonomic))
+        v = [velocity(s) for s in lagrangian.q]
+        for f in self.holonomic:
+            if f.has(*v):
+                raise ValueError(f"{f} = 0 holds velocities; give it as a nonholonomic constraint")
+        for g in self.nonholonomic:
+            if any(g.diff(a).has(*v) for a in v):
+                raise ValueError(
+                    f"{g} = 0 is not affine in the velocities, so d'Alembert's principle does not cover it"
+                )
+
+    @cached_property
+    def directions(self) -> sp.ImmutableDenseMatrix:
+        """The matrix A of shape (constraints, n): rows ∂f/∂q and ∂g/∂q̇."""
+        q = self.lagrangian.q
+        rows = [[f.diff(s) for s in q] for f in self.holonomic]
+        rows += [[g.diff(velocity(s)) for s in q] for g in self.nonholonomic]
+        return sp.ImmutableDenseMatrix(rows)
+
+    @cached_property
+    def differentiated(self) -> tuple[Expr, ...]:
+        """The constraints as equations in the accelerations, each = 0: d²f/dt² and dg/dt."""
+        q, t = self.lagrangian.q, self.lagrangian.t
+        twice = [time_derivative(time_derivative(f, q, t), q, t) for f in self.holonomic]
+        return (*twice, *(time_derivative(g, q, t) for g in self.nonholonomic))
+
+    @cached_property
+    def multipliers(self) -> tuple[Expr, ...]:
+        """The multipliers λ(q, q̇, t) on the motion.
+
+        Raises
+        ------
+        SingularMatrixError
+            Where the constraints depend on one another, or M is singular.
+        """
+        return self._solved[1]
+
+    @cached_property
+    def accelerations(self) -> tuple[Expr, ...]:
+        """The accelerations q̈(q, q̇, t) on the motion."""
+        return self._solved[0]
+
+    @cached_property
+    def reactions(self) -> tuple[Expr, ...]:
+        """The generalized forces of constraint Σ λₐ aₐ, one a coordinate."""
+        A = self.directions
+        return tuple(
+            sp.Add(*(entry(A, a, i) * factor for a, factor in enumerate(self.multipliers)))
+            for i in range(A.cols)
+        )
+
+    def equations(self, multipliers: Sequence[Symbol]) -> tuple[Expr, ...]:
+        """Return Lagrange's equations with these symbols as multipliers, then the constraints, each = 0."""
+        A = self.directions
+        if len(multipliers) != A.rows:
+            raise ValueError(f"{len(multipliers)} multipliers for {A.rows} constraints; each needs one")
+        with_reactions = (
+            sp.Add(equation, *(-entry(A, a, i) * factor for a, factor in enumerate(multipliers)))
+            for i, equation in enumerate(self.lagrangian.equations)
+        )
+        return (*with_reactions, *self.holonomic, *self.nonholonomic)
+
+    @cached_property
+    def _solved(self) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
+        """The accelerations and multipliers from ((M, −Aᵀ), (A, 0)) (q̈, λ) = (−bias, −b)."""
+        L, A = self.lagrangian, self.directions
+        still = {acceleration(s): sp.S.Zero for s in L.q}
+        n, k = len(L.q), A.rows
+        upper = sp.Matrix(L.mass_matrix).row_join(-A.T)
+        lower = sp.Matrix(A).row_join(sp.zeros(k, k))
+        right = sp.Matrix([*(-b for b in L.bias), *(-exchanged(c, still) for c in self.differentiated)])
+        try:
+            column = solve(upper.col_join(lower), right, name="the matrix of masses and constraints")
+        except SingularMatrixError as singular:
+            raise SingularMatrixError(
+                f"{singular}; the constraints depend on one another, or L does not determine the motion along it",
+                singular.null_direction,
+            ) from singular
+        values = [entry(column, i, 0) for i in range(n + k)]
+        return tuple(values[:n]), tuple(values[n:])
+
+
+def generalized_forces(
+    forces: Sequence[Sequence[Expr]], positions: Sequence[Sequence[Expr]], q: Sequence[Symbol]
+) -> tuple[Expr, ...]:
+    """Return Q = Σ F·∂r/∂q, the work of forces in virtual displacements.
+
+    Parameters
+    ----------
+    forces
+        Force vectors, one a point.
+    positions
+        The positions r(q, t) at which they act, as vectors of the same length.
+    q
+        The generalized coordinates.
+
+    Examples
+    --------
+    >>> from sympy import cos, sin, symbols
+    >>> theta, l, F = symbols("theta l F")
+    >>> generalized_forces([(F, 0)], [(l*sin(theta), -l*cos(theta))], [theta])
+    (F*l*cos(theta),)
+    """
+    return tuple(
+        sp.Add(
+            *(
+                component * place.diff(s)
+                for force, position in zip(forces, positions, strict=True)
+                for component, place in zip(force, position, strict=True)
+            )
+        )
+        for s in q
+    )
