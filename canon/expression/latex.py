@@ -115,8 +115,9 @@ def parse_latex(text: str, scope: Scope) -> Node:
     >>> from canon.expression.language import Scope, parse_equation
     >>> (theta,), (g, l) = coordinates("theta"), parameters("g l")
     >>> scope = Scope({"theta": theta, "g": g, "l": l})
-    >>> parse_equation(r"$\ddot\theta + \frac{g}{l}\sin\theta = 0$", scope)
-    theta_ddot + g*sin(theta)/l
+    >>> formula = parse_equation(r"$\ddot\theta + \frac{g}{l}\sin\theta = 0$", scope)
+    >>> formula == parse_equation("theta_ddot + g/l*sin(theta)", scope)
+    True
     >>> parse_equation(r"$\sin\theta\dot\theta = 0$", scope)
     Traceback (most recent call last):
         ...
