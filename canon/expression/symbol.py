@@ -33,7 +33,19 @@ time = Symbol("t", real=True)
 """The time of every system that does not name its own."""
 
 
-class Coordinate(Symbol):
+class Variable(Symbol):
+    """What moves: a symbol that SymPy writes after constants, as in ``l**2*m*theta_ddot``."""
+
+    __slots__ = ()
+
+    @classmethod
+    def class_key(cls) -> tuple[int, int, str]:
+        """Return SymPy's sorting key of the class, one after that of ``Symbol``."""
+        kind, subkind, name = Symbol.class_key()
+        return kind, subkind, f"{name}, variable"
+
+
+class Coordinate(Variable):
     """A generalized coordinate: a real symbol with ``.dot``, ``.ddot`` and ``.momentum``."""
 
     __slots__ = ()
@@ -54,7 +66,7 @@ class Coordinate(Symbol):
         return momentum(self)
 
 
-class Rate(Symbol):
+class Rate(Variable):
     """A first or second rate of a coordinate; prints as q̇ or q̈."""
 
     __slots__ = ()
@@ -67,7 +79,7 @@ class Rate(Symbol):
         return printer.doprint(Symbol(self.name))
 
 
-class Momentum(Symbol):
+class Momentum(Variable):
     """A canonical momentum."""
 
     __slots__ = ()
