@@ -13,7 +13,7 @@ import sympy as sp
 from flint import arb, fmpq
 from sympy.core.function import AppliedUndef, Derivative, Subs
 
-from canon.proof import angles, arcs, powers
+from canon.proof import angles, arcs, elliptic, powers
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import declared_complex
 from canon.proof.signs import Signs
@@ -64,6 +64,8 @@ class NormalForm:
         self.arguments: dict[Hashable, Fraction] = {}
         self.atoms: dict[Hashable, Fraction] = {}
         self.ranges: dict[Hashable, tuple[Expr, Expr, bool]] = {}
+        self.moduli: list[tuple[Fraction, tuple[Fraction, Fraction]]] = []
+        self.integrals: dict[Hashable, tuple[Fraction, Fraction]] = {}
         self.known_roots: dict[Hashable, Fraction] = {}
         self._numbers: dict[Hashable, int] = parts.setdefault("numbers", {})
         self._meaning: dict[int, Callable[[], Expr]] = {}
@@ -182,7 +184,9 @@ class NormalForm:
                 return powers.exponential(self, t.number(1))
             case _ if expr is sp.GoldenRatio:
                 return self.form((1 + sp.sqrt(5)) / 2)
-        elementary = angles.elementary(self, expr) or arcs.elementary(self, expr)
+        elementary = (
+            angles.elementary(self, expr) or arcs.elementary(self, expr) or elliptic.elementary(self, expr)
+        )
         return self._opaque(expr) if elementary is None else elementary
 
     def _power(self, expr: sp.Pow) -> Fraction:

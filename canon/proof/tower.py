@@ -88,6 +88,7 @@ class Tower:
         self.generators: list[Any] = []
         self._index: dict[Hashable, int] = {}
         self._relations: dict[int, tuple[int, fmpq_mpoly]] = {}
+        self._zeros: list[fmpq_mpoly] = []
         self._bases: list[fmpq_mpoly] = []
         self._base_index: dict[Hashable, int] = {}
         self._capacity = capacity
@@ -354,8 +355,17 @@ class Tower:
         return self._cancelled(self.polynomial_power(f.num, n), {i: e * n for i, e in f.den})
 
     def is_zero(self, f: Fraction) -> bool:
-        """Tell whether the numerator reduces to zero."""
-        return self.reduce(f.num).is_zero()
+        """Tell whether the numerator reduces to zero, or to a multiple of what is known to be zero."""
+        num = self.reduce(f.num)
+        for zero in self._zeros:
+            if not num.is_zero():
+                num = divmod(num, zero)[1]
+        return num.is_zero()
+
+    def learn_zero(self, p: fmpq_mpoly) -> None:
+        """Record a polynomial that vanishes identically though it does not reduce to zero."""
+        if not p.is_zero():
+            self._zeros.append(p)
 
     def canonical(self, f: Fraction) -> Fraction:
         """Return ``f`` with the common factors of numerator and denominator cancelled."""

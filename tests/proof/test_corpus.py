@@ -3,20 +3,32 @@
 import sys
 from pathlib import Path
 
+import pytest
+
 from canon.proof import Domain, equal
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 from tests.data.identities.load import identities  # noqa: E402
 
-KNOWN_GAPS_ALLOWED = 0.03
+UNPROVED_AT_MOST = 0.02
 """Share of true identities that may stay undecided."""
 
 
-def test_corpus():
-    wrong, unproved, unrefuted, true = [], [], [], 0
-    for identity in identities():
+def verdicts(chosen):
+    for identity in chosen:
         domain = Domain(conditions=identity.conditions, box=identity.box)
-        verdict = equal(identity.lhs, identity.rhs, domain, budget=5.0)
+        yield identity, equal(identity.lhs, identity.rhs, domain, budget=5.0)
+
+
+def test_no_verdict_is_wrong_on_every_fifth_identity():
+    for identity, verdict in verdicts(identities()[::5]):
+        assert verdict.undecided or verdict.holds == identity.truth, identity.id
+
+
+@pytest.mark.slow
+def test_whole_corpus():
+    wrong, unproved, unrefuted, true = [], [], [], 0
+    for identity, verdict in verdicts(identities()):
         true += identity.truth
         if verdict.undecided:
             (unproved if identity.truth else unrefuted).append(identity.id)
@@ -24,4 +36,4 @@ def test_corpus():
             wrong.append(identity.id)
     assert wrong == []
     assert unrefuted == []
-    assert len(unproved) <= KNOWN_GAPS_ALLOWED * true, unproved
+    assert len(unproved) <= UNPROVED_AT_MOST * true, unproved
