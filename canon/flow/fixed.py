@@ -74,7 +74,10 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
             f"{method} keeps its order only for kinetic energies quadratic in p with constant coefficients; "
             "use Splitting('blanes-moan-6') or Splitting('kahan-li-8')"
         )
-    return _kept_splitting(system, len(method.scheme.b), number, compensated=precision.compensated)
+    kick_first = method.scheme.kick_first and system.autonomous
+    return _kept_splitting(
+        system, len(method.scheme.b), number, compensated=precision.compensated, kick_first=kick_first
+    )
 
 
 def _with_lanes(number: MachineType, system: Equations) -> MachineType:
@@ -87,8 +90,10 @@ def _with_lanes(number: MachineType, system: Equations) -> MachineType:
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_splitting(system: Equations, stages: int, number: MachineType, *, compensated: bool) -> Loop:
-    return splitting_loop(system, stages, number=number, compensated=compensated)
+def _kept_splitting(
+    system: Equations, stages: int, number: MachineType, *, compensated: bool, kick_first: bool
+) -> Loop:
+    return splitting_loop(system, stages, number=number, compensated=compensated, kick_first=kick_first)
 
 
 @functools.lru_cache(maxsize=_KEPT)

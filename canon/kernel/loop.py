@@ -67,44 +67,70 @@ class Loop:
 
 
 def splitting_loop(
-    system: Equations, stages: int, *, compensated: bool, number: MachineType = DOUBLE
+    system: Equations,
+    stages: int,
+    *,
+    compensated: bool,
+    number: MachineType = DOUBLE,
+    kick_first: bool = False,
 ) -> Loop:
     """Compile drift–kick–…–drift steps for H = T(p, t) + V(q, t).
 
     The coefficients are h·a₁, h·b₁, …, h·a_s, h·b_s, h·a_{s+1}. Two clocks make time-dependent parts exact
     splittings of the extended phase space: a kick reads the clock that drifts advance, and the other way
     round.
+
+    Parameters
+    ----------
+    system, stages
+        The equations, and the number s of kicks.
+    compensated, number
+        The arithmetic.
+    kick_first
+        Whether a₁ = a_{s+1} = 0 and t is absent from H: a step's first kick then uses the force of the last one.
     """
     n = len(system.q)
     w = Writer(number)
     y, e = w.array(2 * n), w.array(2 * n) if compensated else ""
-    rate = w.array(n)
+    velocity, force = w.array(n), w.array(n)
     drift_clock, kick_clock = w.array(1), w.array(1)
 
-    def substep(
-        nodes: Sequence[int], reads: int, moves: int, coefficient: str, read_clock: str, own_clock: str
-    ) -> None:
+    def evaluate(nodes: Sequence[int], reads: int, clock: str, rate: str) -> None:
         arguments = ["poison"] * (2 * n + 1)
         for i in range(n):
             arguments[reads + i] = w.load(y, reads + i)
-        arguments[2 * n] = w.load(read_clock, 0)
+        arguments[2 * n] = w.load(clock, 0)
         for i, value in enumerate(w.program(system.program(nodes), arguments)):
             w.store(value, rate, i)
-        with w.loop(0, n) as i:
-            increase(w, y, e, w.let(f"add i64 {i}, {moves}"), coefficient, w.load(rate, i))
-        if not system.autonomous:
-            w.store(w.algebra("add", w.load(own_clock, 0), coefficient), own_clock, 0)
 
-    with blocks_of(w, y, e, 2 * n, 2 * n), steps_of(w, system) as time:
-        w.store(time, drift_clock, 0)
-        w.store(time, kick_clock, 0)
-        with w.loop(0, stages) as s:
-            pair = w.let(f"shl i64 {s}, 1")
-            drift = w.load("%c", w.let(f"add i64 {pair}, {METHOD}"))
-            substep(system.velocity, n, 0, drift, kick_clock, drift_clock)
-            kick = w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}"))
-            substep(system.force, 0, n, kick, drift_clock, kick_clock)
-        substep(system.velocity, n, 0, w.load("%c", METHOD + 2 * stages), kick_clock, drift_clock)
+    def move(first: int, coefficient: str, rate: str, clock: str) -> None:
+        with w.loop(0, n) as i:
+            increase(w, y, e, w.let(f"add i64 {i}, {first}"), coefficient, w.load(rate, i))
+        if not system.autonomous:
+            w.store(w.algebra("add", w.load(clock, 0), coefficient), clock, 0)
+
+    def drift(coefficient: str) -> None:
+        evaluate(system.velocity, n, kick_clock, velocity)
+        move(0, coefficient, velocity, drift_clock)
+
+    def kick(coefficient: str) -> None:
+        evaluate(system.force, 0, drift_clock, force)
+        move(n, coefficient, force, kick_clock)
+
+    with blocks_of(w, y, e, 2 * n, 2 * n):
+        if kick_first:
+            evaluate(system.force, 0, drift_clock, force)
+        with steps_of(w, system) as time:
+            w.store(time, drift_clock, 0)
+            w.store(time, kick_clock, 0)
+            if kick_first:
+                move(n, w.load("%c", METHOD + 1), force, kick_clock)
+            with w.loop(int(kick_first), stages) as s:
+                pair = w.let(f"shl i64 {s}, 1")
+                drift(w.load("%c", w.let(f"add i64 {pair}, {METHOD}")))
+                kick(w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}")))
+            if not kick_first:
+                drift(w.load("%c", METHOD + 2 * stages))
     return finished(w, n, compensated=compensated)
 
 

@@ -47,7 +47,12 @@ class Scheme:
     @property
     def stages(self) -> int:
         """Force evaluations in a step; where it ends with a kick, its last is the next step's first."""
-        return len(self.b) if self.a[0] else len(self.b) - 1
+        return len(self.b) - int(self.kick_first)
+
+    @property
+    def kick_first(self) -> bool:
+        """Whether steps start and end with a kick: the last force serves the next step's first kick too."""
+        return len(self.b) > 1 and self.a[0] == self.a[-1] == 0
 
 
 def _palindrome(

@@ -282,3 +282,17 @@ def test_a_polynomial_that_splits_only_when_multiplied_out_is_split():
     made = equations(mixed, (x, y), (px, py), sp.Symbol("t"), {})
     assert made.separable
     assert made.quadratic_kinetic
+
+
+def test_a_step_that_ends_with_a_kick_shares_its_force_with_the_next():
+    velocity_verlet = Splitting(a=[0, 1, 0], b=["1/2", "1/2"])
+    assert velocity_verlet.stages == 1
+    found = propagate(HENON_HEILES, HENON_HEILES_START, (0, 1), method=velocity_verlet, step=0.25, samples=1)
+    assert found.evaluations == 4
+    with mpmath.workdps(60):
+        state = [mpmath.mpf(x) for x in HENON_HEILES_START]
+        for _ in range(4):
+            state = exact_step(HENON_HEILES, velocity_verlet.scheme, state, mpmath.mpf(0.25))
+        assert max(abs(mpmath.mpf(a) - b) for a, b in zip(found.final, state, strict=True)) < 1e-15
+    # In a driven system nothing is shared, and the method still reverses.
+    assert there_and_back(DRIVEN, DRIVEN_START, velocity_verlet, 3, 0.01) < 1e-12
