@@ -37,6 +37,9 @@ HIGHEST_PRECISION = 3200
 """Bits after which a point that has not decided is left."""
 
 
+SCREEN_BITS = 128
+"""Precision at which many expressions are screened together."""
+
 LARGEST_GAP = 200
 """Size of an argument whose zeros are looked for."""
 
@@ -115,7 +118,7 @@ def first_counterexample(
     for number, point in enumerate(domain.points(found.symbols, points)):
         if found.has(AppliedUndef):
             shown, result.functions = with_example_functions(exprs, random.Random(number))
-        with precision(128):
+        with precision(SCREEN_BITS):
             memo: dict[sp.Basic, acb] = {}
             for place, expr in enumerate(shown):
                 if time.monotonic() > deadline:
@@ -127,6 +130,7 @@ def first_counterexample(
                 if not ball.contains(0):
                     _record(ball, acb(0), point, result)
                     return result, place
+        result.agreements += 1
     return result, None
 
 

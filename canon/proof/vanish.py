@@ -134,7 +134,8 @@ def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget
         elif undecided is None:
             undecided = _at_entry(verdict, places[entry], "was not decided", start)
     if undecided is not None:
-        return undecided
+        screened = Evidence("screen", f"no entry was refuted at {search.agreements} random points")
+        return replace(undecided, evidence=(screened, *undecided.evidence))
     return Verdict(Status.HOLDS, certificate=" + ".join(rungs) or "exact", seconds=time.monotonic() - start)
 
 

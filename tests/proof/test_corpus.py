@@ -8,7 +8,7 @@ import pytest
 from canon.proof import Domain, equal
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from tests.data.identities.load import identities  # noqa: E402
+from tests.data.identities.load import identities
 
 UNPROVED_AT_MOST = 0.02
 """Share of true identities that may stay undecided."""
