@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     from canon.flow.trajectory import Trajectory
     from canon.study.comparison import DriftRow, DriftStudy
     from canon.study.drift import Drift
+    from canon.study.precision import WorkPrecision, WorkRow
 
     Array = NDArray[np.float64]
 
-__all__ = ["PlotError", "plot_block_means", "plot_energy_error", "plot_phase_portrait"]
+__all__ = ["PlotError", "plot_block_means", "plot_energy_error", "plot_phase_portrait", "plot_work_precision"]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Distinct for every kind of colour vision: Okabe & Ito, https://jfly.uni-koeln.de/color/."""
@@ -168,6 +169,75 @@ def plot_phase_portrait(
     axes.set_ylabel("momentum" if degree == 0 else f"momentum {degree + 1}")
     _tidy(axes)
     return axes
+
+
+def plot_work_precision(
+    found: WorkPrecision, ax: Axes | None = None, *, cost: str = "cpu", error: str = "position"
+) -> Axes:
+    """Draw the error of each run against its cost, both logarithmic, one line a method; rings mark resonant steps.
+
+    Parameters
+    ----------
+    found
+        What :func:`canon.study.precision.work_precision` returned.
+    ax
+        Where to draw; a new figure if left out.
+    cost
+        ``"cpu"`` for processor time or ``"evaluations"`` for evaluations of the force.
+    error
+        ``"position"`` at the end, or the largest in ``"energy"``.
+
+    Raises
+    ------
+    PlotError
+        Where matplotlib is not installed.
+    ValueError
+        Where there is no such cost or error.
+    """
+    if cost not in ("cpu", "evaluations") or error not in ("position", "energy"):
+        raise ValueError(f"cost={cost!r}, error={error!r}: there are cpu, evaluations; position, energy")
+    axes = _axes(ax)
+    names = list(dict.fromkeys(_family(row) for row in found.rows))
+    for index, name in enumerate(names):
+        rows = [row for row in found.rows if _family(row) == name and not row.failure]
+        x = np.array(
+            [row.cpu_seconds if cost == "cpu" else row.evaluations for row in rows], dtype=np.float64
+        )
+        y = np.array([row.position_error if error == "position" else row.energy_error for row in rows])
+        drawn = (x > 0.0) & (y > 0.0)
+        if not drawn.any():
+            continue
+        colour = COLOURS[index % len(COLOURS)]
+        axes.plot(
+            x[drawn],
+            y[drawn],
+            color=colour,
+            linestyle=LINES[index % len(LINES)],
+            marker="osD^vPX"[index % 7],
+            markersize=4,
+            linewidth=1.5,
+            label=name,
+        )
+        resonant = drawn & np.array([row.resonant for row in rows])
+        axes.plot(x[resonant], y[resonant], "o", markersize=10, markerfacecolor="none", color=colour)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("processor time (s)" if cost == "cpu" else "evaluations of the force")
+    axes.set_ylabel(
+        "relative error of the final position"
+        if error == "position"
+        else "largest relative energy error |ΔE/E|"
+    )
+    axes.set_title(found.title, loc="left", fontsize="medium")
+    if axes.lines:
+        axes.legend(frameon=False, fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
+    _tidy(axes)
+    return axes
+
+
+def _family(row: WorkRow) -> str:
+    """Return the name of a method whatever its tolerance."""
+    return str(row.method).split("(")[0] if row.tolerance is not None else str(row.method)
 
 
 def _axes(ax: Axes | None) -> Axes:

@@ -1,0 +1,141 @@
+"""Cost against precision: errors against closed forms, orders from the rows, costs that add up."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from canon import DOP853, RK4, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon.plot import plot_work_precision
+from canon.scene import find
+from canon.study.comparison import StudyError
+from canon.study.precision import WorkRow, _marked, work_precision
+
+
+@pytest.fixture(scope="module")
+def galaxy():
+    methods = [Splitting("verlet"), Splitting("kahan-li-8"), RK4(), Taylor(), Splitting("blanes-moan-4")]
+    return work_precision(
+        find("henon-heiles"),
+        None,
+        20.0,
+        methods,
+        steps=(0.2, 0.1, 0.05),
+        tolerances=[1e-6, 1e-12],
+        repetitions=2,
+    )
+
+
+def rows_of(found, name):
+    return [row for row in found.rows if str(row.method).startswith(name)]
+
+
+@pytest.mark.parametrize(
+    ("name", "order"), [("verlet", 2), ("blanes-moan-4", 4), ("RK4", 4), ("kahan-li-8", 8)]
+)
+def test_the_final_position_converges_with_the_order(galaxy, name, order):
+    _, row, finer = rows_of(galaxy, name)
+    measured = math.log2(row.position_error / finer.position_error) / math.log2(row.step / finer.step)
+    assert measured == pytest.approx(order, abs=0.35 if order < 8 else 1.0)
+
+
+def test_the_position_error_is_the_distance_from_the_closed_form():
+    """x = cos(√(k/m) t) at the end of the run; the reference itself is far better."""
+    scene = find("harmonic-oscillator")
+    k, m = scene.values["k"], scene.values["m"]
+    span, step = 7.3, 0.0073
+    found = work_precision(scene, None, span, [Splitting("verlet")], steps=[step], repetitions=1).rows[0]
+    motion = propagate(
+        scene.hamiltonian,
+        scene.state(),
+        (0.0, span),
+        method=Splitting("verlet"),
+        step=step,
+        parameters=scene.values,
+    )
+    exact = 0.1 * math.cos(math.sqrt(k / m) * span)
+    assert found.position_error == pytest.approx(abs(motion.q[0, -1] - exact) / abs(exact), rel=1e-6)
+
+
+def test_rows_tell_what_they_cost(galaxy):
+    for name, stages in (("verlet", 1), ("kahan-li-8", 17), ("RK4", 4)):
+        for row in rows_of(galaxy, name):
+            assert row.evaluations == stages * round(20.0 / row.step)
+            assert row.cpu_seconds > 0.0
+            assert row.tolerance is None
+    coarse, fine = rows_of(galaxy, "Taylor")
+    assert (coarse.tolerance, fine.tolerance) == (1e-6, 1e-12)
+    assert fine.position_error < 1e-4 * coarse.position_error
+
+
+def test_time_is_that_of_the_steps_and_not_of_samples():
+    """A hundred thousand steps of Verlet take milliseconds; a thousand samples of them would take as long again."""
+    found = work_precision(find("henon-heiles"), None, 1000.0, [Splitting("verlet")], steps=[0.01]).rows[0]
+    whole = propagate(
+        find("henon-heiles").hamiltonian,
+        find("henon-heiles").state(),
+        (0.0, 1000.0),
+        method=Splitting("verlet"),
+        step=0.01,
+        samples=1000,
+    )
+    assert found.cpu_seconds < whole.cpu_seconds
+
+
+def test_a_run_that_fails_is_a_row_with_the_reason():
+    found = work_precision(
+        find("double-pendulum"), None, 3.0, [Splitting("verlet"), RK4()], steps=[0.01], repetitions=1
+    )
+    verlet, runge_kutta = found.rows
+    assert "does not split" in verlet.failure
+    assert math.isnan(verlet.position_error)
+    assert runge_kutta.position_error < 1e-3
+
+
+def test_requests_that_make_no_sense():
+    scene = find("henon-heiles")
+    with pytest.raises(StudyError, match="RK4 takes fixed steps: give steps"):
+        work_precision(scene, None, 10.0, [RK4()], tolerances=[1e-6])
+    with pytest.raises(StudyError, match="give tolerances"):
+        work_precision(scene, None, 10.0, [DOP853()], steps=[0.1])
+    with pytest.raises(StudyError, match="at least once"):
+        work_precision(scene, None, 10.0, [RK4()], steps=[0.1], repetitions=0)
+    (x,) = coordinates("x")
+    falling = Hamiltonian(x.momentum**2 / 2 - 1 / x, [x], [x.momentum])
+    with pytest.raises(StudyError, match="the reference could not be run"):
+        work_precision(falling, [1.0, 0.0], 10.0, [RK4()], steps=[0.1])
+
+
+def resonance(errors):
+    rows = [
+        WorkRow(RK4(), step, None, energy_error=error)
+        for step, error in zip(
+            np.geomspace(0.1, 0.1 / 2 ** (len(errors) - 1), len(errors)), errors, strict=True
+        )
+    ]
+    return [row.resonant for row in _marked(rows)]
+
+
+def test_a_step_that_stands_out_from_its_neighbours_is_resonant():
+    smooth = [1e-4 * 2.0 ** (-4 * i) for i in range(5)]
+    assert resonance(smooth) == [False] * 5
+    peaked = [*smooth]
+    peaked[2] *= 30.0
+    assert resonance(peaked) == [False, False, True, False, False]
+    peaked[2] /= 5.0
+    assert resonance(peaked) == [False] * 5
+
+
+def test_the_picture_holds_every_run(galaxy):
+    axes = plot_work_precision(galaxy)
+    lines = {line.get_label(): line for line in axes.lines if not line.get_label().startswith("_")}
+    assert set(lines) == {"verlet", "kahan-li-8", "RK4", "Taylor", "blanes-moan-4"}
+    np.testing.assert_array_equal(
+        lines["RK4"].get_ydata(), [row.position_error for row in rows_of(galaxy, "RK4")]
+    )
+    energy = plot_work_precision(galaxy, cost="evaluations", error="energy")
+    assert energy.get_xlabel() == "evaluations of the force"
+    with pytest.raises(ValueError, match="there are cpu"):
+        plot_work_precision(galaxy, cost="money")
