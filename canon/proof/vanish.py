@@ -121,11 +121,9 @@ def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget
     for entry in open_:
         if time.monotonic() > start + budget:
             late = Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "not finished in time"),))
-            return (
-                undecided
-                if undecided is not None
-                else _at_entry(late, places[entry], "was not decided", start)
-            )
+            undecided = undecided if undecided is not None else late
+            undecided = _at_entry(undecided, places[entry], "was not decided", start)
+            break
         verdict = _decide(entry, sp.Integer(0), domain, start + budget)
         if verdict.fails:
             return _at_entry(verdict, places[entry], "does not vanish", start)
