@@ -13,21 +13,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.expression.arithmetic import FLOAT64, LONGDOUBLE
 from canon.flow.method import RK4, FixedStep, Gauss
-from canon.flow.stepping import Run, run
+from canon.flow.stepping import Run, Watch, run
 from canon.flow.trajectory import Array, Samples
 from canon.kernel.gauss import gauss_coefficients, gauss_loop
 from canon.kernel.llvm import simd_bytes
 from canon.kernel.loop import Loop, runge_kutta_loop, splitting_loop
 from canon.kernel.machine import DOUBLE, MachineType, double_pair
+from canon.kernel.watch import watching_function, wide_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.flow.precision import Precision
+    from canon.kernel.llvm import MachineCode
     from canon.kernel.structure import Equations
 
-__all__ = ["compiled_loop", "fixed_steps"]
+__all__ = ["compiled_loop", "fixed_steps", "watch_for"]
 
 _KEPT = 64
 """Compiled loops kept for the next call."""
@@ -114,6 +117,7 @@ def fixed_steps(
     step: float | None,
     samples: int,
     progress: Callable[[float], None],
+    watch: Watch | None = None,
 ) -> Samples:
     """Step from the first time of a span to the last and sample on the way.
 
@@ -127,6 +131,8 @@ def fixed_steps(
         The starting states as sums of two doubles, each of shape (2n, orbits).
     span, step, samples, progress
         As :func:`canon.flow.propagate.propagate` takes them.
+    watch
+        Observables to follow inside the loop.
     """
     start, end = span
     steps = _steps(start, end, step, method)
@@ -134,7 +140,7 @@ def fixed_steps(
     stops = np.unique(np.linspace(0, steps, min(samples, steps) + 1).round().astype(np.int64)).tolist()
     numbers = [double_pair(c) for c in (start, h, *_coefficients(method, h))]
     coefficients = np.array([high for high, _ in numbers]), np.array([low for _, low in numbers])
-    runs = _on_threads(loop, *states, coefficients, stops, progress)
+    runs = _on_threads(loop, *states, coefficients, stops, progress, watch)
     high, low = (np.concatenate(parts, axis=2) for parts in ([r.high for r in runs], [r.low for r in runs]))
     orbits = states[0].shape[1]
     iterations = sum(r.iterations for r in runs) if isinstance(method, Gauss) else steps * orbits
@@ -147,7 +153,64 @@ def fixed_steps(
         step=float(h),
         cpu_seconds=sum(r.cpu_seconds for r in runs),
         compile_seconds=loop.code.seconds,
+        watched=_statistics(runs, stops, watch, orbits),
     )
+
+
+def watch_for(
+    system: Equations,
+    nodes: Sequence[int],
+    loop: Loop,
+    states: tuple[Array, Array],
+    t0: Fraction,
+    cadence: int,
+) -> Watch:
+    """Return what follows nodes of a system's graph inside a loop, every so many steps.
+
+    Raises
+    ------
+    ValueError
+        The cadence is no positive whole number, or the loop does not compute in doubles.
+    """
+    if cadence < 1 or cadence != int(cadence):
+        raise ValueError(f"cadence={cadence}: give a number of steps, 1 or more")
+    if dataclasses.replace(loop.number, lanes=1) != DOUBLE:
+        raise ValueError(
+            "observables are followed inside the loop in the precisions 'double' and 'compensated'"
+        )
+    wide = np.dtype(wide_number().dtype).type
+    point = [high.astype(wide) + low.astype(wide) for high, low in zip(*states, strict=True)]
+    values = dict(zip(system.inputs, (*point, wide(float(t0))), strict=True))
+    found = system.graph.evaluate(nodes, values, FLOAT64 if wide is np.float64 else LONGDOUBLE)
+    start = np.stack(
+        [np.broadcast_to(np.asarray(value, dtype=wide), point[0].shape) for value in found], axis=1
+    )
+    return Watch(_kept_watching(system, tuple(nodes), loop), cadence, start)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_watching(system: Equations, nodes: tuple[int, ...], loop: Loop) -> MachineCode:
+    return watching_function(system, nodes, loop)
+
+
+def _statistics(runs: Sequence[Run], stops: Sequence[int], watch: Watch | None, orbits: int) -> Array | None:
+    """Return mean, least and greatest change, shape (observables, 3, times − 1, orbits)."""
+    parts = [each.watched for each in runs if each.watched is not None]
+    if watch is None or not parts:
+        return None
+    found = np.concatenate(parts, axis=1)[:, :orbits].transpose(2, 3, 0, 1).copy()
+    counts = np.diff([stop // watch.cadence for stop in stops])
+    if not counts.all():
+        raise ValueError(
+            f"cadence={watch.cadence} steps is longer than the shortest interval between samples, "
+            f"{int(np.diff(stops).min())} steps: take a smaller cadence or fewer samples"
+        )
+    found[:, 0] /= counts[:, np.newaxis]
+    if not np.isfinite(found).all():
+        raise ArithmeticError(
+            "the energy or an observable was not finite inside the loop: it left its own domain"
+        )
+    return found
 
 
 def _on_threads(
@@ -157,13 +220,14 @@ def _on_threads(
     coefficients: tuple[Array, Array],
     stops: Sequence[int],
     progress: Callable[[float], None],
+    watch: Watch | None,
 ) -> list[Run]:
     """Run orbits on as many threads as there are processors, each a whole number of blocks."""
     lanes = loop.number.lanes
     orbits = high.shape[1]
     blocks = -(-orbits // lanes)
     if blocks == 1 and lanes == 1:
-        return [run(loop, high, low, coefficients, stops, progress)]
+        return [run(loop, high, low, coefficients, stops, progress, watch)]
     # The last block is filled up with copies of the last orbit.
     filled = np.minimum(np.arange(blocks * lanes), orbits - 1)
     parts = np.array_split(filled.reshape(blocks, lanes), min(os.cpu_count() or 1, blocks))
@@ -179,7 +243,8 @@ def _on_threads(
                     progress(min(done))
 
         chosen = parts[k].ravel()
-        return run(loop, high[:, chosen], low[:, chosen], coefficients, stops, report)
+        own = None if watch is None else dataclasses.replace(watch, start=watch.start[chosen])
+        return run(loop, high[:, chosen], low[:, chosen], coefficients, stops, report, own)
 
     with ThreadPoolExecutor(len(parts)) as pool:
         futures = [pool.submit(part, k) for k in range(len(parts))]

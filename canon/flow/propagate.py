@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from canon.flow.adaptive import adaptive_steps
-from canon.flow.fixed import compiled_loop, fixed_steps
+from canon.flow.fixed import compiled_loop, fixed_steps, watch_for
 from canon.flow.method import DOP853, FixedStep, Method, Taylor
 from canon.flow.precision import fixed_precision
 from canon.flow.stepping import NonFiniteStateError
-from canon.flow.trajectory import Array, Trajectory, measured
+from canon.flow.trajectory import Array, Statistics, Trajectory, measured
 from canon.kernel.machine import double_pair
 from canon.kernel.structure import Equations, equations, exact
 
@@ -67,6 +67,7 @@ def propagate(
     parameters: Mapping[Symbol | str, Any] | None = None,
     samples: int = 1000,
     observables: Mapping[str, Expr] | None = None,
+    cadence: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
     """Integrate Hamilton's equations from a starting state.
@@ -98,6 +99,9 @@ def propagate(
         How many sampled states to keep after the first, evenly spaced up to a step.
     observables
         Further functions of (q, p, t) to evaluate at the samples, by name.
+    cadence
+        Follow H and the observables inside the loop of a fixed-step method too, every so many steps:
+        ``Trajectory.statistics`` has the mean, the least and the greatest change between samples.
     progress
         Called now and then with the fraction done, 0 … 1.
 
@@ -134,8 +138,12 @@ def propagate(
     """
     method = _with_tolerance(Taylor() if method is None else method, tolerance)
     system = _system(hamiltonian, _numbers(parameters or {}))
-    watched = dict(observables or {})
-    nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in watched.items())]
+    extra = dict(observables or {})
+    if "energy" in extra:
+        raise ValueError(
+            "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
+        )
+    nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
     high, low = _states(y0, len(system.q))
     span = _span(t_span)
     if samples < 1:
@@ -145,14 +153,20 @@ def propagate(
     if isinstance(method, FixedStep):
         kind = fixed_precision(precision)
         loop = compiled_loop(system, method, kind, high.shape[1])
-        found, name = fixed_steps(loop, method, (high, low), span, step, samples, report), kind.name
+        watch = None if cadence is None else watch_for(system, nodes, loop, (high, low), span[0], cadence)
+        found = fixed_steps(loop, method, (high, low), span, step, samples, report, watch)
+        name = kind.name
     else:
         if step is not None:
             raise ValueError(f"{method} chooses its own steps: leave step out and set its tolerance")
+        if cadence is not None:
+            raise ValueError(f"{method} chooses its own steps: cadence counts those of fixed-step methods")
         times, name = np.linspace(float(span[0]), float(span[1]), samples + 1), str(precision or "double")
         found = adaptive_steps(system, (high, low), times, method, precision or "double", report)
+    watched = found.watched
     if np.ndim(y0) == 1:
         found = replace(found, y=found.y[:, :, 0], carried=found.carried[:, :, 0])
+        watched = None if watched is None else watched[..., 0]
     (energy, change), *rest = measured(system, nodes, found, name)
     return Trajectory(
         t=found.t,
@@ -168,8 +182,13 @@ def propagate(
         cpu_seconds=found.cpu_seconds,
         compile_seconds=found.compile_seconds,
         autonomous=system.autonomous,
-        observables=MappingProxyType(dict(zip(watched, (value for value, _ in rest), strict=True))),
-        changes=MappingProxyType(dict(zip(watched, (each for _, each in rest), strict=True))),
+        observables=MappingProxyType(dict(zip(extra, (value for value, _ in rest), strict=True))),
+        changes=MappingProxyType(dict(zip(extra, (each for _, each in rest), strict=True))),
+        statistics=MappingProxyType(
+            {}
+            if watched is None
+            else {k: Statistics(*v) for k, v in zip(("energy", *extra), watched, strict=True)}
+        ),
     )
 
 

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from canon.kernel.watch import ENTRIES
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from canon.kernel.llvm import MachineCode
     from canon.kernel.loop import Loop
 
-__all__ = ["NonFiniteStateError", "Run", "run"]
+__all__ = ["NonFiniteStateError", "Run", "Watch", "run"]
 
 Array = npt.NDArray[np.float64]
 Memory = npt.NDArray[Any]
@@ -48,6 +51,9 @@ class Run:
     ----------
     high, low
         The states are high + low, shape (2n, times, orbits).
+    watched
+        Where observables were watched: of each interval between two stops, orbit and observable the sum, the
+        least and the greatest change, shape (times − 1, orbits, observables, 3).
     iterations
         Iterations of an implicit method, 0 of others.
     cpu_seconds
@@ -56,6 +62,7 @@ class Run:
 
     high: Array
     low: Array
+    watched: Array | None
     iterations: int
     cpu_seconds: float
 
@@ -67,6 +74,7 @@ def run(
     coefficients: tuple[Array, Array],
     stops: Sequence[int],
     progress: Callable[[float], None] = lambda _: None,
+    watch: Watch | None = None,
 ) -> Run:
     """Advance orbits step by step and keep their states at the wanted step numbers.
 
@@ -82,13 +90,16 @@ def run(
         Rising step numbers at which to keep the states; the last is the end.
     progress
         Called now and then with the fraction done, 0 … 1.
+    watch
+        Observables to follow between the stops.
 
     Raises
     ------
     NonFiniteStateError
         A state is not finite; the error knows the last finite one.
     """
-    job = _Job(loop, high, low, coefficients)
+    job = _Job(loop, high, low, coefficients, watch)
+    watched: list[Array] = []
     kept = np.empty((2, len(high), len(stops), high.shape[1]))
     started, done, slice_steps = time.thread_time(), 0, 64
     for sample, stop in enumerate(stops):
@@ -107,13 +118,42 @@ def run(
                 slice_steps //= 2
             progress(done / stops[-1])
         kept[:, :, sample] = job.states()
-    return Run(kept[0], kept[1], job.iterations(), time.thread_time() - started)
+        if sample and watch is not None:
+            watched.append(job.watched())
+    return Run(
+        kept[0],
+        kept[1],
+        np.array(watched) if watch is not None else None,
+        job.iterations(),
+        time.thread_time() - started,
+    )
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Observables to follow inside the loop.
+
+    Parameters
+    ----------
+    code
+        The machine code of :func:`canon.kernel.watch.watching_function`.
+    cadence
+        After how many steps they are evaluated each time.
+    start
+        Their values at the start in wide numbers, shape (orbits, observables).
+    """
+
+    code: MachineCode
+    cadence: int
+    start: Memory
 
 
 class _Job:
     """The memory of one run: blocks of as many orbits as the number type has lanes."""
 
-    def __init__(self, loop: Loop, high: Array, low: Array, coefficients: tuple[Array, Array]) -> None:
+    def __init__(
+        self, loop: Loop, high: Array, low: Array, coefficients: tuple[Array, Array], watch: Watch | None
+    ) -> None:
         self.loop, number = loop, loop.number
         self.size, self.orbits = high.shape
         self.blocks = self.orbits // number.lanes
@@ -128,6 +168,20 @@ class _Job:
         )
         self.c = number.packed(*(np.repeat(part, number.lanes) for part in coefficients))
         self.t0, self.h = (float(part) for part in coefficients[0][:2])
+        self.watch = watch
+        if watch is not None:
+            self.record = np.zeros((*watch.start.shape, ENTRIES), dtype=watch.start.dtype)
+            self.record[..., 0] = watch.start
+            self._forget()
+
+    def _forget(self) -> None:
+        self.record[..., 1], self.record[..., 2], self.record[..., 3] = 0, np.inf, -np.inf
+
+    def watched(self) -> Array:
+        """Return the sums and bounds of the changes since they were last asked for, and start anew."""
+        found = self.record[..., 1:].astype(np.float64)
+        self._forget()
+        return found
 
     def _by_block(self, states: Array) -> Array:
         """Reorder (2n, orbits) as blocks, components, lanes: shape (blocks · 2n, lanes)."""
@@ -139,7 +193,12 @@ class _Job:
         return numbers.reshape(self.blocks, self.size, lanes).transpose(1, 0, 2).reshape(self.size, -1)
 
     def advance(self, first: int, steps: int) -> None:
-        self._call(self.y, self.e, first, steps, self.blocks)
+        if self.watch is None:
+            self._call(self.y, self.e, first, steps, self.blocks)
+            return
+        arrays = (self.y.ctypes.data, self.e.ctypes.data, self.c.ctypes.data)
+        numbers = (first, steps, self.blocks, self.watch.cadence)
+        self.watch.code.call(self.loop.code.address, *arrays, *numbers, self.record.ctypes.data)
 
     def _call(self, y: Memory, e: Memory, first: int, steps: int, blocks: int) -> None:
         self.loop.code.call(y.ctypes.data, e.ctypes.data, self.c.ctypes.data, first, steps, blocks)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from canon.flow.method import Method
     from canon.kernel.structure import Equations
 
-__all__ = ["Samples", "Trajectory", "measured"]
+__all__ = ["Samples", "Statistics", "Trajectory", "measured"]
 
 Array = npt.NDArray[np.float64]
 
@@ -44,6 +44,9 @@ class Samples:
         The step size of a fixed-step method.
     cpu_seconds, compile_seconds
         Processor time of the integration, and the wall-clock time that compiling its loop took.
+    watched
+        Where observables were followed inside the loop: mean, least and greatest change of each between
+        samples, shape (observables, 3, times − 1, orbits).
     """
 
     t: Array
@@ -54,6 +57,22 @@ class Samples:
     step: float | None
     cpu_seconds: float
     compile_seconds: float
+    watched: Array | None = None
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Changes of a quantity since the start, gathered inside the loop between samples.
+
+    Parameters
+    ----------
+    mean, least, greatest
+        Over the steps watched from one sample to the next, shape (times − 1,) or (times − 1, orbits).
+    """
+
+    mean: Array
+    least: Array
+    greatest: Array
 
 
 @dataclass(frozen=True)
@@ -88,6 +107,9 @@ class Trajectory:
         Whether H does not depend on t, so that its change is an error.
     observables, changes
         Values of the observables at the samples, and their changes since the start.
+    statistics
+        Where ``cadence`` was given: mean, least and greatest change of ``"energy"`` and the observables between
+        one sample and the next, by name.
     """
 
     t: Array
@@ -105,6 +127,7 @@ class Trajectory:
     autonomous: bool
     observables: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
     changes: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
+    statistics: Mapping[str, Statistics] = field(default_factory=lambda: MappingProxyType({}))
 
     def __repr__(self) -> str:
         return (

@@ -37,6 +37,8 @@ class MachineCode:
     ----------
     call
         The function as a ctypes callable; it releases the interpreter lock while it runs.
+    address
+        Its address, for other compiled code to call.
     seconds
         Wall-clock time it took to optimize and compile.
     engine
@@ -44,6 +46,7 @@ class MachineCode:
     """
 
     call: Any
+    address: int
     seconds: float
     engine: Any
 
@@ -85,7 +88,7 @@ def compiled(ir: str, function: str, arguments: Sequence[Any], libm: Sequence[st
         engine.finalize_object()
         address = engine.get_function_address(function)
     call = ctypes.CFUNCTYPE(None, *arguments)(address)
-    return MachineCode(call, time.perf_counter() - started, engine)
+    return MachineCode(call, address, time.perf_counter() - started, engine)
 
 
 @functools.cache

@@ -37,7 +37,7 @@ METHOD = 2
 """Where the method's own coefficients start in c."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Loop:
     """A compiled loop and what one step of it costs.
 
@@ -170,7 +170,7 @@ def field_function(field: Program) -> MachineCode:
     arguments = [w.load("%x", i) for i in range(len(field.inputs))]
     for i, value in enumerate(w.program(field, arguments)):
         w.store(value, "%out", i)
-    return _compiled(w, "ptr noalias %x, ptr noalias %out", (_POINTER, _POINTER))
+    return compiled_function(w, "evaluate", "ptr noalias %x, ptr noalias %out", (_POINTER, _POINTER))
 
 
 # pieces of loops -------------------------------------------------------------------------------------
@@ -216,10 +216,18 @@ def increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> 
 
 def finished(w: Writer, n: int, *, compensated: bool, carry: int = 0) -> Loop:
     """Compile what was written."""
-    return Loop(_compiled(w, _PARAMETERS, _SIGNATURE), n, compensated, w.number, carry or 2 * n, bool(carry))
+    return Loop(
+        compiled_function(w, "advance", _PARAMETERS, _SIGNATURE),
+        n,
+        compensated,
+        w.number,
+        carry or 2 * n,
+        bool(carry),
+    )
 
 
-def _compiled(w: Writer, parameters: str, signature: Sequence[object]) -> MachineCode:
-    ir = "\n".join([*sorted(w.declarations), f"define void @advance({parameters}) {{", w.body(), "}"])
-    called = [f"{name}{w.number.library_suffix}" for name in LIBRARY]
-    return compiled(ir, "advance", signature, [name for name in called if f"@{name}(" in ir])
+def compiled_function(w: Writer, name: str, parameters: str, signature: Sequence[object]) -> MachineCode:
+    """Compile what was written as one function."""
+    ir = "\n".join([*sorted(w.declarations), f"define void @{name}({parameters}) {{", w.body(), "}"])
+    called = [f"{function}{suffix}" for function in LIBRARY for suffix in ("", "f", "l")]
+    return compiled(ir, name, signature, [function for function in called if f"@{function}(" in ir])

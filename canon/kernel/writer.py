@@ -57,9 +57,27 @@ class Writer:
 
     def side_by_side(self, lanes: int) -> Writer:
         """Return a writer of the same function that computes in so many SIMD lanes."""
-        wide = copy.copy(self)
-        wide.number = dataclasses.replace(self.number, lanes=lanes)
-        return wide
+        return self.in_numbers(dataclasses.replace(self.number, lanes=lanes))
+
+    def in_numbers(self, number: MachineType) -> Writer:
+        """Return a writer of the same function that computes in other numbers."""
+        other = copy.copy(self)
+        other.number = number
+        return other
+
+    def widened(self, double: str) -> str:
+        """Turn a double register into a number of this writer's type, without rounding."""
+        if self.number.scalar == "double":
+            return double
+        return self.let(f"fpext double {double} to {self.number.scalar}")
+
+    def lesser_integer(self, a: str, b: str) -> str:
+        """Return the lesser of two i64 registers."""
+        return self.let(f"select i1 {self.let(f'icmp slt i64 {a}, {b}')}, i64 {a}, i64 {b}")
+
+    def greater_integer(self, a: str, b: str) -> str:
+        """Return the greater of two i64 registers."""
+        return self.let(f"select i1 {self.let(f'icmp sgt i64 {a}, {b}')}, i64 {a}, i64 {b}")
 
     # numbers -------------------------------------------------------------------------------------
 

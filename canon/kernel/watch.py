@@ -1,0 +1,101 @@
+"""Observables inside the loop: every so many steps their change since the start, summed and bounded.
+
+Between two samples of a long run lie millions of steps; what a sample misses, the sums and bounds hold. They are
+computed in 64-bit-mantissa numbers where the processor has them (x86), in doubles elsewhere.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING
+
+from canon.kernel.loop import compiled_function
+from canon.kernel.machine import DOUBLE, EXTENDED, MachineType
+from canon.kernel.writer import Writer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.kernel.llvm import MachineCode
+    from canon.kernel.loop import Loop
+    from canon.kernel.structure import Equations
+
+__all__ = ["ENTRIES", "watching_function", "wide_number"]
+
+ENTRIES = 4
+"""Numbers kept of an observable: its value at the start; the sum, the least and the greatest of its changes."""
+
+_POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
+_SIGNATURE = (*[_POINTER] * 4, *[_INTEGER] * 4, _POINTER)
+_PARAMETERS = ", ".join(
+    (
+        "ptr %advance, ptr %y, ptr %e, ptr %c",
+        "i64 %first, i64 %steps, i64 %blocks, i64 %cadence",
+        "ptr noalias %kept",
+    )
+)
+
+
+def wide_number() -> MachineType:
+    """Return the numbers in which observables are watched."""
+    return EXTENDED if EXTENDED.available() else DOUBLE
+
+
+def watching_function(system: Equations, nodes: Sequence[int], loop: Loop) -> MachineCode:
+    """Compile ``drive(advance, y, e, c, first, steps, blocks, cadence, kept)``.
+
+    It calls the loop's own machine code and evaluates the nodes after every step whose number is a multiple of
+    the cadence, so that the motion is bit for bit the one without it. ``kept`` has :data:`ENTRIES` numbers for
+    each node of each orbit.
+
+    Parameters
+    ----------
+    system
+        The equations.
+    nodes
+        The observables.
+    loop
+        A loop that computes in doubles, compensated or not.
+    """
+    w = Writer(DOUBLE)
+    end = w.let("add i64 %first, %steps")
+    turn = w.let("sdiv i64 %first, %cadence")
+    last_turn = w.let(f"sdiv i64 {w.let(f'sub i64 {end}, 1')}, %cadence")
+    with w.loop(turn, w.let(f"add i64 {last_turn}, 1")) as k:
+        due_from = w.let(f"mul i64 {k}, %cadence")
+        due_at = w.let(f"add i64 {due_from}, %cadence")
+        done, after = w.greater_integer("%first", due_from), w.lesser_integer(end, due_at)
+        steps = w.let(f"sub i64 {after}, {done}")
+        w.line(f"call void %advance(ptr %y, ptr %e, ptr %c, i64 {done}, i64 {steps}, i64 %blocks)")
+        due = w.let(f"icmp eq i64 {after}, {due_at}")
+        times = w.let(f"select i1 {due}, i64 %blocks, i64 0")
+        with w.loop(0, times) as block, w.loop(0, loop.number.lanes) as lane:
+            _watch(w, system, nodes, loop, block, lane, after)
+    return compiled_function(w, "drive", _PARAMETERS, _SIGNATURE)
+
+
+def _watch(
+    w: Writer, system: Equations, nodes: Sequence[int], loop: Loop, block: str, lane: str, step: str
+) -> None:
+    """Evaluate the nodes for one orbit and record their changes."""
+    size, lanes = len(system.inputs) - 1, loop.number.lanes
+    wide = w.in_numbers(wide_number())
+
+    def component(array: str, length: int, i: int) -> str:
+        start = w.let(f"mul i64 {block}, {length * lanes}")
+        shifted = w.let(f"add i64 {start}, {i * lanes}")
+        return wide.widened(w.load(array, w.let(f"add i64 {shifted}, {lane}")))
+
+    state = [component("%y", size, i) for i in range(size)]
+    if loop.compensated:
+        state = [wide.algebra("add", y, component("%e", loop.carry, i)) for i, y in enumerate(state)]
+    clock = w.multiply_add(w.whole(step), w.load("%c", lanes), w.load("%c", 0))
+    orbit = w.let(f"add i64 {w.let(f'mul i64 {block}, {lanes}')}, {lane}")
+    own = wide.at("%kept", w.let(f"mul i64 {orbit}, {len(nodes) * ENTRIES}"))
+    for k, value in enumerate(wide.program(system.program(nodes), [*state, wide.widened(clock)])):
+        entry = k * ENTRIES
+        change = wide.algebra("sub", value, wide.load(own, entry))
+        wide.store(wide.algebra("add", wide.load(own, entry + 1), change), own, entry + 1)
+        least, greatest = wide.load(own, entry + 2), wide.load(own, entry + 3)
+        wide.store(wide.select(wide.less(change, least), change, least), own, entry + 2)
+        wide.store(wide.select(wide.less(greatest, change), change, greatest), own, entry + 3)

@@ -1,0 +1,100 @@
+"""What is gathered inside the loop is what samples at every step would have shown."""
+
+import numpy as np
+import pytest
+
+from canon.flow.method import RK4, Gauss, Splitting, Taylor
+from canon.flow.propagate import propagate
+from tests.flow.systems import KEPLER, PENDULUM, kepler_start
+
+x, y, px, py = *KEPLER.q, *KEPLER.p
+MOMENTUM = {"L": x * py - y * px, "r2": x**2 + y**2}
+
+
+@pytest.mark.parametrize("precision", ["double", "compensated"])
+@pytest.mark.parametrize("method", [Splitting("verlet"), Splitting("srkn-6b"), RK4(), Gauss(3)], ids=str)
+def test_statistics_of_every_step_are_those_of_all_samples(method, precision):
+    arguments = {"method": method, "step": 0.05, "precision": precision, "observables": MOMENTUM}
+    few = propagate(KEPLER, kepler_start(0.4), (0, 20), samples=4, cadence=1, **arguments)
+    every = propagate(KEPLER, kepler_start(0.4), (0, 20), samples=400, **arguments)
+    np.testing.assert_array_equal(few.y, every.y[:, ::100])
+    assert list(few.statistics) == ["energy", "L", "r2"]
+    for name, change in {"energy": every.energy_change, **every.changes}.items():
+        blocks, found = change[1:].reshape(4, 100), few.statistics[name]
+        for ours, theirs in (
+            (found.mean, blocks.mean(axis=1)),
+            (found.least, blocks.min(axis=1)),
+            (found.greatest, blocks.max(axis=1)),
+        ):
+            np.testing.assert_allclose(ours, theirs, rtol=1e-13, atol=3e-18)
+
+
+@pytest.mark.parametrize("cadence", [3, 7, 25])
+def test_a_cadence_takes_every_so_many_steps_counted_from_the_start(cadence):
+    arguments = {"method": Splitting("verlet"), "step": 0.05}
+    few = propagate(PENDULUM, [1.0, 0.0], (0, 10), samples=2, cadence=cadence, **arguments)
+    every = propagate(PENDULUM, [1.0, 0.0], (0, 10), samples=200, **arguments)
+    np.testing.assert_array_equal(few.y[:, -1], every.y[:, -1])
+    steps = np.arange(201)
+    for k in range(2):
+        due = (steps > 100 * k) & (steps <= 100 * (k + 1)) & (steps % cadence == 0)
+        np.testing.assert_allclose(
+            few.statistics["energy"].mean[k], every.energy_change[due].mean(), rtol=1e-12
+        )
+        assert few.statistics["energy"].greatest[k] == pytest.approx(
+            every.energy_change[due].max(), rel=1e-12
+        )
+
+
+def test_statistics_of_ensembles_are_those_of_each_orbit():
+    many = np.array(kepler_start(0.3))[:, np.newaxis] * np.linspace(1, 1.1, 70)
+    arguments = {
+        "method": Splitting("kahan-li-6"),
+        "step": 0.05,
+        "samples": 3,
+        "cadence": 2,
+        "observables": MOMENTUM,
+    }
+    together = propagate(KEPLER, many, (0, 6), **arguments)
+    assert together.statistics["L"].mean.shape == (3, 70)
+    for orbit in (0, 33, 69):
+        alone = propagate(KEPLER, many[:, orbit], (0, 6), **arguments)
+        np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
+        for name in ("energy", "L", "r2"):
+            np.testing.assert_array_equal(
+                together.statistics[name].mean[:, orbit], alone.statistics[name].mean
+            )
+            np.testing.assert_array_equal(
+                together.statistics[name].least[:, orbit], alone.statistics[name].least
+            )
+
+
+def test_a_long_run_shows_extremes_that_samples_miss():
+    motion = propagate(
+        KEPLER,
+        kepler_start(0.6),
+        (0, 200 * np.pi),
+        method=Splitting("verlet"),
+        step=np.pi / 500,
+        samples=100,
+        cadence=1,
+    )
+    # Sampled once an orbit, always at the pericentre, the energy error looks far smaller than it is.
+    assert abs(motion.energy_change).max() < 0.2 * abs(motion.statistics["energy"].greatest).max()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"cadence": 0}, "1 or more"),
+        ({"cadence": 2.5}, "1 or more"),
+        ({"cadence": 11, "samples": 10}, "shortest interval"),
+        ({"cadence": 1, "precision": "extended"}, "'double' and 'compensated'"),
+        ({"cadence": 1, "method": Taylor(), "step": None}, "own steps"),
+        ({"observables": {"energy": x}}, "another name"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(arguments, message):
+    right = {"method": Splitting("verlet"), "step": 0.1, "samples": 10}
+    with pytest.raises(ValueError, match=message):
+        propagate(KEPLER, kepler_start(0.1), (0, 10), **{**right, **arguments})
