@@ -13,6 +13,7 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.generating import GeneratingFunction, kinds_of
 from canon.mechanics.hamiltonian import Hamiltonian
+from canon.mechanics.implicit import ImplicitTransformation
 from canon.mechanics.inverse import NoClosedInverseError
 from canon.mechanics.inversion import Inversion, solve_system
 from canon.mechanics.substitution import shortened, substitute
@@ -25,7 +26,13 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["generated_hamiltonian", "generated_inverse", "generated_transformation", "of_kind"]
+__all__ = [
+    "generated_hamiltonian",
+    "generated_inverse",
+    "generated_transformation",
+    "implicit_map",
+    "of_kind",
+]
 
 
 def generated_transformation(F: GeneratingFunction, domain: Domain | None = None) -> CanonicalTransformation:
@@ -64,6 +71,21 @@ def generated_inverse(F: GeneratingFunction, domain: Domain | None = None) -> Ca
     (Q, P + Q*f)
     """
     return _solved(F, (*F.new_q, *F.new_p), (*F.q, *F.p), domain or F.domain)
+
+
+def implicit_map(F: GeneratingFunction) -> ImplicitTransformation:
+    """Return the map that F generates as its rules stand, to be tested and evaluated where it has no formula.
+
+    Examples
+    --------
+    >>> from sympy import cos, symbols
+    >>> q, p, Q, P, h = symbols("q p Q P h", real=True)
+    >>> T = implicit_map(GeneratingFunction(2, q*P + h*(P**2/2 - cos(q)*cos(P)), q, p, Q, P))
+    >>> T.is_canonical().status.name
+    'HOLDS'
+    """
+    equations = tuple(rule.variable - rule.value for rule in F.rules)
+    return ImplicitTransformation(F.q, F.p, F.new_q, F.new_p, equations, F.t, F.domain)
 
 
 def generated_hamiltonian(F: GeneratingFunction, H: Expr, domain: Domain | None = None) -> Hamiltonian:

@@ -23,7 +23,7 @@ from canon.proof.domain import Domain
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
 __all__ = ["ImplicitTransformation"]
 
@@ -118,6 +118,35 @@ class ImplicitTransformation:
             )
 
         return all_hold(verdicts(), question)
+
+    def evaluate(
+        self, values: Mapping[Symbol, float], start: Mapping[Symbol, float], digits: int = 20
+    ) -> dict[Symbol, float]:
+        """Return numbers for 2n of the variables, by Newton's method from a first guess.
+
+        Parameters
+        ----------
+        values
+            Numbers for the other 2n variables, the time and the parameters.
+        start
+            A first guess for each variable that is wanted.
+        digits
+            Working precision.
+
+        Examples
+        --------
+        >>> from sympy import sin, symbols
+        >>> q, p, Q, P = symbols("q p Q P", real=True)
+        >>> step = ImplicitTransformation((q,), (p,), (Q,), (P,), (Q - q - P/10, P - p + sin(Q)/10))
+        >>> new = step.evaluate({q: 1, p: 0}, {Q: 1, P: 0})
+        >>> abs(new[Q] - 1 - new[P]/10) < 1e-15, abs(new[P] + sin(new[Q])/10) < 1e-15
+        (True, True)
+        """
+        unknowns = list(start)
+        known = {s: sp.Float(value, digits) for s, value in values.items()}
+        equations = [exchanged(E, known) for E in self.equations]
+        root = sp.Matrix(sp.nsolve(equations, unknowns, [start[s] for s in unknowns], prec=digits))
+        return {s: float(entry(root, i, 0)) for i, s in enumerate(unknowns)}
 
     def on_solutions(self) -> dict[Symbol, Expr] | None:
         """Return 2n of the variables as functions of the others on all solutions, or None.

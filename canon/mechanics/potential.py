@@ -8,6 +8,7 @@ functions that the form is made of. Each is checked at points and proved before 
 
 from __future__ import annotations
 
+import time as clock
 from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING, cast
@@ -31,7 +32,11 @@ __all__ = ["potential"]
 
 
 def potential(
-    form: Sequence[Expr], z: Sequence[Symbol], domain: Domain, hints: Mapping[Expr, Expr] | None = None
+    form: Sequence[Expr],
+    z: Sequence[Symbol],
+    domain: Domain,
+    hints: Mapping[Expr, Expr] | None = None,
+    budget: float = 10.0,
 ) -> Expr | None:
     """Return G with ∂G/∂zⱼ = aⱼ, proved on the domain; None where none was found.
 
@@ -45,6 +50,8 @@ def potential(
         Where it is meant.
     hints
         Functions of z of which G may be a combination, by the name they are to have in it.
+    budget
+        Seconds after which no further candidate is tried.
 
     Examples
     --------
@@ -54,13 +61,20 @@ def potential(
     >>> potential([2*x*sin(y), x**2*sp.cos(y)], [x, y], Domain())
     x**2*sin(y)
     """
+    end = clock.monotonic() + budget
     form = [_without_vanishing(a, z, domain) for a in form]
     if all(a == 0 for a in form):
         return sp.S.Zero
     hints = hints or {}
     for candidate, named in _candidates(form, z, domain, hints):
+        left = end - clock.monotonic()
+        if left < 0:
+            return None
         proved = all_vanish(
-            ((f"∂G/∂{s} = {a}", candidate.diff(s) - a) for s, a in zip(z, form, strict=True)), "", domain
+            ((f"∂G/∂{s} = {a}", candidate.diff(s) - a) for s, a in zip(z, form, strict=True)),
+            "",
+            domain,
+            left,
         )
         if proved.holds:
             return named
@@ -202,8 +216,17 @@ def _elementary_integral(term: Expr, s: Symbol) -> Expr | None:
     """Integrate one small term by the rules of a table, up to a factor; None where it has no short integral."""
     if sp.count_ops(term) > 30:
         return None
-    integral = manualintegrate(term, s)
-    return None if integral.has(sp.Integral, sp.Piecewise) else integral.as_coeff_Mul()[1]
+    integral = sp.piecewise_fold(manualintegrate(term, s))
+    if isinstance(integral, sp.Piecewise):
+        generic, _ = integral.args[0].args  # whatever comes of this case is proved afterwards
+        return _short_integral(generic)
+    return _short_integral(integral)
+
+
+def _short_integral(integral: sp.Basic) -> Expr | None:
+    if not isinstance(integral, Expr) or integral.has(sp.Integral, sp.Piecewise):
+        return None
+    return integral.as_coeff_Mul()[1]
 
 
 def _products(form: Sequence[Expr], z: Sequence[Symbol], hints: Mapping[Expr, Expr]) -> dict[Expr, Expr]:

@@ -21,9 +21,10 @@ from canon.mechanics.canonicity import disagreement, residuals
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import solve
 from canon.mechanics.mending import constant_value, mending
+from canon.mechanics.potential import potential
 from canon.mechanics.substitution import as_tuple, entry, substitute
 from canon.proof.domain import Domain
-from canon.proof.verdict import Status, Verdict
+from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -133,6 +134,21 @@ class CanonicalTransformation:
             for i, z in enumerate(self.variables)
         )
 
+    def contact_function(self, valence: Expr = sp.S.One) -> Expr | None:
+        """Return F(q, p, t) with dF = Σ c p dq − Σ P dQ at fixed t, proved; None where none was found.
+
+        Examples
+        --------
+        >>> from sympy import symbols
+        >>> q, p, m, w = symbols("q p m omega", positive=True)
+        >>> T = CanonicalTransformation(q, p, sp.atan(m*w*q/p), (p**2 + m**2*w**2*q**2)/(2*m*w))
+        >>> T.contact_function()
+        p*q/2
+        """
+        hints = {q * p: q * p for q, p in zip(self.q, self.p, strict=True)}
+        hints |= {Q * P: Q * P for Q, P in zip(self.Q, self.P, strict=True)}
+        return potential(self.contact_form(valence), self.variables, self.domain, hints)
+
     def is_canonical(
         self,
         by: Test | Literal["all"] | None = None,
@@ -167,6 +183,12 @@ class CanonicalTransformation:
         verdict = all_vanish(residuals(self, by or "poisson", c), question, self.domain, budget)
         if verdict.fails:
             return replace(verdict, feedback=mending(self, c) or verdict.feedback)
+        if verdict.holds and by == "contact":
+            F = self.contact_function(c)
+            found = "an exact differential, not integrated in closed form" if F is None else str(F)
+            return replace(
+                verdict, evidence=(*verdict.evidence, Evidence("F with dF = c p dq − P dQ", found))
+            )
         return verdict
 
     def _without_valence(self, budget: float) -> Verdict:

@@ -41,7 +41,7 @@ class Witness:
     def value(self, f: Expr) -> Any:
         """Return a ball around the value of f, or None where it has none."""
         whole = _without_functions(substitute(f, self.meaning))
-        point = {s: self.point.get(s, _stand_in(s)) for s in whole.atoms(Symbol)}
+        point = {s: self.point.get(s, _stand_in(s, self.point)) for s in whole.atoms(Symbol)}
         try:
             with precision(_BITS):
                 return value(whole, point)
@@ -98,6 +98,7 @@ def _without_functions(f: Expr) -> Expr:
     return exchanged(f, {u: Symbol(f"#{u}") for u in f.atoms(AppliedUndef)})
 
 
-def _stand_in(s: Symbol) -> sp.Rational:
-    """Return a number for a symbol that the point does not name, always the same for the same name."""
-    return cast("sp.Rational", sp.Rational(5 + sum(map(ord, s.name)) % 23, 13))
+def _stand_in(s: Symbol, point: Mapping[Symbol, sp.Rational]) -> sp.Rational:
+    """Return a number for a symbol that the point does not name: the same for a name at one point."""
+    mark = sum(map(ord, s.name)) + int(1000 * abs(sum(map(float, point.values()))))
+    return cast("sp.Rational", sp.Rational(5 + mark % 31, 13))

@@ -1,7 +1,11 @@
 """Generating functions: judged, recovered from maps, and turned into maps."""
 
+import math
+
 import pytest
 import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from map_collection import (
     ELEMENTARY,
     MAPS,
@@ -28,6 +32,7 @@ from canon.mechanics.generated import (
     generated_hamiltonian,
     generated_inverse,
     generated_transformation,
+    implicit_map,
     of_kind,
 )
 from canon.mechanics.generating import (
@@ -140,6 +145,31 @@ def test_contact_function_of_the_notes():
         assert any(
             vanishes(wrong.diff(z) - a, T.domain).fails for z, a in zip(T.variables, form, strict=True)
         )
+
+
+FORMS = [
+    # map, printed M and N of M dq + N dp = p dq − P dQ, whether each is right
+    (NOTES["action and minus angle"].map, p + q * sp.atan(q / p), p * sp.atan(q / p), (True, True)),
+    (NOTES["log of sin p / q"].map, p + cot(p), cot(p) ** 2, (True, False)),
+    (NOTES["log of sin p / q"].map, p + cot(p), -qp * cot(p) ** 2, (True, True)),
+    (log1, p - sin(p) * cos(p), 2 * qp * sin(p) ** 2, (True, True)),
+    (roots, p - sin(p) * cos(p), 2 * qp * sin(p) ** 2, (True, True)),
+    (oscillator, p / 2, qp / 2, (True, True)),
+]
+
+
+@pytest.mark.parametrize(("T", "M", "N", "right"), FORMS)
+def test_printed_contact_forms(T, M, N, right):
+    for printed, coefficient, expected in zip((M, N), T.contact_form(), right, strict=True):
+        assert vanishes(printed - coefficient, T.domain).holds == expected
+
+
+def test_printed_inversions():
+    there = dict(zip((Q, P), log1.images, strict=True))
+    assert vanishes((((exp(Q) - 1) / cos(p)) ** 2).xreplace(there) - qp, log1.domain).holds
+    there = dict(zip((Q, P), oscillator.images, strict=True))
+    assert vanishes((sqrt(2 * m * w * P - p**2) / (m * w)).xreplace(there) - qp).holds
+    assert vanishes((-sqrt(2 * m * w * P - p**2) / (m * w)).xreplace(there) - qp).fails
 
 
 def test_feedback_shows_the_factor():
@@ -265,6 +295,41 @@ def test_legendre_relations_among_the_types(kind):
     other = of_kind(F1, kind)
     assert other.generates(generated_transformation(F1)).holds
     assert vanishes(of_kind(other, 1).F - F1.F).holds
+
+
+def test_rules_without_a_formula_are_tested_and_evaluated():
+    """F₂ = qP + h (P²/2 − cos q cos P): implicit in P, canonical all the same."""
+    h = sp.Symbol("h", positive=True)
+    T = implicit_map(GeneratingFunction(2, q * P + h * (P**2 / 2 - cos(q) * cos(P)), q, p, Q, P))
+    assert T.is_canonical().holds
+    assert T.is_canonical(valence=2).fails
+    new = T.evaluate({q: 0.7, p: 0.3, h: 0.1}, {Q: 0.7, P: 0.3})
+    assert new[P] + 0.1 * math.sin(0.7) * math.cos(new[P]) == pytest.approx(0.3, abs=1e-14)
+    assert new[Q] == pytest.approx(0.7 + 0.1 * (new[P] + math.cos(0.7) * math.sin(new[P])), abs=1e-14)
+
+
+small = st.integers(-2, 2)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(1, 3), small, small, small, small)
+def test_generated_functions_come_back_from_their_maps(s, a, b, c, d):
+    """F₂ = s qP + a q³ + b q² + c P² + d P sin t → map → F₂, up to a function of t."""
+    F2 = GeneratingFunction(2, s * q * P + a * q**3 + b * q**2 + c * P**2 + d * P * sin(t), q, p, Q, P)
+    T = generated_transformation(F2)
+    assert T.is_canonical(by="contact").holds
+    assert F2.generates(T).holds
+    back = generating_function(T, 2)
+    assert vanishes((back.F - F2.F).diff(q)).holds
+    assert vanishes((back.F - F2.F).diff(P)).holds
+    assert vanishes(generated_inverse(F2).then(T).Q[0] - Q).holds
+
+
+def test_arbitrary_functions_in_generating_functions():
+    V = sp.Function("V")
+    T = CanonicalTransformation(q, p, q, p - V(q).diff(q))
+    assert vanishes(generating_function(T, 2).F - (q * P + V(q))).holds
+    assert vanishes(generating_function(T, 3).F - (-p * Q + V(Q))).holds
 
 
 def test_a_type_that_does_not_exist_is_refused():

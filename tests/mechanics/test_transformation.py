@@ -183,6 +183,14 @@ def test_the_inverse_map_serves_as_well():
     assert is_new_hamiltonian(back, w * P_ / 2, H, [q, p]).fails
 
 
+def test_the_contact_test_finds_its_function():
+    verdict = NOTES["oscillator"].map.is_canonical(by="contact")
+    assert [e.text for e in verdict.evidence if e.kind.startswith("F with")] == ["p*q/2"]
+    doubled = CanonicalTransformation(q, p, 2 * q, p)
+    assert doubled.is_canonical(by="contact").fails
+    assert doubled.is_canonical(by="contact", valence=2).holds
+
+
 def test_bilinear_covariants():
     (dq, dp), (ddq, ddp) = displacements((q, p))
     assert vanishes(bilinear_covariant([p, 0], [q, p]) - (ddp * dq - dp * ddq)).holds

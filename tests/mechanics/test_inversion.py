@@ -1,0 +1,105 @@
+"""Peeling inversions: right at the witness, and wherever the noted conditions hold."""
+
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from canon.mechanics.inversion import Inversion, isolate, solve_system
+from canon.mechanics.potential import potential
+from canon.mechanics.witness import Witness, witnesses
+from canon.proof.domain import Domain
+from canon.proof.vanish import vanishes
+
+x, y, u, v, Y, Z = sp.symbols("x y u v Y Z", real=True)
+
+LAYERS = {
+    "sin": sp.sin,
+    "cos": sp.cos,
+    "tan": sp.tan,
+    "cot": sp.cot,
+    "exp": sp.exp,
+    "sinh": sp.sinh,
+    "cosh": sp.cosh,
+    "atan": sp.atan,
+    "square": lambda f: f**2,
+    "cube": lambda f: f**3,
+    "root": lambda f: sp.sqrt(f**2 + 1),
+    "reciprocal": lambda f: 1 / f,
+    "shift": lambda f: f + sp.Rational(1, 3),
+    "scale": lambda f: -2 * f * u,
+    "quadratic": lambda f: f**2 + f,
+    "fraction": lambda f: (f - 2) / (f + 3),
+    "two functions": lambda f: sp.sin(f) + sp.cos(f),
+}
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.sampled_from(sorted(LAYERS)), min_size=1, max_size=3), st.integers(0, 50))
+def test_an_isolated_unknown_is_right_wherever_its_conditions_hold(layers, seed):
+    f = x
+    for layer in layers:
+        f = LAYERS[layer](f)
+    found_witnesses = list(witnesses({x, u}, {Y: f}, Domain(), 1, seed=seed))
+    if not found_witnesses:
+        return
+    inversion = Inversion(found_witnesses[0])
+    found = isolate(f, Y, x, inversion)
+    if found is None:
+        return
+    assert not found.has(x)
+    assert found_witnesses[0].agree(found, x)
+    for other in witnesses({x, u}, {Y: f}, Domain(tuple(inversion.conditions)), 4, seed=seed + 1):
+        assert other.agree(found, x), (found, inversion.conditions)
+
+
+@pytest.mark.parametrize("layer", sorted(LAYERS))
+def test_every_layer_can_be_peeled(layer):
+    f = LAYERS[layer](x)
+    witness = next(iter(witnesses({x, u}, {Y: f}, Domain(), 1)))
+    assert isolate(f, Y, x, Inversion(witness)) is not None
+
+
+def test_the_branch_follows_the_witness():
+    for place, branch in (
+        (sp.Rational(1, 2), sp.acos(Y)),
+        (-sp.Rational(1, 2), -sp.acos(Y)),
+        (sp.Integer(7), sp.acos(Y) + 2 * sp.pi),
+    ):
+        inversion = Inversion(Witness({x: place}, {Y: sp.cos(x)}))
+        assert isolate(sp.cos(x), Y, x, inversion) == branch
+        assert all(c.subs(x, place) for c in inversion.conditions)
+
+
+def test_systems():
+    equations = [(x * sp.cos(y), Y), (x * sp.sin(y), Z)]
+    meaning = {Y: x * sp.cos(y), Z: x * sp.sin(y)}
+    first = Domain((x > 0, y > 0, y < sp.pi / 2))
+    witness = next(iter(witnesses({x, y}, meaning, first, 1)))
+    solved = solve_system(equations, [x, y], Inversion(witness))
+    assert solved is not None
+    assert vanishes(solved[x].subs(meaning, simultaneous=True) - x, first).holds
+    assert solve_system([(x**5 + x, Y)], [x], Inversion(Witness({x: sp.Integer(1)}, {Y: x**5 + x}))) is None
+
+
+POTENTIALS = [
+    x**2 * sp.sin(y),
+    sp.log(x**2 + 1) * y,
+    sp.atan(x * u) + y * x,
+    sp.exp(x * y) + y**3 / 3,
+    sp.Function("V")(x) * y,
+    sp.sqrt(x**2 + y**2),
+]
+
+
+@pytest.mark.parametrize("G", POTENTIALS, ids=str)
+def test_closed_forms_are_integrated(G):
+    found = potential([G.diff(x), G.diff(y)], [x, y], Domain())
+    assert found is not None
+    assert vanishes((found - G).diff(x)).holds
+    assert vanishes((found - G).diff(y)).holds
+
+
+def test_forms_that_are_not_closed_have_no_potential():
+    assert potential([y, -x], [x, y], Domain()) is None
+    assert potential([x * y, x], [x, y], Domain()) is None
