@@ -69,13 +69,22 @@ class Elimination:
         return len(self.pivots)
 
     @cached_property
-    def null_direction(self) -> tuple[Expr, ...] | None:
-        """One v with A v = 0, free of denominators where they are common, or None."""
+    def null_directions(self) -> tuple[tuple[Expr, ...], ...]:
+        """A basis of the v with A v = 0, each free of denominators where they are common.
+
+        Each has a component that the others have not: that of a column without pivot.
+        """
         free = [j for j in range(self.columns) if j not in self.pivots]
-        if not free:
-            return None
+        return tuple(self._null_direction(j) for j in free)
+
+    @cached_property
+    def null_direction(self) -> tuple[Expr, ...] | None:
+        """One v with A v = 0, or None."""
+        return self.null_directions[0] if self.null_directions else None
+
+    def _null_direction(self, free: int) -> tuple[Expr, ...]:
         direction: list[Expr] = [sp.S.Zero] * self.columns
-        direction[free[0]] = sp.S.One
+        direction[free] = sp.S.One
         for row, j in reversed(list(zip(self.rows, self.pivots, strict=False))):
             total = sp.Add(*(row[k] * direction[k] for k in range(j + 1, self.columns)))
             direction[j] = sp.cancel(-total / row[j])

@@ -7,9 +7,10 @@ from canon.expression.symbol import acceleration, coordinates, parameters, time,
 from canon.mechanics.appell import GibbsAppell, PlanarBody
 from canon.mechanics.constraint import ConstrainedLagrangian, generalized_forces
 from canon.mechanics.hamiltonian import Hamiltonian
+from canon.mechanics.ignorable import ignorable_coordinates
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import SingularMatrixError
-from canon.mechanics.routh import ignorable_coordinates, routhian
+from canon.mechanics.routh import routhian
 from canon.mechanics.symmetry import (
     gauge_function,
     have_same_equations,
@@ -42,7 +43,7 @@ def test_routhian_of_the_spherical_pendulum():
     )
     assert vanishes(R.R - expected).holds
     assert vanishes(R.R - expected - p**2 / (m * l**2 * sp.sin(theta) ** 2)).fails
-    assert vanishes(R.cyclic_velocities[0] - p / (m * l**2 * sp.sin(theta) ** 2)).holds
+    assert vanishes(R.ignorable_velocities[0] - p / (m * l**2 * sp.sin(theta) ** 2)).holds
 
 
 def test_routhian_of_the_two_degree_system():
