@@ -9,7 +9,7 @@ True
 
 from __future__ import annotations
 
-from canon.scene import henon_heiles, kepler, oscillator, pendulum, two_degree
+from canon.scene import bodies, henon_heiles, kepler, lattice, oscillator, pendulum, two_degree
 from canon.scene.scene import Integral, Parameter, Scene, SceneError, Start, near
 
 __all__ = ["SCENES", "Integral", "Parameter", "Scene", "SceneError", "Start", "find", "names"]
@@ -18,8 +18,10 @@ SCENES: tuple[Scene, ...] = (
     *pendulum.SCENES,
     *oscillator.SCENES,
     *kepler.SCENES,
+    *bodies.SCENES,
     *henon_heiles.SCENES,
     *two_degree.SCENES,
+    *lattice.SCENES,
 )
 """Every scene."""
 

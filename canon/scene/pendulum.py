@@ -88,6 +88,34 @@ def _horizontal(s: SimpleNamespace) -> Expr:
     return p_x**2 / (2 * s.m) + s.k * (s.r * sin(s.theta)) ** 2 / 2
 
 
+def _spring(s: SimpleNamespace) -> Expr:
+    from sympy import cos
+
+    kinetic = s.m * (s.r.dot**2 + s.r**2 * s.theta.dot**2) / 2
+    return kinetic + s.m * s.g * s.r * cos(s.theta) - s.k * (s.r - s.l) ** 2 / 2
+
+
+SPRING = Scene(
+    name="spring-pendulum",
+    title="Spring pendulum: a bob on a swinging spring, tuned so that bouncing and swinging feed one another",
+    coordinates="r theta",
+    parameters=(
+        Parameter("m", 0.5, "kg", "mass of the bob"),
+        Parameter("k", 20.0, "N/m", "stiffness of the spring"),
+        Parameter("l", 0.735, "m", "natural length of the spring"),
+        GRAVITY,
+    ),
+    starts=(
+        Start("bouncing", "pulled down, hardly aside", q=(1.08, 0.02), v=(0.0, 0.0)),
+        Start("swinging", "drawn aside and released", q=(0.95, 0.7), v=(0.0, 0.0)),
+    ),
+    time_scale=_elastic,
+    time_unit="s",
+    source="Vitt & Gorelik, Zh. Tekh. Fiz. 3, 294 (1933): resonance two to one, k l = 3 m g",
+    L_of=_spring,
+)
+
+
 def _spherical(s: SimpleNamespace) -> Expr:
     from sympy import cos, sin
 
@@ -176,5 +204,5 @@ DOUBLE_RODS = Scene(
     L_of=_rods,
 )
 
-SCENES = (SIMPLE, SLIDING_MASS, SPHERICAL, DOUBLE, DOUBLE_RODS)
+SCENES = (SIMPLE, SLIDING_MASS, SPRING, SPHERICAL, DOUBLE, DOUBLE_RODS)
 """The pendulums."""
