@@ -18,7 +18,7 @@ Judge each claim of one or more sheets. HOLDS is only said of what was proved, F
 refuted; what is neither is UNDECIDED, with what is known. Nothing in a sheet is executed, and every claim has
 a budget of time (10 s unless it says otherwise).
 """
-EXAMPLES = """\
+_TEXT = """\
 a sheet (TOML; JSON has the same keys):
 
   [[claim]]
@@ -59,7 +59,7 @@ def _kinds() -> str:
     return "\n".join("  " + ", ".join(names[i : i + 4]) for i in range(0, len(names), 4))
 
 
-EXAMPLES = EXAMPLES.replace("{kinds}", _kinds())
+EXAMPLES = _TEXT.replace("{kinds}", _kinds())
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -47,7 +47,7 @@ def convention(reading: Reading, parts: Sequence[Part], domain: Domain) -> str:
     return ""
 
 
-def _proved_factor(parts: Sequence[Part], domain: Domain) -> sp.Rational | None:
+def _proved_factor(parts: Sequence[Part], domain: Domain) -> sp.Expr | None:
     """Return the constant c ≠ 0, 1 with c·claimed = right in every component, once that is proved."""
     ratio = common_ratio(parts, domain)
     if ratio is None or ratio in (0, 1):

@@ -6,15 +6,17 @@ A diagnosis is told only when the repair it names was proved right.
 from __future__ import annotations
 
 import time
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.exercise.affine import solved
 from canon.exercise.convention import convention
 from canon.exercise.question import Part, Same, SameEquations
-from canon.exercise.rejudged import another_reading, one_change, only_where
+from canon.exercise.rejudged import another_gauge, another_reading, one_change, only_where
 from canon.exercise.repair import Screen, repair
-from canon.mechanics.linear import SingularMatrixError, solve
+from canon.mechanics.linear import SingularMatrixError
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Undecided
 
@@ -62,7 +64,21 @@ def feedback(finding: Finding, seconds: float) -> str:
     by_part = isinstance(question, SameEquations) or not reading.claim.kind.startswith(_DERIVED)
     if not sentence and by_part and parts and not reading.has("solution"):
         sentence = _part_by_part(parts, domain, deadline, _hints(question))
-    return sentence or only_where(reading, deadline) or one_change(reading, deadline)
+    return (
+        sentence
+        or only_where(reading, deadline)
+        or one_change(reading, deadline, _suspects(parts, domain), finding.held)
+        or another_gauge(reading, deadline)
+    )
+
+
+def _suspects(parts: Sequence[Part], domain: Domain) -> list[str]:
+    """Return the names in brackets that are wrong, the most frequent first."""
+    counts: Counter[str] = Counter()
+    for part in parts:
+        if part.name.startswith("{") and _is_wrong(part, domain):
+            counts.update(part.name.strip("{}").split(", "))
+    return [name for name, _ in counts.most_common()]
 
 
 def corrected(finding: Finding) -> str:
@@ -90,15 +106,12 @@ def corrected(finding: Finding) -> str:
 
 def _on_the_motion(question: SameEquations) -> tuple[Part, ...]:
     """Return each claimed equation as what should vanish with the right accelerations put in."""
-    rest = dict.fromkeys(question.unknowns, sp.S.Zero)
-    matrix = sp.Matrix([[e.diff(u) for u in question.unknowns] for e in question.right])
-    if matrix.rows != matrix.cols:
+    if len(question.right) != len(question.unknowns):
         return ()
     try:
-        found = solve(matrix, -sp.Matrix([e.xreplace(rest) for e in question.right]), question.domain)
+        through = solved(question.right, question.unknowns, question.domain)
     except (SingularMatrixError, Undecided):
         return ()
-    through = dict(zip(question.unknowns, found, strict=True))
     return tuple(Part(f"equation {i}", e, through=through) for i, e in enumerate(question.claimed, 1))
 
 
@@ -113,11 +126,8 @@ def _hints(question: Same | SameEquations) -> list[tuple[Expr, ...]]:
             for u in question.unknowns:
                 above, below = claimed.diff(u), right.diff(u)
                 if above != 0 and below != 0:
-                    scale = (
-                        sp.cancel(above / below)
-                        if sp.count_ops(above) + sp.count_ops(below) < 60
-                        else above / below
-                    )
+                    small = sp.count_ops(above) + sp.count_ops(below) < 60
+                    scale = sp.cancel(above / below) if small else above / below
                     scaled = (
                         scale * t for t in sp.Add.make_args(sp.expand(right)) if not t.has(*question.unknowns)
                     )
@@ -141,7 +151,7 @@ def _part_by_part(
         found = repair(part, domain, left, hint)
         if found is None:
             return ""
-        sentences.append(found.sentence)
+        sentences.append(str(found.change))
     if len(wrong) > MOST_SENTENCES:
         sentences.append(f"{len(wrong) - MOST_SENTENCES} more components are wrong")
     return "; ".join(sentences)

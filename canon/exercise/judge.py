@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
@@ -22,6 +21,7 @@ from canon.mechanics.linear import SingularMatrixError
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from canon.exercise.report import Report
@@ -62,11 +62,12 @@ JUDGES: Mapping[str, Judge] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Finding:
-    """A verdict on a claim, and the question on which it turned, where it is not HOLDS."""
+    """A verdict on a claim, the question on which it turned where it FAILS, and how many held before it."""
 
     reading: Reading
     verdict: Verdict
     question: Question | None = None
+    held: int = 0
 
 
 def judge(claim: Claim) -> Verdict:
@@ -125,7 +126,7 @@ def examine(claim: Claim) -> Finding:
     seconds = claim.budget - (deadline.left if deadline.left > 0.05 else 0.0)
     verdict = replace(all_hold(answered), seconds=seconds)
     verdict = verdict if verdict.question else verdict.about(_title(claim))
-    return Finding(reading, verdict, turned)
+    return Finding(reading, verdict, turned, len(answered) - 1 if turned is not None else 0)
 
 
 def check(sheet: str | Path | Sheet) -> Report:

@@ -54,7 +54,8 @@ def lagrange_brackets(reading: Reading) -> Iterator[Question]:
         for letter, symbol in (("u", u), ("v", v)):
             if symbol not in variables:
                 reading.fault(f"pairs[{i}].{letter}", f"{symbol} is not one of the variables")
-        parts.append(Part(f"[{u}, {v}]", value, lagrange_bracket(u, v, q, p)))
+        bracket = sp.Add(*(a.diff(u) * b.diff(v) - a.diff(v) * b.diff(u) for a, b in zip(q, p, strict=True)))
+        parts.append(Part(f"[{u}, {v}]", value, bracket))
     yield Same(tuple(parts), reading.domain)
 
 
@@ -244,16 +245,16 @@ def new_hamiltonian(reading: Reading) -> Iterator[Question]:
     With the inverse map the same is asked of the old variables, the parts of H and K exchanged.
     """
     there, domain = map_values(reading)
-    H, K, t = reading.expression("H"), reading.expression("K"), reading.time
+    before, after, t = reading.expression("H"), reading.expression("K"), reading.time
     old, new = ("q", "p"), ("new_q", "new_p")
     if reading.has("inverse_map"):
-        old, new, H, K = new, old, K, H
+        old, new, before, after = new, old, after, before
     q, p = reading.phase_space(*old)
     names = (*reading.symbols(new[0]), *reading.symbols(new[1]))
     images = [there[name] for name in names]
     n = len(q)
     yield Same(canonical_parts(images[:n], images[n:], q, p), domain)
-    difference = substitute(K, there) - H
+    difference = substitute(after, there) - before
     parts = tuple(
         Part(f"the equation of {name}", poisson_bracket(image, difference, q, p), image.diff(t))
         for name, image in zip(names, images, strict=True)

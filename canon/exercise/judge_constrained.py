@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
 
+from canon.exercise.affine import solved
 from canon.exercise.manifold import on_manifold
 from canon.exercise.question import Part, Question, Same, SameEquations
+from canon.exercise.tree import replaced
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.linear import SingularMatrixError, solve
+from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.substitution import substitute
 
 if TYPE_CHECKING:
@@ -62,24 +65,34 @@ def _on_every_motion(
     system = [equation - reaction for equation, reaction in zip(lagrangian.equations, reactions, strict=True)]
     system += [time_derivative(g, q, t) for g in held]
     claims = reading.equations("claim")
+    jets = _jets((*system, *manifold, *claims), t)
+    system, claims, manifold = ([replaced(e, jets) for e in given] for given in (system, claims, manifold))
     for branch in on_manifold(manifold, reading.domain, keep=(t, *unknowns), prefer=lagrangian.velocities):
         here = [substitute(equation, branch.values) for equation in system]
-        matrix, rest = _affine(here, unknowns)
         try:
-            solution = solve(matrix, -rest, branch.domain)
+            solution = solved(here, unknowns, branch.domain)
         except (
             SingularMatrixError
         ):  # dependent constraints or massless coordinates: ask for linear consequences
             seen = tuple(substitute(claim, branch.values) for claim in claims)
             yield SameEquations((*here, *seen), tuple(here), unknowns, branch.domain)
             continue
-        through = {**branch.values, **dict(zip(unknowns, solution, strict=True))}
+        through = {**branch.values, **solution}
         parts = tuple(Part(f"claim {i}", claim, through=through) for i, claim in enumerate(claims, 1))
         yield Same(parts, branch.domain)
 
 
-def _affine(system: Sequence[Expr], unknowns: Sequence[Symbol]) -> tuple[sp.Matrix, sp.Matrix]:
-    """Return A and b of A u + b."""
-    at_rest = dict.fromkeys(unknowns, sp.S.Zero)
-    matrix = sp.Matrix([[equation.diff(u) for u in unknowns] for equation in system])
-    return matrix, sp.Matrix([equation.xreplace(at_rest) for equation in system])
+def _jets(expressions: Sequence[Expr], t: Symbol) -> dict[Expr, Expr]:
+    """Return a symbol for each arbitrary function of the time and each of its derivatives.
+
+    At one instant they are independent of one another, and nothing is differentiated any more.
+    """
+    jets: dict[Expr, Expr] = {}
+    for atom in sorted(
+        set[Expr]().union(*(e.atoms(AppliedUndef, sp.Derivative) for e in expressions)), key=str
+    ):
+        function = atom.expr if isinstance(atom, sp.Derivative) else atom
+        if isinstance(function, AppliedUndef) and function.args == (t,):
+            positive = {"positive": True} if atom == function and function.is_positive else {}
+            jets[atom] = Symbol(str(atom), real=True, **positive)
+    return jets

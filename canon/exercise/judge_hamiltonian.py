@@ -40,7 +40,7 @@ def hamilton_equations(reading: Reading) -> Iterator[Question]:
     system = Hamiltonian(reading.expression("H"), q, p, reading.time)
     if reading.has("q_dot"):
         claimed = (*reading.expressions("q_dot", like="q"), *reading.expressions("p_dot", like="p"))
-        through = {velocity(x): rate for x, rate in zip(q, system.q_dot, strict=True)}
+        through: dict[Symbol, Expr] = {velocity(x): rate for x, rate in zip(q, system.q_dot, strict=True)}
         parts = tuple(
             Part(f"d{z}/dt", rate, right, through)
             for z, rate, right in zip((*q, *p), claimed, system.vector_field, strict=True)
@@ -88,7 +88,7 @@ def _rates(reading: Reading, I: Expr) -> dict[Symbol, Expr]:
         return dict(zip((*q, *p), system.vector_field, strict=True))
     if reading.has("L"):
         lagrangian = Lagrangian(reading.expression("L"), reading.symbols("q"), reading.time)
-        rates = {x: velocity(x) for x in lagrangian.q}
+        rates: dict[Symbol, Expr] = {x: velocity(x) for x in lagrangian.q}
         if I.has(*(acceleration(x) for x in lagrangian.q)):
             reading.fault("I", "should depend on coordinates, velocities and time only")
         if I.has(*lagrangian.velocities):

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.affine import solved
 from canon.exercise.manifold import transported
 from canon.exercise.question import Part, Question, Regular, Same, SameEquations
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.linear import solve
+from canon.mechanics.substitution import substitute
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -69,7 +70,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
         yield Same(
             (part,),
             transported(reading.domain, through),
-            lambda: routhian_in_momenta(lagrangian, through, sign),
+            lambda: routhian_in_momenta(lagrangian, velocities, through, sign),
         )
     if reading.has("claim"):
         conserved = tuple(time_derivative(p, q, t) for p in through.values())
@@ -96,18 +97,15 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
 
 
-def routhian_in_momenta(lagrangian: Lagrangian, through: Mapping[Symbol, Expr], sign: int) -> Expr | None:
+def routhian_in_momenta(
+    lagrangian: Lagrangian, ignorable: Sequence[Symbol], through: Mapping[Symbol, Expr], sign: int
+) -> Expr | None:
     """Return ±(L − Σ p q̇) with the ignorable velocities eliminated, where the momenta are affine in them."""
-    momenta = list(through)
-    velocities = [v for v in lagrangian.velocities if any(p.diff(v) != 0 for p in through.values())]
-    ignorable = [v for v in velocities if lagrangian.L.diff(v) in through.values()]
-    matrix = sp.Matrix([[p.diff(v) for v in ignorable] for p in through.values()])
-    if matrix.has(*ignorable):
+    equations = [p - value for p, value in through.items()]
+    if any(equation.diff(v).has(*ignorable) for equation in equations for v in ignorable):
         return None
-    rest = [p - value.xreplace(dict.fromkeys(ignorable, sp.S.Zero)) for p, value in through.items()]
-    found = dict(zip(ignorable, solve(matrix, sp.Matrix(rest)), strict=True))
-    value = lagrangian.L - sp.Add(*(p * v for p, v in zip(momenta, ignorable, strict=True)))
-    return sign * value.xreplace(found)
+    value = lagrangian.L - sp.Add(*(p * v for p, v in zip(through, ignorable, strict=True)))
+    return sp.expand(sp.Integer(sign) * substitute(value, solved(equations, ignorable)), trig=False)
 
 
 def same_motion(reading: Reading, lagrangian: Lagrangian) -> SameEquations:

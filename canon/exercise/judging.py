@@ -10,17 +10,17 @@ import sympy as sp
 from canon.exercise.feedback import corrected, feedback
 from canon.exercise.judge import InvalidClaim, examine
 from canon.exercise.report import MAX_SHOWN, Judgement, invalid
-from canon.proof.verdict import Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from canon.exercise.judge import Finding
     from canon.exercise.sheet import Claim
+    from canon.proof.verdict import Verdict
 
 __all__ = ["judgements"]
 
-FEEDBACK_SECONDS = 1.2
+FEEDBACK_SECONDS = 1.0
 
 
 def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:

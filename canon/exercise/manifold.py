@@ -9,11 +9,12 @@ lie in its closure: constraints are split into factors first.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.tree import symbols_of
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
 from canon.proof.vanish import vanishes
@@ -21,6 +22,8 @@ from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+
+    from sympy.logic.boolalg import Boolean
 
 __all__ = ["Branch", "EmptyDomainError", "on_manifold", "transported"]
 
@@ -107,18 +110,19 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
     EmptyDomainError
         Where a condition is false at every point.
     """
-    conditions = [condition.subs(values, simultaneous=True) for condition in domain.conditions]
+    conditions = [cast("Boolean", c.subs(list(values.items()), simultaneous=True)) for c in domain.conditions]
     for symbol, value in values.items():
         if symbol.is_positive and not value.is_positive:
-            conditions.append(sp.Gt(value, 0))
+            conditions.append(cast("Boolean", sp.Gt(value, 0)))
         elif symbol.is_negative and not value.is_negative:
-            conditions.append(sp.Lt(value, 0))
+            conditions.append(cast("Boolean", sp.Lt(value, 0)))
         elif symbol.is_nonzero and not value.is_nonzero:
-            conditions.append(sp.Ne(value, 0))
+            conditions.append(cast("Boolean", sp.Ne(value, 0)))
     if sp.false in conditions:
         raise EmptyDomainError("no point satisfies the assumptions and conditions")
     kept = {symbol: ends for symbol, ends in domain.box.items() if symbol not in values}
-    return Domain(tuple(dict.fromkeys(c for c in conditions if c is not sp.true)), kept)
+    kept_conditions = dict.fromkeys(c for c in conditions if c is not sp.true)
+    return Domain(tuple(kept_conditions), kept)
 
 
 def _restricted(
@@ -142,14 +146,14 @@ def _restricted(
 def _factors(expression: Expr) -> list[Expr]:
     """Return the factors of the numerator that can vanish."""
     numerator = sp.numer(sp.together(expression))
-    _, factors = sp.factor_list(numerator)
+    factors = cast("list[tuple[Expr, int]]", sp.factor_list(numerator)[1])
     able = [f for f, _ in factors if f.is_nonzero is not True and f.is_positive is not True]
     return able or [numerator]
 
 
 def _solutions(c: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]) -> Iterator[_Solution]:
-    for symbol in sorted(c.free_symbols - set(keep), key=lambda s: s.name):
-        if symbol.is_integer:
+    for symbol in symbols_of(c):
+        if symbol.is_integer or symbol in keep:
             continue
         try:
             poly = sp.Poly(c, symbol)

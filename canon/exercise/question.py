@@ -12,13 +12,14 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
-from canon.proof.domain import Domain
 from canon.proof.equations import equivalent_equations
-from canon.proof.vanish import vanishes
+from canon.proof.vanish import equal, vanishes
 from canon.proof.verdict import Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+
+    from canon.proof.domain import Domain
 
 __all__ = ["Answer", "Deadline", "Part", "Question", "Regular", "Same", "SameEquations", "decide"]
 
@@ -127,10 +128,13 @@ def _all_vanish(parts: Sequence[Part], domain: Domain, deadline: Deadline) -> Ve
     verdict = replace(vanishes(sp.Matrix(residuals), domain, budget=deadline.left), feedback="")
     if verdict.holds:
         return verdict
-    turned = (
-        part.name for part, residual in zip(parts, residuals, strict=True) if residual == verdict.residual
-    )
-    return verdict.about(next(turned, ""))
+    turned = next((p for p, r in zip(parts, residuals, strict=True) if r == verdict.residual), None)
+    if turned is None:
+        return verdict
+    if verdict.fails and turned.right != 0:  # ask again for the values of both sides
+        both = equal(turned.seen(turned.claimed), turned.right, domain, budget=1.0)
+        verdict = replace(verdict, counterexample=both.counterexample or verdict.counterexample)
+    return verdict.about(turned.name)
 
 
 def _same_equations(
@@ -147,7 +151,19 @@ def _same_equations(
             return replace(
                 affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}"
             )
-    return equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
+    verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
+    return replace(verdict, feedback=_in_our_words(verdict.feedback))
+
+
+def _in_our_words(feedback: str) -> str:
+    """Say "claimed" and "of motion" where the proof room says first and second."""
+    words = {
+        "of the second system does not follow from the first": "of motion does not follow from the claimed ones",
+        "of the first system does not follow from the second": "of the claim does not follow from those of motion",
+    }
+    for theirs, ours in words.items():
+        feedback = feedback.replace(theirs, ours)
+    return feedback
 
 
 def _listed(symbols: Sequence[Symbol]) -> str:

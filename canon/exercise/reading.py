@@ -12,7 +12,14 @@ from sympy import Expr, Rational, Symbol
 
 from canon.exercise.kinds import KINDS, Shape
 from canon.exercise.sheet import Claim, ClaimError
-from canon.expression.language import LanguageError, Scope, parse_condition, parse_equation, parse_expression
+from canon.expression.language import (
+    LanguageError,
+    Scope,
+    exact,
+    parse_condition,
+    parse_equation,
+    parse_expression,
+)
 from canon.expression.symbol import Coordinate, Momentum, velocity
 from canon.proof.domain import Domain
 
@@ -135,7 +142,7 @@ class Reading:
             symbol = self.scope.symbol(name)
             if symbol is None:
                 self.fault("box", f"{name} is not declared; {self.scope.near(name)}")
-            box[symbol] = (Rational(str(low)), Rational(str(high)))
+            box[symbol] = (exact(low), exact(high))
         return Domain(tuple(conditions), MappingProxyType(box))
 
     def symbols(self, key: str) -> tuple[Symbol, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from itertools import chain, groupby
+from itertools import chain, groupby, islice
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -13,19 +13,20 @@ import sympy as sp
 from canon.exercise.manifold import EmptyDomainError
 from canon.exercise.question import Deadline, decide
 from canon.exercise.reading import InvalidClaim, Reading
-from canon.exercise.variants import common_slips, times, variants
+from canon.exercise.tree import replaced
+from canon.exercise.variants import Change, common_slips, times, variants
 from canon.expression.symbol import velocity
 from canon.mechanics.linear import SingularMatrixError
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from sympy import Expr
 
-__all__ = ["another_reading", "one_change", "only_where"]
+__all__ = ["another_gauge", "another_reading", "one_change", "only_where"]
 
-TRIAL_SECONDS = 0.4
+TRIAL_SECONDS = 0.25
 _ANSWERS: Mapping[str, tuple[str, ...]] = {
     "gibbs-appell": ("S",),
     "hamilton-equations": ("solution",),
@@ -58,6 +59,9 @@ def another_reading(reading: Reading, deadline: float) -> str:
     if kind == "hamilton-equations" and reading.has("q_dot"):
         exchanged = {"q_dot": keys["p_dot"], "p_dot": keys["q_dot"]}
         trials.append((kind, {**keys, **exchanged}, "the equations of q and p are exchanged"))
+    if kind == "lagrangian-equivalence" and reading.word("relation") == "gauge" and not reading.has("F"):
+        sentence = "L1 and L2 have the same equations of motion, but L2 − L1 is not dF/dt"
+        trials.append((kind, {**keys, "relation": "equations"}, f"{sentence} of any F(q, t)"))
     if kind == "routhian":
         other = {"L-pq": "pq-L", "pq-L": "L-pq"}[reading.word("convention")]
         trials.append((kind, {**keys, "convention": other}, f"right under the other convention, {other}"))
@@ -67,6 +71,15 @@ def another_reading(reading: Reading, deadline: float) -> str:
         if time.monotonic() < deadline and _holds(_read_anew(reading, other, changed), deadline):
             return sentence
     return ""
+
+
+def another_gauge(reading: Reading, deadline: float) -> str:
+    """Return whether L₂ − L₁ is the derivative of another function than the one that was given."""
+    if reading.claim.kind != "lagrangian-equivalence" or not reading.has("F"):
+        return ""
+    others = {key: value for key, value in reading.claim.keys.items() if key != "F"}
+    found = _holds(_read_anew(reading, reading.claim.kind, others), deadline)
+    return "L2 − L1 is dF/dt of some F(q, t), but not of this one" if found else ""
 
 
 def only_where(reading: Reading, deadline: float) -> str:
@@ -96,11 +109,24 @@ def only_where(reading: Reading, deadline: float) -> str:
     return ""
 
 
-def one_change(reading: Reading, deadline: float) -> str:
-    """Return one change in the answer that makes the whole claim right."""
-    answers = list(_answers(reading))
+def one_change(reading: Reading, deadline: float, suspects: Sequence[str] = (), held: int = 0) -> str:
+    """Return one change in the answer that makes the whole claim right.
+
+    Parameters
+    ----------
+    reading
+        The claim.
+    deadline
+        When to give up.
+    suspects
+        Names of what is probably wrong, such as ``P2``, the first suspect first.
+    held
+        How many questions of the claim were answered before the one that failed.
+    """
+    answers = sorted(_answers(reading), key=lambda answer: _rank(answer[0], suspects))
     symbols = tuple(reading.scope.names.values())
-    for key, group in groupby(answers, key=lambda answer: answer[0].partition("[")[0]):
+    groups = groupby(sorted(answers, key=lambda a: _outer(a[0])), key=lambda a: _outer(a[0]))
+    for key, group in groups:
         items = list(group)
         if len(items) > 1:
             for slip, change in common_slips([e for _, e in items], symbols):
@@ -108,28 +134,42 @@ def one_change(reading: Reading, deadline: float) -> str:
                     return ""
                 trial = reading
                 for name, expression in items:
-                    trial = trial.with_instead(name, expression.xreplace(dict(slip)))
+                    trial = trial.with_instead(name, replaced(expression, slip))
                 if _holds(trial, deadline):
                     return f"in {key} {change}"
-    share = (deadline - time.monotonic()) / max(1, len(answers))
     for number, (key, expression) in enumerate(answers, 1):
-        until = min(deadline, deadline - share * (len(answers) - number))
+        left = deadline - time.monotonic()
+        until = deadline if number == len(answers) else deadline - left / 2
         for new, change in chain(_rescaled(key, expression), _named(key, variants(expression, symbols))):
             if time.monotonic() > until:
                 break
-            if not _trivial(new, reading) and _holds(reading.with_instead(key, new), deadline):
-                return change
+            if _trivial(new, reading):
+                continue
+            if _holds(reading.with_instead(key, new), deadline, held if key == "K" else 0):
+                return str(change)
     return ""
 
 
-def _rescaled(key: str, expression: Expr) -> Iterator[tuple[Expr, str]]:
-    yield -expression, f"{key} has the wrong sign"
+def _outer(key: str) -> str:
+    """Return the part of a key before the component: P of P[0], solution of solution.q."""
+    return "solution" if key.startswith("solution.") else key.partition("[")[0]
+
+
+def _rank(key: str, suspects: Sequence[str]) -> int:
+    """Return how far back in the line of suspects a component stands: P[1] is called P2, or P if it is alone."""
+    letter, _, index = key.removeprefix("map.").partition("[")
+    names = (letter, f"{letter}{int(index[:-1]) + 1}" if index else letter)
+    return min((i for i, suspect in enumerate(suspects) if suspect in names), default=len(suspects))
+
+
+def _rescaled(key: str, expression: Expr) -> Iterator[tuple[Expr, Change]]:
+    yield -expression, Change("{} has the wrong sign", key)
     for factor in (sp.Rational(1, 2), sp.Rational(2)):
-        yield factor * expression, f"{key} should be {times(factor)} what it is"
+        yield factor * expression, Change("{} should be {} what it is", key, times(factor))
 
 
-def _named(key: str, found: Iterator[tuple[Expr, str]]) -> Iterator[tuple[Expr, str]]:
-    return ((new, f"in {key} {change}") for new, change in found)
+def _named(key: str, found: Iterator[tuple[Expr, Change]]) -> Iterator[tuple[Expr, Change]]:
+    return ((new, Change("in {} {}", key, change)) for new, change in found)
 
 
 def _answers(reading: Reading) -> Iterator[tuple[str, Expr]]:
@@ -161,7 +201,7 @@ def _inverted(reading: Reading) -> Reading:
     )
     for part, name in (("Q", "q"), ("P", "p")):
         for i, f in enumerate(reading.inside(f"map.{part}", reading.claim.keys["map"][part])):
-            inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", f.xreplace(swap))
+            inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", replaced(f, swap))
     return inverted
 
 
@@ -176,12 +216,13 @@ def _read_anew(reading: Reading, kind: str, keys: Mapping[str, Any]) -> Reading:
     return Reading(replace(reading.claim, kind=kind, keys=MappingProxyType(dict(keys))))
 
 
-def _holds(reading: Reading, deadline: float) -> bool:
+def _holds(reading: Reading, deadline: float, held: int = 0) -> bool:
+    """Whether a changed claim holds; the first ``held`` questions are known to and are not touched by the change."""
     from canon.exercise.judge import JUDGES
 
     left = min(TRIAL_SECONDS, max(0.05, deadline - time.monotonic()))
     try:
-        questions = JUDGES[reading.claim.kind](reading)
+        questions = islice(JUDGES[reading.claim.kind](reading), held, None)
         return all(decide(question, Deadline.after(left)).holds for question in questions)
     except (Undecided, SingularMatrixError, InvalidClaim, EmptyDomainError):
         return False

@@ -19,7 +19,8 @@ from flint import acb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.exercise.variants import times, variants
+from canon.exercise.tree import symbols_of
+from canon.exercise.variants import Change, times, variants
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.vanish import vanishes
 
@@ -39,10 +40,10 @@ PROOF_SECONDS = 0.5
 
 @dataclass(frozen=True)
 class Repair:
-    """A right expression in place of a wrong one, and what was changed in words."""
+    """A right expression in place of a wrong one, and the change in words."""
 
     right: Expr
-    sentence: str
+    change: Change
 
 
 def repair(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = ()) -> Repair | None:
@@ -95,19 +96,22 @@ def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[R
     if part.right != 0:
         factor = screen.ratio(part.right, claimed)
         if factor == -1:
-            yield Repair(-claimed, f"{name} has the wrong sign")
+            yield Repair(-claimed, Change("{} has the wrong sign", name))
         elif factor is not None and factor != 0:
             right = sp.Rational(factor.numerator, factor.denominator) * claimed
-            yield Repair(right, f"{name} should be {times(factor)} what it is")
+            yield Repair(right, Change("{} should be {} what it is", name, times(factor)))
     yield from _terms_rescaled(part, screen)
     missing = list(_terms_missing(part, screen, hints))
     yield from missing
-    slips = list(islice(variants(claimed, _symbols(part)), MOST_VARIANTS))
-    for new, change in slips:
-        yield Repair(new, f"in {name} {change}")
+    slips: list[tuple[Expr, Change]] = []
+    for new, change in islice(
+        variants(claimed, symbols_of(claimed, part.right, *part.through)), MOST_VARIANTS
+    ):
+        slips.append((new, change))
+        yield Repair(new, Change("in {} {}", name, change))
     for term in hints:  # a slip, and a term is missing besides
         for new, change in slips:
-            yield Repair(new + term, f"in {name} the term {term} is missing, and {change}")
+            yield Repair(new + term, Change("in {} the term {} is missing, and {}", name, term, change))
 
 
 def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -123,11 +127,11 @@ def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
                 continue
             factor, right = 1 - share, claimed - sp.Rational(share.numerator, share.denominator) * term
             if factor == 0:
-                yield Repair(right, f"in {name} the term {term} does not belong")
+                yield Repair(right, Change("in {} the term {} does not belong", name, term))
             elif factor == -1:
-                yield Repair(right, f"in {name} the sign of {term} is wrong")
+                yield Repair(right, Change("in {} the sign of {} is wrong", name, term))
             else:
-                yield Repair(right, f"in {name} the term {term} should be {times(factor)} that")
+                yield Repair(right, Change("in {} the term {} should be {} that", name, term, times(factor)))
 
 
 def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Repair]:
@@ -137,7 +141,7 @@ def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterato
         share = screen.share_of_residual(term)
         if share is not None and share != 0:
             missing = -sp.Rational(share.numerator, share.denominator) * term
-            yield Repair(part.claimed + missing, f"in {part.name} the term {missing} is missing")
+            yield Repair(part.claimed + missing, Change("in {} the term {} is missing", part.name, missing))
 
 
 def _says_something(part: Part, right: Expr) -> bool:
@@ -155,24 +159,17 @@ def _as_sums(expression: Expr) -> Iterator[Sequence[Expr]]:
             yield expanded
 
 
-def _symbols(part: Part) -> tuple[Symbol, ...]:
-    found = part.claimed.free_symbols | part.right.free_symbols | set(part.through)
-    return tuple(sorted((s for s in found if isinstance(s, Symbol)), key=lambda s: s.name))
-
-
 class Screen:
     """Values at a few points of the domain, which tell wrong candidates at once."""
 
     def __init__(self, part: Part, domain: Domain) -> None:
         self.part = part
-        symbols = set[Symbol]().union(
-            part.right.free_symbols,
-            part.claimed.free_symbols,
-            *(v.free_symbols for v in part.through.values()),
-        )
+        symbols = symbols_of(part.right, part.claimed, *part.through.values())
         self.points: list[dict[sp.Basic, acb]] = []
         with precision(PRECISION):
-            for number, point in enumerate(domain.points(symbols - set(part.through), POINTS, seed=11)):
+            for number, point in enumerate(
+                domain.points((s for s in symbols if s not in part.through), POINTS, seed=11)
+            ):
                 memo = self._memo(point, number)
                 if memo is not None:
                     self.points.append(memo)

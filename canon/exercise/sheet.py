@@ -230,7 +230,8 @@ def _claim(keys: Any, number: int, file: str) -> Claim:
         return Claim(f"#{number}", "", errors=(error,))
     name = keys.get("id")
     id_ = name if isinstance(name, str) and name else f"#{number}"
-    kind = keys.get("kind") if isinstance(keys.get("kind"), str) else ""
+    said = keys.get("kind")
+    kind = said if isinstance(said, str) else ""
     faults = [("id", "missing (a name for the claim)")] if id_ != name else []
     faults += _faults(kind, keys)
     expect = keys.get("expect", "")

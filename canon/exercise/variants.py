@@ -2,27 +2,46 @@
 
 from __future__ import annotations
 
-from itertools import chain
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from itertools import chain, combinations
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
+
+from canon.exercise.tree import arguments, replaced, symbols_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
-__all__ = ["common_slips", "times", "variants"]
+__all__ = ["Change", "common_slips", "times", "variants"]
 
-_FACTORS = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
-_TWINS = {
-    sp.sin: sp.cos, sp.cos: sp.sin, sp.tan: sp.cot, sp.cot: sp.tan, sp.sinh: sp.cosh, sp.cosh: sp.sinh,
-    sp.asin: sp.acos, sp.acos: sp.asin, sp.atan: sp.acot, sp.acot: sp.atan, sp.sec: sp.csc, sp.csc: sp.sec,
-    sp.asinh: sp.acosh, sp.acosh: sp.asinh, sp.elliptic_k: sp.elliptic_e, sp.elliptic_e: sp.elliptic_k,
-}  # fmt: skip
+_FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
+_FAMILIES = (
+    (sp.sin, sp.cos), (sp.tan, sp.cot), (sp.sec, sp.csc), (sp.sinh, sp.cosh, sp.tanh), (sp.asin, sp.acos),
+    (sp.atan, sp.acot), (sp.asinh, sp.acosh, sp.atanh), (sp.elliptic_k, sp.elliptic_e),
+)  # fmt: skip
+_TWINS = {f: tuple(g for g in family if g is not f) for family in _FAMILIES for f in family}
+_CONSTANTS = (sp.pi, -sp.pi, sp.pi / 2, -sp.pi / 2)
 
 
-def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple[Expr, str]]:
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change in words, put together only when someone wants to read it."""
+
+    pattern: str
+    items: tuple[object, ...]
+
+    def __init__(self, pattern: str, *items: object) -> None:
+        object.__setattr__(self, "pattern", pattern)
+        object.__setattr__(self, "items", items)
+
+    def __str__(self) -> str:
+        return self.pattern.format(*self.items)
+
+
+def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple[Expr, Change]]:
     """Yield expressions that differ in one place, likely slips first, with the change in words.
 
     Parameters
@@ -35,43 +54,46 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     Examples
     --------
     >>> x, y = sp.symbols("x y")
-    >>> [str(new) for new, change in variants(sp.sin(x) - y) if "sin" in change]
-    ['-y - sin(x)', '-y + cos(x)', '-y - sin(x)', '-y + sin(2*x)', '-y + sin(x/2)']
+    >>> [str(new) for new, change in variants(sp.sin(x) - y) if "sin" in str(change)][:3]
+    ['-y - sin(x)', '-y + cos(x)', '-y - sin(x)']
     """
 
-    def exchanged(node: Expr) -> Iterator[tuple[Expr, str]]:
+    def exchanged(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _exchanged(node, symbols)
 
-    def multiplied(node: Expr) -> Iterator[tuple[Expr, str]]:
+    def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, symbols)
 
     for edits in (_signs, _functions, _factors, _exponents, _dropped, exchanged, multiplied):
         yield from _one_place(expression, edits)
     if not expression.is_Add:
         for symbol in symbols:
-            yield expression * symbol, f"{expression} lacks the factor {symbol}"
-            yield expression / symbol, f"{expression} should be divided by {symbol}"
+            yield expression * symbol, Change("{} lacks the factor {}", expression, symbol)
+            yield expression / symbol, Change("{} should be divided by {}", expression, symbol)
     yield from _everywhere(expression, symbols)
 
 
 def common_slips(
     expressions: Sequence[Expr], symbols: Sequence[Symbol]
-) -> Iterator[tuple[Mapping[Expr, Expr], str]]:
+) -> Iterator[tuple[Mapping[Expr, Expr], Change]]:
     """Yield substitutions that a person may have got wrong in all components of an answer alike."""
-    own = sorted(set[Expr]().union(*(e.free_symbols for e in expressions)), key=str)
+    own = symbols_of(*expressions)
     for symbol in own:
-        yield {symbol: -symbol}, f"the sign of {symbol} is wrong everywhere"
-    functions = sorted(set[Expr]().union(*(e.atoms(sp.Function) for e in expressions)), key=str)
+        yield {symbol: -symbol}, Change("the sign of {} is wrong everywhere", symbol)
+    functions = sorted({f for e in expressions for f in e.atoms(sp.Function)}, key=str)
     for f in functions:
-        yield {f: -f}, f"the sign of {f} is wrong everywhere"
-        if (twin := _TWINS.get(f.func)) is not None:
-            yield {f: twin(*f.args)}, f"{f} should be {twin(*f.args)} everywhere"
+        yield {f: -f}, Change("the sign of {} is wrong everywhere", f)
+        for twin in _twins(f):
+            yield {f: twin(*arguments(f))}, Change("{} should be {} everywhere", f, twin(*arguments(f)))
+    for node in _repeated(expressions):
+        for new, change in chain(_signs(node), _factors(node)):
+            yield {node: new}, Change("in {} {}, everywhere", node, change)
     for symbol in own:
         for factor in (*_FACTORS[:2], *(power for s in symbols if s != symbol for power in (s, 1 / s))):
-            yield {symbol: factor * symbol}, f"{symbol} should be {factor * symbol} everywhere"
+            yield {symbol: factor * symbol}, Change("{} should be {} everywhere", symbol, factor * symbol)
 
 
-def times(factor: Fraction | sp.Rational) -> str:
+def times(factor: Fraction | Expr) -> str:
     """Return a factor in words: half, twice, 3/2 times.
 
     Examples
@@ -82,103 +104,116 @@ def times(factor: Fraction | sp.Rational) -> str:
     return {"1/2": "half", "2": "twice", "-1": "minus"}.get(str(factor), f"{factor} times")
 
 
+def _twins(f: Expr) -> tuple[Callable[..., Expr], ...]:
+    """Return the functions that one is mistaken for."""
+    return cast("dict[object, tuple[Callable[..., Expr], ...]]", _TWINS).get(f.func, ())
+
+
 def _one_place(
-    expression: Expr, edits: Callable[[Expr], Iterator[tuple[Expr, str]]]
-) -> Iterator[tuple[Expr, str]]:
+    expression: Expr, edits: Callable[[Expr], Iterator[tuple[Expr, Change]]]
+) -> Iterator[tuple[Expr, Change]]:
     """Apply an edit at one place of the tree at a time, equal subexpressions elsewhere left alone."""
     yield from edits(expression)
-    arguments = expression.args
-    for i, argument in enumerate(arguments):
+    branches = expression.args
+    for i, argument in enumerate(branches):
         if isinstance(argument, Expr) and not argument.is_Number:
             for new, change in _one_place(argument, edits):
-                yield expression.func(*arguments[:i], new, *arguments[i + 1 :]), change
+                yield expression.func(*branches[:i], new, *branches[i + 1 :]), change
 
 
-def _signs(node: Expr) -> Iterator[tuple[Expr, str]]:
+def _signs(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
-        for term in node.args:
-            yield node - 2 * term, f"the sign of {term} is wrong"
+        for term in arguments(node):
+            yield node - 2 * term, Change("the sign of {} is wrong", term)
 
 
-def _factors(node: Expr) -> Iterator[tuple[Expr, str]]:
+def _factors(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
-        for term in node.args:
+        for term in arguments(node):
             for factor in _FACTORS:
-                yield node + (factor - 1) * term, f"the term {term} should be {times(factor)} that"
+                yield node + (factor - 1) * term, Change("the term {} should be {} that", term, times(factor))
 
 
-def _functions(node: Expr) -> Iterator[tuple[Expr, str]]:
-    twin = _TWINS.get(node.func)
-    if twin is not None and len(node.args) == 1:
-        yield twin(*node.args), f"{node} should be {twin(*node.args)}"
-    if node.func in _TWINS or isinstance(node, sp.exp):
+def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    for twin in _twins(node) if len(arguments(node)) == 1 else ():
+        yield twin(*arguments(node)), Change("{} should be {}", node, twin(*arguments(node)))
+    if _twins(node) or isinstance(node, sp.exp):
         for factor in (sp.S.NegativeOne, sp.Rational(2), sp.Rational(1, 2)):
-            new = node.func(factor * node.args[0])
-            yield new, f"{node} should be {new}"
+            new = node.func(factor * arguments(node)[0])
+            yield new, Change("{} should be {}", node, new)
 
 
-def _exponents(node: Expr) -> Iterator[tuple[Expr, str]]:
+def _exponents(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add or node.is_Mul or node.is_Number:
         if node.is_Add:
-            yield node**2, f"{node} should be squared"
+            yield node**2, Change("{} should be squared", node)
         return
     base, exponent = node.as_base_exp()
     if exponent.is_Rational:
         for other in dict.fromkeys((2 * exponent, exponent / 2, exponent + 1, exponent - 1, -exponent)):
             if other != 0:
-                yield base**other, f"{node} should be {base**other}"
+                yield base**other, Change("{} should be {}", node, base**other)
     if exponent == 2:
-        yield base * sp.Abs(base), f"{node} should be {base * sp.Abs(base)}"
+        yield base * sp.Abs(base), Change("{} should be {}", node, base * sp.Abs(base))
     if node.is_Symbol and not node.is_positive:
-        yield sp.Abs(node), f"{node} should be Abs({node})"
+        yield sp.Abs(node), Change("{} should be Abs({})", node, node)
 
 
-def _dropped(node: Expr) -> Iterator[tuple[Expr, str]]:
+def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
-        for term in node.args:
-            yield node - term, f"the term {term} does not belong"
+        for term in arguments(node):
+            yield node - term, Change("the term {} does not belong", term)
     if node.is_Mul:
-        for factor in node.args:
+        for factor in arguments(node):
             if not factor.is_Number:
-                yield node / factor, f"the factor {factor} of {node} does not belong"
+                yield node / factor, Change("the factor {} of {} does not belong", factor, node)
 
 
-def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, str]]:
+def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
     """One symbol for another in one function, or as one factor."""
-    places = node.args if node.is_Mul or node.is_Add else (node,) if node.is_Function else ()
+    places = arguments(node) if node.is_Mul or node.is_Add else (node,) if node.is_Function else ()
     for place in places:
-        for old in (
-            sorted(place.free_symbols, key=str)
-            if place.is_Function or place.is_Pow or place.is_Symbol
-            else ()
-        ):
+        for old in symbols_of(place) if place.is_Function or place.is_Pow or place.is_Symbol else ():
             for new in symbols:
                 if new != old:
-                    changed = place.xreplace({old: new})
+                    changed = replaced(place, {old: new})
                     rest = (
-                        node.func(*(changed if p == place else p for p in node.args))
+                        node.func(*(changed if p == place else p for p in arguments(node)))
                         if place != node
                         else changed
                     )
-                    yield rest, f"{place} should be {changed}"
+                    yield rest, Change("{} should be {}", place, changed)
 
 
-def _multiplied(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, str]]:
+def _multiplied(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
-        for term in node.args:
+        for term in arguments(node):
             for symbol in symbols:
-                yield node - term + term * symbol, f"the term {term} lacks the factor {symbol}"
-                yield node - term + term / symbol, f"the term {term} should be divided by {symbol}"
+                yield node - term + term * symbol, Change("the term {} lacks the factor {}", term, symbol)
+                yield node - term + term / symbol, Change("the term {} should be divided by {}", term, symbol)
 
 
-def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, str]]:
-    """The same slip in all places at once."""
-    for old, new in chain(
-        ((a, b) for a in sorted(expression.free_symbols, key=str) for b in symbols if a != b),
-        (
-            (f, twin(*f.args))
-            for f in sorted(expression.atoms(sp.Function), key=str)
-            if (twin := _TWINS.get(f.func))
-        ),
-    ):
-        yield expression.xreplace({old: new}), f"{old} should be {new} everywhere"
+def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """The same slip in all places at once, two symbols exchanged, a constant angle lost."""
+    for slip, change in common_slips([expression], ()):
+        yield replaced(expression, dict(slip)), change
+    own = symbols_of(expression)
+    for a, b in combinations(own, 2):
+        yield replaced(expression, {a: b, b: a}), Change("{} and {} should be exchanged", a, b)
+    for old in own:
+        for new in symbols:
+            if new != old:
+                yield replaced(expression, {old: new}), Change("{} should be {} everywhere", old, new)
+    if expression.has(*_TWINS):
+        for angle in _CONSTANTS:
+            yield expression + angle, Change("the term {} is missing", angle)
+
+
+def _repeated(expressions: Sequence[Expr]) -> list[Expr]:
+    """Return the sums that stand in more than one place."""
+    counts: dict[Expr, int] = {}
+    for expression in expressions:
+        for node in sp.preorder_traversal(expression):
+            if isinstance(node, Expr) and node.is_Add:
+                counts[node] = counts.get(node, 0) + 1
+    return [node for node, count in counts.items() if count > 1]

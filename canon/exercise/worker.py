@@ -15,6 +15,7 @@ import sys
 import threading
 import time
 from decimal import Decimal
+from pathlib import Path
 from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, Any
 
@@ -31,6 +32,10 @@ START = 60.0
 """Seconds that a worker may take to start, on a slow or busy machine."""
 GRACE = 0.7
 """Seconds beyond its budget that a judgement may take to come to its own end before it is killed."""
+
+
+FEEDBACK = 1.8
+"""Seconds after the verdict for which its feedback is waited for."""
 
 
 class Worker:
@@ -91,6 +96,7 @@ class Worker:
             verdict = Judgement.from_dict(answer)
             if answer["last"]:
                 return verdict
+            deadline = min(deadline, time.monotonic() + FEEDBACK)
 
     def _running(self) -> subprocess.Popen[str] | None:
         """Return the process if it ran before; start one otherwise."""
@@ -105,7 +111,7 @@ class Worker:
             stderr=subprocess.DEVNULL,
             text=True,
             encoding="utf-8",
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)},
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)},
         )
         assert self._process.stdout is not None  # it is a pipe
         threading.Thread(target=_listen, args=(self._process.stdout, self._lines), daemon=True).start()

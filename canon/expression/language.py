@@ -10,11 +10,10 @@ import difflib
 from dataclasses import dataclass, field
 from functools import reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, cast
 
 import sympy as sp
-from sympy import Expr, Integer, Rational, Symbol
-from sympy.logic.boolalg import Boolean
+from sympy import Expr, Rational, Symbol
 
 from canon.expression import syntax
 from canon.expression.symbol import Coordinate, acceleration, time, velocity
@@ -22,6 +21,9 @@ from canon.expression.syntax import LanguageError, parse_syntax
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from decimal import Decimal
+
+    from sympy.logic.boolalg import Boolean
 
 __all__ = ["LanguageError", "Scope", "parse_condition", "parse_equation", "parse_expression"]
 
@@ -215,8 +217,6 @@ class _Builder:
             self.refuse(node, "a number too long to be meant")
         if value is sp.nan or value.has(sp.zoo, sp.oo, sp.S.NegativeInfinity, sp.nan):
             self.refuse(node, "this is infinite or undefined everywhere")
-        if not isinstance(value, Expr):
-            self.refuse(node, "this is not an expression")
         return value
 
     def name(self, node: syntax.Name) -> Expr:
@@ -318,7 +318,7 @@ class _Builder:
             case syntax.Name(text="True"):
                 return sp.true
             case syntax.Call(function="Ne", arguments=(left, right)) if "Ne" not in self.scope.functions:
-                return sp.Ne(self.expression(left), self.expression(right))
+                return cast("Boolean", sp.Ne(self.expression(left), self.expression(right)))
             case syntax.Comparison(operands, relations):
                 if "=" in relations:
                     self.refuse(
@@ -327,11 +327,13 @@ class _Builder:
                 sides = [self.expression(side) for side in operands]
                 pairs = zip(sides, relations, sides[1:], strict=False)
                 try:
-                    return sp.And(*(_related(left, relation, right) for left, relation, right in pairs))
+                    chain = (_related(left, relation, right) for left, relation, right in pairs)
+                    return sp.And(*chain)
                 except TypeError:
                     self.refuse(node, "imaginary numbers can't be compared")
             case _:
-                self.refuse(node, "a condition is missing", "write < <= > >= or Ne(a, b)")
+                pass
+        return self.refuse(node, "a condition is missing", "write < <= > >= or Ne(a, b)")
 
     def product(self, factors: tuple[tuple[bool, syntax.Node], ...]) -> Expr:
         built: list[Expr] = []
@@ -383,7 +385,7 @@ def _bits(value: Expr) -> int:
     return max(int(number.p).bit_length(), int(number.q).bit_length(), 1)
 
 
-def exact(value: float | int | str) -> Rational:
+def exact(value: Decimal | float | int | str) -> Rational:
     """Return the exact rational that a number in a sheet spells.
 
     Examples
@@ -391,4 +393,4 @@ def exact(value: float | int | str) -> Rational:
     >>> exact(0.1)
     1/10
     """
-    return Integer(value) if isinstance(value, int) else Rational(str(value))
+    return cast("Rational", Rational(str(value)))

@@ -1,4 +1,4 @@
-"""Every claim of the sheets in tests/data/claims gets the verdict its author expects, and every true one has a wrong twin."""
+"""Every claim in tests/data/claims gets the verdict its author expects, and every true one has a wrong twin."""
 
 from pathlib import Path
 
