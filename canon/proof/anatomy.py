@@ -7,7 +7,7 @@ trees are far larger than the number of distinct parts.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 
@@ -34,7 +34,7 @@ class Anatomy:
         bound: set[sp.Basic] = set()
         for part in self.parts:
             if isinstance(part, sp.Subs):
-                bound |= set(part.variables) - part.free_symbols
+                bound |= set(cast("tuple[sp.Symbol, ...]", part.variables)) - part.free_symbols
         return bound
 
     def has(self, *kinds: type[Any]) -> bool:
@@ -65,9 +65,9 @@ def anatomy(exprs: Iterable[sp.Basic]) -> Anatomy:
             if part in sizes:
                 continue
             if ready:
-                sizes[part] = 1 + sum(sizes[a] for a in part.args if isinstance(a, sp.Basic))
+                sizes[part] = 1 + sum(sizes[a] for a in part.args)
             else:
                 stack.append((part, True))
-                stack.extend((a, False) for a in part.args if isinstance(a, sp.Basic) and a not in sizes)
+                stack.extend((a, False) for a in part.args if a not in sizes)
         total += sizes[expr]
     return Anatomy(tuple(sizes), total)

@@ -9,11 +9,12 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
+from canon.proof.typed import free_symbols, rational
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -33,7 +34,7 @@ def declared_complex(symbol: Basic) -> bool:
 def _parts(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
     for condition in conditions:
         if isinstance(condition, And):
-            yield from _parts(condition.args)
+            yield from _parts(cast("tuple[Boolean, ...]", condition.args))
         else:
             yield condition
 
@@ -91,14 +92,14 @@ class Domain:
         >>> all(0 < point[x] < 1 for point in Domain(conditions=(x < 1,)).points([x], 5))
         True
         """
-        conditioned = {s for condition in self.conditions for s in condition.free_symbols}
+        conditioned = {s for condition in self.conditions for s in free_symbols(condition)}
         ordered = sorted({*symbols, *conditioned}, key=lambda s: s.name)
         chance = random.Random(seed)
         found = 0
         for attempt in range(40 * count + 200):
             if found == count:
                 return
-            scale = _SCALES[(attempt // 3) % len(_SCALES)]
+            scale = rational(_SCALES[(attempt // 3) % len(_SCALES)])
             point = {s: self._draw(s, scale, chance, in_box=in_box) for s in ordered}
             marked = [s for s in ordered if marks.get(s)]
             for s in chance.sample(marked, k=min(len(marked), 1 + attempt % 2)):
@@ -127,7 +128,7 @@ class Domain:
         for condition in _parts(self.conditions):
             if not isinstance(condition, Lt | Le | Gt | Ge):
                 continue
-            less, greater = condition.lts, condition.gts
+            less, greater = cast("Expr", condition.lts), cast("Expr", condition.gts)
             strict = isinstance(condition, Lt | Gt)
             if less == symbol and greater.is_number and (greater < high or (greater == high and strict)):
                 high, open_high = greater, strict
@@ -148,8 +149,8 @@ class Domain:
                 continue
             if not isinstance(condition, Lt | Le | Gt | Ge):
                 return False
-            gap = condition.lhs - condition.rhs
-            slopes = [gap.diff(s) for s in gap.free_symbols]
+            gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
+            slopes = [gap.diff(s) for s in free_symbols(gap)]
             if any(slope.free_symbols for slope in slopes):
                 return False
         return True
@@ -168,20 +169,20 @@ class Domain:
         if in_box and symbol in self.box:
             low, high = (Rational(end) for end in self.box[symbol])
             drawn = low + (high - low) * Rational(chance.randint(1, 63), 64)
-            return Integer(round(drawn)) if symbol.is_integer else drawn
+            return Integer(round(drawn)) if symbol.is_integer else rational(drawn)
         if symbol.is_integer:
             magnitude = Integer(chance.randint(1, max(3, int(8 * scale))))
         else:
             magnitude = scale * Rational(chance.randint(1, 23), chance.choice((4, 7, 8)))
         sign = 1 if symbol.is_nonnegative else -1 if symbol.is_nonpositive else chance.choice((1, -1))
-        return sign * magnitude
+        return rational(sign * magnitude)
 
     def _settle_equalities(self, point: dict[Symbol, Rational]) -> bool:
         """Solve each equality for a symbol it holds linearly; say whether rational values were found."""
         for condition in self.conditions:
             if not isinstance(condition, Eq):
                 continue
-            gap = condition.lhs - condition.rhs
+            gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
             linear = [s for s in point if (slope := gap.diff(s)) != 0 and s not in slope.free_symbols]
             for s in linear:
                 others = {name: number for name, number in point.items() if name != s}

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from sympy import Ne, Piecewise, Pow, default_sort_key, false, true
+from sympy.concrete.expr_with_limits import ExprWithLimits
 
 from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.angles import Refine
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Sequence
 
     from sympy import Expr
+    from sympy.logic.boolalg import Boolean
 
 __all__ = ["Attempt", "prove_each", "prove_zero"]
 
@@ -110,12 +112,13 @@ def _zero_together(exprs: Sequence[Expr], domain: Domain, deadline: float, limit
 
 def _where_defined(found: Anatomy, domain: Domain) -> Domain:
     """Add that the denominators do not vanish: the claim is about points where the expression is defined."""
-    if found.has(Piecewise):
+    if found.has(Piecewise, ExprWithLimits):
         return domain
     below = {power.base for power in found.of(Pow) if power.exp.is_negative}
     below = {b for b in below if anatomy([b]).tree <= LARGE // 20}
     nonzero = [Ne(b, 0) for b in sorted(below, key=default_sort_key) if b.is_zero is None]
-    return Domain((*domain.conditions, *(c for c in nonzero if c not in (true, false))), domain.box)
+    added = [cast("Boolean", c) for c in nonzero if c not in (true, false)]
+    return Domain((*domain.conditions, *added), domain.box)
 
 
 def _prove(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt: Attempt) -> bool:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
 from canon.proof.domain import Domain, declared_complex
+from canon.proof.typed import arguments, by_name, free_symbols
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from sympy import Expr, Symbol
 
@@ -25,6 +27,23 @@ KINKED = (sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside)
 
 MONOTONIC = (sp.exp, sp.sinh, sp.tanh, sp.atan, sp.asinh)
 """Functions that grow on the whole real line."""
+
+REAL_ON_REALS = (
+    sp.sin
+    | sp.cos
+    | sp.tan
+    | sp.exp
+    | sp.sinh
+    | sp.cosh
+    | sp.tanh
+    | sp.atan
+    | sp.asinh
+    | sp.Abs
+    | sp.sign
+    | sp.Max
+    | sp.Min
+)
+"""Functions that take real values at real arguments."""
 
 NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.AccumBounds)
 
@@ -61,7 +80,7 @@ def cases(expr: Expr, domain: Domain) -> list[Case] | None:
 
 def _by_integer(expr: Expr, domain: Domain) -> list[Case] | None:
     """Cut by the few values of a bounded integer, or by its residue where it turns angles of πn/d."""
-    for n in sorted(expr.free_symbols, key=lambda s: s.name):
+    for n in by_name(expr):
         if not n.is_integer or expr.has(sp.Derivative, sp.Subs):
             continue
         low, high, _ = domain.interval(n)
@@ -82,7 +101,7 @@ def _angle_denominator(expr: Expr, n: Symbol) -> int:
     """Return the common denominator d of the angles πn·p/d in an expression."""
     denominator = 1
     for turned in expr.atoms(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
-        slope = turned.args[0].diff(n) / sp.pi
+        slope = arguments(turned)[0].diff(n) / sp.pi
         if isinstance(slope, sp.Rational):
             denominator = int(sp.ilcm(denominator, slope.q))
     return denominator
@@ -91,50 +110,69 @@ def _angle_denominator(expr: Expr, n: Symbol) -> int:
 def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | None:
     if isinstance(function, sp.Max | sp.Min):
         return [_extreme(expr, domain, function, i) for i in range(len(function.args))]
-    u = function.args[0]
-    if u.is_real is False or u.has(sp.I):
+    u = arguments(function)[0]
+    if not certainly_real(u):
         return None
     if isinstance(function, sp.Abs):
         return [
             _case(expr, {function: u}, domain, sp.Ge(u, 0)),
             _case(expr, {function: -u}, domain, sp.Lt(u, 0)),
         ]
-    above, at_zero, below = (1, 0, -1) if isinstance(function, sp.sign) else (1, sp.Rational(1, 2), 0)
-    at_zero = function.func(0) if isinstance(function, sp.Heaviside) else sp.Integer(at_zero)
+    below, at_zero = (sp.Integer(-1), sp.Integer(0))
+    if isinstance(function, sp.Heaviside):
+        below, at_zero = sp.Integer(0), arguments(function)[1]
     return [
-        _case(expr, {function: sp.Integer(above)}, domain, sp.Gt(u, 0)),
-        _case(expr, {function: sp.Integer(below)}, domain, sp.Lt(u, 0)),
+        _case(expr, {function: sp.Integer(1)}, domain, sp.Gt(u, 0)),
+        _case(expr, {function: below}, domain, sp.Lt(u, 0)),
         _case(expr, {function: at_zero}, domain, sp.Eq(u, 0)),
     ]
 
 
-def _extreme(expr: Expr, domain: Domain, function: sp.Basic, i: int) -> Case:
+def certainly_real(u: Expr) -> bool:
+    """Tell whether u is real wherever it is defined, so that u > 0, u < 0 and u = 0 are all there is."""
+    if isinstance(u, sp.Symbol):
+        return not declared_complex(u)
+    if isinstance(u, sp.Pow) and not u.exp.is_integer:
+        return u.base.is_nonnegative is True and certainly_real(u.exp)
+    if isinstance(u, sp.log):
+        return arguments(u)[0].is_positive is True
+    if isinstance(u, sp.Add | sp.Mul | sp.Pow | AppliedUndef | REAL_ON_REALS):
+        return all(certainly_real(a) for a in arguments(u))
+    return u.is_number and u.is_real is True
+
+
+def _extreme(expr: Expr, domain: Domain, function: sp.Max | sp.Min, i: int) -> Case:
     """Return the case in which argument i is the first that is largest (smallest)."""
-    chosen = function.args[i]
-    conditions: list[sp.Basic] = []
-    for j, other in enumerate(function.args):
+    chosen = arguments(function)[i]
+    conditions: list[Boolean] = []
+    for j, other in enumerate(arguments(function)):
         if j != i:
             larger, smaller = (chosen, other) if isinstance(function, sp.Max) else (other, chosen)
             conditions.append(_without_monotonic(larger, smaller, strict=j < i))
     return _case(expr, {function: chosen}, domain, sp.And(*conditions))
 
 
-def _without_monotonic(larger: Expr, smaller: Expr, *, strict: bool) -> sp.Basic:
+def _without_monotonic(larger: Expr, smaller: Expr, *, strict: bool) -> Boolean:
     while larger.func == smaller.func and isinstance(larger, MONOTONIC):
-        larger, smaller = larger.args[0], smaller.args[0]
-    return sp.Gt(larger, smaller) if strict else sp.Ge(larger, smaller)
+        inside = arguments(larger)[0], arguments(smaller)[0]
+        if not all(map(certainly_real, inside)):
+            break
+        larger, smaller = inside
+    return cast("Boolean", sp.Gt(larger, smaller) if strict else sp.Ge(larger, smaller))
 
 
-def _case(expr: Expr, replaced: dict[sp.Basic, Expr], domain: Domain, condition: sp.Basic) -> Case:
-    known = Domain(tuple(c.xreplace(replaced) for c in domain.conditions), domain.box)
-    return settle_equalities(expr.xreplace(replaced), _narrowed(known, condition), str(condition))
+def _case(expr: Expr, replaced: Mapping[sp.Basic, Expr], domain: Domain, condition: sp.Basic) -> Case:
+    known = Domain(tuple(cast("Boolean", c.xreplace(replaced)) for c in domain.conditions), domain.box)
+    return settle_equalities(
+        cast("Expr", expr.xreplace(replaced)), _narrowed(known, condition), str(condition)
+    )
 
 
 def _narrowed(domain: Domain, *conditions: sp.Basic) -> Domain:
     added: list[Boolean] = []
     for condition in conditions:
         if isinstance(condition, sp.And):
-            added.extend(part for part in condition.args if isinstance(part, Boolean))
+            added.extend(cast("tuple[Boolean, ...]", condition.args))
         elif isinstance(condition, Boolean) and condition != sp.true:
             added.append(condition)
     return Domain((*domain.conditions, *added), domain.box)
@@ -143,20 +181,22 @@ def _narrowed(domain: Domain, *conditions: sp.Basic) -> Domain:
 def _pieces(expr: Expr, domain: Domain, function: sp.Basic) -> Iterator[Case]:
     """Yield one case for each way in which one piece's condition holds and those before fail."""
     failed: list[sp.Basic] = []
-    for piece, condition in function.args:
+    for piece, condition in cast("tuple[tuple[Expr, Boolean], ...]", function.args):
         applies = sp.And(condition, *(sp.Not(c) for c in failed))
         alternatives = sp.to_dnf(applies) if len(applies.atoms(Relational)) <= 8 else applies
         for alternative in alternatives.args if isinstance(alternatives, sp.Or) else (alternatives,):
             if alternative != sp.false:
                 yield settle_equalities(
-                    expr.xreplace({function: piece}), _narrowed(domain, alternative), str(alternative)
+                    cast("Expr", expr.xreplace({function: piece})),
+                    _narrowed(domain, alternative),
+                    str(alternative),
                 )
         failed.append(condition)
 
 
-def _by_symbol(deciding: sp.Basic, domain: Domain, expr: Expr | None = None) -> list[Case] | None:
+def _by_symbol(deciding: Expr, domain: Domain, whole: Expr | None = None) -> list[Case] | None:
     """Cut by the sign of a real symbol under a root, a logarithm or an inverse function in ``deciding``."""
-    expr = deciding if expr is None else expr
+    expr = deciding if whole is None else whole
     if expr.has(sp.Derivative, sp.Subs):
         return None
     candidates: dict[Symbol, int] = {}
@@ -166,14 +206,14 @@ def _by_symbol(deciding: sp.Basic, domain: Domain, expr: Expr | None = None) -> 
             sp.sin | sp.cos | sp.tan | sp.exp | sp.sinh | sp.cosh | sp.tanh | sp.core.function.AppliedUndef,
         )
         if branching or (isinstance(part, sp.Pow) and not part.exp.is_integer):
-            for s in part.free_symbols:
+            for s in free_symbols(part):
                 if not (s.is_nonnegative or s.is_nonpositive or declared_complex(s)):
                     candidates[s] = candidates.get(s, 0) + 1
     if not candidates:
         return None
     chosen = max(sorted(candidates, key=lambda s: s.name), key=lambda s: candidates[s])
-    whole = {"integer": True} if chosen.is_integer else {}
-    positive = sp.Dummy(chosen.name, positive=True, **whole)
+    kind = {"integer": True} if chosen.is_integer else {}
+    positive = sp.Dummy(chosen.name, positive=True, **kind)
     found = [
         _substituted(expr, domain, chosen, positive, f"{chosen} > 0"),
         _substituted(expr, domain, chosen, -positive, f"{chosen} < 0"),
@@ -184,13 +224,10 @@ def _by_symbol(deciding: sp.Basic, domain: Domain, expr: Expr | None = None) -> 
 
 
 def _substituted(expr: Expr, domain: Domain, symbol: Symbol, by: Expr, where: str) -> Case:
-    box = {}
-    for s, (low, high) in domain.box.items():
-        if s != symbol:
-            box[s] = (low, high)
-    conditions = tuple(c.xreplace({symbol: by}) for c in domain.conditions)
+    box = {s: ends for s, ends in domain.box.items() if s != symbol}
+    conditions = [cast("Boolean", c.xreplace({symbol: by})) for c in domain.conditions]
     narrowed = Domain(tuple(c for c in conditions if c != sp.true), box)
-    value = expr.xreplace({symbol: by})
+    value = cast("Expr", expr.xreplace({symbol: by}))
     return Case(None if value.has(*NOT_NUMBERS) else value, narrowed, where)
 
 
@@ -199,17 +236,17 @@ def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
     for condition in (*domain.conditions, *_pinched(domain)):
         if not isinstance(condition, sp.Eq):
             continue
-        gap = condition.lhs - condition.rhs
-        if not isinstance(gap, sp.Expr):
+        if not isinstance(condition.lhs, sp.Expr) or not isinstance(condition.rhs, sp.Expr):
             continue
-        for s in sorted(gap.free_symbols, key=lambda s: s.name):
+        gap = condition.lhs - condition.rhs
+        for s in by_name(gap):
             slope = gap.diff(s)
             if slope.free_symbols or slope.is_zero is not False:
                 continue
             solution = -gap.xreplace({s: sp.Integer(0)}) / slope
-            others = tuple(c.xreplace({s: solution}) for c in domain.conditions if c != condition)
+            others = [cast("Boolean", c.xreplace({s: solution})) for c in domain.conditions if c != condition]
             own = _assumed(s, solution)
-            value = expr.xreplace({s: solution})
+            value = cast("Expr", expr.xreplace({s: solution}))
             box = {name: ends for name, ends in domain.box.items() if name != s}
             narrowed = Domain(tuple(c for c in (*others, *own) if c != sp.true), box)
             return (

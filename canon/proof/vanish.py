@@ -148,6 +148,8 @@ def _exact(expr: object) -> Expr:
         return sp.Integer(expr)
     if not isinstance(expr, sp.Expr):
         raise TypeError(f"an expression is needed, not {type(expr).__name__}: {expr!r}")
+    if not expr.is_commutative:
+        raise ValueError(f"{expr} holds factors that do not commute, which the zero test does not model")
     found = anatomy([expr])
     floats = found.of(sp.Float)
     if floats:
@@ -159,6 +161,13 @@ def _exact(expr: object) -> Expr:
 
 
 def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
+    try:
+        return _climb(left, right, domain, deadline)
+    except RecursionError:
+        return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "the expression is nested too deeply"),))
+
+
+def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
     """Climb the ladder: a few balls, the quick proof, many balls, the thorough proof in the worker."""
     found = anatomy([left, right])
     search = look_for_counterexample(

@@ -1,0 +1,30 @@
+"""SymPy's parts with the types that they have in expressions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+if TYPE_CHECKING:
+    import sympy as sp
+
+__all__ = ["arguments", "by_name", "free_symbols", "rational"]
+
+
+def free_symbols(expr: sp.Basic) -> set[sp.Symbol]:
+    """Return the free symbols of an expression."""
+    return cast("set[sp.Symbol]", expr.free_symbols)
+
+
+def by_name(expr: sp.Basic) -> list[sp.Symbol]:
+    """Return the free symbols of an expression in the order of their names."""
+    return sorted(free_symbols(expr), key=lambda s: s.name)
+
+
+def arguments(expr: sp.Basic) -> tuple[sp.Expr, ...]:
+    """Return the arguments of an expression whose arguments are expressions."""
+    return cast("tuple[sp.Expr, ...]", expr.args)
+
+
+def rational(number: object) -> sp.Rational:
+    """Return a number that is known to be rational."""
+    return cast("sp.Rational", number)
