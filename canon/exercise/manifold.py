@@ -132,7 +132,7 @@ def _restricted(
     if here == 0 or vanishes(here, branch.domain, budget=1.0).holds:
         yield branch
         return
-    for factor in _factors(here):
+    for factor in _factors(here, prefer):
         solution = min(_solutions(factor, keep, prefer), key=lambda s: s.cost, default=None)
         if solution is None:
             raise Undecided(f"{factor} = 0 could not be solved for any of its symbols in closed form")
@@ -143,12 +143,15 @@ def _restricted(
                 continue
 
 
-def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors of the numerator that can vanish."""
+def _factors(expression: Expr, prefer: Sequence[Symbol]) -> list[Expr]:
+    """Return the factors of the numerator that can vanish.
+
+    Where some hold what is solved for, such as velocities, the others vanish in singular points only.
+    """
     numerator = sp.numer(sp.together(expression))
     factors = cast("list[tuple[Expr, int]]", sp.factor_list(numerator)[1])
     able = [f for f, _ in factors if f.is_nonzero is not True and f.is_positive is not True]
-    return able or [numerator]
+    return [f for f in able if prefer and f.has(*prefer)] or able or [numerator]
 
 
 def _solutions(c: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]) -> Iterator[_Solution]:

@@ -9,6 +9,7 @@ from canon.exercise.kinds import KINDS
 from canon.exercise.sheet import read_sheet
 
 CLAIMS = Path(__file__).parent.parent / "data" / "claims"
+SUBTLE = CLAIMS.parent / "subtle_claims.json"
 SHEETS = {path.stem: read_sheet(path) for path in sorted(CLAIMS.glob("*.json"))}
 
 
@@ -20,6 +21,13 @@ def test_the_verdict_is_right(claim):
     assert verdict.status.value == claim.expect, str(verdict)
     if verdict.fails:
         assert verdict.counterexample is not None or verdict.certificate in ("exact", "structure")
+
+
+@pytest.mark.parametrize("claim", [pytest.param(c, id=c.id) for c in read_sheet(SUBTLE).claims])
+def test_subtle_claims(claim):
+    """Right or wrong on a branch, at a kink, by a term of 10⁻³⁰, on one part of a manifold only."""
+    verdict = judge(claim)
+    assert verdict.status.value == claim.expect, str(verdict)
 
 
 def test_every_kind_has_true_and_false_claims():
