@@ -8,6 +8,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from canon.version import __version__
+
 if TYPE_CHECKING:
     from canon.exercise.judge import judge as judge
     from canon.exercise.sheet import Claim as Claim
@@ -47,7 +49,6 @@ if TYPE_CHECKING:
     from canon.study.drift import Drift as Drift
     from canon.study.drift import drift as drift
 
-__version__ = "0.1.0"
 
 __all__ = [
     "DOP853",

@@ -41,7 +41,8 @@ def test_the_missing_factor_of_the_oscillators_F1_is_named(tour):
 
 
 def test_the_methods_are_told_apart(tour):
-    verdicts = dict(re.findall(r"^(kahan-li-8|verlet|RK4|Taylor) .*?(bounded|secular|round-off)", tour[1], re.MULTILINE))
+    row = r"^(kahan-li-8|verlet|RK4|Taylor) .*?(bounded|secular|round-off)"
+    verdicts = dict(re.findall(row, tour[1], re.MULTILINE))
     assert verdicts == {"kahan-li-8": "bounded", "verlet": "bounded", "RK4": "secular", "Taylor": "round-off"}
 
 

@@ -39,10 +39,10 @@ class Variable(Symbol):
     __slots__ = ()
 
     @classmethod
-    def class_key(cls) -> tuple[int, int, str]:
-        """Return SymPy's sorting key of the class, one after that of ``Symbol``."""
-        kind, subkind, name = Symbol.class_key()
-        return kind, subkind, f"{name}, variable"
+    def class_key(cls) -> Any:
+        """Return SymPy's sorting key of the class, the next after that of ``Symbol``."""
+        *kind, name = Symbol.class_key()
+        return (*kind, f"{name}, variable")
 
 
 class Coordinate(Variable):

@@ -15,6 +15,7 @@ from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.kernel.scheme import SCHEMES
 from canon.scene import find
 from canon.study.comparison import drift_row
+from canon.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -80,8 +81,6 @@ class Case:
 
 def versions() -> dict[str, str]:
     """Return the versions that a result depends on."""
-    from canon import __version__
-
     return {"canon": __version__, **{name: version(name) for name in LIBRARIES}}
 
 
