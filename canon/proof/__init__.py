@@ -30,7 +30,18 @@ _HOMES = {
     "vanishes": "vanish",
 }
 
-__all__ = list(_HOMES)
+__all__ = [
+    "Counterexample",
+    "Domain",
+    "Evidence",
+    "Status",
+    "Undecided",
+    "Verdict",
+    "all_hold",
+    "equal",
+    "equivalent_equations",
+    "vanishes",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -11,6 +11,7 @@ from flint import fmpq, fmpz_poly
 
 from canon.proof.lattice import Angle, Lattice
 from canon.proof.tower import Fraction, TooLarge
+from canon.proof.typed import rational
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
@@ -62,6 +63,8 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return t.reciprocal(cos_sin(n, n.form(expr.args[0]))[0])
         case sp.csc():
             return t.reciprocal(cos_sin(n, n.form(expr.args[0]))[1])
+        case _:
+            pass
     if not isinstance(expr, sp.sinh | sp.cosh | sp.tanh | sp.coth | sp.sech | sp.csch):
         return None
     cosh, sinh = cosh_sinh(n, n.form(expr.args[0]))
@@ -266,8 +269,8 @@ def _range(n: NormalForm, angle: Angle) -> tuple[Expr, Expr, bool]:
         kernel = n.only_kernel(n.atoms[key])
         if kernel is not None and kernel[0] == "symbol":
             low, high, strict = n.domain.interval(kernel[1])
-            ends = (low * sp.Rational(p, q), high * sp.Rational(p, q))
-            return (*(ends if p > 0 else ends[::-1]), strict)
+            first, last = low * sp.Rational(p, q), high * sp.Rational(p, q)
+            return (first, last, strict) if p > 0 else (last, first, strict)
     return -sp.oo, sp.oo, True
 
 
@@ -286,7 +289,9 @@ def sign_of_wave(n: NormalForm, angle: Angle, a: Any, b: Any) -> str:
 
 
 def _rational(number: Any) -> sp.Rational:
-    return sp.Rational(int(number.p), int(number.q)) if isinstance(number, fmpq) else sp.Rational(number)
+    return rational(
+        sp.Rational(int(number.p), int(number.q)) if isinstance(number, fmpq) else sp.Rational(number)
+    )
 
 
 def _sign_between(low: Expr, high: Expr, rise: Expr, *, strict: bool) -> str:
@@ -309,7 +314,7 @@ def phase_of_pi(n: NormalForm, r: fmpq) -> tuple[Fraction, Fraction]:
 
     sin(rπ) = cos((1/2 − r)π), so one generator serves both.
     """
-    angle = sp.Rational(int(r.p), int(r.q)) % 2
+    angle = rational(sp.Rational(int(r.p), int(r.q)) % 2)
     if angle.q in BY_RADICALS:
         return n.form(sp.cos(angle * sp.pi)), n.form(sp.sin(angle * sp.pi))
     half = divided(n, "angle of pi", "cyclotomic", fmpq(1, 2 * int(angle.q)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import fmpq
@@ -12,6 +12,8 @@ from canon.proof.tower import Fraction
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
+
+    from sympy import Expr
 
     from canon.proof.normal_form import NormalForm
 
@@ -53,7 +55,8 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return _area(n, expr, n.form(arguments[0]))
         case sp.LambertW() if len(arguments) == 1:
             return _lambert_w(n, expr, n.form(arguments[0]))
-    return None
+        case _:
+            return None
 
 
 def _odd(n: NormalForm, name: str, z: Fraction) -> Fraction:
@@ -144,7 +147,7 @@ def _lambert_w(n: NormalForm, expr: sp.Basic, z: Fraction) -> Fraction:
     kernel = (sp.LambertW, (n.fraction_key(n.tower.canonical(z)),))
     n.arguments[kernel] = z
     sign = n.sign(z) if n.is_real(z) else ""
-    return n.atom(kernel, sign if sign.endswith("+") else "", lambda: expr)
+    return n.atom(kernel, sign if sign.endswith("+") else "", lambda: cast("Expr", expr))
 
 
 def cos_sin_of_arc(n: NormalForm, kernel: tuple[object, ...], r: fmpq) -> tuple[Fraction, Fraction] | None:

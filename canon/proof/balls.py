@@ -9,14 +9,14 @@ Principal branches are SymPy's.
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from flint import acb, arb, ctx, fmpq
 from sympy.core.relational import Relational
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Generator, Mapping
 
     from sympy import Expr, Symbol
 
@@ -36,7 +36,7 @@ class Unmodelled(Exception):
 
 
 @contextmanager
-def precision(bits: int) -> Iterator[None]:
+def precision(bits: int) -> Generator[None]:
     """Run a block at a working precision of ``bits``."""
     before = ctx.prec
     ctx.prec = bits
@@ -157,7 +157,7 @@ def _reciprocal(z: acb) -> acb:
 
 
 def _piecewise(expr: sp.Piecewise, point: Mapping[Symbol, sp.Rational], memo: dict[sp.Basic, acb]) -> acb:
-    for piece, condition in expr.args:
+    for piece, condition in cast("tuple[tuple[Expr, sp.Basic], ...]", expr.args):
         if holds_at(condition, point, memo):
             return _value(piece, point, memo)
     raise Undefined("no piece applies")

@@ -12,7 +12,7 @@ import time
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, BinaryIO, cast
 
 from canon.proof.worker import read_message, write_message
 
@@ -123,8 +123,8 @@ class _Worker:
 def _converse(process: subprocess.Popen[bytes], request: object, replies: queue.SimpleQueue[object]) -> None:
     try:
         if process.stdin is not None and process.stdout is not None:
-            write_message(process.stdin, request)
-            replies.put(read_message(process.stdout))
+            write_message(cast("BinaryIO", process.stdin), request)
+            replies.put(read_message(cast("BinaryIO", process.stdout)))
     except (OSError, EOFError) as reason:
         replies.put(reason)
 

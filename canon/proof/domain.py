@@ -34,7 +34,7 @@ def declared_complex(symbol: Basic) -> bool:
 def _parts(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
     for condition in conditions:
         if isinstance(condition, And):
-            yield from _parts(cast("tuple[Boolean, ...]", condition.args))
+            yield from _parts(condition.args)
         else:
             yield condition
 
@@ -186,10 +186,10 @@ class Domain:
             linear = [s for s in point if (slope := gap.diff(s)) != 0 and s not in slope.free_symbols]
             for s in linear:
                 others = {name: number for name, number in point.items() if name != s}
-                slope = gap.diff(s).xreplace(others)
-                rest = gap.xreplace({s: Integer(0)}).xreplace(others)
+                slope = cast("Expr", gap.diff(s).xreplace(others))
+                rest = cast("Expr", gap.xreplace({s: Integer(0)}).xreplace(others))
                 if slope.is_Rational and rest.is_Rational and slope != 0:
-                    point[s] = -rest / slope
+                    point[s] = rational(-rest / slope)
                     break
             else:
                 return False

@@ -5,12 +5,13 @@ from __future__ import annotations
 import random
 import time
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import acb, acb_mat
 from sympy.core.function import AppliedUndef
 
+from canon.proof.anatomy import anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import EVERYWHERE, Domain
 from canon.proof.refute import with_example_functions
@@ -104,16 +105,16 @@ def _augmented(system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domai
         expr = equation + sp.Integer(0)
         row: list[Expr] = []
         for u in unknowns:
-            slope = expr.diff(u)
+            slope = cast("Expr", expr.diff(u))
             if slope.free_symbols & set(unknowns):
                 if not all(vanishes(slope.diff(w), domain, 2.0).holds for w in unknowns):
                     raise ValueError(
                         f"equation {number} of the {which} system is not affine in {u}: {expr} = 0; "
                         "solve it for the unknowns or name others"
                     )
-                slope = slope.xreplace(at_rest)
+                slope = cast("Expr", slope.xreplace(at_rest))
             row.append(slope)
-        row.append(expr.xreplace(at_rest))
+        row.append(cast("Expr", expr.xreplace(at_rest)))
         rows.append(tuple(row))
     return _System(tuple(rows))
 
@@ -189,7 +190,7 @@ def _largest_minor(system: _System, domain: Domain) -> _Pivots:
     best = _Pivots((), ())
     if not system.rows:
         return best
-    symbols = set[sp.Symbol]().union(*(entry.free_symbols for row in system.rows for entry in row))
+    symbols = anatomy([entry for row in system.rows for entry in row]).symbols
     system = _with_examples(system)
     full = min(len(system.rows), len(system.rows[0]))
     for point in domain.points(symbols, POINTS, seed=3):

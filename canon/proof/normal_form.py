@@ -7,7 +7,7 @@ the normal forms of its arguments, which is always sound: equal functions of equ
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from flint import arb, fmpq
@@ -92,7 +92,7 @@ class NormalForm:
             else:
                 self.signs.learn_nonzero(gap.num)
         elif isinstance(condition, sp.StrictLessThan | sp.LessThan | sp.StrictGreaterThan | sp.GreaterThan):
-            gap = self.form(condition.gts - condition.lts)
+            gap = self.form(cast("Expr", condition.gts) - cast("Expr", condition.lts))
             strict = isinstance(condition, sp.StrictLessThan | sp.StrictGreaterThan)
             if gap.den:
                 below = self.signs.of(self.denominator(gap))
@@ -184,6 +184,8 @@ class NormalForm:
                 return powers.exponential(self, t.number(1))
             case _ if expr is sp.GoldenRatio:
                 return self.form((1 + sp.sqrt(5)) / 2)
+            case _:
+                pass
         elementary = (
             angles.elementary(self, expr) or arcs.elementary(self, expr) or elliptic.elementary(self, expr)
         )
@@ -217,14 +219,15 @@ class NormalForm:
         """Return a kernel that is equal for equal functions of equal arguments."""
         if isinstance(expr, Derivative | Subs) and expr.has(AppliedUndef):
             key, real = _derivative_key(expr, self)
-            return self.atom(key, "real" if real else "", lambda: expr)
+            return self.atom(key, "real" if real else "", lambda: cast("Expr", expr))
         if not isinstance(expr, sp.Function) or not expr.args:
-            return self.atom(("opaque", expr), "real" if expr.is_real else "", lambda: expr)
+            known_real = cast("Expr", expr).is_real
+            return self.atom(("opaque", expr), "real" if known_real else "", lambda: cast("Expr", expr))
         arguments = [self.tower.canonical(self.form(a)) for a in expr.args]
         real = isinstance(expr, AppliedUndef | sp.sign | sp.Max | sp.Min | sp.acot)
         real = real and all(self.is_real(a) for a in arguments)
         keys = tuple(self.fraction_key(a) for a in arguments)
-        return self.atom((expr.func, keys), "real" if real else "", lambda: expr)
+        return self.atom((expr.func, keys), "real" if real else "", lambda: cast("Expr", expr))
 
     # -- atoms -----------------------------------------------------------------------------------
 
@@ -339,15 +342,18 @@ def _declared_sign(symbol: sp.Symbol) -> str:
 
 def _derivative_key(expr: sp.Basic, forms: NormalForm) -> tuple[Hashable, bool]:
     """Return one key for ∂f at given arguments, whether SymPy writes Derivative or Subs."""
-    inner, places = expr, {}
+    inner: sp.Basic = expr
+    places: dict[sp.Basic, Expr] = {}
     if isinstance(expr, Subs):
         inner = expr.expr
-        places = dict(zip(expr.variables, expr.point, strict=True))
+        variables, point = cast("tuple[sp.Symbol, ...]", expr.variables), cast("tuple[Expr, ...]", expr.point)
+        places = dict(zip(variables, point, strict=True))
     real = not any(declared_complex(s) for s in expr.free_symbols)
     if isinstance(inner, Derivative) and isinstance(inner.expr, AppliedUndef):
         arguments = inner.expr.args
-        counts = {v: int(n) for v, n in inner.variable_count if isinstance(n, sp.Integer)}
-        whole = len(counts) == len(inner.variable_count)
+        taken = cast("tuple[tuple[sp.Basic, sp.Basic], ...]", inner.variable_count)
+        counts = {v: int(n) for v, n in taken if isinstance(n, sp.Integer)}
+        whole = len(counts) == len(taken)
         plain = all(isinstance(a, sp.Symbol) or not (a.free_symbols & set(counts)) for a in arguments)
         if whole and plain and all(sum(1 for a in arguments if a == v) == 1 for v in counts):
             orders = tuple(counts.get(a, 0) for a in arguments)
@@ -355,7 +361,7 @@ def _derivative_key(expr: sp.Basic, forms: NormalForm) -> tuple[Hashable, bool]:
                 "derivative",
                 inner.expr.func,
                 orders,
-                _keys((places.get(a, a) for a in arguments), forms),
+                _keys((a.xreplace(places) for a in arguments), forms),
             ), real
     return ("opaque", expr), real
 

@@ -13,18 +13,18 @@ from math import lcm
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
-from flint import arb, fmpq
 
 from canon.proof.angles import imaginary_split
 from canon.proof.arcs import ARCS
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.powers import exponential
 from canon.proof.tower import Fraction
+from canon.proof.typed import free_symbols
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
-    from flint import fmpq_mpoly
+    from flint import arb, fmpq, fmpq_mpoly
     from sympy import Expr
 
     from canon.proof.normal_form import NormalForm
@@ -256,7 +256,7 @@ def _zero_by_continuity(n: NormalForm, h: Fraction, w: Fraction) -> bool:
     Points that the domain excludes by ≠ may be ignored: w is shown to be continuous there as well.
     """
     expr = n.expression(h.num)
-    symbols = expr.free_symbols
+    symbols = free_symbols(expr)
     n.signs.forget_nonzero()
     if not n.domain.is_connected(symbols) or not is_continuous(n, h):
         return False

@@ -6,7 +6,7 @@ import random
 import time
 from dataclasses import dataclass, field
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import acb, arb
@@ -15,6 +15,7 @@ from sympy.core.relational import Relational
 
 from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.typed import free_symbols, rational
 from canon.proof.verdict import Counterexample
 
 if TYPE_CHECKING:
@@ -165,13 +166,14 @@ def landmarks(sides: Anatomy, domain: Domain) -> dict[Symbol, list[sp.Rational]]
     places |= {e.base for e in sides.of(sp.Pow) if not e.exp.is_integer}
     places = {gap for gap in places if anatomy([gap]).tree <= LARGEST_GAP}
     for gap in places:
-        for s in gap.free_symbols:
-            found.setdefault(s, set()).update(_crossings(gap, s))
+        for s in free_symbols(gap):
+            found.setdefault(s, set()).update(_crossings(cast("Expr", gap), s))
     return {s: sorted(values) for s, values in found.items()}
 
 
 _EVERYWHERE = tuple(
-    sp.Rational(p, q) for p, q in ((0, 1), (1, 1), (-1, 1), (2, 1), (-2, 1), (7, 2), (-7, 2), (10, 1))
+    rational(sp.Rational(p, q))
+    for p, q in ((0, 1), (1, 1), (-1, 1), (2, 1), (-2, 1), (7, 2), (-7, 2), (10, 1))
 )
 
 
@@ -180,12 +182,13 @@ def _crossings(gap: Expr, s: Symbol) -> set[sp.Rational]:
     slope = gap.diff(s)
     if slope.free_symbols or slope.is_zero is not False:
         return set()
-    zero = -gap.xreplace(dict.fromkeys(gap.free_symbols, sp.Integer(0))) / slope
+    zero = -cast("Expr", gap.xreplace(dict.fromkeys(gap.free_symbols, sp.Integer(0)))) / slope
     if not zero.is_real or not zero.is_finite:
         return set()
     near = zero if isinstance(zero, sp.Rational) else sp.Rational(round(64 * float(zero)), 64)
-    steps = (0, sp.Rational(1, 32), 1, 3)
-    return {near + sign * step for step in steps for sign in (1, -1)} | {2 * near}
+    steps = (sp.Integer(0), sp.Rational(1, 32), sp.Integer(1), sp.Integer(3))
+    around = [near + step for step in steps] + [near - step for step in steps]
+    return {rational(number) for number in (*around, 2 * near)}
 
 
 def _try_point(
@@ -268,7 +271,7 @@ def with_example_functions(
         shown = polynomial.xreplace(dict(zip(places, sample.args, strict=True)))
         chosen[str(sample)] = str(shown)
         body = sp.Lambda(places, polynomial)
-        replaced = [e.replace(function, body) for e in replaced]
+        replaced = [cast("Expr", e.replace(function, body)) for e in replaced]
     return tuple(evaluated(e) for e in replaced), chosen
 
 
@@ -288,6 +291,7 @@ def evaluated(expr: Expr) -> Expr:
     """Carry out the derivatives of what is not an arbitrary function."""
     if not expr.has(Derivative, Subs):
         return expr
-    return expr.replace(
+    done = expr.replace(
         lambda e: isinstance(e, Derivative | Subs) and not e.has(AppliedUndef), lambda e: e.doit()
     )
+    return cast("Expr", done)

@@ -172,7 +172,7 @@ def _narrowed(domain: Domain, *conditions: sp.Basic) -> Domain:
     added: list[Boolean] = []
     for condition in conditions:
         if isinstance(condition, sp.And):
-            added.extend(cast("tuple[Boolean, ...]", condition.args))
+            added.extend(condition.args)
         elif isinstance(condition, Boolean) and condition != sp.true:
             added.append(condition)
     return Domain((*domain.conditions, *added), domain.box)
@@ -243,7 +243,7 @@ def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
             slope = gap.diff(s)
             if slope.free_symbols or slope.is_zero is not False:
                 continue
-            solution = -gap.xreplace({s: sp.Integer(0)}) / slope
+            solution = -cast("Expr", gap.xreplace({s: sp.Integer(0)})) / slope
             others = [cast("Boolean", c.xreplace({s: solution})) for c in domain.conditions if c != condition]
             own = _assumed(s, solution)
             value = cast("Expr", expr.xreplace({s: solution}))
@@ -259,10 +259,9 @@ def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
 
 def _pinched(domain: Domain) -> list[sp.Basic]:
     """Return g = 0 where the domain says both g ≥ 0 and g ≤ 0."""
-    gaps = [
-        sp.expand(c.gts - c.lts) for c in domain.conditions if isinstance(c, sp.GreaterThan | sp.LessThan)
-    ]
-    return [sp.Eq(gap, 0) for gap in gaps if -gap in gaps and gap != 0][:1]
+    closed = [c for c in domain.conditions if isinstance(c, sp.GreaterThan | sp.LessThan)]
+    gaps = [sp.expand(cast("Expr", c.gts) - cast("Expr", c.lts)) for c in closed]
+    return [cast("sp.Basic", sp.Eq(gap, 0)) for gap in gaps if -gap in gaps and gap != 0][:1]
 
 
 def _assumed(s: Symbol, solution: Expr) -> tuple[Boolean, ...]:
