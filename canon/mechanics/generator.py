@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.mechanics.substitution import exchanged
+from canon.mechanics.substitution import exchanged, size
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -46,7 +46,7 @@ def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, Ex
     names: dict[Expr, Symbol] = {kernel: sp.Dummy() for kernel in kernels}
     back: dict[Symbol, Expr] = {name: kernel for kernel, name in names.items()}
     polynomial = sp.numer(sp.together(exchanged(equation, names)))
-    for kernel in sorted(kernels, key=lambda k: (k != x, int(sp.count_ops(k)))):
+    for kernel in sorted(kernels, key=lambda k: (k != x, size(k))):
         reduced = _eliminated(polynomial, kernel, names, x)
         if reduced is None:
             continue

@@ -17,7 +17,7 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.generator import generator_values
 from canon.mechanics.linear import SingularMatrixError, solve
-from canon.mechanics.substitution import entry, exchanged, substitute
+from canon.mechanics.substitution import entry, exchanged, size, substitute
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Inversion", "isolate", "solve_system"]
 
-_LARGEST = 80
-"""Operations in an equation above which it is not treated as a polynomial in a generator."""
+_LARGEST = 200
+"""Nodes of an equation above which it is not treated as a polynomial in a generator."""
 _HALF = sp.pi / 2
 
 
@@ -130,7 +130,7 @@ class Inversion:
         self._note(sp.Lt(f, high))
 
     def _note(self, condition: Boolean) -> None:
-        if int(sp.count_ops(condition)) > _LARGEST:
+        if size(condition) > _LARGEST:
             raise UnstatableError
         if condition not in (sp.true, sp.false) and condition not in self.conditions:
             self.conditions.append(condition)
@@ -161,7 +161,7 @@ def solve_system(
     if linear is not None:
         return linear
     pairs = [(lhs, rhs, x) for lhs, rhs in equations for x in unknowns if lhs.has(x)]
-    pairs.sort(key=lambda pair: (len(pair[0].free_symbols & set(unknowns)), int(sp.count_ops(pair[0]))))
+    pairs.sort(key=lambda pair: (len(pair[0].free_symbols & set(unknowns)), size(pair[0])))
     for lhs, rhs, x in pairs:
         if clock.monotonic() > inversion.deadline:
             return None
@@ -207,7 +207,7 @@ def isolate(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | Non
         free, bound = lhs.as_independent(x, as_Add=lhs.is_Add)
         if free != (0 if lhs.is_Add else 1):
             return isolate(bound, rhs - free if lhs.is_Add else rhs / free, x, inversion)
-        if sp.count_ops(lhs - rhs) > _LARGEST:
+        if size(lhs - rhs) > _LARGEST:
             return None
         for kernel, value, sign in generator_values(lhs - rhs, x):
             if inversion.witness.agree(value, kernel):

@@ -9,7 +9,7 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.generator import low_degree_roots
 from canon.mechanics.linear import SingularMatrixError, eliminate, is_regular, solve
-from canon.mechanics.substitution import entry, exchanged, substitute
+from canon.mechanics.substitution import entry, exchanged, size, substitute
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
@@ -103,13 +103,15 @@ def _of_quadratic(
     if eliminated.null_direction is not None:
         raise SingularMatrixError("the Hessian is singular", eliminated.null_direction)
     if eliminated.order == tuple(range(len(old))):
-        squares = [
-            sp.factor_terms(row[-1]) ** 2 / (2 * sp.factor_terms(row[i]))
-            for i, row in enumerate(eliminated.rows)
-        ]
+        squares = [_factored(row[-1]) ** 2 / (2 * _factored(row[i])) for i, row in enumerate(eliminated.rows)]
         return sp.Add(*squares, -exchanged(f, at_rest))
     values = [row[0] for row in eliminated.back_substituted()]
     return sp.Add(*(v * b / 2 for v, b in zip(values, w, strict=True)), -exchanged(f, at_rest))
+
+
+def _factored(f: Expr) -> Expr:
+    """Take common factors out where the expression is small enough for that to be quick."""
+    return sp.factor_terms(f) if size(f) < 1000 else f
 
 
 def _of_nonlinear(

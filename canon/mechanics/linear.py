@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr
 
+from canon.mechanics.substitution import size
 from canon.proof.domain import Domain
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict
@@ -242,7 +243,7 @@ def _pivot_row(
 
 
 def _complexity(entry: Expr) -> int:
-    return 0 if _plainly_nonzero(entry) else 1 + int(sp.count_ops(entry))
+    return 0 if _plainly_nonzero(entry) else size(entry)
 
 
 def _plainly_nonzero(entry: Expr) -> bool:

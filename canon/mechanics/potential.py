@@ -19,7 +19,7 @@ from sympy import Expr, Symbol
 from sympy.integrals.manualintegrate import manualintegrate
 
 from canon.mechanics.claim import all_vanish
-from canon.mechanics.substitution import exchanged
+from canon.mechanics.substitution import exchanged, size
 from canon.mechanics.witness import Witness, witnesses
 from canon.proof.vanish import vanishes
 
@@ -119,9 +119,9 @@ def _without_vanishing(a: Expr, z: Sequence[Symbol], domain: Domain) -> Expr:
 
 def _lowest_terms(a: Expr) -> Expr:
     """Cancel as a fraction of polynomials in whatever functions a holds, where a is small."""
-    if sp.count_ops(a) > 150:
+    if size(a) > 350:
         return a
-    return min((a, sp.cancel(sp.together(a))), key=sp.count_ops)
+    return min((a, sp.cancel(sp.together(a))), key=size)
 
 
 def _by_scaling(form: Sequence[Expr], z: Sequence[Symbol], points: Sequence[Witness]) -> Iterator[Expr]:
@@ -201,20 +201,18 @@ def _antiderivatives(
     constants = {
         term.as_independent(*z, as_Add=False)[0].as_coeff_Mul()[1] for a in form for term in _terms(a)
     }
-    basis = {
-        c * name: c * hint for c in sorted(constants, key=sp.count_ops)[:4] for name, hint in hints.items()
-    }
+    basis = {c * name: c * hint for c in sorted(constants, key=size)[:4] for name, hint in hints.items()}
     for a, s in zip(form, z, strict=True):
         for term in _terms(a)[:12]:
             integral = _elementary_integral(term, s)
             if integral is not None:
                 basis[integral] = integral
-    return dict(sorted(basis.items(), key=lambda item: int(sp.count_ops(item[0])))[:40])
+    return dict(sorted(basis.items(), key=lambda item: size(item[0]))[:40])
 
 
 def _elementary_integral(term: Expr, s: Symbol) -> Expr | None:
     """Integrate one small term by the rules of a table, up to a factor; None where it has no short integral."""
-    if sp.count_ops(term) > 30:
+    if size(term) > 70:
         return None
     integral = sp.piecewise_fold(manualintegrate(term, s))
     if isinstance(integral, sp.Piecewise):
@@ -244,7 +242,7 @@ def _products(form: Sequence[Expr], z: Sequence[Symbol], hints: Mapping[Expr, Ex
         plain = f.as_coeff_Mul()[1]
         if plain.has(*z):
             basis[plain] = plain
-    return dict(sorted(basis.items(), key=lambda item: int(sp.count_ops(item[0])))[:60])
+    return dict(sorted(basis.items(), key=lambda item: size(item[0]))[:60])
 
 
 def _functions(sources: Sequence[Expr], z: Sequence[Symbol]) -> set[Expr]:

@@ -10,7 +10,7 @@ from sympy import Expr
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-__all__ = ["as_tuple", "entry", "exchanged", "shortened", "substitute"]
+__all__ = ["as_tuple", "entry", "exchanged", "shortened", "size", "substitute"]
 
 
 def substitute(f: Expr, values: Mapping[sp.Symbol, Expr]) -> Expr:
@@ -51,6 +51,29 @@ def as_tuple(given: Sequence[Expr] | Expr) -> tuple[Expr, ...]:
 
 def shortened(F: Expr) -> Expr:
     """Return the shortest of a few plain forms of F: as it stands, over one denominator, multiplied out."""
-    if sp.count_ops(F) > 150:
+    if size(F) > 350:
         return F
-    return min((F, sp.factor_terms(F), sp.expand(F), sp.cancel(sp.together(F))), key=sp.count_ops)
+    return min((F, sp.factor_terms(F), sp.expand(F), sp.cancel(sp.together(F))), key=size)
+
+
+def size(f: sp.Basic) -> int:
+    """Return the number of nodes of the expression tree, walking parts that occur often only once.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, y = symbols("x y")
+    >>> size(x + 2*y)
+    5
+    """
+    sizes: dict[sp.Basic, int] = {}
+    stack: list[sp.Basic] = [f]
+    while stack:
+        node = stack[-1]
+        open_ = [part for part in node.args if part not in sizes]
+        if open_:
+            stack.extend(open_)
+        else:
+            sizes[node] = 1 + sum(sizes[part] for part in node.args)
+            stack.pop()
+    return sizes[f]
