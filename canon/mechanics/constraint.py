@@ -15,6 +15,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.dependence import check_independent
 from canon.mechanics.linear import SingularMatrixError, solve
 from canon.mechanics.substitution import as_tuple, entry, exchanged
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from canon.mechanics.lagrangian import Lagrangian
 
-__all__ = ["ConstrainedLagrangian", "generalized_forces"]
+__all__ = ["ConstrainedLagrangian"]
 
 
 @dataclass(frozen=True)
@@ -96,13 +97,42 @@ class ConstrainedLagrangian:
         return (*twice, *(time_derivative(g, q, t) for g in self.nonholonomic))
 
     @cached_property
+    def rests(self) -> tuple[Expr, ...]:
+        """What the rates A q̇ + a₀ hold beside the velocities: a₀ = ∂f/∂t, or g at q̇ = 0."""
+        at_rest = {velocity(s): sp.S.Zero for s in self.lagrangian.q}
+        t = self.lagrangian.t
+        return (*(f.diff(t) for f in self.holonomic), *(exchanged(g, at_rest) for g in self.nonholonomic))
+
+    @property
+    def rates(self) -> tuple[Expr, ...]:
+        """The constraints on the velocities, each A q̇ + a₀ = 0."""
+        v = sp.Matrix(self.lagrangian.velocities)
+        return tuple(
+            entry(row * v, 0, 0) + a0
+            for row, a0 in zip(
+                (self.directions.row(a) for a in range(len(self.rests))), self.rests, strict=True
+            )
+        )
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Coordinates less constraints: the number of velocities that stay free at a position.
+
+        Nonholonomic constraints restrict the velocities and not the positions that can be reached.
+        """
+        self._check_independent()
+        return len(self.lagrangian.q) - self.directions.rows
+
+    @cached_property
     def multipliers(self) -> tuple[Expr, ...]:
         """The multipliers λ(q, q̇, t) on the motion.
 
         Raises
         ------
+        DependentConstraintsError
+            Where constraints depend on one another; it names them.
         SingularMatrixError
-            Where the constraints depend on one another, or M is singular.
+            Where L does not determine the motion that the constraints leave free.
         """
         return self._solved[1]
 
@@ -134,6 +164,7 @@ class ConstrainedLagrangian:
     @cached_property
     def _solved(self) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
         """The accelerations and multipliers from ((M, −Aᵀ), (A, 0)) (q̈, λ) = (−bias, −b)."""
+        self._check_independent()
         L, A = self.lagrangian, self.directions
         still = {acceleration(s): sp.S.Zero for s in L.q}
         n, k = len(L.q), A.rows
@@ -144,41 +175,14 @@ class ConstrainedLagrangian:
             column = solve(upper.col_join(lower), right, name="the matrix of masses and constraints")
         except SingularMatrixError as singular:
             raise SingularMatrixError(
-                f"{singular}; the constraints depend on one another, or L does not determine the motion along it",
+                f"{singular}; L does not determine the motion that the constraints leave free. Use fewer "
+                "coordinates",
                 singular.null_direction,
             ) from singular
         values = [entry(column, i, 0) for i in range(n + k)]
         return tuple(values[:n]), tuple(values[n:])
 
-
-def generalized_forces(
-    forces: Sequence[Sequence[Expr]], positions: Sequence[Sequence[Expr]], q: Sequence[Symbol]
-) -> tuple[Expr, ...]:
-    """Return Q = Σ F·∂r/∂q, the work of forces in virtual displacements.
-
-    Parameters
-    ----------
-    forces
-        Force vectors, one a point.
-    positions
-        The positions r(q, t) at which they act, as vectors of the same length.
-    q
-        The generalized coordinates.
-
-    Examples
-    --------
-    >>> from sympy import cos, sin, symbols
-    >>> theta, l, F = symbols("theta l F")
-    >>> generalized_forces([(F, 0)], [(l*sin(theta), -l*cos(theta))], [theta])
-    (F*l*cos(theta),)
-    """
-    return tuple(
-        sp.Add(
-            *(
-                component * place.diff(s)
-                for force, position in zip(forces, positions, strict=True)
-                for component, place in zip(force, position, strict=True)
-            )
-        )
-        for s in q
-    )
+    def _check_independent(self) -> None:
+        L, constraints = self.lagrangian, (*self.holonomic, *self.nonholonomic)
+        moving = (*L.q, L.t)
+        check_independent(self.directions, constraints, self.rests, len(self.holonomic), moving)

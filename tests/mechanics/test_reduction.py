@@ -5,7 +5,8 @@ import sympy as sp
 
 from canon.expression.symbol import acceleration, coordinates, parameters, time, time_derivative, velocity
 from canon.mechanics.appell import GibbsAppell, PlanarBody
-from canon.mechanics.constraint import ConstrainedLagrangian, generalized_forces
+from canon.mechanics.constraint import ConstrainedLagrangian
+from canon.mechanics.force import generalized_forces
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.ignorable import ignorable_coordinates
 from canon.mechanics.lagrangian import Lagrangian

@@ -1,0 +1,121 @@
+"""One-sided constraints f(q, t) ≥ 0: in contact f = 0, and the reaction λ ∂f/∂q only pushes.
+
+With d/dt ∂L/∂q̇ − ∂L/∂q = Q + λ ∂f/∂q the contact needs λ ≥ 0; it ends where λ becomes negative.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.expression.symbol import time_derivative, velocity
+from canon.mechanics.claim import differ
+from canon.mechanics.embedding import embedded, satisfies
+from canon.mechanics.substitution import exchanged, substitute
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from canon.mechanics.constraint import ConstrainedLagrangian
+    from canon.mechanics.lagrangian import Lagrangian
+    from canon.proof.domain import Domain
+
+__all__ = ["multiplier_along", "multiplier_in_contact"]
+
+
+def multiplier_in_contact(
+    constrained: ConstrainedLagrangian, places: Mapping[Symbol, Expr], q: tuple[Symbol, ...], which: int = 0
+) -> Expr:
+    """Return the multiplier λ of one constraint as a function of the coordinates that are left in contact.
+
+    Parameters
+    ----------
+    constrained
+        The system in contact, the one-sided constraint written as f = 0 with f ≥ 0 on the free side.
+    places
+        Positions in contact as functions of fewer coordinates; a coordinate that stays may be left out.
+    q
+        Those coordinates.
+    which
+        The number of the constraint, counted from 0, holonomic ones first.
+
+    Raises
+    ------
+    ValueError
+        Where the positions do not satisfy the constraints.
+    """
+    verdict = satisfies(constrained, places, q)
+    if not verdict.holds:
+        raise ValueError(f"the positions are not in contact: {verdict.feedback or verdict}")
+    t = constrained.lagrangian.t
+    whole = {s: sp.sympify(places.get(s, s)) for s in constrained.lagrangian.q}
+    rates = {velocity(s): time_derivative(place, q, t) for s, place in whole.items()}
+    return substitute(constrained.multipliers[which], {**whole, **rates})
+
+
+def multiplier_along(
+    constrained: ConstrainedLagrangian,
+    places: Mapping[Symbol, Expr],
+    s: Symbol,
+    start: Expr,
+    speed: Expr = sp.S.Zero,
+    which: int = 0,
+    domain: Domain | None = None,
+) -> Expr:
+    """Return λ along a motion with one degree of freedom, its velocity eliminated by the energy.
+
+    The contact of f ≥ 0 ends at the first zero of the result.
+
+    Parameters
+    ----------
+    constrained, places, which
+        As for :func:`multiplier_in_contact`.
+    s
+        The one coordinate left in contact.
+    start, speed
+        Where and how fast the motion starts.
+    domain
+        Where the energy is meant.
+
+    Raises
+    ------
+    ValueError
+        Where Jacobi's energy is not conserved, or λ depends on the direction of motion.
+
+    Examples
+    --------
+    A particle slides off a sphere from rest at the top; it leaves at cos θ = 2/3:
+
+    >>> from canon import Lagrangian, coordinates, parameters
+    >>> from canon.mechanics.constraint import ConstrainedLagrangian
+    >>> r, theta = coordinates("r theta")
+    >>> m, g, a = parameters("m g a", positive=True)
+    >>> L = m*(r.dot**2 + r**2*theta.dot**2)/2 - m*g*r*sp.cos(theta)
+    >>> sphere = ConstrainedLagrangian(Lagrangian(L, [r, theta]), holonomic=[r - a])
+    >>> multiplier_along(sphere, {r: a}, theta, sp.S(0)).factor()
+    g*m*(3*cos(theta) - 2)
+    """
+    reduced = embedded(constrained.lagrangian, places, [s])
+    _conserves_energy(reduced, domain)
+    v, E = velocity(s), reduced.jacobi_energy
+    at_rest = exchanged(E, {v: sp.S.Zero})
+    quadratic = E.diff(v, 2) / 2
+    if quadratic.has(v):
+        raise ValueError(f"the energy {E} is not quadratic in {v}, so {v}² does not follow from it alone")
+    squared = (substitute(E, {s: sp.sympify(start), v: sp.sympify(speed)}) - at_rest) / quadratic
+    multiplier = sp.expand(multiplier_in_contact(constrained, places, (s,), which))
+    if differ(multiplier - exchanged(multiplier, {v: -v}), domain):
+        raise ValueError(
+            f"the multiplier {multiplier} depends on the direction of motion; take multiplier_in_contact"
+        )
+    rest, factor = exchanged(multiplier, {v: sp.S.Zero}), multiplier.diff(v, 2) / 2
+    return sp.factor_terms(rest + factor * squared)
+
+
+def _conserves_energy(reduced: Lagrangian, domain: Domain | None) -> None:
+    if any(Q != 0 for Q in reduced.forces) or differ(reduced.L.diff(reduced.t), domain):
+        raise ValueError(
+            "Jacobi's energy is not conserved: forces act, or L depends on time; integrate instead"
+        )

@@ -1,0 +1,397 @@
+"""Constraints: multipliers, elimination and quasi-velocities agree; Frobenius; refusals that name the rows."""
+
+import pytest
+import sympy as sp
+
+from canon.expression.symbol import acceleration, coordinates, parameters, time, velocity
+from canon.mechanics.constraint import ConstrainedLagrangian
+from canon.mechanics.contact import multiplier_along, multiplier_in_contact
+from canon.mechanics.dependence import DependentConstraintsError
+from canon.mechanics.embedding import eliminated, embedded, satisfies
+from canon.mechanics.frobenius import integrals, is_integrable, pfaffian
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
+from canon.proof.domain import Domain
+from canon.proof.equations import equivalent_equations
+from canon.proof.vanish import vanishes
+
+m, g, l, R, I, J, I1, I2, a, b, k, w = parameters("m g l R I J I1 I2 a b k w", positive=True)
+(alpha,) = parameters("alpha")
+x, y, z, s, theta, phi, psi, q1, q2, q3 = coordinates("x y z s theta phi psi q1 q2 q3")
+(r,) = coordinates("r", positive=True)
+sin, cos, tan = sp.sin, sp.cos, sp.tan
+
+
+def incline_roller():
+    """The notes' body rolling on an incline, s up the slope."""
+    L = Lagrangian(m * s.dot**2 / 2 + I * theta.dot**2 / 2 - m * g * s * sin(alpha), [s, theta])
+    return ConstrainedLagrangian(L, holonomic=[R * theta - s]), {theta: s / R}, [s]
+
+
+def pendulum():
+    L = Lagrangian(m * (r.dot**2 + r**2 * theta.dot**2) / 2 + m * g * r * cos(theta), [r, theta])
+    return ConstrainedLagrangian(L, holonomic=[r - l]), {r: l}, [theta]
+
+
+def cartesian_pendulum():
+    L = Lagrangian(m * (x.dot**2 + y.dot**2) / 2 + m * g * y, [x, y])
+    return (
+        ConstrainedLagrangian(L, holonomic=[(x**2 + y**2 - l**2) / 2]),
+        {x: l * sin(theta), y: l * cos(theta)},
+        [theta],
+    )
+
+
+def bead_on_a_turning_parabola():
+    """The notes' rheonomic wire x = ζ cos ωt, y = ζ sin ωt, z = ζ²."""
+    L = Lagrangian(m * (x.dot**2 + y.dot**2 + z.dot**2) / 2 - m * g * z, [x, y, z])
+    wire = [x * sin(w * time) - y * cos(w * time), z - x**2 - y**2]
+    return (
+        ConstrainedLagrangian(L, holonomic=wire),
+        {x: s * cos(w * time), y: s * sin(w * time), z: s**2},
+        [s],
+    )
+
+
+def atwood():
+    L = Lagrangian(m * x.dot**2 / 2 + k * y.dot**2 / 2 + m * g * x + k * g * y, [x, y])
+    return ConstrainedLagrangian(L, holonomic=[x + y - l]), {y: l - x}, [x]
+
+
+def spherical_chain():
+    """Two rods in space, Cartesian coordinates of the lower bob bound to the upper, in a vertical plane."""
+    u, v = coordinates("u v")
+    L = Lagrangian(m * (x.dot**2 + y.dot**2 + u.dot**2 + v.dot**2) / 2 + m * g * (y + v), [x, y, u, v])
+    rods = [x**2 + y**2 - l**2, (u - x) ** 2 + (v - y) ** 2 - a**2]
+    places = {
+        x: l * sin(theta),
+        y: l * cos(theta),
+        u: l * sin(theta) + a * sin(phi),
+        v: l * cos(theta) + a * cos(phi),
+    }
+    return ConstrainedLagrangian(L, holonomic=rods), places, [theta, phi]
+
+
+HOLONOMIC = [
+    incline_roller,
+    pendulum,
+    cartesian_pendulum,
+    bead_on_a_turning_parabola,
+    atwood,
+    spherical_chain,
+]
+
+
+def in_new_coordinates(constrained, places, q):
+    """Accelerations by multipliers as functions of the new coordinates, and their kinematics."""
+    t = constrained.lagrangian.t
+    kin = Kinematics(q, t=t)
+    whole = {c: sp.sympify(places.get(c, c)) for c in constrained.lagrangian.q}
+    rates = {velocity(c): kin.rate(e) for c, e in whole.items()}
+    second = {c: kin.rate(kin.rate(e)) for c, e in whole.items()}
+    by_multipliers = [f.xreplace({**whole, **rates}) for f in constrained.accelerations]
+    return by_multipliers, [second[c] for c in constrained.lagrangian.q]
+
+
+@pytest.mark.parametrize("system", HOLONOMIC)
+def test_elimination_agrees_with_multipliers(system):
+    constrained, places, q = system()
+    assert satisfies(constrained, places, q).holds
+    reduced = embedded(constrained.lagrangian, places, q)
+    solved = {acceleration(c): f for c, f in zip(q, reduced.accelerations, strict=True)}
+    for by_multipliers, by_elimination in zip(*in_new_coordinates(constrained, places, q), strict=True):
+        assert vanishes(by_multipliers - by_elimination.xreplace(solved)).holds
+
+
+@pytest.mark.parametrize("system", HOLONOMIC)
+def test_elimination_with_other_gravity_disagrees(system):
+    constrained, places, q = system()
+    wrong = embedded(Lagrangian(constrained.lagrangian.L.subs(g, 2 * g), constrained.lagrangian.q), places, q)
+    solved = {acceleration(c): f for c, f in zip(q, wrong.accelerations, strict=True)}
+    pairs = list(zip(*in_new_coordinates(constrained, places, q), strict=True))
+    assert any(vanishes(one - other.xreplace(solved)).fails for one, other in pairs)
+
+
+@pytest.mark.parametrize("system", HOLONOMIC)
+def test_quasi_velocities_agree_with_multipliers(system):
+    """Maggi's equations in whichever velocities elimination leaves free, on the manifold."""
+    constrained, places, q = system()
+    kin = independent_velocities(constrained)
+    assert kin.satisfy(constrained).holds
+    u_dot = dict(zip(kin.u_dot, maggi_accelerations(constrained.lagrangian, kin), strict=True))
+    whole = {c: sp.sympify(places.get(c, c)) for c in constrained.lagrangian.q}
+    new = Kinematics(q, t=constrained.lagrangian.t)
+    rates = {velocity(c): new.rate(e) for c, e in whole.items()}
+    for by_multipliers, f in zip(constrained.accelerations, kin.q_ddot, strict=True):
+        gap = by_multipliers - f.xreplace(u_dot)
+        assert vanishes(gap.xreplace({**whole, **rates})).holds
+
+
+@pytest.mark.parametrize("system", HOLONOMIC)
+def test_multiplier_equations_hold(system):
+    constrained, _, _ = system()
+    lam = sp.symbols(f"lam:{len(constrained.multipliers)}", real=True)
+    found = dict(zip(map(acceleration, constrained.lagrangian.q), constrained.accelerations, strict=True))
+    found |= dict(zip(lam, constrained.multipliers, strict=True))
+    for equation in constrained.equations(lam)[: len(constrained.lagrangian.q)]:
+        assert vanishes(equation.xreplace(found)).holds
+    for second in constrained.differentiated:
+        assert vanishes(second.xreplace(found)).holds
+    wrong = found | {lam[0]: -constrained.multipliers[0]}
+    assert any(
+        vanishes(e.xreplace(wrong)).fails for e in constrained.equations(lam)[: len(constrained.lagrangian.q)]
+    )
+
+
+def test_printed_incline():
+    constrained, _, _ = incline_roller()
+    assert vanishes(constrained.multipliers[0] - I / R**2 * constrained.accelerations[0]).holds
+    assert vanishes(constrained.multipliers[0] + I / R**2 * constrained.accelerations[0]).fails
+    assert vanishes((m + I / R**2) * constrained.accelerations[0] + m * g * sin(alpha)).holds
+    force, torque = constrained.reactions
+    assert vanishes(force + constrained.multipliers[0]).holds
+    assert vanishes(torque - R * constrained.multipliers[0]).holds
+    reduced, places = eliminated(constrained, [theta])
+    assert places == {theta: s / R}
+    assert vanishes(reduced.L - ((m + I / R**2) * s.dot**2 / 2 - m * g * s * sin(alpha))).holds
+
+
+def test_atwood_tension():
+    constrained, _, _ = atwood()
+    assert vanishes(constrained.multipliers[0] + 2 * m * k * g / (m + k)).holds
+    assert vanishes(constrained.multipliers[0] + m * k * g / (m + k)).fails
+
+
+def hollow_cylinder():
+    """The notes give the rolling condition on velocities, R θ̇ − ẋ = 0, x down the slope."""
+    L = Lagrangian(m * x.dot**2 / 2 + m * R**2 * theta.dot**2 / 2 + m * g * x * sin(phi), [x, theta])
+    return ConstrainedLagrangian(L, nonholonomic=[R * theta.dot - x.dot])
+
+
+def test_the_rolling_condition_of_the_hollow_cylinder_is_holonomic_in_disguise():
+    rolling = hollow_cylinder()
+    assert is_integrable(rolling).holds
+    (f,) = integrals(rolling)
+    assert vanishes(f - (R * theta - x)).holds
+    disguised = ConstrainedLagrangian(rolling.lagrangian, holonomic=[f])
+    for one, other in zip(rolling.accelerations, disguised.accelerations, strict=True):
+        assert vanishes(one - other).holds
+    assert vanishes(rolling.accelerations[0] - g * sin(phi) / 2).holds
+    assert vanishes(rolling.multipliers[0] - m * g * sin(phi) / 2).holds
+    assert vanishes(rolling.multipliers[0] - m * R * rolling.accelerations[1]).holds
+
+
+def unicycle():
+    L = Lagrangian(m * (x.dot**2 + y.dot**2) / 2 + J * theta.dot**2 / 2, [x, y, theta])
+    return ConstrainedLagrangian(L, nonholonomic=[y.dot - x.dot * tan(theta)])
+
+
+def knife_edge():
+    L = Lagrangian(
+        m * (x.dot**2 + y.dot**2) / 2 + J * theta.dot**2 / 2 + m * g * x * sin(alpha), [x, y, theta]
+    )
+    return ConstrainedLagrangian(L, nonholonomic=[x.dot * sin(theta) - y.dot * cos(theta)])
+
+
+def chaplygin_sleigh():
+    """Blade at (x, y), centre of mass a ahead of it."""
+    vx, vy = x.dot - a * sin(theta) * theta.dot, y.dot + a * cos(theta) * theta.dot
+    L = Lagrangian(m * (vx**2 + vy**2) / 2 + J * theta.dot**2 / 2, [x, y, theta])
+    return ConstrainedLagrangian(L, nonholonomic=[x.dot * sin(theta) - y.dot * cos(theta)])
+
+
+def rolling_disc():
+    """A vertical disc that rolls and steers: heading φ, roll angle ψ."""
+    L = Lagrangian(
+        m * (x.dot**2 + y.dot**2) / 2 + I1 * psi.dot**2 / 2 + I2 * phi.dot**2 / 2, [x, y, phi, psi]
+    )
+    return ConstrainedLagrangian(
+        L, nonholonomic=[x.dot - R * cos(phi) * psi.dot, y.dot - R * sin(phi) * psi.dot]
+    )
+
+
+def snakeboard():
+    """Centre (x, y), heading θ, rotor ψ, wheels turned by φ and −φ at distance l (Ostrowski et al. 1994)."""
+    L = Lagrangian(
+        m * (x.dot**2 + y.dot**2) / 2
+        + m * l**2 * theta.dot**2 / 2
+        + J * psi.dot**2 / 2
+        + J * psi.dot * theta.dot
+        + I * phi.dot**2,
+        [x, y, theta, psi, phi],
+    )
+    front = -sin(theta + phi) * x.dot + cos(theta + phi) * y.dot + l * cos(phi) * theta.dot
+    back = -sin(theta - phi) * x.dot + cos(theta - phi) * y.dot - l * cos(phi) * theta.dot
+    return ConstrainedLagrangian(L, nonholonomic=[front, back])
+
+
+NONHOLONOMIC = [unicycle, knife_edge, chaplygin_sleigh, rolling_disc, snakeboard]
+
+
+@pytest.mark.parametrize("system", NONHOLONOMIC)
+def test_truly_nonholonomic(system):
+    constrained = system()
+    verdict = is_integrable(constrained)
+    assert verdict.fails
+    assert verdict.counterexample is not None
+    assert integrals(constrained) == ()
+    assert pfaffian(constrained).holonomic_part.forms == ()
+    rank = len(constrained.nonholonomic)
+    assert constrained.degrees_of_freedom == len(constrained.lagrangian.q) - rank
+
+
+@pytest.mark.parametrize("system", NONHOLONOMIC)
+def test_nonholonomic_quasi_velocities_agree_with_multipliers(system):
+    constrained = system()
+    kin = independent_velocities(constrained)
+    u_dot = dict(zip(kin.u_dot, maggi_accelerations(constrained.lagrangian, kin), strict=True))
+    for by_multipliers, f in zip(constrained.accelerations, kin.q_ddot, strict=True):
+        assert vanishes(by_multipliers.xreplace(dict(kin.through)) - f.xreplace(u_dot)).holds
+    twin = independent_velocities(constrained)
+    off = {n: 2 * value + 1 for n, value in u_dot.items()}
+    gaps = [
+        one.xreplace(dict(twin.through)) - f.xreplace(off)
+        for one, f in zip(constrained.accelerations, twin.q_ddot, strict=True)
+    ]
+    assert any(vanishes(gap).fails for gap in gaps)
+
+
+def test_chaplygin_sleigh_in_its_own_quasi_velocities():
+    """u̇ = a ω², (J + m a²) ω̇ = −m a u ω (S. A. Chaplygin 1911)."""
+    u, n = sp.symbols("u omega", real=True)
+    constrained = chaplygin_sleigh()
+    kin = Kinematics([x, y, theta], [u, n], [u * cos(theta), u * sin(theta), n])
+    assert kin.satisfy(constrained).holds
+    assert Kinematics([x, y, theta], [u, n], [u * sin(theta), u * cos(theta), n]).satisfy(constrained).fails
+    u_dot, n_dot = maggi_accelerations(constrained.lagrangian, kin)
+    assert vanishes(u_dot - a * n**2).holds
+    assert vanishes(n_dot + m * a * u * n / (J + m * a**2)).holds
+    assert vanishes(n_dot - m * a * u * n / (J + m * a**2)).fails
+
+
+def test_rolling_disc_rolls_straight_on():
+    constrained = rolling_disc()
+    assert vanishes(constrained.accelerations[2]).holds
+    on = {x.dot: R * cos(phi) * psi.dot, y.dot: R * sin(phi) * psi.dot}
+    assert vanishes(constrained.accelerations[3].xreplace(on)).holds
+    sideways = constrained.multipliers[0] * -sin(phi) + constrained.multipliers[1] * cos(phi)
+    assert vanishes(sideways.xreplace(on) - m * R * psi.dot * phi.dot).holds
+    assert vanishes(sideways.xreplace(on) + m * R * psi.dot * phi.dot).fails
+
+
+def test_part_of_the_constraints_may_be_holonomic():
+    """A straight rolling wheel beside a blade: one combination restricts positions."""
+    L = Lagrangian(sum(c.dot**2 for c in (x, y, theta, z, psi)) / 2, [x, y, theta, z, psi])
+    blade = x.dot * sin(theta) - y.dot * cos(theta)
+    mixed = ConstrainedLagrangian(L, nonholonomic=[blade + z.dot - R * psi.dot, z.dot - R * psi.dot])
+    assert is_integrable(mixed).fails
+    assert len(pfaffian(mixed).holonomic_part.forms) == 1
+    (f,) = integrals(mixed)
+    assert vanishes(f.diff(z) * R + f.diff(psi)).holds
+    assert not f.has(theta, x, y)
+
+
+@pytest.mark.parametrize(
+    ("form", "keeps"),
+    [
+        (y * x.dot + x * y.dot, x * y),
+        (x * y.dot - y * x.dot, y / x),
+        (cos(theta) * x.dot - x * sin(theta) * theta.dot, x * cos(theta)),
+        (x.dot - w * x, sp.log(x) - w * time),
+        (2 * x * x.dot + z.dot - k * sin(time), x**2 + z + k * cos(time)),
+    ],
+)
+def test_integrals_of_integrable_forms(form, keeps):
+    domain = Domain((x > 0, y > 0, theta > 0, theta < 1))
+    L = Lagrangian(x.dot**2 + y.dot**2 + z.dot**2 + theta.dot**2, [x, y, z, theta])
+    constrained = ConstrainedLagrangian(L, nonholonomic=[form])
+    assert is_integrable(constrained, domain).holds
+    (found,) = integrals(constrained, domain)
+    places = (x, y, z, theta, time)
+    for i, c in enumerate(places):
+        for d in places[:i]:
+            assert vanishes(found.diff(c) * keeps.diff(d) - found.diff(d) * keeps.diff(c), domain).holds
+
+
+def test_a_form_that_depends_on_time_may_be_nonholonomic():
+    L = Lagrangian(x.dot**2 + y.dot**2, [x, y])
+    turning = ConstrainedLagrangian(L, nonholonomic=[x.dot * sin(w * time) - y.dot * cos(w * time)])
+    assert is_integrable(turning).fails
+    assert integrals(turning) == ()
+
+
+PLANE = Lagrangian((x.dot**2 + y.dot**2) / 2, [x, y])
+
+
+@pytest.mark.parametrize(
+    ("holonomic", "nonholonomic", "rows", "contradictory", "words"),
+    [
+        ([x - y, 2 * x - 2 * y], [], (1, 2), False, "leave one of them out"),
+        ([x - y, 2 * x - 2 * y + 1], [], (1, 2), True, "contradict one another"),
+        (
+            [],
+            [x.dot - y.dot, y.dot - x.dot],
+            (1, 2),
+            False,
+            r"constraint 1 \(x_dot - y_dot = 0\) and constraint 2",
+        ),
+        ([], [x.dot - y.dot, y.dot - x.dot + 1], (1, 2), True, "contradict"),
+        ([x - y], [x.dot - y.dot], (1, 2), None, "depend on one another"),
+        ([x - y], [x.dot - y.dot + w], (1, 2), True, "contradict"),
+        ([x - y, x - y - w * time], [], (1, 2), True, "contradict"),
+        ([x, y, x + y], [], (1, 2, 3), False, "constraint 3"),
+        ([l - k], [], (1,), True, "restricts no velocity"),
+        ([x**2 + y**2 - l**2, (x**2 + y**2) ** 2 - l**4], [], (1, 2), None, "holds no velocity"),
+    ],
+)
+def test_dependent_rows_are_named(holonomic, nonholonomic, rows, contradictory, words):
+    constrained = ConstrainedLagrangian(PLANE, holonomic, nonholonomic)
+    with pytest.raises(DependentConstraintsError, match=words) as caught:
+        constrained.multipliers  # noqa: B018
+    assert caught.value.rows == rows
+    assert caught.value.contradictory is contradictory
+
+
+def hemisphere():
+    L = Lagrangian(m * (r.dot**2 + r**2 * theta.dot**2) / 2 - m * g * r * cos(theta), [r, theta])
+    return ConstrainedLagrangian(L, holonomic=[r - a])
+
+
+def test_leaving_the_hemisphere():
+    """λ = m g cos θ − m a θ̇² = m g (3 cos θ − 2): the notes print its negative in one line."""
+    sphere = hemisphere()
+    force = multiplier_in_contact(sphere, {r: a}, (theta,))
+    assert vanishes(force - (m * g * cos(theta) - m * a * theta.dot**2)).holds
+    along = multiplier_along(sphere, {r: a}, theta, sp.S.Zero)
+    assert vanishes(along - m * g * (3 * cos(theta) - 2)).holds
+    assert vanishes(along + m * g * (3 * cos(theta) - 2)).fails
+    assert along.subs(theta, sp.acos(sp.Rational(2, 3))) == 0
+    pushed = multiplier_along(sphere, {r: a}, theta, sp.S.Zero, speed=sp.sqrt(g / a))
+    assert vanishes(pushed.subs(theta, 0)).holds
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: multiplier_in_contact(hemisphere(), {r: 2 * a}, (theta,)), "not in contact"),
+        (lambda: embedded(PLANE, {x: theta}, [theta]), "no place is given for y"),
+        (lambda: embedded(PLANE, {x: theta + phi, y: theta + phi}, [theta, phi]), "do not change along"),
+        (lambda: eliminated(cartesian_pendulum()[0], [x]), "not affine in x"),
+        (lambda: eliminated(knife_edge(), [x]), "takes no coordinate away"),
+        (lambda: eliminated(atwood()[0], [x, y]), "not 2"),
+        (lambda: independent_velocities(knife_edge(), [x]), "leave 2 of 3 velocities free"),
+        (lambda: Kinematics([x, y], [q1], [q1]), "1 rates for 2"),
+    ],
+)
+def test_refusals(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
+
+
+def test_gravity_on_a_driven_support_with_equivalent_forms():
+    """The bead on the turning parabola: printed equation of the notes, centrifugal sign and its twin."""
+    constrained, places, q = bead_on_a_turning_parabola()
+    bead = embedded(constrained.lagrangian, places, q)
+    equation = (1 + 4 * s**2) * s.ddot + 4 * s * s.dot**2 + (2 * g - w**2) * s
+    assert equivalent_equations(bead.equations, [equation], [s.ddot]).holds
+    assert equivalent_equations(bead.equations, [equation + 2 * w**2 * s], [s.ddot]).fails
