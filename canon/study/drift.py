@@ -34,6 +34,14 @@ WALK_EVIDENCE = 5.4
 BLOW_UP = 30.0
 """Ratio of the last window to the median one (root mean square) that only growth faster than t⁴ reaches."""
 
+UNCLEAR = "a slow oscillation, or a drift that a longer run would show"
+
+WIDENING = 0.5
+"""Share of its size by which an oscillation must widen over the run to count as growth.
+
+Less is what slow changes of an orbit bring about, such as those of Jupiter's eccentricity.
+"""
+
 BEYOND_ROUND_OFF = 50.0
 """How far a walk may exceed the expected round-off and still be called round-off."""
 
@@ -118,9 +126,10 @@ def drift(
     """Judge how the relative error of a conserved quantity grows along a run.
 
     The run is cut into blocks, and the increments of weighted block means (and of the size of the
-    oscillation in each block) are tested for a slope and for a random walk. Assumed is that the
-    oscillation is faster than about a tenth of the run; a slower one cannot be told from a drift by any
-    means but a longer run.
+    oscillation in each block) are tested for a slope and for a random walk. The size of the oscillation
+    counts as growing where it does so by half or more over the run. Assumed is that the oscillation is
+    faster than about a tenth of the run; a slower one cannot be told from a drift by any means but a
+    longer run.
 
     Parameters
     ----------
@@ -168,7 +177,8 @@ def drift(
     if not (walk.evidence > WALK_EVIDENCE and walk.size > resolution):
         walk = Walk(walk.evidence, 0.0)
     drifts = slope.probability < false_alarm / 2 and abs(slope.value) * BLOCKS > resolution
-    widens = breath.probability < false_alarm / 2 and breath.value * BLOCKS > resolution
+    change = breath.value * BLOCKS / max(float(np.median(blocks.amplitude)), resolution)
+    widens = breath.probability < false_alarm / 2 and change > WIDENING
     if _blew_up(blocks, bound, diverged):
         verdict, exponent, reason = _diverged(blocks, bound, diverged)
     elif drifts or widens:
@@ -259,7 +269,11 @@ def _secular(
     )
     sigmas = abs(found.value) / found.error
     reason = f"the {what} by {found.value * BLOCKS:.2g} over the run, {sigmas:.3g} times its standard error"
-    return Growth.SECULAR, power_of_time(series), reason
+    exponent = power_of_time(series)
+    if of_mean and exponent.high < 1.0 and abs(slope.value) * BLOCKS < float(np.median(blocks.amplitude)):
+        # A drift goes on; what slows down beneath an oscillation may be the arc of a slower one.
+        return Growth.UNDECIDED, exponent, f"{reason}, but slows down: {UNCLEAR}"
+    return Growth.SECULAR, exponent, reason
 
 
 def _wandering(
@@ -280,7 +294,7 @@ def _wandering(
         return Growth.ROUND_OFF, exponent, f"{found}, as a random walk does"
     else:
         found += ", without a direction but not as t^½"
-    return Growth.UNDECIDED, exponent, f"{found}: a slow oscillation, or a drift that a longer run would show"
+    return Growth.UNDECIDED, exponent, f"{found}: {UNCLEAR}"
 
 
 def _bounded(blocks: Blocks) -> tuple[Growth, Exponent, str]:

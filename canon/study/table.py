@@ -29,7 +29,7 @@ MEANING = {
     Growth.ROUND_OFF: "wanders as a random walk does, in proportion to √t: accumulated rounding",
     Growth.SECULAR: "grows steadily with time",
     Growth.DIVERGED: "the error has blown up",
-    Growth.UNDECIDED: "wanders, but neither as round-off does nor in one direction; run longer",
+    Growth.UNDECIDED: "a slow oscillation, or a drift that a longer run would show",
 }
 
 

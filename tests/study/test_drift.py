@@ -148,3 +148,19 @@ def test_the_answer_reads_as_words():
     text = str(drift(TIMES, 1e-6 * np.sin(900.0 * series.SHARE)))
     assert text.startswith("bounded: no growth above the detection limit")
     assert "largest error    1e-06" in text
+
+
+def test_a_slow_change_of_the_oscillations_size_is_no_growth():
+    """What the eccentricity of an orbit does to it; where it doubles, it counts."""
+    swing = np.sin(2.0 * np.pi * 331.7 * series.SHARE)
+    assert drift(TIMES, 1e-6 * (1.0 + 0.3 * series.SHARE) * swing).verdict is Growth.BOUNDED
+    assert drift(TIMES, 1e-6 * (1.0 + series.SHARE) * swing).verdict is Growth.SECULAR
+
+
+def test_what_slows_down_beneath_an_oscillation_is_undecided():
+    """A quarter of a slow oscillation looks so; the same above the oscillation is a loss that is real."""
+    arc, swing = np.sin(0.5 * np.pi * series.SHARE) ** 0.6, np.sin(2.0 * np.pi * 331.7 * series.SHARE)
+    found = drift(TIMES, 1e-7 * arc + 1e-6 * swing)
+    assert found.verdict is Growth.UNDECIDED
+    assert "slows down" in found.reason
+    assert drift(TIMES, 1e-5 * arc + 1e-6 * swing).verdict is Growth.SECULAR
