@@ -280,6 +280,14 @@ def test_from_f_to_the_map_and_back():
     assert vanishes(K.p_dot[0], first).holds
 
 
+def test_the_inverse_map_serves_as_well():
+    """The oscillator's F₁ on q(Q, P), p(Q, P)."""
+    P_ = sp.Symbol("P", positive=True)
+    back = CanonicalTransformation(Q, P_, sqrt(2 * P_ / (m * w)) * sin(Q), sqrt(2 * m * w * P_) * cos(Q))
+    assert GeneratingFunction(1, m * w * q**2 * cot(Q) / 2, q, p, Q, P_).generates(back).holds
+    assert GeneratingFunction(1, m * w * q**2 * cot(Q), q, p, Q, P_).generates(back).fails
+
+
 def test_explicit_time_enters_the_new_hamiltonian():
     b = sp.Symbol("b", real=True)
     boost = GeneratingFunction(2, (q - b * t) * (P + m * b), q, p, Q, P)

@@ -5,13 +5,17 @@ import sympy as sp
 from map_collection import MAPS, MOVING, NOTES, E, linear_symplectic, m, p, px, py, q, qp, t, w, x, y
 
 from canon.mechanics.bilinear import bilinear_covariant, canonical_covariant, displacements, is_exact
+from canon.mechanics.canonicity import disagreement
+from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.implicit import ImplicitTransformation
 from canon.mechanics.inverse import NoClosedInverseError, inverse_transformation
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
+from canon.mechanics.step import midpoint_step, runge_kutta_step, splitting_step
 from canon.mechanics.transformation import CanonicalTransformation, point_transformation
 from canon.proof.domain import Domain
 from canon.proof.vanish import vanishes
+from canon.proof.verdict import Status, Verdict
 
 Q, P = sp.symbols("Q P", real=True)
 TESTS = ["poisson", "lagrange", "symplectic", "bilinear", "contact"]
@@ -114,33 +118,44 @@ def test_dependent_new_coordinates_are_refused_with_their_direction():
         point_transformation(q, p, q * p)
 
 
-def rk4(f, h):
-    k1 = f((q, p))
-    k2 = f((q + h / 2 * k1[0], p + h / 2 * k1[1]))
-    k3 = f((q + h / 2 * k2[0], p + h / 2 * k2[1]))
-    k4 = f((q + h * k3[0], p + h * k3[1]))
-    return tuple(
-        z + h / 6 * (a + 2 * b + 2 * c + d) for z, a, b, c, d in zip((q, p), k1, k2, k3, k4, strict=True)
-    )
+h = sp.Symbol("h", positive=True)
+half, third, sixth = sp.Rational(1, 2), sp.Rational(1, 3), sp.Rational(1, 6)
+RK4 = ([[], [half], [0, half], [0, 0, 1]], [sixth, third, third, sixth])
 
 
 def test_a_runge_kutta_step_is_not_canonical():
-    h = sp.Symbol("h", positive=True)
-    step = rk4(lambda s: (s[1], -s[0]), h)
-    verdict = CanonicalTransformation(q, p, step[0], step[1]).is_canonical()
-    assert verdict.fails
-    # det M of RK4 on the oscillator is 1 − h⁶/72 + h⁸/576
-    bracket = CanonicalTransformation(q, p, step[0], step[1]).poisson_brackets[0, 1]
-    assert vanishes(bracket - (1 - h**6 / 72 + h**8 / 576)).holds
+    """det M of RK4 on the oscillator is 1 − h⁶/72 + h⁸/576."""
+    step = runge_kutta_step(Hamiltonian(p**2 / 2 + q**2 / 2, q, p), h, *RK4)
+    assert step.is_canonical().fails
+    assert vanishes(step.poisson_brackets[0, 1] - (1 - h**6 / 72 + h**8 / 576)).holds
+    euler = runge_kutta_step(Hamiltonian(p**2 / 2 - sp.cos(q), q, p), h, [[]], [1])
+    assert euler.is_canonical().fails
+
+
+def test_splitting_steps_are_canonical():
+    kepler = Hamiltonian((px**2 + py**2) / 2 - 1 / sp.sqrt(x**2 + y**2), (x, y), (px, py))
+    assert splitting_step(kepler, h, [half], [1]).is_canonical().holds
+    general = Hamiltonian(p**2 / 2 + sp.Function("V")(q), q, p)
+    assert splitting_step(general, h, [third, 1 - third], [half, half]).is_canonical().holds
+    with pytest.raises(ValueError, match="no drifts and kicks"):
+        splitting_step(Hamiltonian(p**2 * q, q, p), h, [1], [1])
+    with pytest.raises(ValueError, match="do not alternate"):
+        splitting_step(general, h, [1], [1, 1])
+    with pytest.raises(ValueError, match="row 2 of an explicit tableau"):
+        runge_kutta_step(general, h, [[], []], [1])
+
+
+def test_midpoint_steps_are_canonical():
+    for H in (p**2 * sp.sin(q) / 2 + q * p, sp.exp(p * q), sp.Function("T")(p) + sp.Function("V")(q)):
+        assert midpoint_step(Hamiltonian(H, q, p), h, [Q], [P]).is_canonical().holds
 
 
 def implicit(equations):
-    h = sp.Symbol("h", positive=True)
-    return ImplicitTransformation((q,), (p,), (Q,), (P,), tuple(e.subs("h", h) for e in equations))
+    return ImplicitTransformation((q,), (p,), (Q,), (P,), tuple(equations))
 
 
 def test_implicit_steps():
-    h, f = sp.Symbol("h"), sp.sin
+    f = sp.sin
     assert implicit([Q - q - h * (p + P) / 2, P - p + h * f((q + Q) / 2)]).is_canonical().holds
     assert implicit([Q - q - h * (p + P) / 2, P - p + h * (f(q) + f(Q)) / 2]).is_canonical().fails
     # symplectic Euler in its implicit form, and the backward Euler rule
@@ -181,6 +196,31 @@ def test_the_inverse_map_serves_as_well():
     H = p**2 / (2 * m) + m * w**2 * q**2 / 2
     assert is_new_hamiltonian(back, w * P_, H, [q, p]).holds
     assert is_new_hamiltonian(back, w * P_ / 2, H, [q, p]).fails
+
+
+def test_action_and_angle_on_the_whole_plane():
+    """The angle by atan2 and by acot, for either sign of q and p."""
+    action = (p**2 + m**2 * w**2 * q**2) / (2 * m * w)
+    for angle in (sp.atan2(m * w * q, p), sp.acot(p / (m * w * q)), sp.atan(m * w * q / p)):
+        assert CanonicalTransformation(q, p, angle, action).is_canonical().holds
+        assert CanonicalTransformation(q, p, -angle, action).is_canonical().fails
+
+
+def test_rotation_of_the_axes():
+    angle = sp.Symbol("alpha", real=True)
+    c, s = sp.cos(angle), sp.sin(angle)
+    T = point_transformation((x, y), (px, py), (c * x + s * y, -s * x + c * y))
+    assert vanishes(T.P[0] - (c * px + s * py)).holds
+    assert T.is_canonical().holds
+    mirrored = CanonicalTransformation((x, y), (px, py), T.Q, (c * px - s * py, s * px + c * py))
+    assert mirrored.is_canonical().fails
+
+
+def test_a_disagreement_would_be_reported():
+    verdict = disagreement({"poisson": Verdict(Status.HOLDS), "contact": Verdict(Status.FAILS)})
+    assert verdict.undecided
+    assert "tests disagree" in verdict.feedback
+    assert disagreement({"a": Verdict(Status.HOLDS), "b": Verdict(Status.UNDECIDED)}).holds
 
 
 def test_the_contact_test_finds_its_function():
