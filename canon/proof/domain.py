@@ -199,7 +199,7 @@ class Domain:
 EVERYWHERE = Domain()
 """No condition beside the symbols' own assumptions."""
 
-_SCALES = (Rational(1, 2), Rational(1), Rational(1, 8), Rational(4), Rational(1), Rational(30))
+_SCALES = tuple(Rational(p, q) for p, q in ((1, 2), (1, 1), (1, 8), (4, 1), (1, 1), (1, 500), (30, 1)))
 """Sizes that points are drawn at, one after another."""
 
 

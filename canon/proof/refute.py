@@ -225,10 +225,15 @@ def _try_point(
 
 
 def _agreeing_digits(left: acb, right: acb, difference: acb) -> int:
-    """Return how many decimal digits two values certainly share (1000 where they are exactly equal)."""
+    """Return how many decimal digits two values certainly share, decimals where one is exactly 0.
+
+    Exactly equal values share 1000.
+    """
     spread = abs(difference).upper()
     if spread.is_zero():
         return 1000
+    if left.is_zero() or right.is_zero():
+        return max(0, int(-float(arb(spread).log().mid()) / 2.302585092994046))
     size = max(abs(left).upper(), abs(right).upper())
     if size.is_zero() or size <= spread:
         return 0
@@ -242,7 +247,8 @@ def _record(left: acb, right: acb, point: Mapping[Symbol, sp.Rational], result: 
 
 def _texts(left: acb, right: acb) -> tuple[str, str, int]:
     """Return both values in as many certain digits as tell them apart."""
-    lost = _agreeing_digits(left, right, left - right)
+    one_is_zero = left.is_zero() or right.is_zero()
+    lost = 0 if one_is_zero else _agreeing_digits(left, right, left - right)
     digits = min(
         15 + lost, max(1, int(min(left.rel_accuracy_bits(), 10**6) * 0.30103)) if left != 0 else 15 + lost
     )

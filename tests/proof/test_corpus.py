@@ -20,8 +20,8 @@ def verdicts(chosen):
         yield identity, equal(identity.lhs, identity.rhs, domain, budget=5.0)
 
 
-def test_no_verdict_is_wrong_on_every_fifth_identity():
-    for identity, verdict in verdicts(identities()[::5]):
+def test_no_verdict_is_wrong_where_branches_matter():
+    for identity, verdict in verdicts(identities("inverse_functions", "null_sets", "piecewise")):
         assert verdict.undecided or verdict.holds == identity.truth, identity.id
 
 

@@ -131,3 +131,27 @@ def test_equalities_restrict_the_claim():
     on_plane = Domain(conditions=(Eq(x + 2 * y + z, 0),))
     assert equal((x + z) ** 2, 4 * y**2, on_plane).holds
     assert equal((x + z) ** 2, y**2, on_plane).fails
+
+
+def test_nonlinear_equalities_are_used_in_proofs():
+    on_sphere = Domain(conditions=(Eq(x**2 + y**2 + z**2, a),))
+    assert equal((x**2 + y**2) ** 2, (a - z**2) ** 2, on_sphere).holds
+    assert not equal((x**2 + y**2) ** 2, (a + z**2) ** 2, on_sphere).holds
+
+
+def test_modulus_of_what_may_be_complex():
+    assert equal(Abs(sqrt(x * y)) ** 2, x * y).status is FAILS
+    assert equal(Abs(sqrt(x * y)) ** 2, Abs(x * y)).status is not FAILS
+
+
+def test_factors_that_do_not_commute_are_declined():
+    A, B = sp.symbols("A B", commutative=False)
+    with pytest.raises(ValueError, match="commute"):
+        equal(A * B, B * A)
+
+
+def test_rounded_numbers_and_text_are_declined():
+    with pytest.raises(ValueError, match="rounded"):
+        equal(0.1 * x, x / 10)
+    with pytest.raises(TypeError, match="expression"):
+        equal("x", x)

@@ -71,9 +71,11 @@ def test_oscillator_phase_and_action(factor, holds):
 def test_oscillator_generating_function_of_the_fourth_kind(sign, holds):
     above = sp.Symbol("q", positive=True)
     P = sp.Symbol("P", positive=True)
-    F = sign * (
-        p * sqrt(2 * m * omega * P - p**2) / 2 + m * omega * P * asin(p / sqrt(2 * m * omega * P))
-    ) / (m * omega)
+    F = (
+        sign
+        * (p * sqrt(2 * m * omega * P - p**2) / 2 + m * omega * P * asin(p / sqrt(2 * m * omega * P)))
+        / (m * omega)
+    )
     action = (p**2 + m**2 * omega**2 * above**2) / (2 * m * omega)
     rules = [
         above + F.diff(p).xreplace({P: action}),
@@ -117,7 +119,10 @@ def test_heavy_top_legendre_transform():
     pt, pf, ps = sp.symbols("p_theta p_phi p_psi", real=True)
     phi_dot = (pf - ps * cos(theta)) / (I1 * sin(theta) ** 2)
     psi_dot = ps / I3 - phi_dot * cos(theta)
-    T = I1 * ((pt / I1) ** 2 + phi_dot**2 * sin(theta) ** 2) / 2 + I3 * (psi_dot + phi_dot * cos(theta)) ** 2 / 2
+    T = (
+        I1 * ((pt / I1) ** 2 + phi_dot**2 * sin(theta) ** 2) / 2
+        + I3 * (psi_dot + phi_dot * cos(theta)) ** 2 / 2
+    )
     H = pt**2 / (2 * I1) + (pf - ps * cos(theta)) ** 2 / (2 * I1 * sin(theta) ** 2) + ps**2 / (2 * I3)
     upright = Domain(conditions=(theta > 0, theta < sp.pi))
     assert equal(pt * pt / I1 + pf * phi_dot + ps * psi_dot - T, H, upright).holds
