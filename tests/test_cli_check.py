@@ -46,6 +46,27 @@ def test_a_table_for_people(tmp_path):
     assert "3 claims: 1 holds, 1 fails, 1 invalid" in done.stdout
 
 
+def test_ill_formed_claims_are_named_and_the_others_judged(tmp_path):
+    odd = [
+        {**TRUE, "kind": "equality"},
+        {"id": "b", "kind": "equality-only", "lhs": "1"},
+        {**TRUE, "id": "c", "lsh": "1"},
+        7,
+    ]
+    done = run("check", write(tmp_path, *odd, {**TRUE, "id": "good"}))
+    assert done.returncode == 2
+    assert done.stdout.count("! invalid") == 4
+    for part in (
+        "is equality-only meant?",
+        "key rhs: missing",
+        "unknown key",
+        "invalid   #4",
+        "✓ holds     good",
+    ):
+        assert part in done.stdout
+    assert done.stdout.count("sheet.json: ") == 4
+
+
 def test_json_lines_for_programs(tmp_path):
     done = run("check", "--json", write(tmp_path, TRUE, FALSE))
     yes, no = map(json.loads, done.stdout.splitlines())
@@ -104,6 +125,15 @@ def test_several_sheets_and_standard_input(tmp_path):
     one = write(tmp_path, TRUE)
     done = run("check", "--json", one, "-", stdin=json.dumps({"claims": [FALSE]}))
     assert [json.loads(line)["id"] for line in done.stdout.splitlines()] == ["yes", "no"]
+
+
+def test_equal_claims_are_judged_once_and_several_at_a_time(tmp_path):
+    class_ = [{**(TRUE if i % 3 else FALSE), "id": f"student {i}"} for i in range(200)]
+    done = run("check", "--json", "--jobs", "2", write(tmp_path, *class_))
+    told = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [t["id"] for t in told] == [c["id"] for c in class_]
+    assert [t["status"] for t in told] == ["holds" if i % 3 else "fails" for i in range(200)]
+    assert len({t["seconds"] for t in told}) <= 2
 
 
 @pytest.mark.parametrize(

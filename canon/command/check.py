@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from itertools import islice
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ with --expect 1 where a verdict differs from the claim's "expect", else 0
 
 examples:
   canon check answers.toml
-  canon check --json class/*.json > verdicts.jsonl
+  canon check --json --jobs 4 class/*.json > verdicts.jsonl
   canon check --expect regression.toml
   canon check --only pendulum answers.toml
 """
@@ -77,15 +78,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--only", metavar="ID", action="append", help="judge this claim only; may be repeated"
     )
     parser.add_argument(
+        "--jobs", metavar="N", type=_jobs, default=1, help="how many claims are judged at once (1)"
+    )
+    parser.add_argument(
         "--budget", metavar="S", type=_seconds, help="seconds a claim, whatever the sheet says"
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the sheets, print each verdict as soon as it is there, return the exit status."""
+    from canon.exercise.checking import judged
     from canon.exercise.report import Report
     from canon.exercise.sheet import SheetError
-    from canon.exercise.worker import Worker
 
     try:
         sheets = [_read(name) for name in arguments.sheets]
@@ -99,14 +103,13 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"canon check: no claim is called {', '.join(sorted(unknown))}", file=sys.stderr)
         return 2
     judgements: list[Judgement] = []
-    with Worker() as worker:
-        for sheet, claims in chosen:
-            if not arguments.json and (sheet.title or len(sheets) > 1):
-                print(sheet.title or sheet.file)
-            for claim in claims:
-                judgement = worker.judge(claim)
-                judgements.append(judgement)
-                _show(judgement, json=arguments.json)
+    coming = judged([claim for _, claims in chosen for claim in claims], arguments.jobs)
+    for sheet, claims in chosen:
+        if not arguments.json and (sheet.title or len(sheets) > 1):
+            print(sheet.title or sheet.file)
+        for judgement in islice(coming, len(claims)):
+            judgements.append(judgement)
+            _show(judgement, json=arguments.json)
     report = Report("", tuple(judgements))
     if not arguments.json:
         print(report.summary)
@@ -151,6 +154,14 @@ def _show(judgement: Judgement, *, json: bool) -> None:
         print(json_.dumps(judgement.to_dict(), ensure_ascii=False), flush=True)
     else:
         print(*judgement.lines(), sep="\n", flush=True)
+
+
+def _jobs(text: str) -> int:
+    import argparse
+
+    if not text.isdecimal() or not 1 <= int(text) <= 256:
+        raise argparse.ArgumentTypeError(f"{text!r} should be a whole number from 1 to 256")
+    return int(text)
 
 
 def _seconds(text: str) -> float:

@@ -122,33 +122,34 @@ def examine(claim: Claim) -> Finding:
     except Undecided as reason:
         answered.append(Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),)))
     except (SingularMatrixError, EmptyDomainError) as error:
-        raise InvalidClaim(ClaimError(claim.id, "", str(error))) from error
+        raise InvalidClaim(ClaimError(claim.id, "", str(error), file=claim.file)) from error
     seconds = claim.budget - (deadline.left if deadline.left > 0.05 else 0.0)
     verdict = replace(all_hold(answered), seconds=seconds)
     verdict = verdict if verdict.question else verdict.about(_title(claim))
     return Finding(reading, verdict, turned, len(answered) - 1 if turned is not None else 0)
 
 
-def check(sheet: str | Path | Sheet) -> Report:
-    """Judge every claim of a sheet.
+def check(sheet: str | Path | Sheet, jobs: int = 1) -> Report:
+    """Judge every claim of a sheet, each in its budget, in a process that can be killed.
 
     Parameters
     ----------
     sheet
         A sheet, or the path of one.
+    jobs
+        How many processes judge at the same time.
 
     Raises
     ------
     SheetError
         Where the file is no sheet.
     """
+    from canon.exercise.checking import judged
     from canon.exercise.report import Report
     from canon.exercise.sheet import Sheet, read_sheet
-    from canon.exercise.worker import Worker
 
     read = sheet if isinstance(sheet, Sheet) else read_sheet(sheet)
-    with Worker() as worker:
-        return Report(read.title or read.file, tuple(worker.judge(claim) for claim in read.claims))
+    return Report(read.title or read.file, tuple(judged(read.claims, jobs)))
 
 
 def _title(claim: Claim) -> str:

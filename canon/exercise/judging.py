@@ -28,7 +28,7 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
     try:
         finding = examine(claim)
     except InvalidClaim as error:
-        yield invalid(claim, str(error)), True
+        yield invalid(claim, error.error.brief), True
         return
     except (RecursionError, MemoryError) as error:
         what = "memory" if isinstance(error, MemoryError) else "depth of its expressions"

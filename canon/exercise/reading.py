@@ -80,7 +80,7 @@ class Reading:
 
     def fault(self, key: str, reason: str) -> NoReturn:
         """Refuse the claim for what stands under a key."""
-        raise InvalidClaim(ClaimError(self.claim.id, key, reason))
+        raise InvalidClaim(ClaimError(self.claim.id, key, reason, file=self.claim.file))
 
     def with_names(self, names: Mapping[str, Symbol]) -> Reading:
         """Return the same claim read with more names."""
@@ -241,7 +241,7 @@ class Reading:
             return parsed.xreplace(dict(self.at)) if self.at else parsed
         except LanguageError as error:
             raise InvalidClaim(
-                ClaimError(self.claim.id, key, error.message, error.column, error.caret())
+                ClaimError(self.claim.id, key, error.message, error.column, error.caret(), self.claim.file)
             ) from error
 
 

@@ -24,8 +24,8 @@ class Judgement:
 
     Parameters
     ----------
-    id, kind, title, expect
-        As the claim says.
+    id, kind, title, expect, file
+        As the claim says, and where it stands.
     status
         ``holds``, ``fails``, ``undecided`` or ``invalid``.
     seconds
@@ -59,6 +59,7 @@ class Judgement:
     known: str = ""
     title: str = ""
     expect: str = ""
+    file: str = ""
 
     @property
     def as_expected(self) -> bool:
@@ -94,6 +95,8 @@ class Judgement:
                 reasons.append(f"right would be: {self.corrected}")
         elif self.status != "holds":
             reasons += self.known.splitlines()
+            if self.status == "invalid" and self.file:
+                reasons[0] = f"{self.file}: {reasons[0]}"
         return reasons
 
 

@@ -58,18 +58,17 @@ class ClaimError:
     caret: str = ""
     file: str = ""
 
+    @property
+    def brief(self) -> str:
+        """What is wrong inside the claim, without saying which claim it is."""
+        places = (f"key {self.key}" if self.key else "", f"column {self.column}" if self.column else "")
+        where = ", ".join(place for place in places if place)
+        reason = f"{where}: {self.reason}" if where else self.reason
+        return f"{reason}\n{self.caret}" if self.caret else reason
+
     def __str__(self) -> str:
-        where = ", ".join(
-            part
-            for part in (
-                self.file,
-                f"claim {self.claim}",
-                f"key {self.key}" if self.key else "",
-                f"column {self.column}" if self.column else "",
-            )
-            if part
-        )
-        return f"{where}: {self.reason}" + (f"\n{self.caret}" if self.caret else "")
+        where = f"{self.file}, claim {self.claim}" if self.file else f"claim {self.claim}"
+        return f"{where}{', ' if self.key or self.column else ': '}{self.brief}"
 
 
 @dataclass(frozen=True)
@@ -88,6 +87,8 @@ class Claim:
         Seconds that the judgement may take.
     errors
         What is wrong with its form; a claim with errors is invalid.
+    file
+        The file it stands in.
     """
 
     id: str
@@ -96,6 +97,7 @@ class Claim:
     expect: str = ""
     budget: float = DEFAULT_BUDGET
     errors: tuple[ClaimError, ...] = ()
+    file: str = ""
 
 
 @dataclass(frozen=True)
@@ -227,7 +229,7 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
 def _claim(keys: Any, number: int, file: str) -> Claim:
     if not isinstance(keys, dict):
         error = ClaimError(f"#{number}", "", "a claim is a table of keys", file=file)
-        return Claim(f"#{number}", "", errors=(error,))
+        return Claim(f"#{number}", "", errors=(error,), file=file)
     name = keys.get("id")
     id_ = name if isinstance(name, str) and name else f"#{number}"
     said = keys.get("kind")
@@ -248,6 +250,7 @@ def _claim(keys: Any, number: int, file: str) -> Claim:
         expect=str(expect),
         budget=float(budget) if usable else DEFAULT_BUDGET,
         errors=tuple(ClaimError(id_, key, reason, file=file) for key, reason in faults),
+        file=file,
     )
 
 

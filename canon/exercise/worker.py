@@ -19,7 +19,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, Any
 
-from canon.exercise.report import Judgement
+from canon.exercise.report import Judgement, invalid
 from canon.exercise.sheet import Claim
 
 if TYPE_CHECKING:
@@ -62,9 +62,10 @@ class Worker:
 
     def judge(self, claim: Claim) -> Judgement:
         """Judge one claim within its budget; never raises for what stands in the claim."""
+        if claim.errors:
+            return invalid(claim, "\n".join(error.brief for error in claim.errors))
+        self._run()
         start = time.monotonic()
-        process = self._running()
-        start = time.monotonic() if process is None else start
         process = self._process
         if process is None or process.stdin is None:
             return _open(claim, "no process could be started to judge it", 0.0)
@@ -98,10 +99,10 @@ class Worker:
                 return verdict
             deadline = min(deadline, time.monotonic() + FEEDBACK)
 
-    def _running(self) -> subprocess.Popen[str] | None:
-        """Return the process if it ran before; start one otherwise."""
+    def _run(self) -> None:
+        """Start a process unless one is running."""
         if self._process is not None and self._process.poll() is None:
-            return self._process
+            return
         self._stop()
         self._lines = queue.SimpleQueue()
         self._process = subprocess.Popen(  # the interpreter that runs now, and nothing of the claim
@@ -119,7 +120,6 @@ class Worker:
             self._lines.get(timeout=START)
         except queue.Empty:
             self._stop()
-        return None
 
     def _stop(self) -> None:
         process, self._process = self._process, None

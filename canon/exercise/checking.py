@@ -1,0 +1,72 @@
+"""Many claims judged in their order, in several processes at once, equal ones only once."""
+
+from __future__ import annotations
+
+import json
+import queue
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from canon.exercise.worker import Worker
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from canon.exercise.report import Judgement
+    from canon.exercise.sheet import Claim
+
+__all__ = ["judged"]
+
+_OWN_KEYS = frozenset(("id", "title", "source", "expect"))
+"""Keys that say nothing about mechanics."""
+
+
+def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
+    """Yield the judgement on each claim, in order.
+
+    Parameters
+    ----------
+    claims
+        Claims, such as those of the sheets of a whole class; what is said twice is judged once.
+    jobs
+        How many processes judge at the same time.
+
+    Examples
+    --------
+    >>> from canon.exercise.sheet import Claim
+    >>> same = {"lhs": "2*(x + 1)", "rhs": "2*x + 2", "parameters": {"x": "real"}}
+    >>> [j.status for j in judged([Claim("a", "equality-only", same), Claim("b", "equality-only", same)])]
+    ['holds', 'holds']
+    """
+    with ExitStack() as stack:
+        idle: queue.SimpleQueue[Worker] = queue.SimpleQueue()
+        for _ in range(jobs):
+            idle.put(stack.enter_context(Worker()))
+        pool = stack.enter_context(ThreadPoolExecutor(jobs))
+
+        def judge(claim: Claim) -> Judgement:
+            worker = idle.get()
+            try:
+                return worker.judge(claim)
+            finally:
+                idle.put(worker)
+
+        first = {said: claim for claim in reversed(claims) if (said := _said(claim))}
+        running = {said: pool.submit(judge, claim) for said, claim in reversed(first.items())}
+        try:
+            for claim in claims:
+                found = running[_said(claim)].result()
+                title = str(claim.keys.get("title", ""))
+                yield replace(found, id=claim.id, title=title, expect=claim.expect, file=claim.file)
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _said(claim: Claim) -> str:
+    """Return everything in a claim that matters to its judgement, as text; an ill-formed one is itself only."""
+    if claim.errors:
+        return f"{claim.id}: {claim.errors}"
+    keys = {key: value for key, value in claim.keys.items() if key not in _OWN_KEYS}
+    return json.dumps([keys, claim.budget], sort_keys=True, default=str)
