@@ -19,10 +19,10 @@ __all__ = ["Signs"]
 
 Monomial = tuple[tuple[int, int], ...]
 
-MOST_SEARCHES = 1500
+MOST_SEARCHES = 400
 """Polynomials whose sign is looked for by more than their terms, in one tower."""
 
-MOST_SUBTRACTIONS = 60
+MOST_SUBTRACTIONS = 30
 """Multiples of facts that are subtracted in one search."""
 
 MOST_CONDITIONS = 8
