@@ -84,7 +84,7 @@ run_study(SHORT, sys.argv[1], progress=slowly)
 """
 
 
-@pytest.mark.parametrize("finished", [1, 4])
+@pytest.mark.parametrize("finished", [pytest.param(1, marks=pytest.mark.slow), 4])
 def test_killed_at_any_moment_and_resumed_it_ends_the_same(tmp_path, uninterrupted, finished):
     path = tmp_path / "killed.sqlite"
     program = subprocess.Popen([sys.executable, "-c", PROGRAM, str(path)], stdout=subprocess.PIPE, text=True)
