@@ -10,7 +10,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.manifold import on_manifold, transported
-from canon.exercise.question import Part, Question, Regular, Same
+from canon.exercise.question import Part, Question, Regular, Same, wrong_variables
 from canon.mechanics.bilinear import bilinear_covariant, displacements
 from canon.mechanics.bracket import lagrange_bracket, lie_bracket, poisson_bracket, symplectic_unit
 from canon.mechanics.substitution import substitute
@@ -253,6 +253,9 @@ def new_hamiltonian(reading: Reading) -> Iterator[Question]:
     names = (*reading.symbols(new[0]), *reading.symbols(new[1]))
     images = [there[name] for name in names]
     n = len(q)
+    yield from wrong_variables(
+        reading.expression("K"), (*reading.symbols("q"), *reading.symbols("p")), "K", "Q, P and t"
+    )
     yield Same(canonical_parts(images[:n], images[n:], q, p), domain)
     difference = substitute(after, there) - before
     parts = tuple(

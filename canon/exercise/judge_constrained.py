@@ -9,11 +9,11 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.affine import solved
+from canon.exercise.judge_lagrangian import lagrangian_of
 from canon.exercise.manifold import on_manifold
 from canon.exercise.question import Part, Question, Same, SameEquations
 from canon.exercise.tree import replaced
 from canon.expression.symbol import acceleration, time_derivative, velocity
-from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.substitution import substitute
 
@@ -59,7 +59,7 @@ def _on_every_motion(
     q, t, multipliers = reading.symbols("q"), reading.time, reading.symbols("multipliers")
     if len(multipliers) != directions.rows:
         reading.fault("multipliers", f"{len(multipliers)} multipliers for {directions.rows} constraints")
-    lagrangian = Lagrangian(reading.expression("L"), q, t)
+    lagrangian = lagrangian_of(reading)
     unknowns = (*(acceleration(x) for x in q), *multipliers)
     reactions = directions.T * sp.Matrix(multipliers)
     system = [equation - reaction for equation, reaction in zip(lagrangian.equations, reactions, strict=True)]

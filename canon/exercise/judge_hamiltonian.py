@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.judge_lagrangian import lagrangian_of
 from canon.exercise.manifold import on_manifold, transported
-from canon.exercise.question import Part, Question, Regular, Same
+from canon.exercise.question import Part, Question, Regular, Same, wrong_variables
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian, legendre
-from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import substitute
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from canon.exercise.reading import Reading
 
@@ -24,11 +24,12 @@ __all__ = ["constant_of_motion", "equality", "hamilton_equations", "legendre_ham
 
 def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
     """The velocity Hessian is regular and H(q, ∂L/∂q̇, t) = Σ p q̇ − L."""
-    q, p = reading.phase_space("q", "p")
-    lagrangian = Lagrangian(reading.expression("L"), q, reading.time)
+    _, p = reading.phase_space("q", "p")
+    lagrangian = lagrangian_of(reading)
     domain = reading.domain
     yield Regular(lagrangian.mass_matrix, "the velocity Hessian", domain)
     if reading.has("H"):
+        yield from wrong_variables(reading.expression("H"), lagrangian.velocities, "H", "q, p and t")
         through = dict(zip(p, lagrangian.momenta, strict=True))
         part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through)
         yield Same((part,), transported(domain, through), lambda: legendre(lagrangian, p, domain).H)
@@ -37,7 +38,7 @@ def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
 def hamilton_equations(reading: Reading) -> Iterator[Question]:
     """q̇ = ∂H/∂p and ṗ = −∂H/∂q as claimed, or solved by the claimed functions of time."""
     q, p = reading.phase_space("q", "p")
-    system = Hamiltonian(reading.expression("H"), q, p, reading.time)
+    system = Hamiltonian(_in_phase_space(reading, "H", q), q, p, reading.time)
     if reading.has("q_dot"):
         claimed = (*reading.expressions("q_dot", like="q"), *reading.expressions("p_dot", like="p"))
         through: dict[Symbol, Expr] = {velocity(x): rate for x, rate in zip(q, system.q_dot, strict=True)}
@@ -81,13 +82,23 @@ def equality(reading: Reading) -> Iterator[Question]:
     yield Same((Part("lhs", reading.expression("lhs"), reading.expression("rhs")),), reading.domain)
 
 
+def _in_phase_space(reading: Reading, key: str, q: Sequence[Symbol]) -> Expr:
+    """Return an expression that must be a function of q, p and t."""
+    f = reading.expression(key)
+    for x in q:
+        if f.has(velocity(x), acceleration(x)):
+            reading.fault(key, f"should be a function of q, p and t; eliminate {velocity(x)}")
+    return f
+
+
 def _rates(reading: Reading, I: Expr) -> dict[Symbol, Expr]:
     if reading.has("H"):
         q, p = reading.phase_space("q", "p")
-        system = Hamiltonian(reading.expression("H"), q, p, reading.time)
+        system = Hamiltonian(_in_phase_space(reading, "H", q), q, p, reading.time)
+        _in_phase_space(reading, "I", q)
         return dict(zip((*q, *p), system.vector_field, strict=True))
     if reading.has("L"):
-        lagrangian = Lagrangian(reading.expression("L"), reading.symbols("q"), reading.time)
+        lagrangian = lagrangian_of(reading)
         rates: dict[Symbol, Expr] = {x: velocity(x) for x in lagrangian.q}
         if I.has(*(acceleration(x) for x in lagrangian.q)):
             reading.fault("I", "should depend on coordinates, velocities and time only")

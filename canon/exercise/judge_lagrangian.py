@@ -10,7 +10,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.affine import solved
 from canon.exercise.manifold import transported
-from canon.exercise.question import Part, Question, Regular, Same, SameEquations
+from canon.exercise.question import Part, Question, Regular, Same, SameEquations, wrong_variables
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import substitute
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
     from canon.exercise.reading import Reading
 
-__all__ = ["dissipative", "euler_lagrange", "lagrangian_equivalence", "routhian"]
+__all__ = ["dissipative", "euler_lagrange", "lagrangian_equivalence", "lagrangian_of", "routhian"]
 
 
 def euler_lagrange(reading: Reading) -> Iterator[Question]:
     """The claimed equations are equivalent to d/dt ∂L/∂q̇ − ∂L/∂q = 0."""
-    lagrangian = Lagrangian(reading.expression("L"), reading.symbols("q"), reading.time)
+    lagrangian = lagrangian_of(reading)
     yield same_motion(reading, lagrangian)
 
 
@@ -35,7 +35,7 @@ def dissipative(reading: Reading) -> Iterator[Question]:
     damping = reading.expression("F", sp.S.Zero)
     applied = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
     forces = [Q - damping.diff(velocity(x)) for x, Q in zip(q, applied, strict=True)]
-    lagrangian = Lagrangian(reading.expression("L"), q, t, forces)
+    lagrangian = lagrangian_of(reading, forces=forces)
     if reading.has("claim"):
         yield same_motion(reading, lagrangian)
     if reading.has("energy_rate"):
@@ -54,7 +54,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
     sign = {"L-pq": 1, "pq-L": -1}.get(reading.word("convention"))
     if sign is None:
         reading.fault("convention", "write L-pq or pq-L")
-    lagrangian = Lagrangian(reading.expression("L"), q, t)
+    lagrangian = lagrangian_of(reading)
     L, velocities = lagrangian.L, tuple(velocity(c) for c in ignorable)
     absent = tuple(Part(f"∂L/∂{c} of the ignorable coordinate {c}", L.diff(c)) for c in ignorable)
     yield Same(absent, reading.domain)
@@ -66,6 +66,9 @@ def routhian(reading: Reading) -> Iterator[Question]:
     through = {p: L.diff(v) for p, v in zip(momenta, velocities, strict=True)}
     if reading.has("R"):
         right = sign * (L - sp.Add(*(v * L.diff(v) for v in velocities)))
+        yield from wrong_variables(
+            reading.expression("R"), velocities, "R", "q, the other velocities, the momenta and t"
+        )
         part = Part("the Routhian", reading.expression("R"), right, through)
         yield Same(
             (part,),
@@ -83,7 +86,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
 def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
     """L₂ − L₁ is a total time derivative, or both have the same equations of motion."""
     q, t = reading.symbols("q"), reading.time
-    first, second = reading.expression("L1"), reading.expression("L2")
+    first, second = lagrangian_of(reading, "L1").L, lagrangian_of(reading, "L2").L
     relation = reading.word("relation")
     if relation == "equations":
         systems = [Lagrangian(L, q, t).equations for L in (second, first)]
@@ -106,6 +109,14 @@ def routhian_in_momenta(
         return None
     value = lagrangian.L - sp.Add(*(p * v for p, v in zip(through, ignorable, strict=True)))
     return sp.expand(sp.Integer(sign) * substitute(value, solved(equations, ignorable)), trig=False)
+
+
+def lagrangian_of(reading: Reading, key: str = "L", forces: Sequence[Expr] | None = None) -> Lagrangian:
+    """Return the Lagrangian that a claim gives."""
+    L, q = reading.expression(key), reading.symbols("q")
+    if L.has(*(acceleration(x) for x in q)):
+        reading.fault(key, "a Lagrangian depends on coordinates, velocities and time only")
+    return Lagrangian(L, q, reading.time, forces)
 
 
 def same_motion(reading: Reading, lagrangian: Lagrangian) -> SameEquations:

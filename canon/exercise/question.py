@@ -14,14 +14,24 @@ from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.equations import equivalent_equations
 from canon.proof.vanish import equal, vanishes
-from canon.proof.verdict import Verdict
+from canon.proof.verdict import Status, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from canon.proof.domain import Domain
 
-__all__ = ["Answer", "Deadline", "Part", "Question", "Regular", "Same", "SameEquations", "decide"]
+__all__ = [
+    "Answer",
+    "Deadline",
+    "Part",
+    "Question",
+    "Regular",
+    "Same",
+    "SameEquations",
+    "decide",
+    "wrong_variables",
+]
 
 Answer: TypeAlias = "Callable[[], object]"
 """Finds the right answer; called only where a claim fails."""
@@ -106,6 +116,16 @@ class Deadline:
     def left(self) -> float:
         """Seconds that are left, at least a few hundredths, so that every question is at least looked at."""
         return max(0.05, self.at - time.monotonic())
+
+
+def wrong_variables(f: Expr, foreign: Sequence[Symbol], name: str, variables: str) -> Iterator[Verdict]:
+    """Yield FAILS where an answer depends on variables that it can't depend on; otherwise nothing."""
+    found = [str(s) for s in foreign if f.has(s)]
+    if found:
+        why = f"{name} is a function of {variables}; {', '.join(found)} must be eliminated"
+        yield Verdict(
+            Status.FAILS, f"the variables of {name}", certificate="structure", residual=f, feedback=why
+        )
 
 
 def decide(question: Question, deadline: Deadline) -> Verdict:

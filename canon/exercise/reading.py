@@ -24,7 +24,7 @@ from canon.expression.symbol import Coordinate, Momentum, velocity
 from canon.proof.domain import Domain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from sympy.logic.boolalg import Boolean
 
@@ -116,7 +116,7 @@ class Reading:
                 names[name] = _MAKERS.get(key, Symbol)(name, **self._assumptions(name))
         functions = {name: tuple(_as_list(args)) for name, args in keys.get("functions", {}).items()}
         for name in keys.get("parameters", {}):
-            if name not in functions and name != self.time.name:
+            if name not in functions and name != self.time.name and not _is_rate(name, names):
                 names.setdefault(name, Symbol(name, **self._assumptions(name)))
         if self.is_names("quasi"):
             rates = {f"{u}_dot": velocity(names[u]) for u in _as_list(keys["quasi"])}
@@ -130,7 +130,7 @@ class Reading:
     @cached_property
     def domain(self) -> Domain:
         """The conditions of the claim and the box of its hints."""
-        conditions: list[Boolean] = []
+        conditions = [*self._of_rates()]
         for position, text in enumerate(_as_list(self.claim.keys.get("domain", []))):
             condition = self._parse(parse_condition, text, f"domain[{position}]")
             if condition is sp.false:
@@ -144,6 +144,19 @@ class Reading:
                 self.fault("box", f"{name} is not declared; {self.scope.near(name)}")
             box[symbol] = (exact(low), exact(high))
         return Domain(tuple(conditions), MappingProxyType(box))
+
+    def _of_rates(self) -> Iterator[Boolean]:
+        """Yield what ``parameters`` assumes of velocities and accelerations, as conditions."""
+        relations = {"positive": sp.Gt, "negative": sp.Lt, "nonzero": sp.Ne}
+        for name, word in self.claim.keys.get("parameters", {}).items():
+            symbol = self.scope.symbol(name)
+            if (
+                symbol is not None
+                and name not in self.scope.names
+                and word in relations
+                and symbol != self.time
+            ):
+                yield relations[word](symbol, 0)
 
     def symbols(self, key: str) -> tuple[Symbol, ...]:
         """Return the symbols of a list of names."""
@@ -243,6 +256,12 @@ class Reading:
             raise InvalidClaim(
                 ClaimError(self.claim.id, key, error.message, error.column, error.caret(), self.claim.file)
             ) from error
+
+
+def _is_rate(name: str, names: Mapping[str, Symbol]) -> bool:
+    """Whether a name is that of a declared coordinate's velocity or acceleration."""
+    bases = (name.removesuffix(ending) for ending in ("_ddot", "_dot") if name.endswith(ending))
+    return any(isinstance(names.get(base), Coordinate) for base in bases)
 
 
 def _as_list(value: Any) -> list[Any]:

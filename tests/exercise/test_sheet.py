@@ -293,6 +293,19 @@ def test_what_a_claim_says_is_invalid_for_that_claim_only(change, key, column):
             "q_dot",
         ),
         ({"kind": "constant-of-motion", "q": ["x"], "L": "x_dot**2", "I": "x_ddot"}, "I"),
+        ({"kind": "constant-of-motion", "q": ["x"], "p": ["p"], "H": "p**2", "I": "x_dot"}, "I"),
+        ({"kind": "euler-lagrange", "q": ["x"], "L": "x_ddot**2", "claim": ["x_ddot"]}, "L"),
+        (
+            {
+                "kind": "hamilton-equations",
+                "q": ["x"],
+                "p": ["p"],
+                "H": "p*x_dot",
+                "q_dot": ["p"],
+                "p_dot": ["0"],
+            },
+            "H",
+        ),
     ],
 )
 def test_claims_that_do_not_fit_together(claim, key):
