@@ -47,7 +47,7 @@ def embedded(lagrangian: Lagrangian, places: Mapping[Symbol, Expr], q: Sequence[
     >>> m, M, l, g = parameters("m M l g", positive=True)
     >>> free = Lagrangian((m*x.dot**2 + M*y.dot**2)/2 + m*g*x + M*g*y, [x, y])
     >>> embedded(free, {y: l - x}, [x]).accelerations[0].factor()
-    -g*(M - m)/(M + m)
+    g*(-M + m)/(M + m)
     """
     whole = _whole(lagrangian, places, q)
     jacobian = sp.Matrix([[whole[s].diff(x) for x in q] for s in lagrangian.q])

@@ -4,7 +4,8 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbol import acceleration, coordinates, parameters, time, time_derivative, velocity
-from canon.mechanics.appell import GibbsAppell, PlanarBody
+from canon.mechanics.appell import GibbsAppell
+from canon.mechanics.body import Particle, PlanarBody
 from canon.mechanics.constraint import ConstrainedLagrangian
 from canon.mechanics.force import generalized_forces
 from canon.mechanics.hamiltonian import Hamiltonian
@@ -139,7 +140,7 @@ def cart_pendulum():
     V = m * g * l * sp.cos(theta)
     v = [time_derivative(s, [x, theta]) for s in rod]
     L = Lagrangian(M * x.dot**2 / 2 + m * (v[0] ** 2 + v[1] ** 2) / 2 + J * theta.dot**2 / 2 - V, [x, theta])
-    return L, GibbsAppell([PlanarBody(M, (x,)), PlanarBody(m, rod, J, theta)], [x, theta], V)
+    return L, GibbsAppell([Particle(M, (x,)), PlanarBody(m, rod, J, theta)], [x, theta], V)
 
 
 def test_gibbs_appell_agrees_with_lagrange():
