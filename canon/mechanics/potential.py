@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 import sympy as sp
 from sympy import Expr, Symbol
-from sympy.integrals.manualintegrate import manualintegrate
 
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.integral import table_integral
 from canon.mechanics.substitution import exchanged, size
 from canon.mechanics.witness import Witness, witnesses
 from canon.proof.vanish import vanishes
@@ -204,27 +204,11 @@ def _antiderivatives(
     basis = {c * name: c * hint for c in sorted(constants, key=size)[:4] for name, hint in hints.items()}
     for a, s in zip(form, z, strict=True):
         for term in _terms(a)[:12]:
-            integral = _elementary_integral(term, s)
+            integral = table_integral(term, s)
             if integral is not None:
-                basis[integral] = integral
+                plain = integral.as_coeff_Mul()[1]
+                basis[plain] = plain
     return dict(sorted(basis.items(), key=lambda item: size(item[0]))[:40])
-
-
-def _elementary_integral(term: Expr, s: Symbol) -> Expr | None:
-    """Integrate one small term by the rules of a table, up to a factor; None where it has no short integral."""
-    if size(term) > 70:
-        return None
-    integral = sp.piecewise_fold(manualintegrate(term, s))
-    if isinstance(integral, sp.Piecewise):
-        generic, _ = integral.args[0].args  # whatever comes of this case is proved afterwards
-        return _short_integral(generic)
-    return _short_integral(integral)
-
-
-def _short_integral(integral: sp.Basic) -> Expr | None:
-    if not isinstance(integral, Expr) or integral.has(sp.Integral, sp.Piecewise):
-        return None
-    return integral.as_coeff_Mul()[1]
 
 
 def _products(form: Sequence[Expr], z: Sequence[Symbol], hints: Mapping[Expr, Expr]) -> dict[Expr, Expr]:

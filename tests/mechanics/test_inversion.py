@@ -5,6 +5,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from canon.mechanics.integral import table_integral
 from canon.mechanics.inversion import Inversion, isolate, solve_system
 from canon.mechanics.potential import potential
 from canon.mechanics.witness import Witness, witnesses
@@ -103,3 +104,27 @@ def test_closed_forms_are_integrated(G):
 def test_forms_that_are_not_closed_have_no_potential():
     assert potential([y, -x], [x, y], Domain()) is None
     assert potential([x * y, x], [x, y], Domain()) is None
+
+
+TABLE = [
+    x**3 * u,
+    u / x,
+    sp.sin(u * x + 1),
+    x * sp.exp(-x),
+    x * sp.exp(x**2),
+    sp.cos(x) * sp.sin(x) ** 3,
+    1 / (1 + x**2),
+    x**2 * sp.cos(2 * x),
+]
+
+
+@pytest.mark.parametrize("term", TABLE, ids=str)
+def test_table_integrals(term):
+    integral = table_integral(term, x)
+    assert integral is not None
+    assert vanishes(integral.diff(x) - term).holds
+
+
+def test_nested_functions_are_left_alone():
+    """SymPy's rules would search for minutes here."""
+    assert table_integral(sp.exp(-x) * sp.sin(y * sp.exp(-x) + sp.exp(2 * x)) * sp.exp(2 * x), x) is None
