@@ -86,7 +86,7 @@ class NormalForm:
             for part in condition.args:
                 self._learn(part)
         elif isinstance(condition, sp.Eq) and isinstance(condition.lhs, sp.Expr):
-            self.tower.learn_zero(self.form(cast("Expr", condition.lhs) - cast("Expr", condition.rhs)).num)
+            self.tower.learn_zero(self.form(condition.lhs - cast("Expr", condition.rhs)).num)
         elif isinstance(condition, sp.Ne) and isinstance(condition.lhs, sp.Expr):
             gap = self.form(condition.lhs - condition.rhs)
             if gap.num.is_zero():
