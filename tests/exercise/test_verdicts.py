@@ -25,7 +25,7 @@ def test_the_verdict_is_right(claim):
 
 @pytest.mark.parametrize("claim", [pytest.param(c, id=c.id) for c in read_sheet(SUBTLE).claims])
 def test_subtle_claims(claim):
-    """Right or wrong on a branch, at a kink, by a term of 10⁻³⁰, on one part of a manifold only."""
+    """Right or wrong on a branch, at a kink, by a term of 10⁻³⁰, on one part of a manifold only; and long ones."""
     verdict = judge(claim)
     assert verdict.status.value == claim.expect, str(verdict)
 
