@@ -30,7 +30,9 @@ def residuals(T: CanonicalTransformation, by: Test, c: Expr) -> Iterator[tuple[s
             return _brackets(T.lagrange_brackets, [str(z) for z in T.variables], c, "[{}, {}]")
         case "symplectic":
             J = symplectic_unit(len(T.q))
-            return _entries(T.jacobian * J * T.jacobian.T - c * J)
+            return _brackets(
+                T.jacobian * J * T.jacobian.T, _names(T, "QP"), c, "the entry ({}, {}) of M J Mᵀ"
+            )
         case "bilinear":
             return _coefficients(T, c)
         case "contact":
@@ -71,12 +73,6 @@ def _brackets(matrix: sp.MatrixBase, names: list[str], c: Expr, written: str) ->
         for j in range(i + 1, 2 * n):
             due = c if j == i + n else sp.S.Zero
             yield f"{written.format(names[i], names[j])} = {due}", entry(matrix, i, j) - due
-
-
-def _entries(matrix: sp.MatrixBase) -> Iterator[tuple[str, Expr]]:
-    for i in range(matrix.rows):
-        for j in range(i + 1, matrix.cols):
-            yield f"(M J Mᵀ − c J)[{i + 1}, {j + 1}] = 0", entry(matrix, i, j)
 
 
 def _coefficients(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]]:

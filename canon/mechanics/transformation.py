@@ -180,7 +180,8 @@ class CanonicalTransformation:
         if c is None:
             return self._without_valence(budget)
         question = f"the map is canonical{'' if c == 1 else f' with valence {c}'}"
-        verdict = all_vanish(residuals(self, by or "poisson", c), question, self.domain, budget)
+        test = by or ("poisson" if self.jacobian.has(*self.variables) else "symplectic")
+        verdict = all_vanish(residuals(self, test, c), question, self.domain, budget)
         if verdict.fails:
             return replace(verdict, feedback=mending(self, c) or verdict.feedback)
         if verdict.holds and by == "contact":
