@@ -25,7 +25,7 @@ __all__ = ["MachineCode", "compiled", "simd_bytes"]
 
 _COMPILING = threading.Lock()
 
-_LARGE = 700_000
+_LARGE = 200_000
 """Above this size of a module the search for parallel scalars (SLP) takes longer than it saves."""
 
 

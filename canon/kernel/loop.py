@@ -20,10 +20,11 @@ from typing import TYPE_CHECKING
 
 from canon.kernel.llvm import MachineCode, compiled
 from canon.kernel.machine import DOUBLE, MachineType
+from canon.kernel.rolled import is_worth_rolling, write_rolled
 from canon.kernel.writer import LIBRARY, Writer
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Callable, Generator, Sequence
 
     from canon.kernel.program import Program
     from canon.kernel.structure import Equations
@@ -92,39 +93,53 @@ def splitting_loop(
     n = len(system.q)
     w = Writer(number)
     y, e = w.array(2 * n), w.array(2 * n) if compensated else ""
-    velocity, force = w.array(n), w.array(n)
+    force = w.array(n)
     drift_clock, kick_clock = w.array(1), w.array(1)
 
-    def evaluate(nodes: Sequence[int], reads: int, clock: str, rate: str) -> None:
+    def evaluate(nodes: Sequence[int], reads: int, clock: str, take: Callable[[str, str], None]) -> None:
+        steps = system.program(nodes)
+        if is_worth_rolling(steps):
+            write_rolled(w, steps, y, clock, take)
+            return
         arguments = ["poison"] * (2 * n + 1)
         for i in range(n):
             arguments[reads + i] = w.load(y, reads + i)
         arguments[2 * n] = w.load(clock, 0)
-        for i, value in enumerate(w.program(system.program(nodes), arguments)):
-            w.store(value, rate, i)
+        for i, value in enumerate(w.program(steps, arguments)):
+            take(str(i), value)
 
-    def move(first: int, coefficient: str, rate: str, clock: str) -> None:
-        with w.loop(0, n) as i:
-            increase(w, y, e, w.let(f"add i64 {i}, {first}"), coefficient, w.load(rate, i))
+    def moving(first: int, coefficient: str) -> Callable[[str, str], None]:
+        """Return what adds coefficient · rate to the components from ``first`` on."""
+        return lambda i, rate: increase(w, y, e, w.let(f"add i64 {i}, {first}"), coefficient, rate)
+
+    def advance_clock(clock: str, coefficient: str) -> None:
         if not system.autonomous:
             w.store(w.algebra("add", w.load(clock, 0), coefficient), clock, 0)
 
     def drift(coefficient: str) -> None:
-        evaluate(system.velocity, n, kick_clock, velocity)
-        move(0, coefficient, velocity, drift_clock)
+        evaluate(system.velocity, n, kick_clock, moving(0, coefficient))
+        advance_clock(drift_clock, coefficient)
 
     def kick(coefficient: str) -> None:
-        evaluate(system.force, 0, drift_clock, force)
-        move(n, coefficient, force, kick_clock)
+        if kick_first:
+            evaluate(system.force, 0, drift_clock, lambda i, rate: w.store(rate, force, i))
+            kick_again(coefficient)
+        else:
+            evaluate(system.force, 0, drift_clock, moving(n, coefficient))
+        advance_clock(kick_clock, coefficient)
+
+    def kick_again(coefficient: str) -> None:
+        with w.loop(0, n) as i:
+            moving(n, coefficient)(i, w.load(force, i))
 
     with blocks_of(w, y, e, 2 * n, 2 * n):
         if kick_first:
-            evaluate(system.force, 0, drift_clock, force)
+            evaluate(system.force, 0, drift_clock, lambda i, rate: w.store(rate, force, i))
         with steps_of(w, system) as time:
             w.store(time, drift_clock, 0)
             w.store(time, kick_clock, 0)
             if kick_first:
-                move(n, w.load("%c", METHOD + 1), force, kick_clock)
+                kick_again(w.load("%c", METHOD + 1))
             with w.loop(int(kick_first), stages) as s:
                 pair = w.let(f"shl i64 {s}, 1")
                 drift(w.load("%c", w.let(f"add i64 {pair}, {METHOD}")))

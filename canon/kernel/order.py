@@ -20,7 +20,7 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["defects", "order"]
+__all__ = ["conditions", "defects", "order"]
 
 _Vector = npt.NDArray[Any]
 _Words = list[_Vector]
@@ -63,10 +63,15 @@ def defects(a: Sequence[Any], b: Sequence[Any], length: int, *, nystrom: bool = 
 
     The greatest coefficient, over words of that length, of log(method) − (A + B).
     """
+    return [max(abs(degree)) for degree in conditions(a, b, length, nystrom=nystrom)]
+
+
+def conditions(a: Sequence[Any], b: Sequence[Any], length: int, *, nystrom: bool = False) -> list[_Vector]:
+    """Return log(method) − (A + B) by word length 1 … ``length``: all of it vanishes up to the method's order."""
     logarithm = _logarithm(composed(a, b, length))
     logarithm[1] = logarithm[1] - 1
     ideal = _nystrom_ideal(length) if nystrom else {}
-    return [max(abs(_outside(logarithm[d], ideal.get(d, [])))) for d in range(1, length + 1)]
+    return [_outside(logarithm[d], ideal.get(d, [])) for d in range(1, length + 1)]
 
 
 def composed(a: Sequence[Any], b: Sequence[Any], length: int) -> _Words:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from canon.kernel.pair import pair_functions
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Generator, Sequence
 
     from canon.kernel.machine import MachineType
     from canon.kernel.program import Program
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 __all__ = ["LIBRARY", "Writer"]
 
 _ALGEBRA = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
+
+_LONG = 128
 
 LIBRARY = (
     "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
@@ -44,6 +46,7 @@ class Writer:
         self.declarations: set[str] = set()
         self._names = itertools.count(1)
         self._ends: list[str] = []
+        self._tables: dict[str, str] = {}
 
     def line(self, text: str) -> None:
         """Write an instruction without a result."""
@@ -204,7 +207,9 @@ class Writer:
 
     def array(self, length: int) -> str:
         """Reserve local memory for so many numbers."""
-        return self._reserve(f"[{length} x {self.number.name}], align 64")
+        # Arrays whose addresses differ by multiples of 4096 bytes delay each other: long ones are set apart.
+        apart = 24 if length >= _LONG else 0
+        return self._reserve(f"[{length + apart} x {self.number.name}], align 64")
 
     def _reserve(self, what: str) -> str:
         # All in the function's first block: memory reserved inside a loop would pile up.
@@ -227,6 +232,15 @@ class Writer:
         self.line(
             f"store {self.number.name} {value}, ptr {self.at(array, index)}, align {self.number.alignment}"
         )
+
+    def entry(self, table: Sequence[int], index: str) -> str:
+        """Look an integer up in a constant table."""
+        numbers = ", ".join(f"i32 {number}" for number in table)
+        known = f"private unnamed_addr constant [{len(table)} x i32] [{numbers}]"
+        name = self._tables.setdefault(known, f"@table{len(self._tables)}")
+        self.declarations.add(f"{name} = {known}")
+        address = self.let(f"getelementptr inbounds i32, ptr {name}, i64 {index}")
+        return self.let(f"sext i32 {self.let(f'load i32, ptr {address}')} to i64")
 
     # loops ---------------------------------------------------------------------------------------
 
@@ -272,10 +286,11 @@ class Writer:
             elif operation == "constant":
                 registers.append(self.constant(value))
             else:
-                registers.append(self._operation(operation, [registers[o] for o in operands]))
+                registers.append(self.operation(operation, [registers[o] for o in operands]))
         return [registers[o] for o in steps.outputs]
 
-    def _operation(self, operation: str, x: list[str]) -> str:
+    def operation(self, operation: str, x: list[str]) -> str:
+        """Write one operation of a program."""
         if operation in _ALGEBRA:
             return self.algebra(operation, *x)
         if operation == "neg":
