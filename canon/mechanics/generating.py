@@ -24,8 +24,9 @@ from sympy import Expr, Symbol
 from canon.expression.symbol import time
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import is_regular
+from canon.mechanics.parametric import ParametricGeneratingFunction
 from canon.mechanics.recovery import Recovery
-from canon.mechanics.substitution import as_tuple, entry, exchanged, substitute
+from canon.mechanics.substitution import as_tuple, substitute
 from canon.proof.domain import Domain
 from canon.proof.verdict import Verdict, all_hold
 
@@ -269,72 +270,6 @@ def kinds_of(kind: int | Sequence[int], n: int) -> tuple[int, ...]:
             f"the type {kind!r} should be 1, 2, 3 or 4, or one of them for each of {n} degrees of freedom"
         )
     return kinds
-
-
-@dataclass(frozen=True)
-class ParametricGeneratingFunction:
-    """A generating function that exists but is known only along the map: F(q, p, t) and the relations.
-
-    Parameters
-    ----------
-    kind
-        The type of each degree of freedom.
-    F
-        The value of the generating function at the old variables (q, p, t); None where the contact form was
-        not integrated in closed form.
-    relations
-        The new variables of the type as functions of (q, p, t).
-    transformation
-        The map.
-    """
-
-    kind: tuple[int, ...]
-    F: Expr | None
-    relations: tuple[tuple[Symbol, Expr], ...]
-    transformation: CanonicalTransformation
-
-    def is_right(self, domain: Domain | None = None) -> Verdict:
-        """Tell whether dF along the map is the differential of its type, at fixed t.
-
-        For type 1, dF = Σ p dq − Σ P dQ as forms in (dq, dp), with + Q dP for types 2 and 4 in place of − P dQ
-        and − q dp for types 3 and 4 in place of p dq.
-        """
-        T = self.transformation
-        F = sp.nan if self.F is None else self.F
-
-        def due(z: Symbol) -> Expr:
-            pairs = zip(self.kind, T.q, T.p, T.Q, T.P, strict=True)
-            return sp.Add(
-                *(
-                    (p * q.diff(z) if k in (1, 2) else -q * p.diff(z))
-                    + (-P * Q.diff(z) if k in (1, 3) else Q * P.diff(z))
-                    for k, q, p, Q, P in pairs
-                )
-            )
-
-        claims = [(f"the coefficient of d{z} in dF", F.diff(z) - due(z)) for z in T.variables]
-        return all_vanish(claims, "F is the generating function along the map", domain or T.domain)
-
-    def evaluate(self, values: Mapping[Symbol, float], start: Mapping[Symbol, float]) -> float:
-        """Return the number F(old, new) by solving the relations with Newton's method.
-
-        Parameters
-        ----------
-        values
-            Numbers for all variables of the type, the time and the parameters.
-        start
-            First guesses for the old variables that the type does not hold.
-        """
-        unknowns = list(start)
-        known = {s: sp.Float(value, 30) for s, value in values.items()}
-        equations = [exchanged(f - b, known) for b, f in self.relations]
-        root = sp.nsolve(equations, unknowns, [start[s] for s in unknowns], prec=30)
-        found = {s: entry(sp.Matrix(root), i, 0) for i, s in enumerate(unknowns)}
-        if self.F is None:
-            raise NoGeneratingFunctionError(
-                "the contact form of this map has no closed integral", self.is_right()
-            )
-        return float(exchanged(self.F, {**known, **found}))
 
 
 def generating_function(

@@ -264,6 +264,13 @@ def test_parametric_functions_are_evaluated():
     assert value == pytest.approx(float(found.F.subs({q: 0.5, p: 2})), rel=1e-12)
 
 
+def test_an_unknown_parametric_function_is_undecided():
+    unknown = ParametricGeneratingFunction((1,), None, ((Q, p),), MAPS["exchange"].map)
+    assert unknown.is_right().undecided
+    with pytest.raises(ValueError, match="no formula"):
+        unknown.evaluate({q: 0.5, Q: 1.0}, {p: 1.0})
+
+
 def test_from_f_to_the_map_and_back():
     P_ = sp.Symbol("P", positive=True)
     F1 = GeneratingFunction(1, m * w * qp**2 * cot(Q) / 2, qp, p, Q, P_)
