@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["is_worth_rolling", "write_rolled"]
 
-_REGULAR, _IRREGULAR = 60, 12_000
+_REGULAR, _IRREGULAR = 100, 12_000
 """Programs with fewer operations are written out: the compiler then sees every one of them. Irregular ones, which need
 tables, run faster written out, and are rolled only where compiling them would take very long."""
 
