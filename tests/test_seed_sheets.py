@@ -332,8 +332,10 @@ def canonical(s):
         pairs = itertools.product(range(len(x)), repeat=2)
         right = sum(form[i].diff(x[j]) * (delta[j] * d[i] - d[j] * delta[i]) for i, j in pairs)
         return zero(numbers([s.read(s.claim["claim"]) - right], s.point()))
-    (Q,), (P,) = s.all("Q"), s.all("P")
-    return zero(numbers([bracket(Q, P, s.symbols("q"), s.symbols("p")) - 1], s.point()))
+    q, p, values = s.symbols("q"), s.symbols("p"), s.point()
+    new, n = (*s.all("Q"), *s.all("P")), len(q)
+    pairs = itertools.combinations(range(2 * n), 2)
+    return zero(numbers([bracket(new[i], new[j], q, p) - int(j - i == n) for i, j in pairs], values))
 
 
 def generating(s):

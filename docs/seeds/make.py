@@ -56,7 +56,7 @@ def printed(claim: dict[str, Any]) -> str:
     """Return the answer of a claim, as it was written."""
     kind = claim["kind"]
     if kind == "canonicity" or "factor" in claim:
-        return code(f"Q = {claim['Q'][0]}") + ", " + code(f"P = {claim['P'][0]}")
+        return "; ".join(code(f"{name} = {', '.join(claim[name])}") for name in "QP")
     if kind == "hamilton-equations" and "q_dot" in claim:
         names = [f"{name}_dot" for name in (*claim["q"], *claim["p"])]
         rates = zip(names, (*claim["q_dot"], *claim["p_dot"]), strict=True)
@@ -120,27 +120,43 @@ def summary(entries: list[dict[str, Any]], claims: dict[str, Any], verdicts: dic
         f"{found.count(s)} {s}" for s in ("holds", "fails", "undecided", "invalid") if s in found
     )
     open_ = len(entries) - len(claims)
-    return f"{len(entries)} entries; {len(claims)} of them judged in {len(found)} claims: {counts}; {open_} not judged."
+    solved = sum(entry.get("solved", False) for entry in entries)
+    return (
+        f"{len(entries)} entries; {len(claims)} of them ({solved} left open by the documents and solved here) judged "
+        f"in {len(found)} claims: {counts}; {open_} not judged."
+    )
 
 
 def chapter(entries: list[dict[str, Any]], claims: dict[str, Any], verdicts: dict[str, Any]) -> list[str]:
     """Return the tables of one document."""
-    lines = [
-        "",
-        "| claim | where | printed | verdict | where it is wrong | right |",
-        "|---|---|---|---|---|---|",
-    ]
-    for entry in entries:
-        section = entry["section"].replace("|", "¦").replace("*", "\\*")
-        lines += [judged_row(claim, section, verdicts[claim["id"]]) for claim in claims.get(entry["id"], ())]
+    lines = table(("claim", "where", "printed", "verdict", "where it is wrong", "right"))
+    lines += rows([entry for entry in entries if not entry.get("solved")], claims, verdicts)
+    solved = rows([entry for entry in entries if entry.get("solved")], claims, verdicts)
+    if solved:
+        lines += ["", "Left open by the document, solved by canon:"]
+        lines += [*table(("claim", "where", "answer", "verdict", "", "")), *solved]
     rest = [entry for entry in entries if "unjudged" in entry]
     if rest:
-        lines += ["", "Not judged:", "", "| entry | where | what it asks | why |", "|---|---|---|---|"]
+        lines += ["", "Not judged:", *table(("entry", "where", "what it asks", "why"))]
         lines += [
             f"| `{e['id']}` | {e['section']} | {e['asks']} | {e['unjudged']} |".replace("*", "\\*")
             for e in rest
         ]
     return lines
+
+
+def table(columns: tuple[str, ...]) -> list[str]:
+    """Return the head of a table."""
+    return ["", "| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+
+
+def rows(entries: list[dict[str, Any]], claims: dict[str, Any], verdicts: dict[str, Any]) -> list[str]:
+    """Return the rows of the claims of some entries."""
+    return [
+        judged_row(claim, entry["section"].replace("|", "¦").replace("*", "\\*"), verdicts[claim["id"]])
+        for entry in entries
+        for claim in claims.get(entry["id"], ())
+    ]
 
 
 if __name__ == "__main__":
