@@ -110,19 +110,28 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
     EmptyDomainError
         Where a condition is false at every point.
     """
-    conditions = [cast("Boolean", c.subs(list(values.items()), simultaneous=True)) for c in domain.conditions]
-    for symbol, value in values.items():
-        if symbol.is_positive and not value.is_positive:
-            conditions.append(cast("Boolean", sp.Gt(value, 0)))
-        elif symbol.is_negative and not value.is_negative:
-            conditions.append(cast("Boolean", sp.Lt(value, 0)))
-        elif symbol.is_nonzero and not value.is_nonzero:
-            conditions.append(cast("Boolean", sp.Ne(value, 0)))
+    try:
+        conditions = [
+            *(cast("Boolean", c.subs(list(values.items()), simultaneous=True)) for c in domain.conditions),
+            *(sign for symbol, value in values.items() for sign in _signs(symbol, value)),
+        ]
+    except TypeError as error:  # SymPy does not compare numbers that are not real
+        raise EmptyDomainError(f"a value that should be real is not ({error})") from error
     if sp.false in conditions:
         raise EmptyDomainError("no point satisfies the assumptions and conditions")
     kept = {symbol: ends for symbol, ends in domain.box.items() if symbol not in values}
     kept_conditions = dict.fromkeys(c for c in conditions if c is not sp.true)
     return Domain(tuple(kept_conditions), kept)
+
+
+def _signs(symbol: Symbol, value: Expr) -> Iterator[Boolean]:
+    """Yield what is assumed of a symbol as a condition on its value, unless the value has that sign anyway."""
+    if symbol.is_positive and not value.is_positive:
+        yield cast("Boolean", sp.Gt(value, 0))
+    elif symbol.is_negative and not value.is_negative:
+        yield cast("Boolean", sp.Lt(value, 0))
+    elif symbol.is_nonzero and not value.is_nonzero:
+        yield cast("Boolean", sp.Ne(value, 0))
 
 
 def _restricted(

@@ -1,0 +1,101 @@
+"""Claims with slips of the pen, thousands of them: every one gets a verdict or an error that names its place."""
+
+import random
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.sheet import SheetError, read_sheet, sheet_from
+from canon.exercise.worker import Worker
+from canon.expression.language import LanguageError, Scope, parse_expression
+
+SHEETS = sorted((Path(__file__).parents[1] / "data" / "claims").glob("*.json"))
+CLAIMS = [claim for path in SHEETS for claim in read_sheet(path).claims]
+PIECES = (
+    "x", "0", "1/0", "-1", "**2", "+", "q", "t", "sin(", "sqrt(-1)", "I", "**(1/2)", "*0", "'", "_dot", "Abs(", ")", "log(",
+)  # fmt: skip
+OWN = ("id", "kind", "title", "expect", "budget")
+LETTERS = "xqt0123456789.+-*/()<>=, 'eVsincogIpi_lambda[]{}\"\\^:;!$θ̇²√"
+JSON_LIKE = '{}[]":,claims0123 \n="tomkind'
+
+
+def slip(text, chance):
+    """One slip in a text: something left out, put in, or overwritten."""
+    start = chance.randrange(len(text) + 1)
+    end = min(len(text), start + chance.randrange(1, 6))
+    before, after, piece = text[:start], text[end:], chance.choice(PIECES)
+    return chance.choice((before + after, before + piece + text[start:], before + piece + after))
+
+
+def slipped(value, chance):
+    """One slip somewhere inside a value."""
+    if isinstance(value, str):
+        return slip(value, chance)
+    if isinstance(value, list) and value:
+        place = chance.randrange(len(value))
+        return [slipped(item, chance) if i == place else item for i, item in enumerate(value)]
+    if isinstance(value, dict) and value:
+        place = chance.choice(sorted(value))
+        return {key: slipped(item, chance) if key == place else item for key, item in value.items()}
+    return value
+
+
+def slipped_claim(number):
+    chance = random.Random(number)
+    claim = chance.choice(CLAIMS)
+    keys = {key: value for key, value in claim.keys.items() if key not in OWN}
+    place = chance.choice(sorted(keys))
+    return replace(claim, keys={**keys, place: slipped(keys[place], chance)}, budget=2.0)
+
+
+def outcome(claim):
+    try:
+        return judge(claim).status.value
+    except InvalidClaim as error:
+        named = error.error
+    assert named.claim == claim.id
+    assert named.reason
+    return "invalid"
+
+
+@pytest.mark.parametrize("numbers", [range(150)], ids=["150"])
+def test_slips_are_judged_or_named(numbers):
+    outcomes = [outcome(slipped_claim(number)) for number in numbers]
+    assert outcomes.count("undecided") <= 2
+    assert {"holds", "fails", "invalid"} <= set(outcomes)
+
+
+@pytest.mark.slow
+def test_three_thousand_slips_in_the_worker():
+    """Whatever a claim says, the worker answers for it and does not break off."""
+    with Worker() as worker:
+        told = [worker.judge(slipped_claim(number)) for number in range(1000, 4000)]
+    assert not [t for t in told if "broke off" in t.known]
+    assert all(t.seconds < 3.0 for t in told)
+
+
+@pytest.mark.slow
+@settings(max_examples=20_000, deadline=None)
+@given(st.text(alphabet=LETTERS, max_size=60) | st.text(max_size=30))
+def test_twenty_thousand_texts(text):
+    column = 1
+    try:
+        parse_expression(text, Scope())
+    except LanguageError as error:
+        column = error.column
+    assert 1 <= column <= len(text) + 1
+
+
+@pytest.mark.slow
+@settings(max_examples=2_000, deadline=None)
+@given(st.binary(max_size=200) | st.text(alphabet=JSON_LIKE, max_size=200).map(str.encode), st.booleans())
+def test_any_bytes_are_a_sheet_or_no_sheet(data, toml):
+    try:
+        read = sheet_from(data, toml=toml)
+    except SheetError:
+        return
+    assert all(claim.id for claim in read.claims)
