@@ -98,3 +98,21 @@ def test_what_cannot_be_followed_is_refused(arguments, message):
     right = {"method": Splitting("verlet"), "step": 0.1, "samples": 10}
     with pytest.raises(ValueError, match=message):
         propagate(KEPLER, kepler_start(0.1), (0, 10), **{**right, **arguments})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("method", "steps", "a_period"), [("kahan-li-8", 2_000_000, 200), ("gauss", 50_000, 20)]
+)
+def test_round_off_of_the_energy_is_a_random_walk(method, steps, a_period):
+    orbits, u = 32, 2.0**-53
+    many = np.array(kepler_start(0.2))[:, np.newaxis] * (1 + 1e-3 * np.arange(orbits))
+    chosen = Gauss(8) if method == "gauss" else Splitting(method)
+    h = 2 * np.pi / a_period
+    motion = propagate(KEPLER, many, (0, steps * h), method=chosen, step=h, samples=64, cadence=steps // 6400)
+    end = motion.energy_error[-1]
+    assert np.sqrt((end**2).mean()) < (0.5 if method == "gauss" else 0.2) * u * steps**0.5
+    assert abs(end.mean()) < 3.5 * end.std() / orbits**0.5
+    mean = motion.statistics["energy"].mean / abs(motion.energy[0])
+    exponent = np.polyfit(np.log(np.arange(5, 65) - 0.5), np.log(np.sqrt((mean[4:] ** 2).mean(axis=1))), 1)[0]
+    assert exponent == pytest.approx(0.5, abs=0.15)
