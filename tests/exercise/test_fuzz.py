@@ -16,7 +16,8 @@ from canon.expression.language import LanguageError, Scope, parse_expression
 SHEETS = sorted((Path(__file__).parents[1] / "data" / "claims").glob("*.json"))
 CLAIMS = [claim for path in SHEETS for claim in read_sheet(path).claims]
 PIECES = (
-    "x", "0", "1/0", "-1", "**2", "+", "q", "t", "sin(", "sqrt(-1)", "I", "**(1/2)", "*0", "'", "_dot", "Abs(", ")", "log(",
+    "x", "0", "1/0", "-1", "**2", "+", "q", "t", "sin(", "sqrt(-1)", "I", "**(1/2)", "*0", "'", "_dot", "Abs(", ")",
+    "log(",
 )  # fmt: skip
 OWN = ("id", "kind", "title", "expect", "budget")
 LETTERS = "xqt0123456789.+-*/()<>=, 'eVsincogIpi_lambda[]{}\"\\^:;!$θ̇²√"
