@@ -12,6 +12,7 @@ products are flattened, equal terms and equal bases are merged. Like SymPy, x·x
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cached_property
 from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -81,6 +82,16 @@ class Graph:
         """Return the node of an exact rational number."""
         return self._node("number", value=Fraction(value))
 
+    @cached_property
+    def zero(self) -> int:
+        """The node of 0."""
+        return self.number(0)
+
+    @cached_property
+    def one(self) -> int:
+        """The node of 1."""
+        return self.number(1)
+
     def named(self, name: str) -> int:
         """Return the node of π (``"pi"``) or e (``"E"``)."""
         if name not in ("pi", "E"):
@@ -132,6 +143,20 @@ class Graph:
         if constant != 1 or not operands:
             operands = (self.number(constant), *operands)
         return operands[0] if len(operands) == 1 else self._node("mul", operands)
+
+    def plain_add(self, terms: Iterable[int]) -> int:
+        """Return a sum whose terms stay as they are: only zeros disappear, nothing is merged or flattened."""
+        return self._plain("add", sorted(term for term in terms if term != self.zero), self.zero)
+
+    def plain_mul(self, factors: Iterable[int]) -> int:
+        """Return a product whose factors stay as they are: only 1 disappears, and 0 makes it 0."""
+        operands = sorted(factor for factor in factors if factor != self.one)
+        return self.zero if self.zero in operands else self._plain("mul", operands, self.one)
+
+    def _plain(self, kind: str, operands: list[int], neutral: int) -> int:
+        if len(operands) > 1:
+            return self._node(kind, tuple(operands))
+        return operands[0] if operands else neutral
 
     def scaled(self, factor: Fraction, node: int) -> int:
         """Return factor · node without looking at anything but node's own numerical factor."""
@@ -279,7 +304,7 @@ class Graph:
         """Return the partial derivatives of a node's operation by its operands."""
         kind, operands, _ = self.nodes[node]
         if kind == "add":
-            return (self.number(1),) * len(operands)
+            return (self.one,) * len(operands)
         if kind == "mul":
             return self._products_of_others(operands)
         if kind == "pow":
@@ -295,7 +320,7 @@ class Graph:
         return (SLOPES[kind](self, operands[0], node),) if operands else ()
 
     def _products_of_others(self, factors: tuple[int, ...]) -> tuple[int, ...]:
-        before, after = [self.number(1)], [self.number(1)]
+        before, after = [self.one], [self.one]
         for factor in factors[:-1]:
             before.append(self.mul([before[-1], factor]))
         for factor in reversed(factors[1:]):

@@ -1,0 +1,151 @@
+"""Sums over channels: the mass matrix, projected forces and slopes of the kinetic energy, terms shared first."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.expression.sums import SharedSums
+from canon.expression.symbol import velocity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from sympy import Expr
+
+    from canon.mechanics.body import Body
+    from canon.mechanics.channel import Channel, Reader
+
+__all__ = ["Assembly"]
+
+
+class Assembly:
+    """The nodes that equations of motion are assembled from.
+
+    Parameters
+    ----------
+    reader
+        The graph with coordinates and time.
+    channels
+        What the kinetic energy consists of.
+    """
+
+    def __init__(self, reader: Reader, channels: Sequence[Channel]) -> None:
+        self.reader, self.graph, self.channels = reader, reader.graph, channels
+        self.q, self.v = reader.q, [reader.graph.symbol(velocity(s)) for s in reader.q]
+        self.sums = SharedSums(reader.graph)
+        self._rates: dict[int, int] = {}
+        self._moving = tuple(zip(self.q, self.v, strict=True))
+
+    def heights(self, bodies: Sequence[Body], field: Sequence[Expr]) -> list[int]:
+        """Return the energy −m g·r of each body in a uniform field."""
+        graph, reader = self.graph, self.reader
+        energies: list[int] = []
+        for body in bodies:
+            for g, place in zip(field, body.r, strict=False):
+                if g != 0:
+                    terms = tuple(reader.node(term) for term in sp.Add.make_args(place))
+                    factors = (reader.node(body.m), reader.node(sp.sympify(g)), self.sums.of(terms))
+                    energies.append(graph.negative(graph.plain_mul(factors)))
+        return energies
+
+    def _rate(self, node: int) -> int:
+        """Return the rate of a function of q and t."""
+        found = self._rates.get(node)
+        if found is None:
+            symbols = self.graph.symbols(node)
+            terms = [
+                self.graph.plain_mul((self.graph.derivative(node, s), v))
+                for s, v in self._moving
+                if s in symbols
+            ]
+            if self.reader.t in symbols:
+                terms.append(self.graph.derivative(node, self.reader.t))
+            found = self._rates[node] = self.graph.plain_add(terms)
+        return found
+
+    def speed(self, c: Channel) -> int:
+        """Return u = Σ a q̇ + a₀."""
+        terms = [self.graph.plain_mul((a, self.v[i])) for i, a in c.slopes]
+        return self.sums.of(tuple(terms) if c.rest is None else (*terms, c.rest))
+
+    def drift(self, c: Channel) -> int:
+        """Return u̇ without accelerations: Σ Dₜa q̇ + Dₜa₀."""
+        zero = self.graph.zero
+        terms = [self.graph.plain_mul((self._rate(a), self.v[i])) for i, a in c.slopes]
+        if c.rest is not None:
+            terms.append(self._rate(c.rest))
+        return self.sums.of(tuple(term for term in terms if term != zero))
+
+    def projected(self, along: Sequence[int]) -> list[int]:
+        """Return Σ a F for each coordinate, terms with the same a put together first."""
+        zero = self.graph.zero
+        grouped: list[dict[int, list[int]]] = [defaultdict(list) for _ in self.q]
+        for c, F in zip(self.channels, along, strict=True):
+            if zero != F:
+                for i, a in c.slopes:
+                    grouped[i][a].append(F)
+        return [self._collected(group) for group in grouped]
+
+    def _collected(self, group: dict[int, list[int]]) -> int:
+        return self.graph.plain_add(
+            [self.graph.plain_mul((a, self.sums.of(tuple(terms)))) for a, terms in group.items()]
+        )
+
+    def slopes_of_T(self, momentum: Sequence[int]) -> list[int]:
+        """Return ∂T/∂q = Σ w u ∂u/∂q at fixed velocities."""
+        zero = self.graph.zero
+        grouped: list[dict[int, list[int]]] = [defaultdict(list) for _ in self.q]
+        for c, w in zip(self.channels, momentum, strict=True):
+            for i, slope in self._slopes_of_speed(c):
+                if slope != zero:
+                    grouped[i][slope].append(w)
+        return [self._collected(group) for group in grouped]
+
+    def _slopes_of_speed(self, c: Channel) -> Iterable[tuple[int, int]]:
+        """Yield pairs (i, ∂u/∂qᵢ), one a term."""
+        parts = [(a, self.v[j]) for j, a in c.slopes]
+        if c.rest is not None:
+            parts.append((c.rest, self.graph.one))
+        for a, v in parts:
+            for i, s in enumerate(self.q):
+                if s in self.graph.symbols(a):
+                    yield i, self.graph.plain_mul((self.graph.derivative(a, s), v))
+
+    def not_a_rate(self, c: Channel) -> Iterable[tuple[int, int]]:
+        """Yield pairs (i, −w u (Dₜaᵢ − ∂u/∂qᵢ)), which vanish where u is a rate."""
+        if c.is_rate:
+            return
+        terms: dict[int, list[int]] = defaultdict(list)
+        for i, a in c.slopes:
+            terms[i].append(self.graph.negative(self._rate(a)))
+        for i, slope in self._slopes_of_speed(c):
+            terms[i].append(slope)
+        momentum = self.graph.plain_mul((c.weight, self.speed(c)))
+        for i, parts in terms.items():
+            yield i, self.graph.plain_mul((momentum, self.graph.add(parts)))
+
+    def mass_matrix(self) -> tuple[tuple[int, ...], ...]:
+        """Return Σ w aᵢ aⱼ: the weights that a pair of slopes shares are added first."""
+        n = len(self.q)
+        pairs: list[dict[tuple[int, int], list[int]]] = [defaultdict(list) for _ in range(n * n)]
+        for c in self.channels:
+            for x, (i, a) in enumerate(c.slopes):
+                for j, b in c.slopes[: x + 1]:
+                    if j <= i:
+                        pairs[i * n + j][(a, b) if a < b else (b, a)].append(c.weight)
+                    else:
+                        pairs[j * n + i][(a, b) if a < b else (b, a)].append(c.weight)
+                    if i == j and a != b:  # two terms of one slope: both orders
+                        pairs[i * n + j][(a, b) if a < b else (b, a)].append(c.weight)
+        return tuple(tuple(self._entry(pairs[i * n + j]) for j in range(i + 1)) for i in range(n))
+
+    def _entry(self, group: dict[tuple[int, int], list[int]]) -> int:
+        by_weight: dict[int, list[int]] = defaultdict(list)
+        for pair, weights in group.items():
+            by_weight[self.sums.of(tuple(weights))].append(self.graph.plain_mul(pair))
+        return self.graph.plain_add(
+            [self.graph.plain_mul((w, self.graph.plain_add(products))) for w, products in by_weight.items()]
+        )

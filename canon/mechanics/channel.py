@@ -1,0 +1,141 @@
+"""What a system of bodies is to its kinetic energy: weighted velocities that are affine in q̇.
+
+T = ½ Σ w u² over channels u = Σ aᵢ(q, t) q̇ᵢ + a₀(q, t), on an expression graph. Each Cartesian component of a centre of
+mass is a channel with a = ∂x/∂q and the mass as weight, each component of an angular velocity one with a moment of
+inertia. Positions are sums; they are differentiated term by term, so bodies of a chain share their nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.expression.symbol import velocity
+from canon.mechanics.body import PlanarBody, RigidBody
+from canon.mechanics.quasi_velocity import Kinematics
+from canon.mechanics.substitution import exchanged
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from sympy import Expr, Symbol
+
+    from canon.expression.graph import Graph
+    from canon.mechanics.body import Body
+
+__all__ = ["Channel", "Reader", "channels"]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A weighted velocity u = Σ aᵢ q̇ᵢ + a₀ as graph nodes.
+
+    Parameters
+    ----------
+    weight
+        Mass or moment of inertia.
+    slopes
+        Pairs (i, aᵢ); the same i may occur more than once, its slopes add up.
+    rest
+        a₀, or None.
+    load
+        An acceleration that a uniform field gives along it, or None.
+    is_rate
+        Whether u is the rate of a function of q and t; angular velocities in space are not.
+    """
+
+    weight: int
+    slopes: tuple[tuple[int, int], ...]
+    rest: int | None = None
+    load: int | None = None
+    is_rate: bool = True
+
+
+@dataclass
+class Reader:
+    """SymPy expressions into graph nodes and their derivatives, each expression and each term once."""
+
+    graph: Graph
+    q: tuple[Symbol, ...]
+    t: Symbol
+    _nodes: dict[Expr, int] = field(default_factory=dict)
+    _slopes: dict[Expr, tuple[tuple[tuple[int, int], ...], int | None]] = field(default_factory=dict)
+
+    def node(self, f: Expr) -> int:
+        """Return the node of an expression."""
+        found = self._nodes.get(f)
+        if found is None:
+            found = self._nodes[f] = self.graph.from_sympy(f)
+        return found
+
+    def slopes(self, f: Expr) -> tuple[tuple[tuple[int, int], ...], int | None]:
+        """Return the pairs (i, ∂f/∂qᵢ) term by term, and ∂f/∂t or None where that is 0."""
+        pairs: list[tuple[int, int]] = []
+        rests: list[int] = []
+        for term in sp.Add.make_args(f):
+            found = self._slopes.get(term)
+            if found is None:
+                found = self._slopes[term] = self._of_term(self.node(term))
+            pairs.extend(found[0])
+            if found[1] is not None:
+                rests.append(found[1])
+        return tuple(pairs), self.graph.plain_add(rests) if rests else None
+
+    def _of_term(self, node: int) -> tuple[tuple[tuple[int, int], ...], int | None]:
+        symbols = self.graph.symbols(node)
+        pairs = [(i, self.graph.derivative(node, s)) for i, s in enumerate(self.q) if s in symbols]
+        zero = self.graph.zero
+        rest = self.graph.derivative(node, self.t) if self.t in symbols else zero
+        return tuple((i, a) for i, a in pairs if a != zero), None if rest == zero else rest
+
+
+def channels(reader: Reader, bodies: Sequence[Body], field: Sequence[Expr] = ()) -> Iterator[Channel]:
+    """Yield the channels of bodies in a uniform field of acceleration.
+
+    Parameters
+    ----------
+    reader
+        The graph with the coordinates and the time.
+    bodies
+        Particles and rigid bodies.
+    field
+        The acceleration vector of gravity, of the dimension of the positions; nothing where there is none.
+    """
+    zero = reader.graph.zero
+    for body in bodies:
+        if len(body.r) not in (0, len(field)) and field:
+            raise ValueError(f"a field of {len(field)} components acts on a position of {len(body.r)}")
+        mass = reader.node(body.m)
+        loads = [reader.node(sp.sympify(g)) for g in field] if body.r else []
+        for k, place in enumerate(body.r):
+            pairs, rest = reader.slopes(place)
+            load = loads[k] if loads and loads[k] != zero else None
+            if pairs or rest is not None:
+                yield Channel(mass, pairs, rest, load)
+        if isinstance(body, PlanarBody):
+            pairs, rest = reader.slopes(body.angle)
+            if pairs or rest is not None:
+                yield Channel(reader.node(body.moment), pairs, rest)
+        elif isinstance(body, RigidBody):
+            yield from _turning(reader, body)
+
+
+def _turning(reader: Reader, body: RigidBody) -> Iterator[Channel]:
+    """Yield ω along the body's axes; a product of inertia Iᵢⱼ weighs ωᵢ + ωⱼ and takes its share from ωᵢ and ωⱼ."""
+    v = [velocity(s) for s in reader.q]
+    at_rest = dict.fromkeys(v, sp.S.Zero)
+    omega = body.angular_velocity(Kinematics(reader.q, t=reader.t))
+    inertia = body.inertia
+    weighed: list[tuple[Expr, Expr]] = []
+    for i, w in enumerate(omega):
+        others = [inertia.row(i)[j] for j in range(3) if j != i]
+        weighed.append((inertia.row(i)[i] - sp.Add(*others), w))
+        weighed += [(inertia.row(i)[j], w + omega[j]) for j in range(i) if inertia.row(i)[j] != 0]
+    for moment, w in weighed:
+        if moment == 0:
+            continue
+        pairs = tuple((i, reader.node(w.diff(rate))) for i, rate in enumerate(v) if w.diff(rate) != 0)
+        rest = exchanged(w, at_rest)
+        yield Channel(reader.node(moment), pairs, None if rest == 0 else reader.node(rest), is_rate=False)

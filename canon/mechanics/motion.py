@@ -1,0 +1,130 @@
+"""Equations of motion as functions of numbers: M is built entry by entry and solved by LAPACK."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from canon.expression.python_source import python_function
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+    from sympy import Symbol
+
+    from canon.mechanics.canonical_derivation import CanonicalEquations
+    from canon.mechanics.derivation import Equations
+
+    Vector = NDArray[np.float64]
+
+__all__ = ["acceleration_function", "energy_function", "hamilton_function"]
+
+
+def acceleration_function(
+    equations: Equations, parameters: Mapping[Symbol, float]
+) -> Callable[[Sequence[float], Sequence[float], float], Vector]:
+    """Return a function (q, q̇, t) → q̈.
+
+    Parameters
+    ----------
+    equations
+        Equations of motion.
+    parameters
+        A number for each parameter, in any consistent units.
+
+    Raises
+    ------
+    KeyError
+        A parameter has no number.
+
+    Examples
+    --------
+    >>> from canon import coordinates, parameters
+    >>> from canon.mechanics.body import Particle
+    >>> from canon.mechanics.derivation import derivation
+    >>> (x,) = coordinates("x")
+    >>> m, k = parameters("m k", positive=True)
+    >>> spring = derivation([Particle(m, (x,))], [x], k*x**2/2)
+    >>> acceleration_function(spring, {m: 2.0, k: 8.0})([0.5], [0.0], 0.0)
+    array([-2.])
+    """
+    constants = _numbers(equations.parameters, parameters)
+    inputs = (*equations.q, *equations.velocities, equations.t, *equations.parameters)
+    evaluate = python_function(equations.graph, equations.nodes, inputs)
+    n = len(equations.q)
+    lower = np.tril_indices(n)
+    count = lower[0].size
+
+    def accelerations(q: Sequence[float], v: Sequence[float], t: float) -> Vector:
+        values = evaluate((*q, *v, t, *constants))
+        return _solved(values[:count], lower, n, values[count:])
+
+    return accelerations
+
+
+def hamilton_function(
+    equations: CanonicalEquations, parameters: Mapping[Symbol, float]
+) -> Callable[[Sequence[float], Sequence[float], float], tuple[Vector, Vector]]:
+    """Return a function (q, p, t) → (q̇, ṗ); the parameters are those of :func:`acceleration_function`."""
+    velocities, constants = _velocity_function(equations, parameters)
+    inputs = (*equations.q, *equations.velocities, equations.t, *equations.parameters)
+    forces = python_function(equations.graph, equations.p_dot, inputs)
+
+    def rates(q: Sequence[float], p: Sequence[float], t: float) -> tuple[Vector, Vector]:
+        v, _, _ = velocities(q, p, t)
+        return v, np.array(forces((*q, *v, t, *constants)))
+
+    return rates
+
+
+def energy_function(
+    equations: CanonicalEquations, parameters: Mapping[Symbol, float]
+) -> Callable[[Sequence[float], Sequence[float], float], float]:
+    """Return a function (q, p, t) → H; the parameters are those of :func:`acceleration_function`."""
+    velocities, _ = _velocity_function(equations, parameters)
+
+    def energy(q: Sequence[float], p: Sequence[float], t: float) -> float:
+        v, excess, potential = velocities(q, p, t)
+        return float(v @ excess / 2 + potential)
+
+    return energy
+
+
+def _velocity_function(
+    equations: CanonicalEquations, parameters: Mapping[Symbol, float]
+) -> tuple[
+    Callable[[Sequence[float], Sequence[float], float], tuple[Vector, Vector, float]], tuple[float, ...]
+]:
+    """Return a function (q, p, t) → q̇, p − b, V − T₀, and the numbers of the parameters."""
+    constants = _numbers(equations.parameters, parameters)
+    nodes = (*(node for row in equations.M for node in row), *equations.drift, equations.potential)
+    evaluate = python_function(equations.graph, nodes, (*equations.q, equations.t, *equations.parameters))
+    n = len(equations.q)
+    lower = np.tril_indices(n)
+    count = lower[0].size
+
+    def velocities(q: Sequence[float], p: Sequence[float], t: float) -> tuple[Vector, Vector, float]:
+        values = evaluate((*q, t, *constants))
+        excess = np.asarray(p, dtype=np.float64) - np.array(values[count : count + n])
+        return _solved(values[:count], lower, n, excess), excess, values[-1]
+
+    return velocities, constants
+
+
+def _solved(
+    values: Sequence[float], lower: tuple[NDArray[np.intp], ...], n: int, right: Sequence[float] | Vector
+) -> Vector:
+    """Solve with the symmetric matrix whose lower triangle is given."""
+    matrix = np.empty((n, n))
+    matrix[lower] = values
+    matrix.T[lower] = values
+    return cast("Vector", np.linalg.solve(matrix, right))
+
+
+def _numbers(symbols: Sequence[Symbol], parameters: Mapping[Symbol, float]) -> tuple[float, ...]:
+    missing = [str(s) for s in symbols if s not in parameters]
+    if missing:
+        raise KeyError(f"no number for {', '.join(missing)}; give one each in parameters")
+    return tuple(float(parameters[s]) for s in symbols)

@@ -1,0 +1,251 @@
+"""Derivation on the graph against SymPy derivatives, Newton's laws in numbers, and Hamilton's equations."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from chains import heavy_top, n_body, planar_pendulum, rods, spatial_arm, spherical_chain, spring_chain
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from canon.expression.graph import Graph
+from canon.expression.python_source import python_function
+from canon.expression.sums import SharedSums
+from canon.expression.symbol import coordinates, parameters, time
+from canon.mechanics.body import Particle, PlanarBody, kinetic_energy
+from canon.mechanics.canonical_derivation import canonical_derivation
+from canon.mechanics.derivation import derivation, derivation_of_lagrangian
+from canon.mechanics.factorisation import solved_on_graph
+from canon.mechanics.force import gravity, lagrangian_of
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.motion import acceleration_function, energy_function, hamilton_function
+from canon.proof.vanish import vanishes
+
+x, y = coordinates("x y")
+m, k, w, c = parameters("m k w c", positive=True)
+
+
+def turntable():
+    """Rheonomic: M, drift, centrifugal and Coriolis terms."""
+    co, si = sp.cos(w * time), sp.sin(w * time)
+    return [Particle(m, (x * co - y * si + time**2, x * si + y * co))], (x, y), ()
+
+
+def elastic():
+    """Terms of one position that depend on two coordinates at once."""
+    place = ((c + x) * sp.sin(y), -(c + x) * sp.cos(y) + x * y)
+    return [PlanarBody(m, place, k, y + x * y)], (x, y), (0, -w)
+
+
+SYSTEMS = {
+    "pendulum": lambda: planar_pendulum(3),
+    "cart": lambda: planar_pendulum(2, on_cart=True),
+    "rods": lambda: rods(3),
+    "spherical": lambda: spherical_chain(2),
+    "top": heavy_top,
+    "arm": spatial_arm,
+    "turntable": turntable,
+    "elastic": elastic,
+}
+
+
+def numbers(symbols, seed=0):
+    chance = np.random.default_rng(seed)
+    return dict(zip(symbols, chance.uniform(0.5, 1.5, len(symbols)), strict=True))
+
+
+def by_sympy(bodies, q, field, at):
+    """M and f by SymPy's own derivatives of T − V, in numbers."""
+    L = Lagrangian(kinetic_energy(bodies, q) - gravity(bodies, field or (0,) * len(bodies[0].r)), q)
+    here = {s: sp.Float(value, 40) for s, value in at.items()}
+    M = np.array([[float(e.xreplace(here)) for e in row] for row in L.mass_matrix.tolist()])
+    f = np.array([-float(e.xreplace(here)) for e in L.bias])
+    return M, f, L, here
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_agrees_with_sympy_derivatives(name):
+    bodies, q, field = SYSTEMS[name]()
+    equations = derivation(bodies, q, field=field)
+    at = numbers((*q, *equations.velocities, equations.t, *equations.parameters))
+    M, f, L, _ = by_sympy(bodies, q, field, at)
+    found = equations.graph.evaluate(equations.nodes, at)
+    lower = np.tril_indices(len(q))
+    assert np.allclose(found[: -len(q)], M[lower], rtol=1e-12, atol=1e-12)
+    assert np.allclose(found[-len(q) :], f, rtol=1e-11, atol=1e-11)
+    other = derivation_of_lagrangian(L)
+    again = other.graph.evaluate(other.nodes, at)
+    assert np.allclose(found, again, rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_another_field_is_seen(name):
+    """The wrong twin: gravity of the other sign, or the quadratic terms left out."""
+    bodies, q, field = SYSTEMS[name]()
+    equations = derivation(bodies, q, field=[-a for a in field])
+    at = numbers((*q, *equations.velocities, equations.t, *equations.parameters))
+    still = dict.fromkeys(equations.velocities, 0.0)
+    _, f, _, _ = by_sympy(bodies, q, field, at)
+    found = np.array(equations.graph.evaluate(equations.f, at if field else {**at, **still}))
+    assert not np.allclose(found, f, rtol=1e-3, atol=1e-3)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_hamiltons_equations(name):
+    """p = M q̇ + b, ṗ = ∂L/∂q, H = Σ p q̇ − L against SymPy, by LAPACK and by L D Lᵀ on the graph."""
+    bodies, q, field = SYSTEMS[name]()
+    equations = canonical_derivation(bodies, q, field=field)
+    at = numbers((*q, *equations.velocities, equations.t, *equations.parameters), seed=3)
+    _, _, L, here = by_sympy(bodies, q, field, at)
+    p = np.array([float(e.xreplace(here)) for e in L.momenta])
+    v = np.array([at[s] for s in equations.velocities])
+    p_dot = np.array([float(L.L.diff(s).xreplace(here)) for s in q])
+    H = float(L.jacobi_energy.xreplace(here))
+    place = [at[s] for s in q]
+    values = {s: at[s] for s in equations.parameters}
+    rates = hamilton_function(equations, values)(place, p, at[time])
+    assert np.allclose(rates[0], v, rtol=1e-10, atol=1e-10)
+    assert np.allclose(rates[1], p_dot, rtol=1e-10, atol=1e-10)
+    assert energy_function(equations, values)(place, p, at[time]) == pytest.approx(H, rel=1e-10)
+    canonical = {s: at[s] for s in (*q, equations.t, *equations.parameters)} | dict(
+        zip(equations.p, p, strict=True)
+    )
+    explicit = equations.graph.evaluate(
+        [*equations.q_dot, *equations.explicit_p_dot, equations.hamiltonian], canonical
+    )
+    assert np.allclose(explicit, [*v, *p_dot, H], rtol=1e-9, atol=1e-9)
+    assert not np.allclose(rates[1], -p_dot, rtol=1e-2)
+
+
+def test_acceleration_function_solves():
+    bodies, q, field = planar_pendulum(4)
+    equations = derivation(bodies, q, field=field)
+    at = numbers((*q, *equations.velocities, *equations.parameters), seed=5)
+    found = acceleration_function(equations, at)(
+        [at[s] for s in q], [at[s] for s in equations.velocities], 0.0
+    )
+    M, f, _, _ = by_sympy(bodies, q, field, at)
+    assert np.allclose(M @ found, f, rtol=1e-11)
+    with pytest.raises(KeyError, match="no number for m3"):
+        acceleration_function(equations, {s: a for s, a in at.items() if s.name != "m3"})
+
+
+def test_a_long_chain_conserves_its_energy():
+    """Twenty links: dH/dt = Σ ∂H/∂q q̇ + ∂H/∂p ṗ vanishes to round-off, and not if a link's mass is changed."""
+    bodies, q, field = planar_pendulum(20)
+    equations = canonical_derivation(bodies, q, field=field)
+    values = numbers(equations.parameters, seed=9)
+    chance = np.random.default_rng(1)
+    place, p = chance.uniform(-1, 1, 20), chance.uniform(-1, 1, 20)
+    H = energy_function(equations, values)
+
+    def change(rates, h=1e-6):
+        q_dot, p_dot = rates(place, p, 0.0)
+        return (H(place + h * q_dot, p + h * p_dot, 0) - H(place - h * q_dot, p - h * p_dot, 0)) / (2 * h)
+
+    assert abs(change(hamilton_function(equations, values))) < 1e-5
+    other = values | {next(s for s in values if s.name == "m7"): 3.0}
+    assert abs(change(hamilton_function(equations, other))) > 1e-2
+
+
+def test_potentials_and_forces_enter():
+    bodies, q, V = spring_chain(4)
+    equations = derivation(bodies, q, V, forces=[-c * q[0].dot, 0, 0, 0])
+    expected = lagrangian_of(bodies, q, V, forces=[-c * q[0].dot, 0, 0, 0])
+    for node, bias in zip(equations.f, expected.bias, strict=True):
+        assert vanishes(equations.graph.to_sympy(node) + bias).holds
+    assert vanishes(equations.graph.to_sympy(equations.f[0]) - expected.bias[0]).fails
+    with pytest.raises(ValueError, match="1 generalized forces for 4"):
+        derivation(bodies, q, V, forces=[0])
+    with pytest.raises(ValueError, match="a field of 2 components"):
+        derivation(bodies, q, V, field=(0, -1))
+
+
+def test_n_body_forces():
+    bodies, q, V = n_body(4)
+    equations = derivation(bodies, q, V)
+    at = numbers((*q, *equations.parameters), seed=2)
+    here = {s: sp.Float(value, 40) for s, value in at.items()}
+    found = equations.graph.evaluate(equations.f, at)
+    assert np.allclose(found, [-float(V.diff(s).xreplace(here)) for s in q], rtol=1e-12)
+    assert all(equations.M[i][j] == equations.graph.zero for i in range(12) for j in range(i))
+
+
+def test_operations_grow_as_entries_do():
+    """Shared sums: M takes at most 5 operations an entry, f a number of operations per link."""
+    counts = {n: derivation(*planar_pendulum(n)[:2], field=(0, -1)).operations for n in (5, 10, 20)}
+    for n, count in counts.items():
+        assert count < 5 * n * (n + 1) / 2 + 25 * n
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.lists(st.integers(0, 6), min_size=0, max_size=7, unique=True), min_size=1, max_size=8))
+def test_shared_sums_are_sums(families):
+    graph = Graph()
+    symbols = sp.symbols("s:7")
+    nodes = [graph.symbol(s) for s in symbols]
+    sums = SharedSums(graph)
+    values = {s: 2.0**i for i, s in enumerate(symbols)}
+    for family in families:
+        (found,) = graph.evaluate([sums.of(tuple(nodes[i] for i in family))], values)
+        assert found == sum(2**i for i in family)
+
+
+def test_heads_and_tails_take_one_addition_each():
+    for order in (lambda n: range(1, n + 1), lambda n: range(n, 0, -1)):
+        graph = Graph()
+        nodes = tuple(graph.symbol(s) for s in sp.symbols("s:30"))
+        sums = SharedSums(graph)
+        before = len(graph.nodes)
+        for end in order(30):
+            sums.of(nodes[30 - end :])
+        assert len(graph.nodes) - before <= 32
+
+
+POINTS = st.floats(0.2, 2.0)
+
+
+@settings(max_examples=40, deadline=None)
+@given(a=POINTS, b=POINTS)
+def test_python_source_is_what_the_graph_evaluates(a, b):
+    graph = Graph()
+    u, v = sp.symbols("u v", positive=True)
+    expressions = [
+        u**2 / v - sp.sqrt(u * v) + sp.sin(u) * sp.exp(-v),
+        (u + v) ** sp.Rational(-3, 2) + sp.atan2(u, v) * sp.pi,
+        sp.tanh(u) + sp.asinh(v) ** 3 - sp.log(u + v) / 7,
+        u**v + sp.Abs(u - v) + sp.sign(u - v) * sp.E,
+        sp.Integer(3),
+    ]
+    nodes = [graph.from_sympy(e) for e in expressions]
+    found = python_function(graph, nodes, [u, v])((a, b))
+    assert found == pytest.approx(graph.evaluate(nodes, {u: a, v: b}), rel=1e-13)
+    assert found[:4] == pytest.approx([float(e.subs({u: a, v: b})) for e in expressions[:4]], rel=1e-11)
+
+
+def test_python_source_refuses_what_has_no_value():
+    graph = Graph()
+    with pytest.raises(KeyError, match="no value for y"):
+        python_function(graph, [graph.from_sympy(x * y)], [x])
+    assert python_function(graph, [graph.zero], [])(()) == (0.0,)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(1, 6), st.integers(0, 10**6))
+def test_factorisation_solves(n, seed):
+    chance = np.random.default_rng(seed)
+    A = chance.uniform(-1, 1, (n, n))
+    A = A @ A.T + n * np.eye(n)
+    graph = Graph()
+    symbols = {(i, j): sp.Symbol(f"a{i}_{j}") for i in range(n) for j in range(i + 1)}
+    b = sp.symbols(f"b:{n}")
+    nodes = [[graph.symbol(symbols[i, j]) for j in range(i + 1)] for i in range(n)]
+    solution = solved_on_graph(graph, nodes, [graph.symbol(s) for s in b])
+    right = chance.uniform(-1, 1, n)
+    values = {s: A[place] for place, s in symbols.items()} | dict(zip(b, right, strict=True))
+    assert np.allclose(A @ graph.evaluate(solution, values), right, rtol=1e-10, atol=1e-10)
+
+
+def test_a_zero_pivot_is_refused():
+    graph = Graph()
+    with pytest.raises(ZeroDivisionError, match="pivot 1"):
+        solved_on_graph(graph, [[graph.zero]], [graph.one])
