@@ -28,14 +28,29 @@ if TYPE_CHECKING:
     from canon.flow.method import Taylor as Taylor
     from canon.flow.propagate import Trajectory as Trajectory
     from canon.flow.propagate import propagate as propagate
+    from canon.mechanics.appell import GibbsAppell as GibbsAppell
+    from canon.mechanics.bilinear import bilinear_covariant as bilinear_covariant
+    from canon.mechanics.body import kinetic_energy as kinetic_energy
     from canon.mechanics.bracket import lagrange_bracket as lagrange_bracket
     from canon.mechanics.bracket import lie_bracket as lie_bracket
     from canon.mechanics.bracket import poisson_bracket as poisson_bracket
+    from canon.mechanics.constraint import ConstrainedLagrangian as ConstrainedLagrangian
+    from canon.mechanics.generated import generated_transformation as generated_transformation
     from canon.mechanics.generating import GeneratingFunction as GeneratingFunction
     from canon.mechanics.generating import generating_function as generating_function
     from canon.mechanics.hamiltonian import Hamiltonian as Hamiltonian
+    from canon.mechanics.hamiltonian import legendre as legendre
+    from canon.mechanics.implicit import ImplicitTransformation as ImplicitTransformation
+    from canon.mechanics.inverse import inverse_transformation as inverse_transformation
     from canon.mechanics.lagrangian import Lagrangian as Lagrangian
+    from canon.mechanics.new_hamiltonian import new_hamiltonian as new_hamiltonian
+    from canon.mechanics.routh import routhian as routhian
+    from canon.mechanics.symmetry import is_constant_of_motion as is_constant_of_motion
+    from canon.mechanics.symmetry import is_gauge_equivalent as is_gauge_equivalent
+    from canon.mechanics.symmetry import noether_charge as noether_charge
     from canon.mechanics.transformation import CanonicalTransformation as CanonicalTransformation
+    from canon.mechanics.transformation import point_transformation as point_transformation
+    from canon.mechanics.vector_field import VectorField as VectorField
     from canon.proof.domain import Domain as Domain
     from canon.proof.equations import equivalent_equations as equivalent_equations
     from canon.proof.vanish import equal as equal
@@ -48,13 +63,14 @@ if TYPE_CHECKING:
     from canon.study.comparison import drift_study as drift_study
     from canon.study.drift import Drift as Drift
     from canon.study.drift import drift as drift
-
+    from canon.study.precision import work_precision as work_precision
 
 __all__ = [
     "DOP853",
     "RK4",
     "CanonicalTransformation",
     "Claim",
+    "ConstrainedLagrangian",
     "Coordinate",
     "Counterexample",
     "Domain",
@@ -62,7 +78,9 @@ __all__ = [
     "Evidence",
     "Gauss",
     "GeneratingFunction",
+    "GibbsAppell",
     "Hamiltonian",
+    "ImplicitTransformation",
     "Lagrangian",
     "Sheet",
     "Splitting",
@@ -70,25 +88,38 @@ __all__ = [
     "Taylor",
     "Trajectory",
     "Undecided",
+    "VectorField",
     "Verdict",
     "__version__",
+    "bilinear_covariant",
     "coordinates",
     "drift",
     "drift_study",
     "equal",
     "equivalent_equations",
+    "generated_transformation",
     "generating_function",
+    "inverse_transformation",
+    "is_constant_of_motion",
+    "is_gauge_equivalent",
     "judge",
+    "kinetic_energy",
     "lagrange_bracket",
+    "legendre",
     "lie_bracket",
+    "new_hamiltonian",
+    "noether_charge",
     "parameters",
     "parse_expression",
+    "point_transformation",
     "poisson_bracket",
     "propagate",
     "read_sheet",
+    "routhian",
     "time",
     "time_derivative",
     "vanishes",
+    "work_precision",
 ]
 
 _ROOMS = {
@@ -96,19 +127,31 @@ _ROOMS = {
     "canon.exercise.sheet": ("Claim", "Sheet", "read_sheet"),
     "canon.expression.language": ("parse_expression",),
     "canon.expression.symbol": ("Coordinate", "coordinates", "parameters", "time", "time_derivative"),
-    "canon.flow.method": ("DOP853", "RK4", "Gauss", "Splitting", "Taylor"),
+    "canon.flow.method": ("DOP853", "Gauss", "RK4", "Splitting", "Taylor"),
     "canon.flow.propagate": ("Trajectory", "propagate"),
+    "canon.mechanics.appell": ("GibbsAppell",),
+    "canon.mechanics.bilinear": ("bilinear_covariant",),
+    "canon.mechanics.body": ("kinetic_energy",),
     "canon.mechanics.bracket": ("lagrange_bracket", "lie_bracket", "poisson_bracket"),
+    "canon.mechanics.constraint": ("ConstrainedLagrangian",),
+    "canon.mechanics.generated": ("generated_transformation",),
     "canon.mechanics.generating": ("GeneratingFunction", "generating_function"),
-    "canon.mechanics.hamiltonian": ("Hamiltonian",),
+    "canon.mechanics.hamiltonian": ("Hamiltonian", "legendre"),
+    "canon.mechanics.implicit": ("ImplicitTransformation",),
+    "canon.mechanics.inverse": ("inverse_transformation",),
     "canon.mechanics.lagrangian": ("Lagrangian",),
-    "canon.mechanics.transformation": ("CanonicalTransformation",),
+    "canon.mechanics.new_hamiltonian": ("new_hamiltonian",),
+    "canon.mechanics.routh": ("routhian",),
+    "canon.mechanics.symmetry": ("is_constant_of_motion", "is_gauge_equivalent", "noether_charge"),
+    "canon.mechanics.transformation": ("CanonicalTransformation", "point_transformation"),
+    "canon.mechanics.vector_field": ("VectorField",),
     "canon.proof.domain": ("Domain",),
     "canon.proof.equations": ("equivalent_equations",),
     "canon.proof.vanish": ("equal", "vanishes"),
     "canon.proof.verdict": ("Counterexample", "Evidence", "Status", "Undecided", "Verdict"),
     "canon.study.comparison": ("drift_study",),
     "canon.study.drift": ("Drift", "drift"),
+    "canon.study.precision": ("work_precision",),
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names}
 
