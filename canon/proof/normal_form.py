@@ -71,6 +71,7 @@ class NormalForm:
         self._meaning: dict[int, Callable[[], Expr]] = {}
         self._expressions: dict[int, Expr] = {}
         self._memo: dict[sp.Basic, Fraction] = {}
+        self.powers_of_zero: set[int] = set()
         self.empty = False
         self._gaps: list[tuple[fmpq_mpoly, bool]] = []
         for condition in domain.conditions:
@@ -297,14 +298,19 @@ class NormalForm:
         return self.signs.real(f.num) and all(self.signs.real(self.tower.base(i)) for i, _ in f.den)
 
     def sign(self, f: Fraction) -> str:
-        """Return the proven sign of a fraction; its denominator is not zero where it is defined."""
+        """Return the proven sign of a fraction.
+
+        Every base of the denominator must be real, and have a sign where its power is odd. It is not zero
+        where the fraction is defined, except that 1/exp(y log u) may stand for u^−y = 0 at u = 0.
+        """
         sign = self.signs.of(f.num)
         for i, e in f.den:
-            below = self.signs.of(self.tower.base(i)) if e % 2 else "+"
-            if not below and not (sign and self.signs.real(self.tower.base(i))):
+            base = self.tower.base(i)
+            below = self.signs.of(base) if e % 2 else "+" if self.signs.real(base) else ""
+            if not sign or not below:
                 return ""
-            if not below:
-                return ""
+            if self.powers_of_zero.intersection(self.tower.used(base)):
+                sign = "0" + sign[-1]
             sign = sign.translate(str.maketrans("+-", "-+")) if below.endswith("-") else sign
         return sign
 

@@ -183,7 +183,10 @@ def _argument_range(n: NormalForm, z: Fraction) -> Range:
 
 
 def _arc_range(n: NormalForm, kernel: tuple[Hashable, ...]) -> Range:
-    """Return the range of Re arc: |Re asin| ≤ π/2, |atan| < π/2 for real arguments, −π < atan2 ≤ π."""
+    """Return the range of Re arc: |Re asin| ≤ π/2, |atan| < π/2 for real arguments, −π < atan2 ≤ π.
+
+    atan2(y, x) of real arguments has the sign of y, except that it is π at y = 0, x < 0.
+    """
     z = n.arguments[kernel]
     sign = n.sign(z)
     quarter, half = Rational(1, 4), Rational(1, 2)
@@ -191,9 +194,13 @@ def _arc_range(n: NormalForm, kernel: tuple[Hashable, ...]) -> Range:
     if constant is not None:
         return constant
     if kernel[0] == "atan2":
-        x_sign = n.sign(n.arguments[(*kernel, "x")])
-        side = half if x_sign.endswith("+") else Rational(1)
-        return _with_sign(Range(-side, side, low_open=side == 1), sign)
+        whole = Range(Rational(-1), Rational(1), low_open=True)
+        x = n.arguments[(*kernel, "x")]
+        if not (n.is_real(x) and n.is_real(z)):
+            return whole
+        if n.sign(x).endswith("+"):
+            return _with_sign(Range(-half, half), sign)
+        return whole if sign == "0-" else _with_sign(whole, sign)
     if kernel[0] == "atan":
         if not n.is_real(z):
             return Range(-half, half)

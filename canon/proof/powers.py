@@ -32,7 +32,9 @@ def exponential(n: NormalForm, f: Fraction) -> Fraction:
     """Return exp(f).
 
     exp is entire: exp(Σ rᵢ aᵢ) = Π exp(aᵢ/d)^(d rᵢ) and exp(ib) = cos b + i sin b hold everywhere.
-    exp(r log u) is the principal power u^r by definition.
+    exp(r log u) is the principal power u^r by definition. A kernel exp(a) with real a is positive; but
+    where a holds log u it stands for u^y also at u = 0, so unless u ≠ 0 is proved it is only not negative,
+    and its reciprocal may vanish as well (u^y with y < 0 in the denominator).
     """
     t = n.tower
     a, b = imaginary_split(n, f)
@@ -60,13 +62,24 @@ def _exponential_part(n: NormalForm, atom: Fraction, r: fmpq) -> Fraction:
     kernel = ("exp", key, parts)
     n.arguments[kernel] = n.scaled(fmpq(1, parts), atom)
     fresh = not t.knows(kernel)
+    positive = _logarithms_defined(n, atom)
     generator = n.atom(
-        kernel, "+" if n.is_real(atom) else "", lambda: sp.exp(n.fraction_expression(n.arguments[kernel]))
+        kernel,
+        ("+" if positive else "0+") if n.is_real(atom) else "",
+        lambda: sp.exp(n.fraction_expression(n.arguments[kernel])),
     )
+    if not positive:
+        n.powers_of_zero.add(n.tower.generator(kernel))
     if fresh and (sign := n.sign(atom)):
         above = generator.num - 1 if sign.endswith("+") else 1 - generator.num
         n.signs.learn(above, strict=sign in ("+", "-"), combine=False)
     return t.power(generator, int((r * parts).p))
+
+
+def _logarithms_defined(n: NormalForm, f: Fraction) -> bool:
+    """Tell whether the argument of every logarithm in ``f`` is proven not to vanish."""
+    kernels = {n.tower.generators[k] for p in (f.num, n.denominator(f)) for k in n.tower.used(p)}
+    return all(n.sign(n.arguments[k]) in ("+", "-") for k in kernels if k[0] == "log")
 
 
 def _of_lambert_w(n: NormalForm, w: Fraction, kernel: tuple[object, ...]) -> Fraction | None:
@@ -302,7 +315,7 @@ def logarithm(n: NormalForm, f: Fraction, *, whole_powers: bool = False) -> Frac
         raise ZeroDivisionError("the logarithm of zero")
     content, outside, rest = _apart(n, f) if whole_powers else _split(n, f)
     terms = [n.scaled(e, _log_kernel(n, t.number(p), "+")) for p, e in _primes(content)]
-    terms.extend(n.scaled(e, _log_of_positive(n, p)) for p, e in outside)
+    terms.extend(n.scaled(e, _log_of_factor(n, p)) for p, e in outside)
     if rest.num.is_constant() and not rest.den:
         if rest.num.leading_coefficient() < 0:
             terms.append(t.times(n.imaginary_unit, n.pi))
@@ -322,23 +335,33 @@ def _quarter_turns(n: NormalForm, f: Fraction) -> int | None:
 
 
 def _apart(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
-    """Write f = content · Π pᵢ^eᵢ · (±1) with each pᵢ a polynomial of any sign."""
+    """Write f = content · Π pᵢ^eᵢ · (±1) with polynomials pᵢ, not negative where their sign is proven."""
     t = n.tower
     f = t.canonical(f)
     content, factors = t.factors(f.num)
-    powers = [(Fraction(p), e) for p, e in factors] + [(Fraction(t.base(i)), -e) for i, e in f.den]
-    return abs(content), powers, t.number(1 if content > 0 else -1)
+    sign = 1 if content > 0 else -1
+    powers: list[tuple[Fraction, int]] = []
+    for p, e in factors + [(t.base(i), -e) for i, e in f.den]:
+        flipped = n.signs.of(p).endswith("-")
+        sign = -sign if flipped and e % 2 else sign
+        powers.append((Fraction(-p if flipped else p), e))
+    return abs(content), powers, t.number(sign)
 
 
-def _log_of_positive(n: NormalForm, f: Fraction) -> Fraction:
-    """Return log f where f ≥ 0 (at f = 0 neither side is defined)."""
+def _log_of_factor(n: NormalForm, f: Fraction) -> Fraction:
+    """Return log f, real only where f ≥ 0 is proven (at f = 0 neither side is defined).
+
+    log exp a = a and log R^(1/m) = (log R)/m hold for positive factors exactly; for others up to a multiple
+    of 2πi or as principal values, which is all that whole powers need.
+    """
     kernel = n.only_kernel(f)
     if kernel is not None and kernel[0] == "exp":
         return n.arguments[kernel]
     if kernel is not None and kernel[0] == "root":
-        return n.scaled(fmpq(1, kernel[2]), _log_of_positive(n, n.arguments[kernel]))
-    sign = n.sign(n.minus(f, n.tower.number(1)))
-    return _log_kernel(n, f, sign or ("real" if n.signs.of(f.num).endswith("+") else ""))
+        return n.scaled(fmpq(1, kernel[2]), _log_of_factor(n, n.arguments[kernel]))
+    if not n.sign(f).endswith("+"):
+        return _log_kernel(n, f, "")
+    return _log_kernel(n, f, n.sign(n.minus(f, n.tower.number(1))) or "real")
 
 
 def _log_kernel(n: NormalForm, f: Fraction, sign: str) -> Fraction:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import sympy as sp
+from sympy.concrete.expr_with_limits import ExprWithLimits
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
+from canon.proof.anatomy import anatomy
 from canon.proof.domain import Domain, declared_complex
 from canon.proof.typed import arguments, by_name, free_symbols
 
@@ -45,7 +47,13 @@ REAL_ON_REALS = (
 )
 """Functions that take real values at real arguments."""
 
-NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.AccumBounds)
+LARGEST_EXPONENT = 1000
+"""Whole exponents that SymPy may write out when a number is put for a symbol."""
+
+NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity)
+
+LAZY = (sp.Piecewise, ExprWithLimits, sp.Derivative, sp.Subs, sp.Max, sp.Min)
+"""Expressions that may have a value though one of their parts has none."""
 
 
 @dataclass(frozen=True)
@@ -57,11 +65,60 @@ class Case:
     where: str
 
 
+_B = TypeVar("_B", bound=sp.Basic)
+
+
+class _NoValue(Exception):
+    """SymPy gives no value to an expression after a substitution, or one too long to write out."""
+
+
+def _replaced(expr: _B, by: Mapping[sp.Basic, Expr]) -> _B:
+    """Return ``expr`` after a substitution, whole powers not growing beyond what can be written out.
+
+    Raises
+    ------
+    _NoValue
+        Where SymPy refuses the result (Max of an imaginary number, a derivative by an expression, …).
+    """
+    try:
+        for power in anatomy([expr]).of(sp.Pow):
+            exponent = power.exp.xreplace(by)
+            if exponent != power.exp and exponent.is_Rational and abs(exponent) > LARGEST_EXPONENT:
+                raise _NoValue
+        return cast("_B", expr.xreplace(by))
+    except (ValueError, TypeError) as reason:
+        raise _NoValue from reason
+
+
+def defined_nowhere(expr: sp.Basic) -> bool:
+    """Tell whether a part that is not a finite number leaves the whole without a value.
+
+    A piece that does not apply, a bound of a sum or an argument of Max that loses need not have one.
+    """
+    poisoned: set[sp.Basic] = set()
+    for part in anatomy([expr]).parts:  # what a part consists of comes before it
+        if part in NOT_NUMBERS or isinstance(part, sp.AccumBounds):
+            poisoned.add(part)
+        elif not isinstance(part, LAZY) and not poisoned.isdisjoint(part.args):
+            poisoned.add(part)
+    return expr in poisoned
+
+
 def cases(expr: Expr, domain: Domain) -> list[Case] | None:
     """Cut the domain so that one piecewise function less is left, or one symbol has a sign.
 
-    The pieces cover the domain, so an expression that vanishes on each of them vanishes.
+    The pieces cover the domain, so an expression that vanishes on each of them vanishes. Nothing is cut
+    under a derivative, which looks beyond the points of a piece, nor where SymPy refuses a value.
     """
+    if any(d.has(sp.Piecewise, *KINKED) for d in anatomy([expr]).of(sp.Derivative, sp.Subs)):
+        return None
+    try:
+        return _cut(expr, domain)
+    except _NoValue:
+        return None
+
+
+def _cut(expr: Expr, domain: Domain) -> list[Case] | None:
     piecewise = sorted(expr.atoms(sp.Piecewise), key=sp.default_sort_key)
     if piecewise:
         innermost = next(e for e in piecewise if not any(a.has(sp.Piecewise) for a in e.args))
@@ -162,10 +219,8 @@ def _without_monotonic(larger: Expr, smaller: Expr, *, strict: bool) -> Boolean:
 
 
 def _case(expr: Expr, replaced: Mapping[sp.Basic, Expr], domain: Domain, condition: sp.Basic) -> Case:
-    known = Domain(tuple(cast("Boolean", c.xreplace(replaced)) for c in domain.conditions), domain.box)
-    return settle_equalities(
-        cast("Expr", expr.xreplace(replaced)), _narrowed(known, condition), str(condition)
-    )
+    known = Domain(tuple(_replaced(c, replaced) for c in domain.conditions), domain.box)
+    return settle_equalities(_replaced(expr, replaced), _narrowed(known, condition), str(condition))
 
 
 def _narrowed(domain: Domain, *conditions: sp.Basic) -> Domain:
@@ -186,11 +241,11 @@ def _pieces(expr: Expr, domain: Domain, function: sp.Basic) -> Iterator[Case]:
         alternatives = sp.to_dnf(applies) if len(applies.atoms(Relational)) <= 8 else applies
         for alternative in alternatives.args if isinstance(alternatives, sp.Or) else (alternatives,):
             if alternative != sp.false:
-                yield settle_equalities(
-                    cast("Expr", expr.xreplace({function: piece})),
-                    _narrowed(domain, alternative),
-                    str(alternative),
-                )
+                chosen, narrowed = _replaced(expr, {function: piece}), _narrowed(domain, alternative)
+                if defined_nowhere(chosen):
+                    yield Case(None, narrowed, str(alternative))
+                else:
+                    yield settle_equalities(chosen, narrowed, str(alternative))
         failed.append(condition)
 
 
@@ -225,14 +280,18 @@ def _by_symbol(deciding: Expr, domain: Domain, whole: Expr | None = None) -> lis
 
 def _substituted(expr: Expr, domain: Domain, symbol: Symbol, by: Expr, where: str) -> Case:
     box = {s: ends for s, ends in domain.box.items() if s != symbol}
-    conditions = [cast("Boolean", c.xreplace({symbol: by})) for c in domain.conditions]
+    conditions = [_replaced(c, {symbol: by}) for c in domain.conditions]
     narrowed = Domain(tuple(c for c in conditions if c != sp.true), box)
-    value = cast("Expr", expr.xreplace({symbol: by}))
-    return Case(None if value.has(*NOT_NUMBERS) else value, narrowed, where)
+    value = _replaced(expr, {symbol: by})
+    return Case(None if defined_nowhere(value) else value, narrowed, where)
 
 
 def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
-    """Use an equality of the domain to remove a symbol that it holds linearly with a constant slope."""
+    """Use an equality of the domain to remove a symbol that it holds linearly with a constant slope.
+
+    A symbol that is differentiated by, or for which SymPy takes no such value, stays.
+    """
+    differentiated = _under_derivatives(expr, domain)
     for condition in (*domain.conditions, *_pinched(domain)):
         if not isinstance(condition, sp.Eq):
             continue
@@ -243,18 +302,25 @@ def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
             slope = gap.diff(s)
             if slope.free_symbols or slope.is_zero is not False:
                 continue
-            solution = -cast("Expr", gap.xreplace({s: sp.Integer(0)})) / slope
-            others = [cast("Boolean", c.xreplace({s: solution})) for c in domain.conditions if c != condition]
-            own = _assumed(s, solution)
-            value = cast("Expr", expr.xreplace({s: solution}))
+            if s in differentiated:
+                continue
+            try:
+                solution = -_replaced(gap, {s: sp.Integer(0)}) / slope
+                others = [_replaced(c, {s: solution}) for c in domain.conditions if c != condition]
+                value = _replaced(expr, {s: solution})
+            except _NoValue:
+                continue
             box = {name: ends for name, ends in domain.box.items() if name != s}
-            narrowed = Domain(tuple(c for c in (*others, *own) if c != sp.true), box)
-            return (
-                settle_equalities(value, narrowed, where)
-                if not value.has(*NOT_NUMBERS)
-                else Case(None, narrowed, where)
-            )
+            narrowed = Domain(tuple(c for c in (*others, *_assumed(s, solution)) if c != sp.true), box)
+            if defined_nowhere(value):
+                return Case(None, narrowed, where)
+            return settle_equalities(value, narrowed, where)
     return Case(expr, domain, where)
+
+
+def _under_derivatives(expr: Expr, domain: Domain) -> set[sp.Basic]:
+    derivatives = anatomy([expr, *domain.conditions]).of(sp.Derivative, sp.Subs)
+    return set[sp.Basic]().union(*(d.free_symbols for d in derivatives))
 
 
 def _pinched(domain: Domain) -> list[sp.Basic]:
