@@ -17,7 +17,7 @@ import pytest
 import sympy as sp
 
 from canon.exercise.judge import judge
-from canon.exercise.sheet import read_sheet
+from canon.exercise.sheet import Claim, read_sheet
 
 ROOT = Path(__file__).parents[1]
 SHEETS = sorted((ROOT / "examples" / "sheets" / "seeds").glob("*.toml"))
@@ -431,6 +431,37 @@ def test_canon_says_the_frozen_verdicts(path):
 def test_canon_says_the_frozen_verdict_of_a_slow_claim(claim_id):
     (claim,) = (claim for path in SHEETS for claim in read_sheet(path).claims if claim.id == claim_id)
     assert judge(claim).status.value == expected(claim_id)
+
+
+# --- wrong twins ----------------------------------------------------------------------------------
+
+SLIPS = ((" + ", " - "), (" - ", " + "), ("sin(", "cos("), ("cos(", "sin("), ("**2", "**3"), ("/2", "/3"))
+ANSWERS = ("claim", "R", "H", "S", "I", "F", "L2", "q_dot", "p_dot", "lhs", "Q", "P")
+
+
+def twin(claim, chance):
+    """Return the claim with one slip in its answer; where no slip fits, the answer is doubled."""
+    key = chance.choice([key for key in ANSWERS if key in claim])
+    texts = claim[key] if isinstance(claim[key], list) else [claim[key]]
+    i = chance.randrange(len(texts))
+    places = [(m.start(), a, b) for a, b in SLIPS for m in re.finditer(re.escape(a), texts[i])]
+    place, a, b = chance.choice(places) if places else (0, "", "2*")
+    slipped = [*texts[:i], texts[i][:place] + b + texts[i][place + len(a) :], *texts[i + 1 :]]
+    return {**claim, key: slipped if isinstance(claim[key], list) else slipped[0]}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "claim_id",
+    sorted(
+        i for i, claim in CLAIMS.items() if i not in SLOW and "pairs" not in claim and "solution" not in claim
+    ),
+)
+def test_canon_and_the_second_route_agree_on_a_slip(claim_id):
+    slipped = twin(CLAIMS[claim_id], random.Random(claim_id))
+    held = all(held_at(slipped, seed) for seed in range(3))
+    said = judge(Claim(claim_id, slipped["kind"], slipped)).status.value
+    assert said == ("holds" if held else "fails"), slipped
 
 
 # --- the sheets, the entries and the page ---------------------------------------------------------
