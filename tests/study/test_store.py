@@ -7,6 +7,7 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -79,11 +80,11 @@ def test_a_file_of_another_kind_is_refused_and_left_alone(tmp_path):
         Store(text)
     assert text.read_text() == "these are my notes, " * 100
     foreign = tmp_path / "other.sqlite"
-    with sqlite3.connect(foreign) as connection:
+    with closing(sqlite3.connect(foreign)) as connection:
         connection.execute("CREATE TABLE theirs (x)")
     with pytest.raises(StoreError, match="another program"):
         Store(foreign)
-    with sqlite3.connect(foreign) as connection:
+    with closing(sqlite3.connect(foreign)) as connection:
         assert connection.execute("SELECT count(*) FROM sqlite_master").fetchone() == (1,)
 
 
@@ -97,7 +98,7 @@ def test_a_damaged_file_is_refused(store):
 
 
 def test_a_file_of_a_later_version_is_refused(store):
-    with sqlite3.connect(store.path) as connection:
+    with closing(sqlite3.connect(store.path)) as connection:
         connection.execute("PRAGMA user_version = 99")
     with pytest.raises(StoreError, match="another version of canon"):
         Store(store.path)
