@@ -124,6 +124,18 @@ class Verdict:
         """Return the same verdict as the answer to ``question``."""
         return replace(self, question=question)
 
+    def witness(self, *evidence: Evidence) -> Verdict:
+        """Return the same verdict with this evidence added; the status never changes.
+
+        Examples
+        --------
+        >>> seen = Evidence("drift of an integral", "kept to 2e-15 over t = 0 … 20")
+        >>> print(Verdict(Status.UNDECIDED, "energy is conserved").witness(seen))
+        UNDECIDED  energy is conserved
+          drift of an integral: kept to 2e-15 over t = 0 … 20
+        """
+        return replace(self, evidence=(*self.evidence, *evidence))
+
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold of this verdict."""
         example = self.counterexample
