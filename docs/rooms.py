@@ -13,8 +13,10 @@ ORDER = (
 
 
 def first_line(module: Path) -> str:
-    text = ast.get_docstring(ast.parse(module.read_text(encoding="utf-8"))) or ""
-    return (text or f"{module.name} has no docstring").splitlines()[0].rstrip(".").replace("``", "`").replace("|", r"\|")
+    text = (
+        ast.get_docstring(ast.parse(module.read_text(encoding="utf-8"))) or f"{module.name} has no docstring"
+    )
+    return text.splitlines()[0].rstrip(".").replace("``", "`").replace("|", r"\|")
 
 
 def rooms() -> str:
