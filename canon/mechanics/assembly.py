@@ -36,7 +36,7 @@ class Assembly:
         self.reader, self.graph, self.channels = reader, reader.graph, channels
         self.q, self.v = reader.q, [reader.graph.symbol(velocity(s)) for s in reader.q]
         self.sums = SharedSums(reader.graph)
-        self._rates: dict[int, int] = {}
+        self._rates: dict[tuple[int, int], list[int]] = {}
         self._moving = tuple(zip(self.q, self.v, strict=True))
 
     def heights(self, bodies: Sequence[Body], field: Sequence[Expr]) -> list[int]:
@@ -46,24 +46,24 @@ class Assembly:
         for body in bodies:
             for g, place in zip(field, body.r, strict=False):
                 if g != 0:
-                    terms = tuple(reader.node(term) for term in sp.Add.make_args(place))
+                    terms = tuple(sorted(reader.node(term) for term in sp.Add.make_args(place)))
                     factors = (reader.node(body.m), reader.node(sp.sympify(g)), self.sums.of(terms))
                     energies.append(graph.negative(graph.plain_mul(factors)))
         return energies
 
-    def _rate(self, node: int) -> int:
-        """Return the rate of a function of q and t."""
-        found = self._rates.get(node)
+    def _rate(self, node: int, factor: int) -> list[int]:
+        """Return the terms of the rate of a function of q and t times a factor, products of velocities shared."""
+        graph = self.graph
+        found = self._rates.get((node, factor))
         if found is None:
-            symbols = self.graph.symbols(node)
-            terms = [
-                self.graph.plain_mul((self.graph.derivative(node, s), v))
+            symbols = graph.symbols(node)
+            found = self._rates[node, factor] = [
+                graph.plain_mul((graph.derivative(node, s), graph.plain_mul((v, factor))))
                 for s, v in self._moving
                 if s in symbols
             ]
             if self.reader.t in symbols:
-                terms.append(self.graph.derivative(node, self.reader.t))
-            found = self._rates[node] = self.graph.plain_add(terms)
+                found.append(graph.plain_mul((graph.derivative(node, self.reader.t), factor)))
         return found
 
     def speed(self, c: Channel) -> int:
@@ -73,11 +73,10 @@ class Assembly:
 
     def drift(self, c: Channel) -> int:
         """Return u̇ without accelerations: Σ Dₜa q̇ + Dₜa₀."""
-        zero = self.graph.zero
-        terms = [self.graph.plain_mul((self._rate(a), self.v[i])) for i, a in c.slopes]
+        terms = [term for i, a in c.slopes for term in self._rate(a, self.v[i])]
         if c.rest is not None:
-            terms.append(self._rate(c.rest))
-        return self.sums.of(tuple(term for term in terms if term != zero))
+            terms += self._rate(c.rest, self.graph.one)
+        return self.sums.of(tuple(term for term in terms if term != self.graph.zero))
 
     def projected(self, along: Sequence[int]) -> list[int]:
         """Return Σ a F for each coordinate, terms with the same a put together first."""
@@ -120,7 +119,7 @@ class Assembly:
             return
         terms: dict[int, list[int]] = defaultdict(list)
         for i, a in c.slopes:
-            terms[i].append(self.graph.negative(self._rate(a)))
+            terms[i].extend(map(self.graph.negative, self._rate(a, self.graph.one)))
         for i, slope in self._slopes_of_speed(c):
             terms[i].append(slope)
         momentum = self.graph.plain_mul((c.weight, self.speed(c)))
@@ -128,24 +127,24 @@ class Assembly:
             yield i, self.graph.plain_mul((momentum, self.graph.add(parts)))
 
     def mass_matrix(self) -> tuple[tuple[int, ...], ...]:
-        """Return Σ w aᵢ aⱼ: the weights that a pair of slopes shares are added first."""
+        """Return Σ w aᵢ aⱼ, i ≥ j: the weights that a pair of slopes shares are added and put to aᵢ first.
+
+        In a chain the weights beyond link i depend on i alone, so w aᵢ serves the whole row.
+        """
         n = len(self.q)
         pairs: list[dict[tuple[int, int], list[int]]] = [defaultdict(list) for _ in range(n * n)]
         for c in self.channels:
             for x, (i, a) in enumerate(c.slopes):
-                for j, b in c.slopes[: x + 1]:
-                    if j <= i:
-                        pairs[i * n + j][(a, b) if a < b else (b, a)].append(c.weight)
-                    else:
-                        pairs[j * n + i][(a, b) if a < b else (b, a)].append(c.weight)
-                    if i == j and a != b:  # two terms of one slope: both orders
-                        pairs[i * n + j][(a, b) if a < b else (b, a)].append(c.weight)
+                for j, b in c.slopes[:x]:
+                    if i >= j:
+                        pairs[i * n + j][a, b].append(c.weight)
+                    if j >= i:
+                        pairs[j * n + i][b, a].append(c.weight)
+                pairs[i * n + i][a, a].append(c.weight)
         return tuple(tuple(self._entry(pairs[i * n + j]) for j in range(i + 1)) for i in range(n))
 
     def _entry(self, group: dict[tuple[int, int], list[int]]) -> int:
-        by_weight: dict[int, list[int]] = defaultdict(list)
-        for pair, weights in group.items():
-            by_weight[self.sums.of(tuple(weights))].append(self.graph.plain_mul(pair))
+        mul = self.graph.plain_mul
         return self.graph.plain_add(
-            [self.graph.plain_mul((w, self.graph.plain_add(products))) for w, products in by_weight.items()]
+            [mul((mul((self.sums.of(tuple(weights)), a)), b)) for (a, b), weights in group.items()]
         )

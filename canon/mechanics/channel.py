@@ -71,7 +71,7 @@ class Reader:
         return found
 
     def slopes(self, f: Expr) -> tuple[tuple[tuple[int, int], ...], int | None]:
-        """Return the pairs (i, ∂f/∂qᵢ) term by term, and ∂f/∂t or None where that is 0."""
+        """Return the pairs (i, ∂f/∂qᵢ) term by term, by rising i, and ∂f/∂t or None where that is 0."""
         pairs: list[tuple[int, int]] = []
         rests: list[int] = []
         for term in sp.Add.make_args(f):
@@ -81,7 +81,7 @@ class Reader:
             pairs.extend(found[0])
             if found[1] is not None:
                 rests.append(found[1])
-        return tuple(pairs), self.graph.plain_add(rests) if rests else None
+        return tuple(sorted(pairs)), self.graph.plain_add(rests) if rests else None
 
     def _of_term(self, node: int) -> tuple[tuple[tuple[int, int], ...], int | None]:
         symbols = self.graph.symbols(node)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.expression.graph import Graph
+from canon.expression.shared import shared_to_sympy
 from canon.expression.symbol import time, velocity
 from canon.mechanics.assembly import Assembly
 from canon.mechanics.channel import Reader, channels
@@ -69,12 +70,31 @@ class Equations:
 
     @property
     def operations(self) -> int:
-        """How many operations M and f take, shared ones counted once; a sum of k terms counts k − 1."""
+        """How many operations M and f take: shared ones counted once, k − 1 for k terms or factors, signs free."""
+        minus = self.graph.number(-1)
         total = 0
         for each in self.graph.reachable(self.nodes):
-            operands = self.graph.nodes[each].operands
-            total += max(len(operands) - 1, 1) if operands else 0
+            operands = [o for o in self.graph.nodes[each].operands if o != minus]
+            total += (
+                max(len(operands) - 1, self.graph.nodes[each].kind not in ("add", "mul")) if operands else 0
+            )
         return total
+
+    def to_sympy(self) -> tuple[list[tuple[Symbol, Expr]], sp.Matrix, sp.Matrix]:
+        """Return M and f as SymPy matrices, what they share replaced by symbols, in the manner of :func:`sympy.cse`.
+
+        Returns
+        -------
+        replacements
+            Pairs (symbol, expression), each in symbols that came before.
+        M, f
+            Matrices of shapes (n, n) and (n, 1).
+        """
+        n = len(self.q)
+        replacements, found = shared_to_sympy(self.graph, self.nodes)
+        rows = [found[i * (i + 1) // 2 : (i + 1) * (i + 2) // 2] for i in range(n)]
+        M = sp.Matrix(n, n, lambda i, j: rows[max(i, j)][min(i, j)])
+        return replacements, M, sp.Matrix(found[-n:])
 
 
 def derivation(
@@ -112,17 +132,16 @@ def derivation(
     >>> bob = Particle(m, (l*sin(theta), -l*cos(theta)))
     >>> pendulum = derivation([bob], [theta], field=(0, -g))
     >>> pendulum.graph.to_sympy(pendulum.M[0][0])
-    m*(l**2*sin(theta)**2 + l**2*cos(theta)**2)
+    l**2*m*sin(theta)**2 + l**2*m*cos(theta)**2
     """
     reader = Reader(Graph(), tuple(q), t)
     graph = reader.graph
     assembly = Assembly(reader, list(channels(reader, bodies, field)))
     along: list[int] = []
     for c in assembly.channels:
-        inertial = graph.negative(assembly.drift(c))
-        felt = inertial if c.load is None else graph.plain_add((inertial, c.load))
-        along.append(graph.plain_mul((c.weight, felt)))
-    terms = [[F] for F in assembly.projected(along)]
+        excess = (assembly.drift(c),) if c.load is None else (assembly.drift(c), graph.negative(c.load))
+        along.append(graph.plain_mul((c.weight, graph.plain_add(excess))))
+    terms = [[graph.negative(F)] for F in assembly.projected(along)]
     for c in assembly.channels:
         for i, term in assembly.not_a_rate(c):
             terms[i].append(term)
