@@ -1,0 +1,65 @@
+"""Run the benchmarks and write what they print into docs/measured.md.
+
+python benchmarks/record.py              # every benchmark below
+python benchmarks/record.py zero_test    # this one anew, the others as they stand
+"""
+
+from __future__ import annotations
+
+import platform
+import re
+import subprocess
+import sys
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
+
+HERE = Path(__file__).parent
+PAGE = HERE.parent / "docs" / "measured.md"
+BENCHMARKS = {
+    "import_cost": "What `import canon` costs",
+    "zero_test": "The zero test on its corpus of identities",
+    "canonical": "Canonical maps and generating functions",
+    "derivation": "Equations of motion, beside SymPy's LagrangesMethod",
+    "kernels": "Compiled loops, beside a C program",
+    "drift_calibration": "The drift statistics on series of known growth",
+}
+HEAD = """\
+# What was measured
+
+Written by `benchmarks/record.py`, which runs the scripts named below. Times on shared machines wander; ratios within
+one run are what counts.
+"""
+
+
+def section(name: str) -> str:
+    done = subprocess.run(
+        [sys.executable, str(HERE / f"{name}.py")],
+        capture_output=True,
+        text=True,
+        cwd=HERE.parent,
+        check=False,
+    )
+    printed = done.stdout.rstrip()
+    if done.returncode:
+        sys.exit(f"benchmarks/{name}.py ended with status {done.returncode}:\n{done.stderr}")
+    tools = ", ".join(f"{name} {version(name)}" for name in ("sympy", "python-flint", "llvmlite", "heyoka"))
+    where = f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
+    return f"## {BENCHMARKS[name]}\n\n`python benchmarks/{name}.py` ({where})\n\n```text\n{printed}\n```\n"
+
+
+def main(names: list[str]) -> None:
+    unknown = set(names) - set(BENCHMARKS)
+    if unknown:
+        sys.exit(f"no benchmark is called {', '.join(sorted(unknown))}; there are {', '.join(BENCHMARKS)}")
+    page = PAGE.read_text(encoding="utf-8") if PAGE.exists() else HEAD
+    found = {block.splitlines()[0]: block for block in re.split(r"^(?=## )", page, flags=re.MULTILINE)[1:]}
+    for name in names or BENCHMARKS:
+        block = section(name)
+        found[block.splitlines()[0]] = block
+        kept = [found[title] for title in (f"## {t}" for t in BENCHMARKS.values()) if title in found]
+        PAGE.write_text("\n".join([HEAD, *(block.rstrip() + "\n" for block in kept)]), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
