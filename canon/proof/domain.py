@@ -7,11 +7,13 @@ What a single symbol may be (positive, real, integer …) is said by the symbol'
 from __future__ import annotations
 
 import random
+import time
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
 from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo
+from sympy.core.function import AppliedUndef
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
 from canon.proof.typed import free_symbols, rational
@@ -22,13 +24,38 @@ if TYPE_CHECKING:
     from sympy import Basic, Expr
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["EVERYWHERE", "Domain", "declared_complex"]
+__all__ = ["EVERYWHERE", "Domain", "declared_complex", "said_of"]
+
+
+def _declared(named: Basic) -> Mapping[str, bool]:
+    """Return what was declared of a symbol, or of a function (SymPy keeps that with the function's class)."""
+    return getattr(named.func, "_kwargs", {}) if isinstance(named, AppliedUndef) else named.assumptions0
 
 
 def declared_complex(symbol: Basic) -> bool:
-    """Tell whether a symbol was declared complex and not real; all others are read as real."""
-    said: Mapping[str, bool] = getattr(symbol, "assumptions0", {})
+    """Tell whether a symbol or function was declared complex and not real; all others are read as real."""
+    said = _declared(symbol)
     return said.get("real") is not True and ("complex" in said or "imaginary" in said)
+
+
+def said_of(named: Basic) -> dict[str, bool]:
+    """Return what was declared of a symbol or an applied function beyond what holds for every rational number.
+
+    Examples
+    --------
+    >>> said_of(Symbol("x", real=True)), said_of(Symbol("z", imaginary=True))["real"]
+    ({}, False)
+    """
+    return {
+        fact: so
+        for fact, so in _declared(named).items()
+        if not fact.startswith("extended_") and _OF_EVERY_RATIONAL.get(fact) is not so
+    }
+
+
+_OF_EVERY_RATIONAL = dict.fromkeys(
+    ("commutative", "complex", "real", "finite", "hermitian", "rational", "algebraic"), True
+) | dict.fromkeys(("infinite", "imaginary", "irrational", "transcendental"), False)
 
 
 def _parts(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
@@ -69,6 +96,7 @@ class Domain:
         seed: int = 0,
         in_box: bool = True,
         marks: Mapping[Symbol, Sequence[Rational]] = MappingProxyType({}),
+        deadline: float = float("inf"),
     ) -> Iterator[dict[Symbol, Rational]]:
         """Draw exact points of the domain: short rationals at several scales.
 
@@ -84,6 +112,8 @@ class Domain:
             Keep to the box, which is a hint and no part of the claim.
         marks
             Values at which one or two symbols at a time are put.
+        deadline
+            Value of :func:`time.monotonic` after which no more points are drawn.
 
         Examples
         --------
@@ -94,10 +124,11 @@ class Domain:
         """
         conditioned = {s for condition in self.conditions for s in free_symbols(condition)}
         ordered = sorted({*symbols, *conditioned}, key=lambda s: s.name)
+        facts = {s: said_of(s) for s in ordered}
         chance = random.Random(seed)
         found = 0
         for attempt in range(40 * count + 200):
-            if found == count:
+            if found == count or time.monotonic() > deadline:
                 return
             scale = rational(_SCALES[(attempt // 3) % len(_SCALES)])
             point = {s: self._draw(s, scale, chance, in_box=in_box) for s in ordered}
@@ -105,7 +136,7 @@ class Domain:
             for s in chance.sample(marked, k=min(len(marked), 1 + attempt % 2)):
                 point[s] = chance.choice(marks[s])
             allowed = self._settle_equalities(point) and all(
-                _allows(s, number) for s, number in point.items()
+                _allows(facts[s], number) for s, number in point.items()
             )
             if allowed and self.contains(point):
                 found += 1
@@ -203,15 +234,6 @@ _SCALES = tuple(Rational(p, q) for p, q in ((1, 2), (1, 1), (1, 8), (4, 1), (1, 
 """Sizes that points are drawn at, one after another."""
 
 
-def _allows(symbol: Symbol, number: Rational) -> bool:
-    """Tell whether the symbol's assumptions admit a value."""
-    return not (
-        (symbol.is_positive and number <= 0)
-        or (symbol.is_negative and number >= 0)
-        or (symbol.is_nonnegative and number < 0)
-        or (symbol.is_nonpositive and number > 0)
-        or (symbol.is_zero is False and number == 0)
-        or (symbol.is_integer and not number.is_integer)
-        or (symbol.is_even and number % 2 != 0)
-        or (symbol.is_odd and number % 2 != 1)
-    )
+def _allows(facts: Mapping[str, bool], number: Rational) -> bool:
+    """Tell whether a number is all that a symbol was declared to be, by SymPy's own account of the number."""
+    return all(getattr(number, f"is_{fact}") is so for fact, so in facts.items())

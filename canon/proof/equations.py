@@ -14,7 +14,7 @@ from sympy.core.function import AppliedUndef
 from canon.proof.anatomy import anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import EVERYWHERE, Domain
-from canon.proof.refute import with_example_functions
+from canon.proof.examples import with_example_functions
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Verdict
 

@@ -17,10 +17,11 @@ from canon.proof import angles, arcs, elliptic, powers
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import declared_complex
 from canon.proof.signs import Signs
+from canon.proof.split import certainly_real
 from canon.proof.tower import THOROUGH, Fraction, Limits, TooLarge, Tower
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable
+    from collections.abc import Callable, Hashable
 
     from flint import fmpq_mpoly
     from sympy import Expr
@@ -227,10 +228,13 @@ class NormalForm:
             known_real = cast("Expr", expr).is_real
             return self.atom(("opaque", expr), "real" if known_real else "", lambda: cast("Expr", expr))
         arguments = [self.tower.canonical(self.form(a)) for a in expr.args]
-        real = isinstance(expr, AppliedUndef | sp.sign | sp.Max | sp.Min | sp.acot)
-        real = real and all(self.is_real(a) for a in arguments)
         keys = tuple(self.fraction_key(a) for a in arguments)
-        return self.atom((expr.func, keys), "real" if real else "", lambda: cast("Expr", expr))
+        real = all(self.is_real(a) for a in arguments)
+        if isinstance(expr, AppliedUndef):
+            sign = _declared_sign(expr) if real else ""
+        else:
+            sign = "real" if real and isinstance(expr, sp.sign | sp.Max | sp.Min | sp.acot) else ""
+        return self.atom((expr.func, keys), sign, lambda: cast("Expr", expr))
 
     # -- atoms -----------------------------------------------------------------------------------
 
@@ -334,7 +338,8 @@ class NormalForm:
         return self.expression(f.num) / self.expression(self.denominator(f))
 
 
-def _declared_sign(symbol: sp.Symbol) -> str:
+def _declared_sign(symbol: sp.Expr) -> str:
+    """Return the sign that was declared of a symbol, or of a function of real arguments."""
     if declared_complex(symbol):
         return ""
     if symbol.is_positive:
@@ -349,14 +354,16 @@ def _declared_sign(symbol: sp.Symbol) -> str:
 
 
 def _derivative_key(expr: sp.Basic, forms: NormalForm) -> tuple[Hashable, bool]:
-    """Return one key for ∂f at given arguments, whether SymPy writes Derivative or Subs."""
+    """Return one key for ∂f at given arguments, whether SymPy writes Derivative or Subs, and if it is real.
+
+    A derivative of a real function is real where the arguments are.
+    """
     inner: sp.Basic = expr
     places: dict[sp.Basic, Expr] = {}
     if isinstance(expr, Subs):
         inner = expr.expr
         variables, point = cast("tuple[sp.Symbol, ...]", expr.variables), cast("tuple[Expr, ...]", expr.point)
         places = dict(zip(variables, point, strict=True))
-    real = not any(declared_complex(s) for s in expr.free_symbols)
     if isinstance(inner, Derivative) and isinstance(inner.expr, AppliedUndef):
         arguments = inner.expr.args
         taken = cast("tuple[tuple[sp.Basic, sp.Basic], ...]", inner.variable_count)
@@ -365,14 +372,9 @@ def _derivative_key(expr: sp.Basic, forms: NormalForm) -> tuple[Hashable, bool]:
         plain = all(isinstance(a, sp.Symbol) or not (a.free_symbols & set(counts)) for a in arguments)
         if whole and plain and all(sum(1 for a in arguments if a == v) == 1 for v in counts):
             orders = tuple(counts.get(a, 0) for a in arguments)
-            return (
-                "derivative",
-                inner.expr.func,
-                orders,
-                _keys((a.xreplace(places) for a in arguments), forms),
-            ), real
-    return ("opaque", expr), real
-
-
-def _keys(arguments: Iterable[sp.Basic], forms: NormalForm) -> tuple[Hashable, ...]:
-    return tuple(forms.fraction_key(forms.tower.canonical(forms.form(a))) for a in arguments)
+            there = [forms.tower.canonical(forms.form(a.xreplace(places))) for a in arguments]
+            real = not declared_complex(inner.expr) and all(map(forms.is_real, there))
+            keys = tuple(map(forms.fraction_key, there))
+            return ("derivative", inner.expr.func, orders, keys), real
+    real = isinstance(inner, Derivative) and certainly_real(inner.expr)
+    return ("opaque", expr), real and all(map(certainly_real, places.values()))

@@ -268,7 +268,7 @@ def _zero_by_continuity(n: NormalForm, h: Fraction, w: Fraction) -> bool:
     if not n.domain.is_connected(symbols) or not is_continuous(n, h):
         return False
     turns = n.expression(w.num) / (2 * sp.pi * sp.I)
-    for point in n.domain.points(symbols, 3, seed=5):
+    for point in n.domain.points(symbols, 3, seed=5, deadline=n.tower.deadline):
         with precision(128):
             try:
                 ball = value(turns, point)

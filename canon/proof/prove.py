@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from sympy import Expr
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["Attempt", "prove_each", "prove_zero"]
+__all__ = ["REFUSALS", "Attempt", "prove_each", "prove_zero"]
 
 MOST_STARTS = 60
 """Times that the normal form is begun anew because a kernel had to be refined."""
@@ -34,6 +34,10 @@ LARGE = 20_000
 
 MOST_CASES = 64
 """Cases into which one claim is cut at most."""
+
+
+REFUSALS = (ValueError, TypeError, ArithmeticError, NotImplementedError)
+"""What SymPy and flint raise for expressions to which they give no meaning."""
 
 
 @dataclass
@@ -59,12 +63,19 @@ class Attempt:
 
 
 def prove_zero(expr: Expr, domain: Domain, deadline: float, limits: Limits = THOROUGH) -> Attempt:
-    """Try to prove that an expression vanishes wherever it is defined on the domain."""
+    """Try to prove that an expression vanishes wherever it is defined on the domain.
+
+    SymPy refuses some expressions that arise on the way (comparing what is not real, Max of it, …): then
+    nothing is proved.
+    """
     attempt = Attempt()
     found = anatomy([expr])
     attempt.large = found.tree > LARGE
-    case = settle_equalities(expr, _where_defined(found, domain))
-    attempt.holds = case.expr is None or _prove(case.expr, case.domain, deadline, limits, attempt)
+    try:
+        case = settle_equalities(expr, _where_defined(found, domain))
+        attempt.holds = case.expr is None or _prove(case.expr, case.domain, deadline, limits, attempt)
+    except REFUSALS as reason:
+        attempt.stop(f"no value could be given to a part: {reason}")
     return attempt
 
 
@@ -97,14 +108,14 @@ def _zero_together(exprs: Sequence[Expr], domain: Domain, deadline: float, limit
             for place, expr in enumerate(exprs):
                 try:
                     found[place] = found[place] or forms.tower.is_zero(forms.form(expr))
-                except (TooLarge, ZeroDivisionError):
+                except (TooLarge, *REFUSALS):
                     continue
         except Refine:
             continue
         except Full:
             capacity *= 2
             continue
-        except (OutOfTime, TooLarge, ZeroDivisionError):
+        except (OutOfTime, TooLarge, *REFUSALS):
             pass
         return found
     return found

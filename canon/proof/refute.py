@@ -10,16 +10,17 @@ from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import acb, arb
-from sympy.core.function import AppliedUndef, Derivative, Subs
+from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
 from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.examples import with_example_functions
 from canon.proof.typed import free_symbols, rational
 from canon.proof.verdict import Counterexample
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
@@ -27,11 +28,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Search",
-    "evaluated",
     "first_counterexample",
     "look_for_counterexample",
     "search_widely",
-    "with_example_functions",
 ]
 
 HIGHEST_PRECISION = 3200
@@ -40,6 +39,9 @@ HIGHEST_PRECISION = 3200
 
 SCREEN_BITS = 128
 """Precision at which many expressions are screened together."""
+
+EXACT = 1000
+"""Digits that equal values share."""
 
 LARGEST_GAP = 200
 """Size of an argument whose zeros are looked for."""
@@ -52,6 +54,7 @@ class Search:
     counterexample: Counterexample | None = None
     agreements: int = 0
     digits: int = 0
+    agreed: list[Mapping[Symbol, sp.Rational]] = field(default_factory=list["Mapping[Symbol, sp.Rational]"])
     unmodelled: str = ""
     tried: int = 0
     functions: dict[str, str] = field(default_factory=dict[str, str])
@@ -63,6 +66,8 @@ class Search:
             return self.unmodelled
         if not self.agreements:
             return "no point of the domain was found where both sides have a value"
+        if self.digits >= EXACT:
+            return f"exact agreement at {self.agreements} points"
         return f"agreement at {self.agreements} points to {self.digits} digits"
 
 
@@ -116,7 +121,7 @@ def first_counterexample(
     found = anatomy(exprs)
     result = Search()
     shown: Sequence[Expr] = exprs
-    for number, point in enumerate(domain.points(found.symbols, points)):
+    for number, point in enumerate(domain.points(found.symbols, points, deadline=deadline)):
         if found.has(AppliedUndef):
             shown, result.functions = with_example_functions(exprs, random.Random(number))
         with precision(SCREEN_BITS):
@@ -141,18 +146,23 @@ def search_widely(left: Expr, right: Expr, domain: Domain, deadline: float) -> S
     symbols = found.symbols
     marks = landmarks(found, domain)
     rounds = (
-        (domain.points(symbols, 6, seed=1), 512),
-        (domain.points(symbols, 40, seed=2, in_box=False), 128),
-        (domain.points(symbols, 60, seed=3, in_box=False, marks=marks), 128),
-        (domain.points(symbols, 40, seed=4, marks=marks), 128),
-        (domain.points(symbols, 4, seed=1), HIGHEST_PRECISION),
+        (domain.points(symbols, 6, seed=1, deadline=deadline), 512),
+        (domain.points(symbols, 40, seed=2, in_box=False, deadline=deadline), 128),
+        (domain.points(symbols, 60, seed=3, in_box=False, marks=marks, deadline=deadline), 128),
+        (domain.points(symbols, 40, seed=4, marks=marks, deadline=deadline), 128),
     )
     search = Search()
-    for points, highest in rounds:
+    for points, highest in (*rounds, (_some(search), HIGHEST_PRECISION)):
         look_for_counterexample(left, right, points, highest=highest, deadline=deadline, search=search)
         if search.counterexample is not None or search.unmodelled:
             break
     return search
+
+
+def _some(search: Search) -> Iterator[Mapping[Symbol, sp.Rational]]:
+    """Yield four points that agree so far, the first and others spread over what was tried."""
+    agreed = list(search.agreed)
+    yield from agreed[:: max(1, len(agreed) // 4)][:4]
 
 
 def landmarks(sides: Anatomy, domain: Domain) -> dict[Symbol, list[sp.Rational]]:
@@ -182,13 +192,26 @@ def _crossings(gap: Expr, s: Symbol) -> set[sp.Rational]:
     slope = gap.diff(s)
     if slope.free_symbols or slope.is_zero is not False:
         return set()
-    zero = -cast("Expr", gap.xreplace(dict.fromkeys(gap.free_symbols, sp.Integer(0)))) / slope
-    if not zero.is_real or not zero.is_finite:
+    near = _near(-cast("Expr", gap.xreplace(dict.fromkeys(gap.free_symbols, sp.Integer(0)))) / slope)
+    if near is None:
         return set()
-    near = zero if isinstance(zero, sp.Rational) else sp.Rational(round(64 * float(zero)), 64)
     steps = (sp.Integer(0), sp.Rational(1, 32), sp.Integer(1), sp.Integer(3))
     around = [near + step for step in steps] + [near - step for step in steps]
     return {rational(number) for number in (*around, 2 * near)}
+
+
+def _near(number: Expr) -> sp.Rational | None:
+    """Return a rational number itself, or a multiple of 1/64 near a real one."""
+    if isinstance(number, sp.Rational):
+        return number
+    if not number.is_real or not number.is_finite:
+        return None
+    with precision(SCREEN_BITS):
+        try:
+            mantissa, exponent = value(64 * number, {}).real.mid().man_exp()
+        except (NotDecided, Undefined, Unmodelled):
+            return None
+    return rational(sp.Rational(sp.floor(sp.Integer(int(mantissa)) * sp.Integer(2) ** int(exponent)), 64))
 
 
 def _try_point(
@@ -219,25 +242,24 @@ def _try_point(
             agreed = _agreeing_digits(left, right, difference)
         bits *= 2
         if bits > highest:
-            result.agreements += 1
+            if not any(point is before for before in result.agreed):
+                result.agreed.append(point)
+                result.agreements += 1
             result.digits = max(result.digits, agreed)
     return False
 
 
 def _agreeing_digits(left: acb, right: acb, difference: acb) -> int:
-    """Return how many decimal digits two values certainly share, decimals where one is exactly 0.
-
-    Exactly equal values share 1000.
-    """
+    """Return how many decimal digits two values certainly share, decimals where both may be 0."""
     spread = abs(difference).upper()
     if spread.is_zero():
-        return 1000
-    if left.is_zero() or right.is_zero():
-        return max(0, int(-float(arb(spread).log().mid()) / 2.302585092994046))
-    size = max(abs(left).upper(), abs(right).upper())
-    if size.is_zero() or size <= spread:
-        return 0
-    return int(float((arb(size) / arb(spread)).log().mid()) / 2.302585092994046)
+        return EXACT
+    decimals = int(-float(arb(spread).log().mid()) / 2.302585092994046)
+    size = max(abs(left).lower(), abs(right).lower())
+    if not size > 0:
+        return min(max(0, decimals), EXACT - 1)
+    shared = int(float((arb(size) / arb(spread)).log().mid()) / 2.302585092994046)
+    return min(max(0, shared), EXACT - 1)
 
 
 def _record(left: acb, right: acb, point: Mapping[Symbol, sp.Rational], result: Search) -> None:
@@ -262,42 +284,3 @@ def _text(z: acb, digits: int) -> str:
     if z.imag.is_zero() or (z.imag.contains(0) and not z.real.contains(0)):
         return real
     return f"{real} + ({z.imag.str(digits, radius=False)})*I"
-
-
-def with_example_functions(
-    expressions: Sequence[Expr], chance: random.Random
-) -> tuple[tuple[Expr, ...], dict[str, str]]:
-    """Put short random polynomials for the arbitrary functions: the claim is for every such function."""
-    applied = sorted(set[sp.Basic]().union(*(e.atoms(AppliedUndef) for e in expressions)), key=str)
-    chosen: dict[str, str] = {}
-    replaced = list(expressions)
-    for function, sample in {a.func: a for a in applied}.items():
-        places = sp.symbols(f"_u0:{len(sample.args)}", real=True)
-        polynomial = _random_polynomial(places, chance)
-        shown = polynomial.xreplace(dict(zip(places, sample.args, strict=True)))
-        chosen[str(sample)] = str(shown)
-        body = sp.Lambda(places, polynomial)
-        replaced = [cast("Expr", e.replace(function, body)) for e in replaced]
-    return tuple(evaluated(e) for e in replaced), chosen
-
-
-def _random_polynomial(places: tuple[Symbol, ...], chance: random.Random) -> Expr:
-    terms: list[Expr] = [sp.Rational(chance.randint(1, 9), 4)]
-    for place in places:
-        terms.extend(
-            sp.Rational(chance.randint(-6, 6), chance.choice((1, 2, 3))) * place**k for k in (1, 2, 3)
-        )
-    if len(places) > 1:
-        terms.append(chance.randint(1, 5) * sp.Mul(*places))
-        terms.append(chance.randint(1, 5) * places[0] ** 2 * places[-1])
-    return sp.Add(*terms)
-
-
-def evaluated(expr: Expr) -> Expr:
-    """Carry out the derivatives of what is not an arbitrary function."""
-    if not expr.has(Derivative, Subs):
-        return expr
-    done = expr.replace(
-        lambda e: isinstance(e, Derivative | Subs) and not e.has(AppliedUndef), lambda e: e.doit()
-    )
-    return cast("Expr", done)

@@ -97,9 +97,8 @@ def defined_nowhere(expr: sp.Basic) -> bool:
     """
     poisoned: set[sp.Basic] = set()
     for part in anatomy([expr]).parts:  # what a part consists of comes before it
-        if part in NOT_NUMBERS or isinstance(part, sp.AccumBounds):
-            poisoned.add(part)
-        elif not isinstance(part, LAZY) and not poisoned.isdisjoint(part.args):
+        itself = part in NOT_NUMBERS or isinstance(part, sp.AccumBounds)
+        if itself or not (isinstance(part, LAZY) or poisoned.isdisjoint(part.args)):
             poisoned.add(part)
     return expr in poisoned
 
@@ -187,8 +186,10 @@ def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | Non
 
 def certainly_real(u: Expr) -> bool:
     """Tell whether u is real wherever it is defined, so that u > 0, u < 0 and u = 0 are all there is."""
+    if declared_complex(u) and not u.is_number:
+        return False
     if isinstance(u, sp.Symbol):
-        return not declared_complex(u)
+        return True
     if isinstance(u, sp.Pow) and not u.exp.is_integer:
         return u.base.is_nonnegative is True and certainly_real(u.exp)
     if isinstance(u, sp.log):

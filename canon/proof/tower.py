@@ -48,6 +48,10 @@ THOROUGH = Limits(product=20_000_000, factored_terms=200, factored_degree=40, el
 """Limits in the worker, which can be killed."""
 
 
+LARGEST_POWER = 2000
+"""Whole powers that are written out; flint ends the process where a coefficient overflows the memory."""
+
+
 class TooLarge(Exception):
     """The normal form would not fit."""
 
@@ -176,7 +180,9 @@ class Tower:
         return self.reduce(a * b)
 
     def polynomial_power(self, p: fmpq_mpoly, n: int) -> fmpq_mpoly:
-        """Return p**n for n ≥ 0."""
+        """Return p**n for n ≥ 0, of a degree and coefficients that can be written out."""
+        if n > LARGEST_POWER:
+            raise TooLarge(f"the power {n}")
         if len(p) == 1:
             return self.reduce(p**n)
         total = self.constant(1)
@@ -212,6 +218,8 @@ class Tower:
         parts: dict[int, dict[tuple[int, ...], fmpq]] = {}
         for exponents, coefficient in p.terms():
             e = int(exponents[place])
+            if e > LARGEST_POWER:
+                raise TooLarge(f"the degree {e}")
             rest = (*exponents[:place], 0, *exponents[place + 1 :])
             parts.setdefault(e, {})[rest] = coefficient
         return [self._ctx.from_dict(parts.get(e, {})) for e in range(max(parts, default=0) + 1)]

@@ -15,8 +15,9 @@ import sympy as sp
 from canon.proof.anatomy import anatomy
 from canon.proof.budget import prove_in_worker
 from canon.proof.domain import EVERYWHERE, Domain
-from canon.proof.prove import Attempt, prove_each, prove_zero
-from canon.proof.refute import Search, evaluated, first_counterexample, look_for_counterexample, search_widely
+from canon.proof.examples import evaluated
+from canon.proof.prove import REFUSALS, Attempt, prove_each, prove_zero
+from canon.proof.refute import Search, first_counterexample, look_for_counterexample, search_widely
 from canon.proof.tower import QUICK
 from canon.proof.verdict import Evidence, Status, Verdict
 
@@ -105,7 +106,10 @@ def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget
             if matrix[i, j] != 0:
                 places.setdefault(_exact(matrix[i, j]), (i, j))
     entries = list(places)
-    search, number = first_counterexample(entries, domain, start + budget)
+    try:
+        search, number = first_counterexample(entries, domain, start + budget)
+    except REFUSALS:
+        search, number = Search(), None
     if number is not None:
         failed = _refuted(entries[number], sp.Integer(0), search)
         return _at_entry(failed, places[entries[number]], "does not vanish", start)
@@ -146,7 +150,7 @@ def _exact(expr: object) -> Expr:
     """Return an expression without floating-point numbers, which would absorb small terms."""
     if isinstance(expr, int):
         return sp.Integer(expr)
-    if not isinstance(expr, sp.Expr):
+    if not isinstance(expr, sp.Expr) or isinstance(expr, sp.Lambda | sp.Order):
         raise TypeError(f"an expression is needed, not {type(expr).__name__}: {expr!r}")
     if not expr.is_commutative:
         raise ValueError(f"{expr} holds factors that do not commute, which the zero test does not model")
@@ -165,13 +169,16 @@ def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict
         return _climb(left, right, domain, deadline)
     except RecursionError:
         return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "the expression is nested too deeply"),))
+    except REFUSALS as reason:
+        said = f"no value could be given to a part of the expression or domain: {reason}"
+        return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", said),))
 
 
 def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
     """Climb the ladder: a few balls, the quick proof, many balls, the thorough proof in the worker."""
     found = anatomy([left, right])
     search = look_for_counterexample(
-        left, right, domain.points(found.symbols, 3), highest=64, deadline=deadline
+        left, right, domain.points(found.symbols, 3, deadline=deadline), highest=64, deadline=deadline
     )
     if search.counterexample is not None:
         return _refuted(left, right, search)

@@ -8,11 +8,13 @@ from sympy import (
     Eq,
     Function,
     I,
+    Lambda,
     Max,
     Min,
     Ne,
     Piecewise,
     Rational,
+    Subs,
     acos,
     atan,
     atan2,
@@ -23,10 +25,9 @@ from sympy import (
     sign,
     sin,
     sqrt,
-    tan,
 )
 
-from canon.proof import Domain, equivalent_equations, vanishes
+from canon.proof import Domain, vanishes
 from canon.proof.verdict import Status
 
 x, y, z, u, v = sp.symbols("x y z u v", real=True)
@@ -38,7 +39,14 @@ c = sp.Symbol("c", complex=True)
 n = sp.Symbol("n", integer=True)
 even = sp.Symbol("k", even=True)
 
+f = Function("f")
+growing = Function("g", positive=True)
+wave = Function("psi", complex=True)
+
 FAR = 10**6
+ROOT = sqrt(exp(x) - exp(-1000))
+SLOPE = Subs(Derivative(f(u), u), u, ROOT)
+LARGE_ROOT = Subs(Derivative(f(u), u), u, sqrt(x))
 SUM = 6 * x + 6 * y
 POWER = SUM ** Rational(10**13 + 1, 3)
 
@@ -61,9 +69,10 @@ NOT_ZERO = [
     (atan2(y, x) + acos(x / sqrt(x**2 + y**2)), (y <= 0,)),
     # a branch without a value says nothing about the others
     (Piecewise((1 / x, y > -FAR), (1, True)), (Eq(x, 0),)),
+    (atan2(below, x) - atan2(-below, -x) + pi, ()),
+    (atan2(-Abs(y), x) + acos(x / sqrt(x**2 + y**2)), ()),
     (y + sp.Sum(1 / n**2, (n, 1, sp.oo)), (Eq(x, 0),)),
 ]
-
 ZERO = [
     (sign(p**y) - 1, ()),
     (sign(s**p + 1) - 1, ()),
@@ -79,6 +88,9 @@ ZERO = [
     (atan2(y, x) - acos(x / sqrt(x**2 + y**2)), (y >= 0,)),
     (Piecewise((1 / x, y > 0), (0, True)), (Eq(x, 0),)),
     (x + 2 * y, (Eq(x, -2 * y),)),
+    (sqrt(LARGE_ROOT**4) - LARGE_ROOT**2, (x > 0,)),
+    (log(growing(x) * growing(y)) - log(growing(x)) - log(growing(y)), ()),
+    (Abs(f(x)) ** 2 - f(x) ** 2, ()),
 ]
 
 
@@ -90,3 +102,63 @@ def test_what_is_not_zero_everywhere_is_not_proved(expr, conditions):
 @pytest.mark.parametrize(("expr", "conditions"), ZERO, ids=str)
 def test_what_is_zero_everywhere_is_proved(expr, conditions):
     assert vanishes(expr, Domain(conditions)).status is Status.HOLDS
+
+
+def imaginary(name):
+    return sp.Symbol(name, imaginary=True)
+
+
+NOT_REFUTED = [
+    Abs(imaginary("w")) ** 2 + imaginary("w") ** 2,
+    Piecewise((1, Eq(sp.Symbol("P", prime=True) ** 2 - 10 * sp.Symbol("P", prime=True) + 24, 0)), (0, True)),
+    log(growing(x) * growing(y)) - log(growing(x)) - log(growing(y)),
+    sin(pi * Function("N", integer=True)(x)),
+    Abs(Function("N", negative=True)(x)) + Function("N", negative=True)(x),
+]
+
+
+@pytest.mark.parametrize("expr", NOT_REFUTED, ids=str)
+def test_no_counterexample_lies_outside_what_was_declared(expr):
+    assert vanishes(expr, budget=3.0).status is not Status.FAILS
+
+
+def test_declared_functions_are_still_refuted():
+    assert vanishes(log(growing(x) * growing(y)) - log(growing(x))).fails
+    assert vanishes(wave(x) - wave(y)).fails
+    assert vanishes(sp.Symbol("P", prime=True) - 2).fails
+
+
+REFUSED = [
+    (sqrt(x**2) * Max(sqrt(x), 1) - x * Max(sqrt(x), 1), ()),
+    (Derivative(f(x), x) - Derivative(f(y + 1), y), (Eq(x, y + 1),)),
+    (-I * n / 2 - sqrt(n**2 + atan(n) ** 2) / 2 - atan(n) / 2 + Max(I * n, atan(n)), ()),
+    (Min(x, 2 * x) - Min((x**3) ** Rational(1, 3), 2 * Abs((x**3) ** Rational(1, 3))), (Ne(x, 1),)),
+    (Abs(x - 10**400 * sqrt(2)) - x + 10**400 * sqrt(2), (x > 2 * 10**400,)),
+    (y**2 * Piecewise((1, x < 1), (x, True)) - y**2 * Piecewise((1, ROOT < 1), (ROOT, True)), ()),
+    (cos(Min(Rational(1, 2), atan2(x, x))) - 2 * cos(Rational(1, 4)) ** 2 + 1, (below * x > 0,)),
+    (POWER * z - POWER * sqrt(z**2), (z > 10**7,)),
+    (3**n * (x - sqrt(x**2)), (Eq(n, 10**9), x > 10**8)),
+]
+
+
+@pytest.mark.parametrize(("expr", "conditions"), REFUSED, ids=range(len(REFUSED)))
+def test_what_sympy_refuses_or_cannot_write_out_raises_nothing(expr, conditions):
+    assert vanishes(expr, Domain(conditions), budget=2.0).seconds < 2.5
+
+
+def test_a_domain_that_no_point_meets_keeps_to_the_budget():
+    narrow = sum((sin(exp(x) * i) + cos(y * i) * exp(z) - i) ** 2 for i in range(1, 200)) < Rational(1, 100)
+    verdict = vanishes(exp(sin(x)) * sqrt(x**2) + exp(sin(x)) * x, Domain((narrow,)), budget=1.0)
+    assert verdict.seconds < 2.0
+
+
+def test_a_function_is_no_expression():
+    with pytest.raises(TypeError, match="expression"):
+        vanishes(Lambda(x, x))
+
+
+def test_agreement_is_reported_in_digits():
+    tiny = sqrt(x**2) - x + Rational(1, 10**40)
+    assert vanishes(tiny, Domain((x > FAR,))).fails
+    exact = vanishes(sp.zeta(x), budget=1.0)
+    assert exact.undecided
