@@ -228,8 +228,15 @@ def routhian(
         same = lagrangian.L if convention == "L-pq" else -lagrangian.L
         return Routhian(same, rest, (), (), lagrangian.t, convention, forces)
     velocities = [velocity(s) for s in ignored]
+    # The shortest diagonal entry of the Hessian first: the pivots after it stay short.
+    order = sorted(range(len(ignored)), key=lambda i: int(sp.count_ops(lagrangian.L.diff(velocities[i], 2))))
     negative = eliminate_velocities(
-        lagrangian.L, velocities, p, domain or Domain(), "L", "ignorable velocities"
+        lagrangian.L,
+        [velocities[i] for i in order],
+        [p[i] for i in order],
+        domain or Domain(),
+        "L",
+        "ignorable velocities",
     )
     R = -negative if convention == "L-pq" else negative
     if forces:
