@@ -46,6 +46,15 @@ def test_a_run_that_fails_is_a_row_and_an_exit_status(capsys):
     assert "nan" not in printed.lower()
 
 
+def test_gauss_methods_take_any_hamiltonian(capsys):
+    """The double pendulum does not split into T(p) + V(q); Gauss's methods do not ask for that."""
+    arguments = ["drift", "double-pendulum", "--periods", "40", "--method", "verlet", "--method", "gauss-4"]
+    assert main(arguments) == 1
+    printed = capsys.readouterr().out
+    assert "verlet failed: H is not a sum T(p, t) + V(q, t)" in printed
+    assert "Gauss(4) failed" not in printed
+
+
 def test_scenes_are_listed(capsys):
     assert main(["drift", "list"]) == 0
     printed = capsys.readouterr().out
@@ -57,7 +66,8 @@ def test_scenes_are_listed(capsys):
     ("arguments", "told"),
     [
         (["drift", "henon-heile"], "did you mean henon-heiles"),
-        (["drift", "kepler", "--method", "leapfrog"], "no splitting is called 'leapfrog'"),
+        (["drift", "kepler", "--method", "leapfrog"], "leapfrog"),
+        (["drift", "kepler", "--method", "gauss-9"], "the number of stages is 1 … 8"),
         (["drift", "simple-pendulum", "--set", "l"], "--set l: write a parameter's name"),
         (["drift", "simple-pendulum", "--set", "l=nan"], "--set l=nan"),
         (["drift", "simple-pendulum", "--set", "l=-1"], "must be positive"),

@@ -21,7 +21,8 @@ Integrate a scene with several methods and tell how the energy error of each one
 (t^1/2), or secularly. Long runs show their progress; the states between the samples are not kept.
 """
 EXAMPLES = """\
-methods: kahan-li-8, verlet, blanes-moan-4, … (symplectic splittings), rk4, dop853 (not symplectic), taylor (heyoka)
+methods: kahan-li-8, verlet, blanes-moan-4, … (symplectic splittings, for H = T(p) + V(q)), gauss-1 … gauss-8
+(symplectic, for every H), taylor (heyoka's, adaptive), rk4, dop853 (not symplectic)
 
 reading the table:
   max |ΔE/E|   the largest energy error met
@@ -56,7 +57,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--periods", metavar="N", type=float, default=1000.0, help="duration in periods (1000)"
     )
     length.add_argument("--until", metavar="T", type=float, help="duration in units of time")
-    parser.add_argument("--precision", choices=["compensated", "double"], help="of the fixed-step methods")
+    precisions = ["single", "double", "compensated", "extended", "double-double"]
+    parser.add_argument("--precision", choices=precisions, help="of the fixed-step methods (compensated)")
     parser.add_argument("--samples", metavar="N", type=int, help="states kept of each run")
     parser.add_argument(
         "--json", action="store_true", help="one JSON object a method and line instead of a table"
@@ -97,14 +99,13 @@ def method_named(name: str) -> Method:
 
     Examples
     --------
-    >>> method_named("kahan-li-8"), method_named("rk4")
-    (Splitting('kahan-li-8'), RK4())
+    >>> method_named("kahan-li-8"), method_named("rk4"), method_named("gauss-6")
+    (Splitting('kahan-li-8'), RK4(), Gauss(stages=6))
     """
-    from canon.flow.method import DOP853, RK4, Splitting, Taylor
+    from canon.study.case import method_from
 
-    others = {"rk4": RK4, "taylor": Taylor, "dop853": DOP853}
-    wanted = name.lower()
-    return others[wanted]() if wanted in others else Splitting(wanted)
+    kind, _, stages = name.partition("-")
+    return method_from({"gauss": int(stages)} if kind.lower() == "gauss" and stages.isdecimal() else name)
 
 
 def save_figure(study: DriftStudy, file: str) -> bool:

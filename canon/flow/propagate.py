@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from sympy import Expr, Symbol
 
-__all__ = ["HamiltonianSystem", "NonFiniteStateError", "Trajectory", "propagate"]
+__all__ = ["HamiltonianSystem", "NonFiniteStateError", "Trajectory", "is_separable", "propagate"]
 
 _KEPT = 64
 """Systems and compiled loops kept for the next call."""
@@ -190,6 +190,26 @@ def propagate(
             else {k: Statistics(*v) for k, v in zip(("energy", *extra), watched, strict=True)}
         ),
     )
+
+
+def is_separable(hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, Any]) -> bool:
+    """Tell whether H = T(p, t) + V(q, t), so that splitting methods apply.
+
+    Parameters
+    ----------
+    hamiltonian
+        The Hamiltonian.
+    parameters
+        A number for every parameter of H, by symbol or name.
+
+    Examples
+    --------
+    >>> from canon.scene import find
+    >>> kepler, pendulum = find("kepler"), find("double-pendulum")
+    >>> is_separable(kepler.hamiltonian, kepler.values), is_separable(pendulum.hamiltonian, pendulum.values)
+    (True, False)
+    """
+    return _system(hamiltonian, _numbers(parameters)).separable
 
 
 # what the user said --------------------------------------------------------------------------------

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.method import RK4, FixedStep, Splitting, Taylor
-from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.flow.method import RK4, FixedStep, Gauss, Splitting, Taylor
+from canon.flow.propagate import NonFiniteStateError, is_separable, propagate
 from canon.scene.scene import Scene
 from canon.study.drift import FEWEST, Drift, drift
 
@@ -146,7 +146,8 @@ def drift_study(
         Initial state (q, p), shape (2n,), or for a scene the name of a start; a scene's default start if
         left out.
     methods
-        The methods; Kahan & Li's of order 8, Verlet's, RK4 and heyoka's Taylor method if left out.
+        The methods. If left out: Kahan & Li's of order 8 and Verlet's where H = T(p) + V(q), else Gauss's of order 8
+        and 2; RK4; heyoka's Taylor method.
     step
         Step of the methods of fixed step; about a fiftieth of the period if left out.
     tolerance
@@ -182,7 +183,9 @@ def drift_study(
     >>> [row.drift.verdict.value for row in study.rows]
     ['bounded', 'secular']
     """
-    chosen = tuple(methods) if methods is not None else _usual_methods()
+    hamiltonian = system.hamiltonian if isinstance(system, Scene) else system
+    state, values = _state(system, y0), _parameters(system, parameters)
+    chosen = tuple(methods) if methods is not None else _usual_methods(hamiltonian, values)
     if not chosen:
         raise StudyError("no method to study: name at least one")
     known_period = period if period is not None else _period(system)
@@ -195,8 +198,6 @@ def drift_study(
     kept = samples if samples is not None else _usual_samples(span, known_period)
     if kept < FEWEST:
         raise StudyError(f"{kept} samples are too few to judge growth: keep at least {FEWEST}")
-    hamiltonian = system.hamiltonian if isinstance(system, Scene) else system
-    state, values = _state(system, y0), _parameters(system, parameters)
     rows = tuple(
         drift_row(
             hamiltonian,
@@ -287,8 +288,13 @@ def _seconds_of_steps(found: Trajectory, run: Callable[[float, int], Trajectory]
     return min(found.cpu_seconds, again * found.steps / part)
 
 
-def _usual_methods() -> tuple[Method, ...]:
-    return Splitting("kahan-li-8"), Splitting("verlet"), RK4(), Taylor()
+def _usual_methods(
+    hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, float]
+) -> tuple[Method, ...]:
+    """Return two symplectic methods that apply, an ordinary one and heyoka's."""
+    if is_separable(hamiltonian, parameters):
+        return Splitting("kahan-li-8"), Splitting("verlet"), RK4(), Taylor()
+    return Gauss(4), Gauss(1), RK4(), Taylor()
 
 
 def _is_fixed(method: Method) -> bool:
