@@ -37,6 +37,8 @@ class Assembly:
         self.q, self.v = reader.q, [reader.graph.symbol(velocity(s)) for s in reader.q]
         self.sums = SharedSums(reader.graph)
         self._rates: dict[tuple[int, int], list[int]] = {}
+        self._products: dict[tuple[int, int], int] = {}
+        self._slopes: dict[tuple[int, int], list[tuple[int, int]]] = {}
         self._moving = tuple(zip(self.q, self.v, strict=True))
 
     def heights(self, bodies: Sequence[Body], field: Sequence[Expr]) -> list[int]:
@@ -68,8 +70,14 @@ class Assembly:
 
     def speed(self, c: Channel) -> int:
         """Return u = Σ a q̇ + a₀."""
-        terms = [self.graph.plain_mul((a, self.v[i])) for i, a in c.slopes]
+        terms = [self._product(a, i) for i, a in c.slopes]
         return self.sums.of(tuple(terms) if c.rest is None else (*terms, c.rest))
+
+    def _product(self, a: int, i: int) -> int:
+        found = self._products.get((a, i))
+        if found is None:
+            found = self._products[a, i] = self.graph.plain_mul((a, self.v[i]))
+        return found
 
     def drift(self, c: Channel) -> int:
         """Return u̇ without accelerations: Σ Dₜa q̇ + Dₜa₀."""
@@ -105,13 +113,22 @@ class Assembly:
 
     def _slopes_of_speed(self, c: Channel) -> Iterable[tuple[int, int]]:
         """Yield pairs (i, ∂u/∂qᵢ), one a term."""
-        parts = [(a, self.v[j]) for j, a in c.slopes]
+        for j, a in c.slopes:
+            yield from self._slopes_of(a, self.v[j])
         if c.rest is not None:
-            parts.append((c.rest, self.graph.one))
-        for a, v in parts:
-            for i, s in enumerate(self.q):
-                if s in self.graph.symbols(a):
-                    yield i, self.graph.plain_mul((self.graph.derivative(a, s), v))
+            yield from self._slopes_of(c.rest, self.graph.one)
+
+    def _slopes_of(self, a: int, factor: int) -> list[tuple[int, int]]:
+        """Return pairs (i, ∂a/∂qᵢ · factor)."""
+        found = self._slopes.get((a, factor))
+        if found is None:
+            graph, symbols = self.graph, self.graph.symbols(a)
+            found = self._slopes[a, factor] = [
+                (i, graph.plain_mul((graph.derivative(a, s), factor)))
+                for i, s in enumerate(self.q)
+                if s in symbols
+            ]
+        return found
 
     def not_a_rate(self, c: Channel) -> Iterable[tuple[int, int]]:
         """Yield pairs (i, −w u (Dₜaᵢ − ∂u/∂qᵢ)), which vanish where u is a rate."""
