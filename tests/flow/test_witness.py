@@ -1,0 +1,223 @@
+"""Numeric evidence: each true claim has a wrong twin, and evidence decides nothing."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from sympy import Function, cos, sin, sqrt, symbols
+
+from canon.expression.symbol import time
+from canon.flow.stepping import NonFiniteStateError
+from canon.flow.witness import bilinear_covariant, brackets_at_points, integral_drift, symplectic_flow
+from canon.mechanics.hamiltonian import Hamiltonian
+from canon.mechanics.transformation import CanonicalTransformation
+from canon.mechanics.vector_field import VectorField
+from canon.proof.domain import Domain
+from canon.proof.verdict import Evidence, Status, Undecided, Verdict
+
+q, p, x, y, px, py = symbols("q p x y p_x p_y", real=True)
+m, k, w = symbols("m k omega", positive=True)
+r = sqrt(x**2 + y**2)
+
+PENDULUM = Hamiltonian(p**2 / 2 - cos(q), q, p)
+KEPLER = Hamiltonian((px**2 + py**2) / (2 * m) - k / r, (x, y), (px, py))
+KEPLER_START = [1, 0, 0.1, 1.2]
+UNITS = {m: 1, k: 1}
+HENON_HEILES = Hamiltonian((px**2 + py**2 + x**2 + y**2) / 2 + x**2 * y - y**3 / 3, (x, y), (px, py))
+DRIVEN = Hamiltonian(p**2 / 2 - (1 + cos(2 * time) / 5) * cos(q), q, p)
+
+
+def runge_lenz(sign):
+    return (x * py - y * px) * py + sign * m * k * x / r
+
+
+# brackets at points --------------------------------------------------------------------------------
+
+POLAR = ((x, y), (px, py), (r, sp.atan2(y, x)), ((x * px + y * py) / r, x * py - y * px))
+
+
+def test_brackets_of_a_canonical_map_vanish_and_with_p_doubled_they_do_not():
+    old_q, old_p, Q, P = POLAR
+    seen = brackets_at_points(CanonicalTransformation(old_q, old_p, Q, P))
+    assert seen.speaks == "for"
+    assert seen.largest < 1e-40
+    assert seen.looks == 20
+    twin = brackets_at_points(CanonicalTransformation(old_q, old_p, Q, [2 * f for f in P]))
+    assert twin.speaks == "against"
+    assert twin.largest == pytest.approx(1, abs=1e-12)
+    assert "certainly not canonical with valence 1" in twin.text
+
+
+def test_the_valence_is_taken_into_account():
+    doubled = CanonicalTransformation(q, p, q, w * p)
+    assert brackets_at_points(doubled, valence=w).speaks == "for"
+    assert brackets_at_points(doubled, valence=w, parameters={w: "3.5"}).speaks == "for"
+    wrong = brackets_at_points(doubled, parameters={w: "3.5"})
+    assert (wrong.speaks, wrong.largest) == ("against", 2.5)
+    assert brackets_at_points(doubled, parameters={w: 1}).speaks == "for"
+
+
+def test_points_where_the_map_is_not_real_are_no_evidence():
+    root = sqrt(2 * q)
+    seen = brackets_at_points(CanonicalTransformation(q, p, root * sin(p), root * cos(p)), points=9)
+    assert (seen.speaks, seen.looks) == ("against", 9)
+    assert seen.largest == pytest.approx(2)  # {Q, P} = −1
+    good = brackets_at_points(CanonicalTransformation(q, p, root * cos(p), root * sin(p)), points=9)
+    assert (good.speaks, good.looks) == ("for", 9)
+    domain = Domain(conditions=(q < 0,))
+    with pytest.raises(ValueError, match="no finite real value"):
+        brackets_at_points(CanonicalTransformation(q, p, root * cos(p), root * sin(p), domain=domain))
+
+
+def test_points_stay_in_the_domain_when_a_parameter_is_fixed():
+    # Canonical where q < w only: |q − w| has slope −1 there.
+    flip = CanonicalTransformation(q, p, sp.Abs(q - w), -p, domain=Domain(conditions=(q < w,)))
+    assert brackets_at_points(flip, parameters={w: "1/2"}).speaks == "for"
+    other = CanonicalTransformation(q, p, sp.Abs(q - w), -p, domain=Domain(conditions=(q > w,)))
+    assert brackets_at_points(other, parameters={w: "1/2"}).speaks == "against"
+
+
+def test_rounded_numbers_in_a_map_decide_nothing():
+    rounded = sp.Rational("0.3333333333333333")
+    seen = brackets_at_points(CanonicalTransformation(q, p, rounded * q, 3 * p))
+    assert seen.speaks == "neither"
+    assert seen.roundoff < seen.largest < 1e-15
+
+
+def test_a_map_with_an_arbitrary_function_is_refused():
+    f = Function("f")
+    with pytest.raises(ValueError, match=r"arbitrary function f\(q\)"):
+        brackets_at_points(CanonicalTransformation(q, p, q, p + f(q)))
+
+
+# flow ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("motion", "start", "parameters"),
+    [(PENDULUM, [1, 0.3], {}), (DRIVEN, [1, 0.3], {}), (KEPLER, KEPLER_START, UNITS),
+     (HENON_HEILES, [0.1, 0.2, 0.3, 0.1], {})],
+)  # fmt: skip
+def test_a_hamiltonian_flow_is_symplectic(motion, start, parameters):
+    for measure in (symplectic_flow, bilinear_covariant):
+        seen = measure(motion, start, (0, 15), parameters=parameters)
+        assert seen.speaks == "for", seen.text
+        assert seen.largest < 1e-10
+        assert seen.looks == 101
+
+
+@pytest.mark.parametrize("measure", [symplectic_flow, bilinear_covariant])
+def test_a_damped_flow_is_not_symplectic(measure):
+    free = VectorField((p, -sin(q)), (q, p))
+    assert measure(free, [1, 0], (0, 10)).speaks == "for"
+    damped = VectorField((p, -sin(q) - k * p), (q, p))
+    seen = measure(damped, [1, 0], (0, 10), parameters={"k": "0.01"})
+    assert seen.speaks == "against"
+    assert "not symplectic" in seen.text
+
+
+def test_the_contraction_of_a_damped_flow_is_the_known_one():
+    """The divergence is −γ, so MᵀJM = exp(−γt) J in one degree of freedom."""
+    damped = VectorField((p, -sin(q) - p / 10), (q, p))
+    contraction = 1 - np.exp(-0.5)
+    assert symplectic_flow(damped, [1, 0], (0, 5)).largest == pytest.approx(contraction, rel=1e-12)
+    seen = bilinear_covariant(damped, [1, 0], (0, 5), variations=[[1, 0], [0, 2]])
+    assert seen.largest == pytest.approx(2 * contraction, rel=1e-12)
+    assert "-2 at the start" in seen.text  # Σ(δp Δq − Δp δq) with δ = (1, 0), Δ = (0, 2)
+
+
+def test_each_degree_of_freedom_counts():
+    """A flow that turns volume into volume, yet is not symplectic: (x, p_x) shrinks as (y, p_y) swells."""
+    field = VectorField((px, py, -x - px / 10, -y + py / 10), (x, y, px, py))
+    for measure in (symplectic_flow, bilinear_covariant):
+        assert measure(field, [1, 0, 0, 1], (0, 5)).speaks == "against"
+
+
+def test_motion_too_sensitive_for_doubles_decides_nothing():
+    saddle = Hamiltonian(p**2 / 2 - q**2 / 2, q, p)
+    seen = symplectic_flow(saddle, [1, 0], (0, 30))
+    assert seen.speaks == "neither"
+    assert "decides nothing" in seen.text
+    assert symplectic_flow(saddle, [1, 0], (0, 3)).speaks == "for"
+
+
+# integrals -----------------------------------------------------------------------------------------
+
+
+def test_energy_is_kept_and_energy_with_something_added_is_not():
+    seen = integral_drift(PENDULUM.H, PENDULUM, [1, 0], (0, 20))
+    assert seen.speaks == "for"
+    assert seen.largest < 1e-13
+    twin = integral_drift(PENDULUM.H + q / 100, PENDULUM, [1, 0], (0, 20))
+    assert twin.speaks == "against"
+    assert twin.largest == pytest.approx(0.02, rel=1e-2)
+    assert "certainly no constant of this motion" in twin.text
+
+
+def test_the_runge_lenz_vector_has_one_sign():
+    assert integral_drift(runge_lenz(-1), KEPLER, KEPLER_START, (0, 20), parameters=UNITS).speaks == "for"
+    twin = integral_drift(runge_lenz(1), KEPLER, KEPLER_START, (0, 20), parameters=UNITS)
+    assert twin.speaks == "against"
+
+
+def test_an_integral_may_hold_the_time():
+    oscillator = Hamiltonian((p**2 + w**2 * q**2) / 2, q, p)
+    phase = q * cos(w * time) - p * sin(w * time) / w
+    assert integral_drift(phase, oscillator, [1, 0.5], (-3, 9), parameters={w: 2}).speaks == "for"
+    twin = phase.subs(time, -time)
+    assert integral_drift(twin, oscillator, [1, 0.5], (-3, 9), parameters={w: 2}).speaks == "against"
+    assert integral_drift(DRIVEN.H, DRIVEN, [1, 0.3], (0, 9)).speaks == "against"
+
+
+def test_an_integral_of_a_vector_field_of_three_variables():
+    a, b, c = symbols("a b c", real=True)
+    euler = VectorField((b * c, -2 * c * a, a * b), (a, b, c))
+    assert integral_drift(a**2 + b**2 + c**2, euler, [1, 0.2, 0.4], (0, 10)).speaks == "for"
+    assert integral_drift(a**2 + b**2 - c**2, euler, [1, 0.2, 0.4], (0, 10)).speaks == "against"
+    with pytest.raises(ValueError, match="3 variables"):
+        symplectic_flow(euler, [1, 0.2, 0.4], (0, 10))
+
+
+def test_a_chaotic_motion_keeps_its_energy():
+    seen = integral_drift(HENON_HEILES.H, HENON_HEILES, [0, -0.15, 0.5, 0], (0, 400))
+    assert seen.speaks == "for", seen.text
+
+
+def test_what_changes_less_than_doubles_show_is_not_called_kept():
+    seen = integral_drift(PENDULUM.H + q / 10**18, PENDULUM, [1, 0], (0, 20))
+    assert seen.speaks == "neither"
+
+
+def test_where_nothing_can_be_measured_there_is_no_evidence():
+    with pytest.raises(ValueError, match="equilibrium"):
+        integral_drift(q, PENDULUM, [0, 0], (0, 20))
+    with pytest.raises(ValueError, match="no variable"):
+        integral_drift(sp.Integer(5), PENDULUM, [1, 0], (0, 20))
+    with pytest.raises(ValueError, match="no finite real value at t = 0"):
+        integral_drift(sp.log(-(p**2)), PENDULUM, [1, 0], (0, 20))
+    with pytest.raises(ValueError, match="arbitrary function"):
+        integral_drift(Function("f")(q), PENDULUM, [1, 0], (0, 20))
+    with pytest.raises(KeyError, match="k, m"):
+        integral_drift(x, KEPLER, KEPLER_START, (0, 1))
+    with pytest.raises(ValueError, match="3 numbers"):
+        integral_drift(x, KEPLER, [1, 0, 0], (0, 1), parameters=UNITS)
+    with pytest.raises(ValueError, match="no finite real number"):
+        integral_drift(x, KEPLER, [1, 0, 0, float("nan")], (0, 1), parameters=UNITS)
+    with pytest.raises(NonFiniteStateError):
+        integral_drift(KEPLER.H, KEPLER, [1, 0, 0, 0], (0, 3), parameters=UNITS)
+
+
+# verdicts ------------------------------------------------------------------------------------------
+
+
+def test_evidence_leaves_the_status():
+    seen = integral_drift(PENDULUM.H, PENDULUM, [1, 0], (0, 20))
+    open_ = Verdict(Status.UNDECIDED, "the energy is constant", evidence=(Evidence("before", "known"),))
+    told = open_.witness(seen.evidence)
+    assert told.undecided
+    assert [e.kind for e in told.evidence] == ["before", "drift of an integral"]
+    with pytest.raises(Undecided):
+        bool(told)
+    against = integral_drift(q, PENDULUM, [1, 0], (0, 20))
+    for status in Status:
+        assert Verdict(status).witness(seen.evidence, against.evidence).status is status
+    assert seen.text in str(told)
