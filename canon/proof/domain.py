@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sympy import Basic, Expr
+    from sympy.core.relational import Relational
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["EVERYWHERE", "Domain", "declared_complex", "said_of"]
+__all__ = ["EVERYWHERE", "Domain", "declared_complex", "linear", "parts_of", "said_of"]
 
 
 def _declared(named: Basic) -> Mapping[str, bool]:
@@ -53,17 +54,25 @@ def said_of(named: Basic) -> dict[str, bool]:
     }
 
 
-_OF_EVERY_RATIONAL = dict.fromkeys(
-    ("commutative", "complex", "real", "finite", "hermitian", "rational", "algebraic"), True
-) | dict.fromkeys(("infinite", "imaginary", "irrational", "transcendental"), False)
+_OF_EVERY_RATIONAL: dict[str, bool] = {
+    **dict.fromkeys(("commutative", "complex", "real", "finite", "hermitian", "rational", "algebraic"), True),
+    **dict.fromkeys(("infinite", "imaginary", "irrational", "transcendental"), False),
+}
 
 
-def _parts(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
+def parts_of(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
+    """Yield conditions one by one, what And joins taken apart."""
     for condition in conditions:
         if isinstance(condition, And):
-            yield from _parts(condition.args)
+            yield from parts_of(condition.args)
         else:
             yield condition
+
+
+def linear(condition: Relational) -> bool:
+    """Tell whether both sides of a relation differ by something linear in the symbols."""
+    gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
+    return not any(gap.diff(s).free_symbols for s in free_symbols(gap))
 
 
 @dataclass(frozen=True)
@@ -156,7 +165,7 @@ class Domain:
         high: Expr = Integer(0) if symbol.is_nonpositive else oo
         open_low = bool(symbol.is_positive) or low is -oo
         open_high = bool(symbol.is_negative) or high is oo
-        for condition in _parts(self.conditions):
+        for condition in parts_of(self.conditions):
             if not isinstance(condition, Lt | Le | Gt | Ge):
                 continue
             less, greater = cast("Expr", condition.lts), cast("Expr", condition.gts)
@@ -175,14 +184,12 @@ class Domain:
         for s in symbols:
             if s.is_integer or declared_complex(s):
                 return False
-        for condition in _parts(self.conditions):
+        for condition in parts_of(self.conditions):
             if isinstance(condition, Ne):
                 continue
             if not isinstance(condition, Lt | Le | Gt | Ge):
                 return False
-            gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
-            slopes = [gap.diff(s) for s in free_symbols(gap)]
-            if any(slope.free_symbols for slope in slopes):
+            if not linear(condition):
                 return False
         return True
 

@@ -15,6 +15,8 @@ from canon.proof.anatomy import anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import EVERYWHERE, Domain
 from canon.proof.examples import with_example_functions
+from canon.proof.generic import is_analytic, proved_sign
+from canon.proof.split import defined_nowhere
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Verdict
 
@@ -56,7 +58,11 @@ def equivalent_equations(
     Both must be affine in ``unknowns``; the remaining symbols are coefficients. The systems are
     equivalent at generic points exactly when their augmented matrices span one row space over the
     functions of those symbols: every row of either then has vanishing determinants when it borders a
-    largest nonvanishing minor of the other.
+    largest nonvanishing minor of the other. Two systems that both have no solution are equivalent.
+
+    That needs coefficients without zero divisors. Where they have pieces (Abs, sign, Piecewise, integer
+    symbols, roots that may change branch) a system follows from another only if the minor is proved to
+    vanish nowhere on the domain, and is refuted only at a point where the minor is not zero.
 
     Parameters
     ----------
@@ -75,7 +81,7 @@ def equivalent_equations(
     Raises
     ------
     ValueError
-        If an equation is not affine in the unknowns.
+        If an equation is not affine in the unknowns (UNDECIDED if that is not known).
 
     Examples
     --------
@@ -88,35 +94,57 @@ def equivalent_equations(
     """
     start = time.monotonic()
     deadline = start + budget
-    a = _augmented(system_a, unknowns, domain, "first")
-    b = _augmented(system_b, unknowns, domain, "second")
-    extra = _rows_follow(b, a, system_b, ("second", "first"), domain, deadline)
+    a = _augmented(system_a, unknowns, domain, "first", deadline)
+    b = _augmented(system_b, unknowns, domain, "second", deadline)
+    unknown = [system for system in (a, b) if isinstance(system, str)]
+    if isinstance(a, str) or isinstance(b, str):
+        verdict = Verdict(Status.UNDECIDED, evidence=tuple(Evidence("affine", text) for text in unknown))
+        return replace(verdict, seconds=time.monotonic() - start)
+    field = is_analytic([entry for system in (a, b) for row in system.rows for entry in row], domain)
+    extra = _rows_follow(b, a, system_b, ("second", "first"), domain, deadline, field=field)
     if extra.fails:
         return replace(extra, seconds=time.monotonic() - start)
-    missing = _rows_follow(a, b, system_a, ("first", "second"), domain, deadline)
+    missing = _rows_follow(a, b, system_a, ("first", "second"), domain, deadline, field=field)
     worst = missing if missing.fails or extra.holds else extra
     return replace(worst, seconds=time.monotonic() - start)
 
 
-def _augmented(system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain, which: str) -> _System:
-    at_rest = dict.fromkeys(unknowns, sp.Integer(0))
+def _augmented(
+    system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain, which: str, deadline: float
+) -> _System | str:
+    """Return slopes and rest of each equation, whose sum Σ slope·u + rest is proved to be the equation.
+
+    A vanishing second derivative would not do: u·sign(u) and atan(tan u) have locally constant slopes.
+    """
+    at_rest: dict[sp.Basic, Expr] = dict.fromkeys(unknowns, sp.Integer(0))
     rows: list[tuple[Expr, ...]] = []
     for number, equation in enumerate(system, start=1):
         expr = equation + sp.Integer(0)
-        row: list[Expr] = []
-        for u in unknowns:
-            slope = cast("Expr", expr.diff(u))
-            if slope.free_symbols & set(unknowns):
-                if not all(vanishes(slope.diff(w), domain, 2.0).holds for w in unknowns):
-                    raise ValueError(
-                        f"equation {number} of the {which} system is not affine in {u}: {expr} = 0; "
-                        "solve it for the unknowns or name others"
-                    )
-                slope = cast("Expr", slope.xreplace(at_rest))
-            row.append(slope)
+        row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
         row.append(cast("Expr", expr.xreplace(at_rest)))
+        if not _is_affine(expr, set(unknowns)):
+            again = sp.Add(*(slope * u for slope, u in zip(row, unknowns, strict=False)), row[-1])
+            without_value = any(map(defined_nowhere, row))
+            rebuilt = None if without_value else vanishes(expr - again, domain, deadline - time.monotonic())
+            if rebuilt is None or rebuilt.fails:
+                raise ValueError(
+                    f"equation {number} of the {which} system is not affine in the unknowns: {expr} = 0; "
+                    "solve it for the unknowns or name others"
+                )
+            if not rebuilt.holds:
+                return f"equation {number} of the {which} system was not proved affine in the unknowns"
         rows.append(tuple(row))
     return _System(tuple(rows))
+
+
+def _is_affine(expr: sp.Basic, unknowns: set[Symbol]) -> bool:
+    """Tell whether the form of an expression shows that it is affine."""
+    if not expr.free_symbols & unknowns or expr in unknowns:
+        return True
+    if isinstance(expr, sp.Mul):
+        moving = [factor for factor in expr.args if factor.free_symbols & unknowns]
+        return len(moving) == 1 and _is_affine(moving[0], unknowns)
+    return isinstance(expr, sp.Add) and all(_is_affine(term, unknowns) for term in expr.args)
 
 
 def _rows_follow(
@@ -126,20 +154,29 @@ def _rows_follow(
     names: tuple[str, str],
     domain: Domain,
     deadline: float,
+    *,
+    field: bool,
 ) -> Verdict:
-    """Decide whether every row of one system lies in the row space of the other."""
+    """Decide whether every row of one system lies in the row space of the other.
+
+    Everything follows from a basis without solutions, one whose largest minor needs the column of the rest.
+    """
     pivots = _largest_minor(basis, domain)
-    assumed = ("generic point: the coefficients' largest minor is not zero",)
-    undecided: Verdict | None = None
-    for number, row in enumerate(rows.rows):
+    minor = _determinant([[basis.rows[i][c] for c in pivots.columns] for i in pivots.rows])
+    sure = field or proved_sign(minor, domain) in ("+", "-")
+    undecided: list[Evidence] = []
+    if not sure:
+        undecided.append(
+            Evidence("rank", f"the minor {minor} of the {names[1]} system may vanish on a piece")
+        )
+    inconsistent = bool(basis.rows) and len(basis.rows[0]) - 1 in pivots.columns
+    for number, row in enumerate(() if inconsistent else rows.rows):
         for bordered in _borders(row, basis, pivots):
-            verdict = vanishes(_determinant(bordered), domain, max(0.1, deadline - time.monotonic()))
-            if verdict.fails and not _minor_is_largest(basis, pivots, domain, deadline):
-                verdict = Verdict(
-                    Status.UNDECIDED,
-                    evidence=(Evidence("rank", f"the rank of the {names[1]} system is not known"),),
-                )
-            if verdict.fails:
+            determinant = _determinant(bordered)
+            verdict = vanishes(determinant, domain, max(0.1, deadline - time.monotonic()))
+            if verdict.fails and not sure:
+                verdict = vanishes(minor * determinant, domain, max(0.1, deadline - time.monotonic()))
+            if verdict.fails and _minor_is_largest(basis, pivots, domain, deadline):
                 equation = equations[number]
                 return replace(
                     verdict,
@@ -147,21 +184,17 @@ def _rows_follow(
                     feedback=f"equation {number + 1} of the {names[0]} system does not follow from the "
                     f"{names[1]}: {equation} = 0",
                 )
-            if verdict.undecided:
-                undecided = (
-                    undecided
-                    if undecided is not None
-                    else replace(
-                        verdict,
-                        evidence=(
-                            *verdict.evidence,
-                            Evidence(
-                                "equation", f"whether equation {number + 1} of the {names[0]} system follows"
-                            ),
-                        ),
-                    )
-                )
-    return undecided if undecided is not None else Verdict(Status.HOLDS, certificate="exact", assumed=assumed)
+            if verdict.fails:
+                undecided.append(Evidence("rank", f"the rank of the {names[1]} system is not known"))
+            elif not verdict.holds:
+                undecided.extend(verdict.evidence)
+            if not verdict.holds:
+                text = f"whether equation {number + 1} of the {names[0]} system follows"
+                undecided.append(Evidence("equation", text))
+    if undecided:
+        return Verdict(Status.UNDECIDED, evidence=tuple(dict.fromkeys(undecided)))
+    assumed = ("generic point: the coefficients' largest minor is not zero",)
+    return Verdict(Status.HOLDS, certificate="exact", assumed=assumed if field else ())
 
 
 def _borders(row: tuple[Expr, ...], basis: _System, pivots: _Pivots) -> Iterator[list[list[Expr]]]:

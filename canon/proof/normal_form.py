@@ -376,5 +376,5 @@ def _derivative_key(expr: sp.Basic, forms: NormalForm) -> tuple[Hashable, bool]:
             real = not declared_complex(inner.expr) and all(map(forms.is_real, there))
             keys = tuple(map(forms.fraction_key, there))
             return ("derivative", inner.expr.func, orders, keys), real
-    real = isinstance(inner, Derivative) and certainly_real(inner.expr)
+    real = isinstance(inner, Derivative) and certainly_real(cast("Expr", inner.expr))
     return ("opaque", expr), real and all(map(certainly_real, places.values()))

@@ -198,6 +198,9 @@ class Tower:
     def factors(self, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
         """Write p as a number times powers of irreducible factors; a large p stays one factor."""
         self.check_time()
+        if len(p) == 1:
+            ((monomial, unit),) = self.terms(p)
+            return unit, [(self.monomial(k), e) for k, e in monomial]
         if len(p) <= self.limits.factored_terms and p.total_degree() <= self.limits.factored_degree:
             unit, found = p.factor()
             return unit, [(factor, int(e)) for factor, e in found]
@@ -347,7 +350,7 @@ class Tower:
 
     def _rational_base(self, p: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
         """Rewrite 1/p as (multiplier, base) when p is one root ρ with ρⁿ = R: 1/ρ = ρⁿ⁻¹/R."""
-        if len(p) == 1:
+        if len(p) == 1 and p.total_degree() == 1:
             (k,) = self.used(p)
             relation = self.relation(k)
             if relation is not None and len(relation[1]) == 1:

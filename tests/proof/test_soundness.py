@@ -16,6 +16,7 @@ from sympy import (
     Rational,
     Subs,
     acos,
+    acot,
     atan,
     atan2,
     cos,
@@ -25,9 +26,10 @@ from sympy import (
     sign,
     sin,
     sqrt,
+    tan,
 )
 
-from canon.proof import Domain, vanishes
+from canon.proof import Domain, equivalent_equations, vanishes
 from canon.proof.verdict import Status
 
 x, y, z, u, v = sp.symbols("x y z u v", real=True)
@@ -88,6 +90,8 @@ ZERO = [
     (atan2(y, x) - acos(x / sqrt(x**2 + y**2)), (y >= 0,)),
     (Piecewise((1 / x, y > 0), (0, True)), (Eq(x, 0),)),
     (x + 2 * y, (Eq(x, -2 * y),)),
+    (1 / (x**10 * y**10 * sin(x) ** 2 + x**10 * y**10 * cos(x) ** 2) - x**-10 * y**-10, ()),
+    (acot(p**10 * q**10) - atan(p**-10 * q**-10), ()),
     (sqrt(LARGE_ROOT**4) - LARGE_ROOT**2, (x > 0,)),
     (log(growing(x) * growing(y)) - log(growing(x)) - log(growing(y)), ()),
     (Abs(f(x)) ** 2 - f(x) ** 2, ()),
@@ -162,3 +166,57 @@ def test_agreement_is_reported_in_digits():
     assert vanishes(tiny, Domain((x > FAR,))).fails
     exact = vanishes(sp.zeta(x), budget=1.0)
     assert exact.undecided
+
+
+ONE_PIECE = Piecewise((1, x > 0), (0, True))
+
+NOT_EQUIVALENT = [
+    # locally constant slopes
+    ([Piecewise((u, u > 0), (-u, True)) - 1], [-u - 1], ()),
+    ([atan(tan(u)) - 1], [u - 1], ()),
+    ([log(exp(I * u)) - I], [I * u - I], ()),
+    ([u * sign(u) ** 2 - 1], [-1 + 0 * u], ()),
+    # coefficients that vanish on a piece, or on one sheet of the domain
+    ([(x + Abs(x)) * u], [u], ()),
+    ([(x + sqrt(x**2)) * u], [u], ()),
+    ([ONE_PIECE * u], [u], ()),
+    ([(1 + (-1) ** n) * u], [u], ()),
+    ([y * u], [u], (Eq(x * y, 0),)),
+    # one has solutions and the other none
+    ([1 + 0 * u], [u - 1], ()),
+    ([u - 1, u - 2], [u - 1], ()),
+]
+
+
+@pytest.mark.parametrize(("first", "second", "conditions"), NOT_EQUIVALENT, ids=str)
+def test_systems_that_differ_somewhere_are_not_equivalent(first, second, conditions):
+    for systems in ((first, second), (second, first)):
+        try:
+            verdict = equivalent_equations(*systems, [u], Domain(conditions), budget=3.0)
+        except ValueError:
+            assert first[0].has(u)
+        else:
+            assert not verdict.holds
+
+
+EQUIVALENT = [
+    ([(x + Abs(x)) * u], [u], (x > 0,)),
+    ([(1 + x**2 + Abs(x)) * u - 1], [u - 1 / (1 + x**2 + Abs(x))], ()),
+    ([sqrt(x**2 + y**2) * u - 1], [u - 1 / sqrt(x**2 + y**2)], ()),
+    ([(sqrt(x**2 + y**2) + x) * u], [u], ()),
+    ([(u + 1) ** 2 - u**2 - x], [2 * u + 1 - x], ()),
+    ([log(p) * u - f(x)], [u - f(x) / log(p)], ()),
+    ([sp.Integer(1)], [u - 1, u - 2], ()),
+    ([x * u], [u], (Eq(x, 1 + y),)),
+]
+
+
+@pytest.mark.parametrize(("first", "second", "conditions"), EQUIVALENT, ids=str)
+def test_systems_with_the_same_solutions_are_equivalent(first, second, conditions):
+    assert equivalent_equations(first, second, [u], Domain(conditions)).holds
+    assert equivalent_equations(second, first, [u], Domain(conditions)).holds
+
+
+def test_systems_that_differ_on_one_piece_are_refuted_there():
+    assert equivalent_equations([u - Abs(x)], [u - x], [u]).fails
+    assert equivalent_equations([u + v - Max(x, y), v], [u - x, v], [u, v]).fails
