@@ -18,9 +18,10 @@ from sympy import Expr, Rational, Symbol
 from canon.expression import syntax
 from canon.expression.symbol import Coordinate, acceleration, time, velocity
 from canon.expression.syntax import LanguageError, parse_syntax
+from canon.expression.vocabulary import CONSTANTS, FUNCTIONS, MAX_CHOICES, OTHER_NAMES, RELATIONS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
     from decimal import Decimal
 
     from sympy.logic.boolalg import Boolean
@@ -29,32 +30,6 @@ __all__ = ["LanguageError", "Scope", "parse_condition", "parse_equation", "parse
 
 MAX_EXPONENT = 1_000
 MAX_BITS = 40_000
-MAX_CHOICES = 16
-"""Most arguments of Max and Min and most pieces of Piecewise: SymPy compares them pairwise."""
-
-FUNCTIONS: Mapping[str, tuple[Callable[..., Expr], int, int]] = MappingProxyType(
-    {
-        **{
-            name: (getattr(sp, name), 1, 1)
-            for name in (
-                "sqrt", "exp", "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "acot",
-                "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "Abs", "sign", "LambertW", "elliptic_k",
-            )
-        },
-        "log": (sp.log, 1, 2),
-        "atan2": (sp.atan2, 2, 2),
-        "elliptic_e": (sp.elliptic_e, 1, 2),
-        "Max": (sp.Max, 1, MAX_CHOICES),
-        "Min": (sp.Min, 1, MAX_CHOICES),
-    }
-)  # fmt: skip
-"""Every function of the language, with the least and the greatest number of its arguments."""
-
-_CONSTANTS: Mapping[str, Expr] = MappingProxyType({"pi": sp.pi, "I": sp.I})
-_RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge, "!=": sp.Ne, "==": sp.Eq}
-_OTHER_NAMES = {"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "abs": "Abs", "cotan": "cot",
-                "max": "Max", "min": "Min", "e": "exp(1)", "E": "exp(1)", "i": "I", "j": "I", "diff": "Derivative",
-                "tg": "tan", "ctg": "cot", "sh": "sinh", "ch": "cosh", "th": "tanh"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -102,9 +77,9 @@ class Scope:
 
     def near(self, name: str) -> str:
         """Return a remedy for an unknown name."""
-        if name in _OTHER_NAMES:
-            return f"write {_OTHER_NAMES[name]}, or declare the name"
-        known = [*self.names, self.time.name, *self.functions, *FUNCTIONS, *_CONSTANTS]
+        if name in OTHER_NAMES:
+            return f"write {OTHER_NAMES[name]}, or declare the name"
+        known = [*self.names, self.time.name, *self.functions, *FUNCTIONS, *CONSTANTS]
         known += [f"{n}_dot" for n, s in self.names.items() if isinstance(s, Coordinate)]
         close = difflib.get_close_matches(name[:60], known, n=1, cutoff=0.75)
         return f"is {close[0]} meant?" if close else "declare it in parameters or functions"
@@ -189,28 +164,37 @@ class _Builder:
         raise LanguageError(self.text, node.column, reason, remedy)
 
     def expression(self, node: syntax.Node) -> Expr:
-        """Return the expression of a tree, refusing what is infinite or undefined everywhere."""
+        """Return the expression of a tree, refusing what SymPy can't build or what is undefined everywhere."""
+        try:
+            return self.finite(node, self.built(node))
+        except LanguageError:
+            raise
+        except (TypeError, ValueError, NotImplementedError) as error:  # SymPy's own refusals
+            self.refuse(node, f"this can't be built: {_first_sentence(error)}")
+
+    def built(self, node: syntax.Node) -> Expr:
+        """Return what SymPy makes of a tree."""
         match node:
             case syntax.Number(numerator, denominator):
                 return Rational(numerator, denominator)
             case syntax.Name():
                 return self.name(node)
             case syntax.Call():
-                found = self.call(node)
+                return self.call(node)
             case syntax.Negative(operand):
-                found = -self.expression(operand)
+                return -self.expression(operand)
             case syntax.Sum(terms):
                 built = ((minus, self.expression(term)) for minus, term in terms)
-                found = sp.Add(*(-term if minus else term for minus, term in built))
+                return sp.Add(*(-term if minus else term for minus, term in built))
             case syntax.Product(factors):
-                found = self.product(factors)
+                return self.product(factors)
             case syntax.Power(base, exponent):
-                found = self.power(node, self.expression(base), self.expression(exponent))
+                return self.power(node, self.expression(base), self.expression(exponent))
             case syntax.Tuple():
                 self.refuse(node, "a pair (…, …) belongs inside Piecewise or Derivative only")
             case syntax.Comparison():
                 self.refuse(node, "a comparison where an expression should be")
-        return self.finite(node, found)
+        return self.refuse(node, "an expression is missing")
 
     def finite(self, node: syntax.Node, value: Expr) -> Expr:
         if isinstance(value, Rational) and _bits(value) > MAX_BITS:
@@ -232,8 +216,8 @@ class _Builder:
         if node.text in self.scope.functions:
             arguments = ", ".join(self.scope.functions[node.text])
             self.refuse(node, f"{node.text} is a function", f"write {node.text}({arguments})")
-        if node.text in _CONSTANTS:
-            return _CONSTANTS[node.text]
+        if node.text in CONSTANTS:
+            return CONSTANTS[node.text]
         if node.text in FUNCTIONS:
             self.refuse(node, f"{node.text} needs its argument in parentheses")
         return self.refuse(node, f"{node.text} is not declared", self.scope.near(node.text))
@@ -259,6 +243,10 @@ class _Builder:
         arguments = [self.expression(argument) for argument in node.arguments]
         if name == "exp":
             self.exponential(node, arguments[0])
+        if function in (sp.Max, sp.Min):
+            for argument, value in zip(node.arguments, arguments, strict=True):
+                if value.is_extended_real is False:
+                    self.refuse(argument, f"{name} compares real numbers, and this is not one")
         return function(*arguments)
 
     def declared(self, node: syntax.Call) -> Expr:
@@ -318,7 +306,7 @@ class _Builder:
             case syntax.Name(text="True"):
                 return sp.true
             case syntax.Call(function="Ne", arguments=(left, right)) if "Ne" not in self.scope.functions:
-                return cast("Boolean", sp.Ne(self.expression(left), self.expression(right)))
+                return self.condition(syntax.Comparison((left, right), ("!=",), node.column))
             case syntax.Comparison(operands, relations):
                 if "=" in relations:
                     self.refuse(
@@ -331,6 +319,8 @@ class _Builder:
                     return sp.And(*chain)
                 except TypeError:
                     self.refuse(node, "imaginary numbers can't be compared")
+                except (ValueError, NotImplementedError) as error:
+                    self.refuse(node, f"this can't be compared: {_first_sentence(error)}")
             case _:
                 pass
         return self.refuse(node, "a condition is missing", "write < <= > >= or Ne(a, b)")
@@ -374,7 +364,11 @@ def _related(left: Expr, relation: str, right: Expr) -> Boolean:
     if left.is_number and not right.is_number:
         left, right = right, left
         relation = relation.translate(str.maketrans("<>", "><"))
-    return _RELATIONS[relation](left, right)
+    return RELATIONS[relation](left, right)
+
+
+def _first_sentence(error: Exception) -> str:
+    return str(error).strip().partition("\n")[0].rstrip(".") or type(error).__name__
 
 
 def _bits(value: Expr) -> int:

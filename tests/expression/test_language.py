@@ -169,6 +169,11 @@ def test_conditions_and_equations():
         ("factorial(5)", 1, "not a function"),
         ("oo", 1, "not declared"),
         ("True", 1, "not declared"),
+        ("Max(I, 1)", 5, "compares real numbers"),
+        ("x + Min(1, I*m)", 12, "compares real numbers"),
+        ("Max(x - I, 1)", 5, "compares real numbers"),
+        ("2*Max(1, LambertW(-1))", 10, "compares real numbers"),
+        ("1 + Piecewise((x, Piecewise((1, x > 0), (I, True)) > 2), (1, True))", 5, "non-real"),
     ],
 )
 def test_refuses_and_points(text, column, reason):
@@ -313,3 +318,46 @@ def test_any_text_is_read_or_refused_with_a_place(text):
         assert 1 <= refusal.column <= len(text) + 1
         assert refusal.reason
         assert str(refusal)
+
+
+NUMBERS = (
+    "x",
+    "m",
+    "theta'",
+    "I",
+    "-I",
+    "I*x",
+    "pi",
+    "0",
+    "2",
+    "1/2",
+    "V(x)",
+    "f(x, t)",
+    "LambertW(-1)",
+    "acosh(1/2)",
+)
+
+
+@st.composite
+def nested_calls(draw, depth=3):
+    """Functions, derivatives and pieces of anything, sensible or not."""
+    if depth == 0 or draw(st.integers(0, 4)) == 0:
+        return draw(st.sampled_from(NUMBERS))
+    a, b, c, d = (draw(nested_calls(depth - 1)) for _ in range(4))
+    relation = draw(st.sampled_from(["<", ">=", "!="]))
+    forms = ("Max({0}, {1})", "Min({0})", "sqrt({0})", "log({0}, {1})", "atan2({0}, {1})", "sign({0})",
+             "Abs({0})", "({0})**({1})", "({0})/({1})", "({0}) - ({1})", "acosh({0})", "elliptic_e({0}, {1})",
+             "Derivative({0}, x)", "Piecewise(({0}, {1} {r} {2}), ({3}, True))")  # fmt: skip
+    return draw(st.sampled_from(forms)).format(a, b, c, d, r=relation)
+
+
+@settings(max_examples=60, deadline=None)
+@given(nested_calls(2))
+def test_sympys_own_refusals_come_with_a_place(text):
+    try:
+        parse_expression(text, SCOPE)
+    except LanguageError as error:
+        column = error.column
+    else:
+        column = 1
+    assert 1 <= column <= len(text)

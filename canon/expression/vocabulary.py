@@ -1,0 +1,42 @@
+"""The words of the expression language: functions, constants, relations, and what else they are called."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from sympy import Expr
+
+__all__ = ["CONSTANTS", "FUNCTIONS", "MAX_CHOICES", "OTHER_NAMES", "RELATIONS"]
+
+MAX_CHOICES = 16
+"""Most arguments of Max and Min and most pieces of Piecewise: SymPy compares them pairwise."""
+
+FUNCTIONS: Mapping[str, tuple[Callable[..., Expr], int, int]] = MappingProxyType(
+    {
+        **{
+            name: (getattr(sp, name), 1, 1)
+            for name in (
+                "sqrt", "exp", "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "acot",
+                "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "Abs", "sign", "LambertW", "elliptic_k",
+            )
+        },
+        "log": (sp.log, 1, 2),
+        "atan2": (sp.atan2, 2, 2),
+        "elliptic_e": (sp.elliptic_e, 1, 2),
+        "Max": (sp.Max, 1, MAX_CHOICES),
+        "Min": (sp.Min, 1, MAX_CHOICES),
+    }
+)  # fmt: skip
+"""Every function of the language, with the least and the greatest number of its arguments."""
+
+CONSTANTS: Mapping[str, Expr] = MappingProxyType({"pi": sp.pi, "I": sp.I})
+RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge, "!=": sp.Ne, "==": sp.Eq}
+OTHER_NAMES = {"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "abs": "Abs", "cotan": "cot",
+                "max": "Max", "min": "Min", "e": "exp(1)", "E": "exp(1)", "i": "I", "j": "I", "diff": "Derivative",
+                "tg": "tan", "ctg": "cot", "sh": "sinh", "ch": "cosh", "th": "tanh"}  # fmt: skip
