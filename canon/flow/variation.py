@@ -1,17 +1,18 @@
-"""Equations of motion, and of variations of it, carried along a trajectory by heyoka."""
+"""Equations of motion and of its variations, carried by heyoka; what a function does along the motion."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import sympy as sp
 
 from canon.expression.graph import Graph
 from canon.expression.symbol import time
-from canon.flow.pointwise import definite_node
+from canon.flow.pointwise import Miss, Value, definite_node, values_at
 from canon.flow.stepping import NonFiniteStateError
 from canon.kernel.structure import exact
 from canon.kernel.taylor import heyoka_expressions
@@ -19,14 +20,13 @@ from canon.mechanics.vector_field import VectorField
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from fractions import Fraction
 
     from sympy import Expr, Symbol
 
     from canon.flow.propagate import HamiltonianSystem
     from canon.flow.trajectory import Array
 
-__all__ = ["Field", "carried", "exact_numbers", "field_of", "step_error"]
+__all__ = ["Field", "Look", "carried", "exact_numbers", "field_of", "look_at", "step_error"]
 
 _COMPACT_FROM = 60
 """Equations with more operations are compiled in heyoka's compact mode."""
@@ -134,12 +134,52 @@ def carried(
 
 
 def step_error(states: Array, steps: int) -> Array:
-    """Return the error of a state after so many steps that are each right to a rounding, in every instant.
+    """Return the error of each component after so many steps that are each right to a rounding, shape (2n,).
 
-    heyoka's tolerance is relative to the largest component, and absolute where that is below 1.
+    A rounding is that of the component's largest value on the way: heyoka controls a step by the largest of
+    all components, but its series converge alike for all.
     """
-    largest = np.maximum.accumulate(np.abs(states).max(axis=1))
-    return np.finfo(float).eps * math.sqrt(steps + 1) * np.maximum(1.0, largest)
+    return np.finfo(float).eps * math.sqrt(steps + 1) * np.abs(states).max(axis=0)
+
+
+class Look(NamedTuple):
+    """A claimed integral at one state: its value, the |∂I/∂x|, the size of its terms, and dI/dt."""
+
+    value: Fraction
+    slopes: tuple[float, ...]
+    scale: Fraction
+    rate: Miss
+
+
+def look_at(field: Field, claimed: int, y: Array, t: float) -> Look:
+    """Return a claimed integral and its rate at a state, taken for the exact numbers it is.
+
+    Raises
+    ------
+    ValueError
+        One of them has no finite real value there.
+    """
+    graph, variables = field.graph, (*field.x, field.t)
+    slopes = graph.gradient(claimed, variables)
+    where = dict(zip(variables, map(Fraction, (*y.tolist(), t)), strict=True))
+    values = values_at(graph, [claimed, *slopes, *field.rates], where)
+    if values is None:
+        raise ValueError(
+            f"the claimed integral or its rate has no finite real value at t = {t:.9g} of the motion"
+        )
+    I, by, rates = values[0], values[1 : 1 + len(slopes)], values[1 + len(slopes) :]
+    terms = [(a, X) for a, X in zip(by, (*rates, Value(Fraction(1), Fraction(0))), strict=True)]
+    rate = Miss(
+        abs(sum((a.number * X.number for a, X in terms), Fraction(0))),
+        sum((abs(a.number) * X.error + abs(X.number) * a.error for a, X in terms), Fraction(0)),
+        sum((abs(a.number * X.number) for a, X in terms), Fraction(0)),
+        "dI/dt",
+        where,
+    )
+    scale = abs(I.number) + sum(
+        (abs(a.number * where[s]) for a, s in zip(by, variables, strict=True)), Fraction(0)
+    )
+    return Look(I.number, tuple(abs(float(a.number)) for a in by[:-1]), scale, rate)
 
 
 def exact_numbers(parameters: Mapping[Symbol | str, Any]) -> dict[str, Fraction]:

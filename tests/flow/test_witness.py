@@ -182,6 +182,17 @@ def test_a_chaotic_motion_keeps_its_energy():
     assert seen.speaks == "for", seen.text
 
 
+def test_units_may_be_far_from_one():
+    """The Earth about the Sun in kilograms, metres and seconds."""
+    parameters = {m: "5.97e24", k: "7.92e44"}
+    start = ["1.496e11", 0, 0, "1.778e29"]
+    seen = integral_drift(KEPLER.H, KEPLER, start, (0, "3.15e7"), parameters=parameters)
+    assert seen.speaks == "for"
+    assert seen.largest < 1e-13 * 2.65e33
+    twin = integral_drift(KEPLER.H * (1 + x / 10**15), KEPLER, start, (0, "3.15e7"), parameters=parameters)
+    assert twin.speaks == "against"
+
+
 def test_what_changes_less_than_doubles_show_is_not_called_kept():
     seen = integral_drift(PENDULUM.H + q / 10**18, PENDULUM, [1, 0], (0, 20))
     assert seen.speaks == "neither"
