@@ -16,6 +16,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.dependence import check_independent
+from canon.mechanics.dynamicsymbols import plain
 from canon.mechanics.linear import SingularMatrixError, solve
 from canon.mechanics.substitution import as_tuple, entry, exchanged
 
@@ -69,8 +70,9 @@ class ConstrainedLagrangian:
         nonholonomic: Sequence[Expr] = (),
     ) -> None:
         object.__setattr__(self, "lagrangian", lagrangian)
-        object.__setattr__(self, "holonomic", as_tuple(holonomic))
-        object.__setattr__(self, "nonholonomic", as_tuple(nonholonomic))
+        for name, given in (("holonomic", holonomic), ("nonholonomic", nonholonomic)):
+            constraints = tuple(plain(f, lagrangian.q, lagrangian.t) for f in as_tuple(given))
+            object.__setattr__(self, name, constraints)
         v = [velocity(s) for s in lagrangian.q]
         for f in self.holonomic:
             if f.has(*v):

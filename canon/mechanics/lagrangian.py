@@ -4,24 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbol import (
-    Coordinate,
-    acceleration,
-    time,
-    time_derivative,
-    velocity,
-    without_dynamicsymbols,
-)
+from canon.expression.symbol import acceleration, time, time_derivative, velocity
+from canon.mechanics.dynamicsymbols import coordinate, plain
 from canon.mechanics.linear import SingularMatrixError, solve
 from canon.mechanics.substitution import entry, exchanged
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from canon.mechanics.hamiltonian import Hamiltonian
 
@@ -73,10 +67,8 @@ class Lagrangian:
         self, L: Expr, q: Sequence[Expr] | Expr, t: Symbol = time, forces: Sequence[Expr] | None = None
     ) -> None:
         given = (q,) if isinstance(q, sp.Basic) else tuple(q)
-        symbols = tuple(_coordinate(x) for x in given)
-        applied = {x: s for x, s in zip(given, symbols, strict=True) if x != s}
-        rates = {rate(s).name: rate(s) for s in symbols for rate in (velocity, acceleration)}
-        expressions = [_at_the_door(sp.sympify(e), applied, rates, t) for e in (L, *(forces or ()))]
+        symbols = tuple(coordinate(x) for x in given)
+        expressions = [plain(e, symbols, t) for e in (L, *(forces or ()))]
         object.__setattr__(self, "L", expressions[0])
         object.__setattr__(self, "q", symbols)
         object.__setattr__(self, "t", t)
@@ -164,23 +156,3 @@ class Lagrangian:
 
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle L = {sp.latex(self.L)}$"
-
-
-def _coordinate(x: Any) -> Symbol:
-    if isinstance(x, Symbol):
-        return x
-    if isinstance(x, sp.core.function.AppliedUndef) and len(x.args) == 1:
-        return Coordinate(x.func.__name__, real=True)
-    raise TypeError(
-        f"{x!r} is no coordinate; use coordinates('theta'), a SymPy symbol, or one of SymPy's dynamicsymbols"
-    )
-
-
-def _at_the_door(f: Expr, applied: Mapping[Expr, Symbol], rates: Mapping[str, Symbol], t: Symbol) -> Expr:
-    """Rewrite dynamicsymbols and plainly named rates as canon's symbols."""
-    clocks = {x: clock for x in applied for clock in x.atoms(Symbol)}
-    for x, s in applied.items():
-        f = without_dynamicsymbols(f, {x: s}, clocks[x])
-    symbols = f.atoms(Symbol)
-    named = {s: rates[s.name] for s in symbols if s.name in rates}
-    return exchanged(f, {**dict.fromkeys(clocks.values(), t), **named})

@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
 
 from canon.expression.symbol import Rate, acceleration, time, velocity
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.dynamicsymbols import coordinate, plain
 from canon.mechanics.linear import eliminate, solve
 from canon.mechanics.substitution import as_tuple, entry, exchanged
 
@@ -70,10 +72,12 @@ class Kinematics:
         q_dot: Sequence[Expr] | None = None,
         t: Symbol = time,
     ) -> None:
-        object.__setattr__(self, "q", tuple(q))
-        object.__setattr__(self, "u", tuple(velocity(s) for s in q) if u is None else tuple(u))
-        object.__setattr__(self, "q_dot", self.u if q_dot is None else as_tuple(q_dot))
+        object.__setattr__(self, "q", tuple(coordinate(s) for s in q))
+        natural = tuple(velocity(s) for s in self.q)
+        object.__setattr__(self, "u", natural if u is None else tuple(coordinate(w) for w in u))
         object.__setattr__(self, "t", t)
+        rates = self.u if q_dot is None else tuple(self.plain(f) for f in as_tuple(q_dot))
+        object.__setattr__(self, "q_dot", rates)
         if len(self.q_dot) != len(self.q):
             raise ValueError(
                 f"{len(self.q_dot)} rates for {len(self.q)} coordinates; give q̇ of each as a function of u"
@@ -97,11 +101,19 @@ class Kinematics:
 
     def rate(self, f: Expr) -> Expr:
         """Return df/dt of f(q, u, t) along any motion."""
+        f = self.plain(f)
         return sp.Add(
             f.diff(self.t),
             *(f.diff(s) * v for s, v in zip(self.q, self.q_dot, strict=True)),
             *(f.diff(u) * a for u, a in zip(self.u, self.u_dot, strict=True)),
         )
+
+    def plain(self, f: Expr) -> Expr:
+        """Return f with symbols in place of SymPy's dynamicsymbols of q and u."""
+        if not f.has(AppliedUndef):
+            return f
+        others = [w for w in self.u if not isinstance(w, Rate)]
+        return plain(f, (*self.q, *others), self.t)
 
     @cached_property
     def through(self) -> Mapping[Symbol, Expr]:

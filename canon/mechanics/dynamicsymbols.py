@@ -1,0 +1,73 @@
+"""SymPy's dynamicsymbols at the door: theta(t), its derivatives and t become canon's symbols."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+from sympy import Derivative, Expr, Symbol
+from sympy.core.function import AppliedUndef
+
+from canon.expression.symbol import Coordinate, acceleration, time, velocity, without_dynamicsymbols
+from canon.mechanics.substitution import exchanged
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["coordinate", "plain"]
+
+
+def coordinate(x: Any) -> Symbol:
+    """Return the symbol of a coordinate given as a symbol, a function of time, or the derivative of one.
+
+    Raises
+    ------
+    TypeError
+        Where it is neither.
+
+    Examples
+    --------
+    >>> from sympy.physics.mechanics import dynamicsymbols
+    >>> coordinate(dynamicsymbols("theta")), coordinate(dynamicsymbols("theta", 1))
+    (theta, theta_dot)
+    """
+    if isinstance(x, Symbol):
+        return x
+    if isinstance(x, AppliedUndef) and len(x.args) == 1:
+        return Coordinate(x.func.__name__, real=True)
+    if isinstance(x, Derivative) and isinstance(x.expr, AppliedUndef) and x.derivative_count == 1:
+        return velocity(coordinate(x.expr))
+    raise TypeError(
+        f"{x!r} is no coordinate; use coordinates('theta'), a SymPy symbol, or one of SymPy's dynamicsymbols"
+    )
+
+
+def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
+    """Return an expression with canon's symbols for dynamicsymbols of these coordinates, their rates and the time.
+
+    A function of one symbol whose name is that of a coordinate is that coordinate. Symbols named as rates
+    (``theta_dot``) become the rates.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> from sympy.physics.mechanics import dynamicsymbols
+    >>> (theta,) = coordinates("theta")
+    >>> plain(dynamicsymbols("theta", 1) ** 2 + dynamicsymbols("theta"), [theta]) == theta.dot**2 + theta
+    True
+    """
+    expression: Expr = sp.sympify(f)
+    named = {s.name: s for s in q}
+    applied = {
+        g: named[g.func.__name__]
+        for g in expression.atoms(AppliedUndef)
+        if g.func.__name__ in named and len(g.args) == 1 and isinstance(g.args[0], Symbol)
+    }
+    clocks: dict[Symbol, Symbol] = {}
+    for g, s in applied.items():
+        clock: Any = g.args[0]
+        clocks[clock] = t
+        expression = without_dynamicsymbols(expression, {g: s}, clock)
+    rates = {rate(s).name: rate(s) for s in q for rate in (velocity, acceleration)}
+    exact = {s: rates[s.name] for s in expression.atoms(Symbol) if s.name in rates}
+    return exchanged(expression, {**clocks, **exact})
