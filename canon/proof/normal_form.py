@@ -81,23 +81,30 @@ class NormalForm:
             self.empty = self.empty or any(self.signs.contradicts(p, strict=s) for p, s in self._gaps)
 
     def _learn(self, condition: sp.Basic) -> None:
-        """Take p > 0 or p ≥ 0 from an inequality; notice when the facts before contradict it."""
+        """Take p > 0 or p ≥ 0 from an inequality; notice when the facts before contradict it.
+
+        A fraction has the zeros of its numerator, unless its denominator is a power that may be infinite.
+        """
         if condition == sp.false:
             self.empty = True
         elif isinstance(condition, sp.And):
             for part in condition.args:
                 self._learn(part)
         elif isinstance(condition, sp.Eq) and isinstance(condition.lhs, sp.Expr):
-            self.tower.learn_zero(self.form(condition.lhs - cast("Expr", condition.rhs)).num)
+            gap = self.form(condition.lhs - cast("Expr", condition.rhs))
+            if not self._may_be_infinite(gap):
+                self.tower.learn_zero(gap.num)
         elif isinstance(condition, sp.Ne) and isinstance(condition.lhs, sp.Expr):
             gap = self.form(condition.lhs - condition.rhs)
             if gap.num.is_zero():
                 self.empty = True
-            else:
+            elif not self._may_be_infinite(gap):
                 self.signs.learn_nonzero(gap.num)
         elif isinstance(condition, sp.StrictLessThan | sp.LessThan | sp.StrictGreaterThan | sp.GreaterThan):
             gap = self.form(cast("Expr", condition.gts) - cast("Expr", condition.lts))
             strict = isinstance(condition, sp.StrictLessThan | sp.StrictGreaterThan)
+            if self._may_be_infinite(gap):
+                return
             if gap.den:
                 below = self.signs.of(self.denominator(gap))
                 if below not in ("+", "-"):
@@ -108,6 +115,10 @@ class NormalForm:
             if not known.endswith("+"):
                 self._gaps.append((gap.num, strict))
                 self.signs.learn(gap.num, strict=strict)
+
+    def _may_be_infinite(self, f: Fraction) -> bool:
+        """Tell whether the denominator holds exp(y log u), which stands for 1/u^−y also at u = 0."""
+        return any(self.powers_of_zero.intersection(self.tower.used(self.tower.base(i))) for i, _ in f.den)
 
     def _sign_of_constant(self, p: fmpq_mpoly) -> str:
         if not all(self._is_constant(k) for k in self.tower.used(p)):

@@ -351,14 +351,17 @@ def _apart(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]]
 def _log_of_factor(n: NormalForm, f: Fraction) -> Fraction:
     """Return log f, real only where f ≥ 0 is proven (at f = 0 neither side is defined).
 
-    log exp a = a and log R^(1/m) = (log R)/m hold for positive factors exactly; for others up to a multiple
-    of 2πi or as principal values, which is all that whole powers need.
+    log exp a = a holds for real a, and up to a multiple of 2πi for others, which is all that whole powers
+    need. The principal log R^(1/m) is (log R)/m, where log R must be the principal value itself.
     """
     kernel = n.only_kernel(f)
     if kernel is not None and kernel[0] == "exp":
         return n.arguments[kernel]
     if kernel is not None and kernel[0] == "root":
-        return n.scaled(fmpq(1, kernel[2]), _log_of_factor(n, n.arguments[kernel]))
+        radicand = n.arguments[kernel]
+        positive = n.sign(radicand).endswith("+")
+        inner = _log_of_factor(n, radicand) if positive else _log_kernel(n, radicand, "")
+        return n.scaled(fmpq(1, kernel[2]), inner)
     if not n.sign(f).endswith("+"):
         return _log_kernel(n, f, "")
     return _log_kernel(n, f, n.sign(n.minus(f, n.tower.number(1))) or "real")

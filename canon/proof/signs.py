@@ -74,6 +74,19 @@ class Signs:
         if len(self._facts) < MOST_FACTS:
             self._facts.append((p, strict))
         self._found.clear()
+        if strict and combine and self.real(p):
+            self._learn_factors(p)
+
+    def _learn_factors(self, p: fmpq_mpoly) -> None:
+        """From fg > 0 and f + g of one sign both factors have that sign, as c ± v from c² > v² and c > 0."""
+        unit, factors = self.tower.factors(p)
+        if len(factors) != 2 or any(e != 1 for _, e in factors):
+            return
+        f, g = (factor for factor, _ in factors)
+        g = g if unit > 0 else -g
+        total = self.of(f + g)
+        for factor in (f, g) if total in ("+", "-") else ():
+            self.learn(factor if total == "+" else -factor, strict=True, combine=False)
 
     def learn_nonzero(self, p: fmpq_mpoly) -> None:
         """Record that p ≠ 0 wherever the claim is about."""

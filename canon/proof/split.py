@@ -9,6 +9,8 @@ import sympy as sp
 from sympy.concrete.expr_with_limits import ExprWithLimits
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
+from sympy.functions.elementary.hyperbolic import HyperbolicFunction
+from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction, TrigonometricFunction
 from sympy.logic.boolalg import Boolean
 
 from canon.proof.anatomy import anatomy
@@ -47,8 +49,20 @@ REAL_ON_REALS = (
 )
 """Functions that take real values at real arguments."""
 
-LARGEST_EXPONENT = 1000
-"""Whole exponents that SymPy may write out when a number is put for a symbol."""
+LARGEST_WRITTEN = 1000
+"""Exponents and arguments of factorials and the like that SymPy may write out when a number is put in."""
+
+UNWRITTEN = (
+    TrigonometricFunction,
+    HyperbolicFunction,
+    InverseTrigonometricFunction,
+    AppliedUndef,
+    sp.exp,
+    sp.log,
+    sp.Piecewise,
+    *KINKED,
+)
+"""Functions that stay as they are at large numbers."""
 
 NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity)
 
@@ -73,21 +87,42 @@ class _NoValue(Exception):
 
 
 def _replaced(expr: _B, by: Mapping[sp.Basic, Expr]) -> _B:
-    """Return ``expr`` after a substitution, whole powers not growing beyond what can be written out.
+    """Return ``expr`` after a substitution, every distinct part being rebuilt once.
 
     Raises
     ------
     _NoValue
-        Where SymPy refuses the result (Max of an imaginary number, a derivative by an expression, …).
+        Where SymPy refuses a part (Max of an imaginary number, a derivative by an expression, …) or would
+        write out a number of very many digits.
     """
-    try:
-        for power in anatomy([expr]).of(sp.Pow):
-            exponent = power.exp.xreplace(by)
-            if exponent != power.exp and exponent.is_Rational and abs(exponent) > LARGEST_EXPONENT:
-                raise _NoValue
-        return cast("_B", expr.xreplace(by))
-    except (ValueError, TypeError) as reason:
-        raise _NoValue from reason
+    done: dict[sp.Basic, sp.Basic] = {}
+    for part in anatomy([expr]).parts:  # what a part consists of comes before it
+        inner = tuple(done[a] for a in part.args)
+        if part in by:
+            done[part] = by[part]
+        elif all(new is old for new, old in zip(inner, part.args, strict=True)):
+            done[part] = part
+        elif _too_long(part, inner):
+            raise _NoValue
+        else:
+            try:
+                done[part] = part.func(*inner)
+            except (ValueError, TypeError) as reason:
+                raise _NoValue from reason
+    return cast("_B", done[expr])
+
+
+def _too_long(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> bool:
+    """Tell whether SymPy may write out a power, factorial or sum of very many digits or terms."""
+    if isinstance(part, sp.Pow):
+        base, exponent = inner
+        new = exponent is not part.exp or (base.is_number and base not in (0, 1, -1))
+        return isinstance(exponent, sp.Rational) and abs(exponent) > LARGEST_WRITTEN and new
+    if isinstance(part, sp.exp) and inner[0].has(sp.log):
+        return any(abs(r) > LARGEST_WRITTEN for r in inner[0].atoms(sp.Rational))
+    if isinstance(part, sp.Function) and not isinstance(part, UNWRITTEN):
+        return any(isinstance(a, sp.Rational) and abs(a) > LARGEST_WRITTEN for a in inner)
+    return False
 
 
 def defined_nowhere(expr: sp.Basic) -> bool:

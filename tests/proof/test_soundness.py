@@ -56,6 +56,7 @@ NOT_ZERO = [
     # nonnegative bases may vanish, and their powers with them
     (sign(s**p) - 1, ()),
     (sign(s ** (-y)) - 1, ()),
+    (sign(s ** (-negative)) - 1, ()),
     (sign(Abs(x) ** p) - 1, ()),
     (Piecewise((1, s**p > 0), (0, True)) - 1, ()),
     (atan2(-(s**p), -1) + pi - atan(s**p), ()),
@@ -63,6 +64,7 @@ NOT_ZERO = [
     # negative bases have complex logarithms
     (sign(negative**n) - 1, (n > 1000,)),
     (log(negative**n) - n * log(negative), (n > 1000,)),
+    ((sqrt(exp(c)) * x + sqrt(exp(c)) * y) ** n - exp(n * c / 2) * (x + y) ** n, ()),
     # squares of what is not real
     (sign(1 / c**2) - 1, ()),
     (sign(1 / (sqrt(x + FAR) + 1) ** 2) - 1, ()),
@@ -77,6 +79,8 @@ NOT_ZERO = [
 ]
 ZERO = [
     (sign(p**y) - 1, ()),
+    (sqrt(q**2 - x**2) - sqrt(q - x) * sqrt(q + x), (x**2 < q**2,)),
+    ((sqrt(x**2 + 1) * y) ** n - exp(n * log(x**2 + 1) / 2) * y**n, (Ne(y, 0),)),
     (sign(s**p + 1) - 1, ()),
     (s**p * s**q - s ** (p + q), ()),
     (sqrt(s ** (2 * p)) - s**p, ()),
@@ -142,6 +146,11 @@ REFUSED = [
     (cos(Min(Rational(1, 2), atan2(x, x))) - 2 * cos(Rational(1, 4)) ** 2 + 1, (below * x > 0,)),
     (POWER * z - POWER * sqrt(z**2), (z > 10**7,)),
     (3**n * (x - sqrt(x**2)), (Eq(n, 10**9), x > 10**8)),
+    (x ** (10**10) * (y - sqrt(y**2)), (Eq(x, 3), y > 10**8)),
+    (exp(n * log(3)) * (y - sqrt(y**2)), (Eq(n, 10**9), y > 10**8)),
+    (sp.gamma(x) * (y - sqrt(y**2)), (Eq(x, 10**8), y > 10**8)),
+    (sp.legendre(n, x) * (y - sqrt(y**2)), (Eq(n, 10**8), y > 10**8)),
+    (y - sqrt(y**2), (Eq(x, 3), y > 10**8, x ** (10**10) > 1)),
 ]
 
 
@@ -208,6 +217,7 @@ EQUIVALENT = [
     ([log(p) * u - f(x)], [u - f(x) / log(p)], ()),
     ([sp.Integer(1)], [u - 1, u - 2], ()),
     ([x * u], [u], (Eq(x, 1 + y),)),
+    ([u / sqrt(1 - x**2 / p**2) - y], [u - y * sqrt(1 - x**2 / p**2)], (x**2 < p**2,)),
 ]
 
 
