@@ -61,7 +61,8 @@ def _node(graph: Graph, expression: Any, operands: list[int]) -> int:
     if expression.is_Rational:
         return graph.number(Fraction(int(expression.p), int(expression.q)))
     if expression.is_Float and expression.is_finite:
-        return graph.number(Fraction(*expression.as_integer_ratio()))
+        exact = sp.Rational(expression)
+        return graph.number(Fraction(int(exact.p), int(exact.q)))
     if expression in (sp.pi, sp.E):
         return graph.named(str(expression))
     if expression.is_Add:

@@ -210,3 +210,10 @@ def test_errors_name_the_symbol_and_the_division():
         graph.power(graph.number(0), -1)
     with pytest.raises(ValueError, match="no function 'sine'"):
         graph.function("sine", graph.symbol(x))
+
+
+def test_a_float_is_the_binary_number_it_is():
+    graph = Graph()
+    half, tenth = graph.from_sympy(sp.Float("0.5")), graph.from_sympy(sp.Float(0.1))
+    assert graph.to_sympy(half) == sp.Rational(1, 2)
+    assert graph.to_sympy(tenth) == sp.Rational(0.1) != sp.Rational(1, 10)
