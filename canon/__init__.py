@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from canon.flow.method import Taylor as Taylor
     from canon.flow.propagate import Trajectory as Trajectory
     from canon.flow.propagate import propagate as propagate
+    from canon.flow.witness import brackets_at_points as brackets_at_points
+    from canon.flow.witness import integral_drift as integral_drift
+    from canon.flow.witness import symplectic_flow as symplectic_flow
     from canon.mechanics.appell import GibbsAppell as GibbsAppell
     from canon.mechanics.bilinear import bilinear_covariant as bilinear_covariant
     from canon.mechanics.body import kinetic_energy as kinetic_energy
@@ -92,6 +95,7 @@ __all__ = [
     "Verdict",
     "__version__",
     "bilinear_covariant",
+    "brackets_at_points",
     "coordinates",
     "drift",
     "drift_study",
@@ -99,6 +103,7 @@ __all__ = [
     "equivalent_equations",
     "generated_transformation",
     "generating_function",
+    "integral_drift",
     "inverse_transformation",
     "is_constant_of_motion",
     "is_gauge_equivalent",
@@ -116,6 +121,7 @@ __all__ = [
     "propagate",
     "read_sheet",
     "routhian",
+    "symplectic_flow",
     "time",
     "time_derivative",
     "vanishes",
@@ -129,6 +135,7 @@ _ROOMS = {
     "canon.expression.symbol": ("Coordinate", "coordinates", "parameters", "time", "time_derivative"),
     "canon.flow.method": ("DOP853", "Gauss", "RK4", "Splitting", "Taylor"),
     "canon.flow.propagate": ("Trajectory", "propagate"),
+    "canon.flow.witness": ("brackets_at_points", "integral_drift", "symplectic_flow"),
     "canon.mechanics.appell": ("GibbsAppell",),
     "canon.mechanics.bilinear": ("bilinear_covariant",),
     "canon.mechanics.body": ("kinetic_energy",),
