@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
+from canon.exercise.diagnosis import Diagnosis, scaled
 from canon.exercise.repair import common_ratio
 from canon.exercise.variants import times
 from canon.mechanics.mending import mending
@@ -13,7 +15,7 @@ from canon.mechanics.transformation import CanonicalTransformation
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from canon.exercise.question import Part
     from canon.exercise.reading import Reading
@@ -29,22 +31,39 @@ _BRACKETS = {
 }
 
 
-def convention(reading: Reading, parts: Sequence[Part], domain: Domain) -> str:
-    """Return what is wrong with all components together, if it is one thing and that was proved."""
+def convention(reading: Reading, parts: Sequence[Part], domain: Domain) -> Iterator[Diagnosis]:
+    """Yield what is wrong with all components together, if it is one thing and that was proved."""
     kind = reading.claim.kind
     if kind == "transformed-hamiltonian-K":
-        return _time_derivative(parts, domain)
+        yield from _stated(_time_derivative(parts, domain))
+        return
     if kind.startswith("canonicity"):
-        return _valence(parts, domain) or _mended(reading)
+        yield from _valence(reading, parts, domain)
+        yield from _stated(_mended(reading))
+        return
     if kind.startswith("generating"):
-        return _whole(parts, domain, "F") or _one_rule(parts, domain)
+        yield from _rescaled(reading, parts, domain)
+        yield from _stated(_one_rule(parts, domain))
+        return
+    factor = _proved_factor(parts, domain)
+    if factor is None:
+        return
     if kind == "bilinear-covariant" and reading.has("factor"):
-        return _factor(parts, domain)
-    if kind in _BRACKETS and _proved_factor(parts, domain) == -1:
-        return f"right under the opposite sign convention; {_BRACKETS[kind]}"
-    if kind == "routhian" and _proved_factor(parts, domain) == -1:
-        return "right under the opposite convention: R has the other sign here"
-    return ""
+        found = parts[0].right / factor
+        sentence = f"the factor is {found}, not {parts[0].right}"
+        yield Diagnosis(sentence, reading.with_instead("factor", found))
+    elif kind in _BRACKETS and factor == -1:
+        sentence = f"right under the opposite sign convention; {_BRACKETS[kind]}"
+        yield Diagnosis(sentence, scaled(reading, parts, factor), only_fault=True)
+    elif kind == "routhian" and factor == -1:
+        sentence = "right under the opposite convention: R has the other sign here"
+        yield Diagnosis(sentence, scaled(reading, parts, factor), only_fault=True)
+
+
+def _stated(sentence: str) -> Iterator[Diagnosis]:
+    """Yield a sentence that was proved of the question on which the claim turned."""
+    if sentence:
+        yield Diagnosis(sentence, only_fault=True)
 
 
 def _proved_factor(parts: Sequence[Part], domain: Domain) -> sp.Expr | None:
@@ -61,21 +80,27 @@ def _proved(parts: Sequence[Part], factor: sp.Expr, domain: Domain) -> bool:
     return all(r == 0 or vanishes(r, domain, budget=PROOF_SECONDS).holds for r in residuals)
 
 
-def _whole(parts: Sequence[Part], domain: Domain, name: str) -> str:
+def _rescaled(reading: Reading, parts: Sequence[Part], domain: Domain) -> Iterator[Diagnosis]:
     factor = _proved_factor(parts, domain)
-    if factor is None:
-        return ""
-    return f"{name} has the wrong sign" if factor == -1 else f"{name} should be {times(factor)} what it is"
+    if factor is not None:
+        sentence = "F has the wrong sign" if factor == -1 else f"F should be {times(factor)} what it is"
+        yield Diagnosis(sentence, reading.with_instead("F", factor * reading.expression("F")))
 
 
-def _valence(parts: Sequence[Part], domain: Domain) -> str:
+def _valence(reading: Reading, parts: Sequence[Part], domain: Domain) -> Iterator[Diagnosis]:
     factor = _proved_factor(parts, domain)
     if factor is None or not parts[0].name.startswith("{"):
-        return ""
+        return
     wanted, found = parts[0].right, parts[0].right / factor
+    name = parts[0].name
     if factor == -1:
-        return f"{parts[0].name} = {found}, not {wanted}: exchange Q and P, or change the sign of one of them"
-    return f"canonical with valence {found}, not {wanted}: {parts[0].name} = {found}; multiply P by {factor}"
+        sentence = f"{name} = {found}, not {wanted}: exchange Q and P, or change the sign of one of them"
+    else:
+        sentence = f"canonical with valence {found}, not {wanted}: {name} = {found}; multiply P by {factor}"
+    repaired = reading
+    for i, P in enumerate(reading.expressions("P")):
+        repaired = repaired.with_instead(f"P[{i}]", factor * P)
+    yield Diagnosis(sentence, repaired)
 
 
 def _mended(reading: Reading) -> str:
@@ -83,13 +108,10 @@ def _mended(reading: Reading) -> str:
         return ""
     q, p = reading.phase_space("q", "p")
     Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
+    if any(f.has(AppliedUndef) for f in (*Q, *P)):
+        return ""  # arbitrary functions have no values at which a bracket could be looked at
     map_ = CanonicalTransformation(q, p, Q, P, reading.time, reading.domain)
     return mending(map_, reading.expression("valence", sp.S.One))
-
-
-def _factor(parts: Sequence[Part], domain: Domain) -> str:
-    factor = _proved_factor(parts, domain)
-    return "" if factor is None else f"the factor is {parts[0].right / factor}, not {parts[0].right}"
 
 
 def _time_derivative(parts: Sequence[Part], domain: Domain) -> str:

@@ -1,36 +1,45 @@
 """One sentence for a person: where and how an answer is wrong, and what would be right.
 
-A diagnosis is told only when the repair it names was proved right.
+A diagnosis is told only when the claim, with the repair it names put in, was judged to hold as a whole.
 """
 
 from __future__ import annotations
 
 import time
 from collections import Counter
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from canon.exercise.affine import solved
 from canon.exercise.convention import convention
+from canon.exercise.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.question import Part, Same, SameEquations
 from canon.exercise.rejudged import another_gauge, another_reading, one_change, only_where
-from canon.exercise.repair import Screen, repair
+from canon.exercise.repair import Screen, repairs
+from canon.exercise.tree import replaced
 from canon.mechanics.linear import SingularMatrixError
+from canon.mechanics.substitution import substitute
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from sympy import Expr
 
     from canon.exercise.judge import Finding
+    from canon.exercise.reading import Reading
     from canon.proof.domain import Domain
 
-__all__ = ["corrected", "feedback"]
+__all__ = ["corrected", "diagnosis", "feedback"]
 
 MOST_SENTENCES = 3
+MOST_TRIALS = 4
+"""Proved repairs of one component that are tried in the whole claim."""
+WHOLE_SECONDS = 1.0
+"""Time for the judgement on a repaired claim."""
 _DERIVED = (
     "gibbs-appell",
     "canonicity",
@@ -43,7 +52,21 @@ _DERIVED = (
 
 
 def feedback(finding: Finding, seconds: float) -> str:
-    """Return a diagnosis whose repair was proved, or nothing.
+    """Return in one sentence what is wrong with a claim, or nothing.
+
+    Parameters
+    ----------
+    finding
+        A failed judgement with the question on which it turned.
+    seconds
+        How long may be looked for a repair.
+    """
+    found = diagnosis(finding, seconds)
+    return "" if found is None else found.sentence
+
+
+def diagnosis(finding: Finding, seconds: float) -> Diagnosis | None:
+    """Return what is wrong with a claim, and the claim repaired accordingly, which was judged to hold.
 
     Parameters
     ----------
@@ -53,23 +76,38 @@ def feedback(finding: Finding, seconds: float) -> str:
         How long may be looked for a repair.
     """
     deadline = time.monotonic() + seconds
+    for found in _diagnoses(finding, deadline):
+        if _confirmed(found, finding):
+            return found
+    return None
+
+
+def _confirmed(found: Diagnosis, finding: Finding) -> bool:
+    """Whether the repaired claim holds; where nothing is repaired, whether all else in the claim does."""
+    if found.repaired is not None:
+        return judged_to_hold(found.repaired, WHOLE_SECONDS)
+    return not found.only_fault or judged_to_hold(finding.reading, WHOLE_SECONDS, but=finding.held)
+
+
+def _diagnoses(finding: Finding, deadline: float) -> Iterator[Diagnosis]:
     question, reading = finding.question, finding.reading
     if isinstance(question, SameEquations):
         parts, domain = _on_the_motion(question), question.domain
     elif isinstance(question, Same):
         parts, domain = question.parts, question.domain
     else:
-        return finding.verdict.feedback or another_reading(reading, deadline)
-    sentence = convention(reading, parts, domain) or another_reading(reading, deadline)
-    by_part = isinstance(question, SameEquations) or not reading.claim.kind.startswith(_DERIVED)
-    if not sentence and by_part and parts and not reading.has("solution"):
-        sentence = _part_by_part(parts, domain, deadline, _hints(question))
-    return (
-        sentence
-        or only_where(reading, deadline)
-        or one_change(reading, deadline, _suspects(parts, domain), finding.held)
-        or another_gauge(reading, deadline)
-    )
+        if finding.verdict.feedback:
+            yield Diagnosis(finding.verdict.feedback)
+        else:
+            yield from another_reading(reading, deadline)
+        return
+    yield from convention(reading, parts, domain)
+    yield from another_reading(reading, deadline)
+    if parts and not reading.has("solution"):
+        yield from _part_by_part(reading, parts, domain, deadline, _hints(question))
+    yield from only_where(reading, deadline)
+    yield from one_change(reading, deadline, _suspects(parts, domain), finding.held)
+    yield from another_gauge(reading, deadline)
 
 
 def _suspects(parts: Sequence[Part], domain: Domain) -> list[str]:
@@ -105,14 +143,18 @@ def corrected(finding: Finding) -> str:
 
 
 def _on_the_motion(question: SameEquations) -> tuple[Part, ...]:
-    """Return each claimed equation as what should vanish with the right accelerations put in."""
+    """Return each equation as it was written, as what should vanish with the right accelerations put in."""
     if len(question.right) != len(question.unknowns):
         return ()
     try:
-        through = solved(question.right, question.unknowns, question.domain)
+        motion = solved(question.right, question.unknowns, question.domain)
     except (SingularMatrixError, Undecided):
         return ()
-    return tuple(Part(f"equation {i}", e, through=through) for i, e in enumerate(question.claimed, 1))
+    through = {name: substitute(value, motion) for name, value in question.through.items()} | motion
+    return tuple(
+        Part(f"equation {i + 1}", e, through=through, key=f"claim[{i}]")
+        for i, e in enumerate(question.written)
+    )
 
 
 def _hints(question: Same | SameEquations) -> list[tuple[Expr, ...]]:
@@ -120,7 +162,7 @@ def _hints(question: Same | SameEquations) -> list[tuple[Expr, ...]]:
     if isinstance(question, Same):
         return [() for _ in question.parts]
     hints: list[tuple[Expr, ...]] = []
-    for claimed in question.claimed:
+    for claimed in question.written:
         terms: dict[Expr, None] = {}
         for right in question.right:
             for u in question.unknowns:
@@ -137,24 +179,49 @@ def _hints(question: Same | SameEquations) -> list[tuple[Expr, ...]]:
 
 
 def _part_by_part(
-    parts: Sequence[Part], domain: Domain, deadline: float, hints: Sequence[tuple[Expr, ...]]
-) -> str:
-    """Return what is wrong with each component that is wrong."""
+    reading: Reading,
+    parts: Sequence[Part],
+    domain: Domain,
+    deadline: float,
+    hints: Sequence[tuple[Expr, ...]],
+) -> Iterator[Diagnosis]:
+    """Yield what is wrong with each component that is wrong."""
     wrong = [(part, hint) for part, hint in zip(parts, hints, strict=True) if _is_wrong(part, domain)]
     if not wrong:
-        if not all(part.through and vanishes(part.residual, domain, budget=0.5).holds for part in parts):
-            return ""
-        return "each equation is right, but together they do not determine the motion: an equation is missing"
-    sentences: list[str] = []
-    for number, (part, hint) in enumerate(wrong[:MOST_SENTENCES]):
-        left = (deadline - time.monotonic()) / (len(wrong) - number)
-        found = repair(part, domain, left, hint)
-        if found is None:
-            return ""
-        sentences.append(str(found.change))
-    if len(wrong) > MOST_SENTENCES:
-        sentences.append(f"{len(wrong) - MOST_SENTENCES} more components are wrong")
-    return "; ".join(sentences)
+        if all(part.through and vanishes(part.residual, domain, budget=0.5).holds for part in parts):
+            yield Diagnosis(
+                "each equation is right, but together they do not determine the motion: an equation is missing"
+            )
+        return
+    if all(part.key for part, _ in wrong):
+        yield from _repaired(reading, wrong, domain, deadline)
+
+
+def _repaired(
+    reading: Reading,
+    wrong: Sequence[tuple[Part, tuple[Expr, ...]]],
+    domain: Domain,
+    deadline: float,
+    said: tuple[str, ...] = (),
+) -> Iterator[Diagnosis]:
+    """Yield the claim with one wrong component after the other repaired, and what was changed."""
+    if not wrong:
+        more = len(said) - MOST_SENTENCES
+        told = said[:MOST_SENTENCES] + ((f"{more} more components are wrong",) if more > 0 else ())
+        yield Diagnosis("; ".join(told), reading)
+        return
+    part, hint = wrong[0]
+    if len(said) >= MOST_SENTENCES and not part.through:  # it is not told what to change here
+        yield from _repaired(_with(reading, part, part.right), wrong[1:], domain, deadline, (*said, ""))
+        return
+    seconds = (deadline - time.monotonic()) / len(wrong)
+    for found in islice(repairs(part, domain, seconds, hint), MOST_TRIALS):
+        here = _with(reading, part, found.right)
+        yield from _repaired(here, wrong[1:], domain, deadline, (*said, str(found.change)))
+
+
+def _with(reading: Reading, part: Part, right: Expr) -> Reading:
+    return reading.with_instead(part.key, replaced(right, part.written))
 
 
 def _is_wrong(part: Part, domain: Domain) -> bool:

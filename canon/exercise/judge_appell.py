@@ -69,8 +69,17 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
         )
     if reading.has("claim"):
         equations = tuple(s - Q for s, Q in zip(slopes, forces, strict=True))
-        claims = tuple(substitute(claim, kinematics.through) for claim in reading.equations("claim"))
-        yield SameEquations(claims, equations, kinematics.u_dot, reading.domain, lambda: equations)
+        written = reading.equations("claim")
+        claims = tuple(substitute(claim, kinematics.through) for claim in written)
+        yield SameEquations(
+            claims,
+            equations,
+            kinematics.u_dot,
+            reading.domain,
+            lambda: equations,
+            written,
+            kinematics.through,
+        )
 
 
 def _kinematics(reading: Reading) -> _Kinematics:

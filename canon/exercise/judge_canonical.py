@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.manifold import on_manifold, transported
 from canon.exercise.question import Part, Question, Regular, Same, wrong_variables
 from canon.mechanics.bilinear import bilinear_covariant, displacements
 from canon.mechanics.bracket import lagrange_bracket, lie_bracket, poisson_bracket, symplectic_unit
 from canon.mechanics.substitution import substitute
-from canon.proof.verdict import Status, Verdict
+from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -37,7 +38,7 @@ def poisson_brackets(reading: Reading) -> Iterator[Question]:
     """{f, g} is what was claimed, for all pairs."""
     q, p = reading.phase_space("q", "p")
     parts = tuple(
-        Part(f"{{f, g}} of pair {i}", value, poisson_bracket(f, g, q, p))
+        Part(f"{{f, g}} of pair {i}", value, poisson_bracket(f, g, q, p), key=f"pairs[{i - 1}].value")
         for i, (f, g, value) in enumerate(reading.brackets("f", "g"), 1)
     )
     yield Same(parts, reading.domain)
@@ -55,7 +56,7 @@ def lagrange_brackets(reading: Reading) -> Iterator[Question]:
             if symbol not in variables:
                 reading.fault(f"pairs[{i}].{letter}", f"{symbol} is not one of the variables")
         bracket = sp.Add(*(a.diff(u) * b.diff(v) - a.diff(v) * b.diff(u) for a, b in zip(q, p, strict=True)))
-        parts.append(Part(f"[{u}, {v}]", value, bracket))
+        parts.append(Part(f"[{u}, {v}]", value, bracket, key=f"pairs[{i}].value"))
     yield Same(tuple(parts), reading.domain)
 
 
@@ -64,7 +65,10 @@ def lie_brackets(reading: Reading) -> Iterator[Question]:
     x = reading.symbols("x")
     X, Y, claim = (reading.expressions(key, like="x") for key in ("X", "Y", "claim"))
     right = lie_bracket(X, Y, x)
-    parts = tuple(Part(f"component {s}", c, r) for s, c, r in zip(x, claim, right, strict=True))
+    parts = tuple(
+        Part(f"component {s}", c, r, key=f"claim[{i}]")
+        for i, (s, c, r) in enumerate(zip(x, claim, right, strict=True))
+    )
     yield Same(parts, reading.domain, lambda: right)
 
 
@@ -116,12 +120,21 @@ def _implicit_canonicity(
     B = sp.Matrix([[g.diff(z) for z in old] for g in equations])
     J = symplectic_unit(len(q))
     difference = B * J * B.T - valence * A * J * A.T
-    entries = [difference[i, j] for i, j in combinations(range(2 * len(q)), 2)]
+    entries: list[Expr] = [difference[i, j] for i, j in combinations(range(2 * len(q)), 2)]
     if all(sp.expand(entry) == 0 for entry in entries):
         yield Regular(A, "∂(equations)/∂(new variables)", reading.domain)
         return
     keep = set(reading.scope.names.values()) - {*old, *new} | {reading.time}
-    for branch in on_manifold(equations, reading.domain, keep=tuple(keep), prefer=(*new, *old)):
+    try:
+        branches = on_manifold(equations, reading.domain, keep=tuple(keep), prefer=(*new, *old))
+    except Undecided:
+        wanted = {f"M J Mᵀ − c J, {i + 1}": entry for i, entry in enumerate(entries)}
+        found = refuted_at_a_point(equations, old, new, wanted, reading.domain)
+        if found is None:
+            raise
+        yield found
+        return
+    for branch in branches:
         yield Same(
             tuple(Part("M J Mᵀ − c J", entry, through=branch.values) for entry in entries), branch.domain
         )
@@ -135,7 +148,7 @@ def bilinear(reading: Reading) -> Iterator[Question]:
         extended = reading.with_names({s.name: s for s in (*d, *delta)})
         right = bilinear_covariant(reading.expressions("form", like="x"), x, d, delta)
         yield Same(
-            (Part("the bilinear covariant", extended.expression("claim"), right),),
+            (Part("the bilinear covariant", extended.expression("claim"), right, key="claim"),),
             reading.domain,
             lambda: right,
         )

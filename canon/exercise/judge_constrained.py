@@ -66,6 +66,7 @@ def _on_every_motion(
     system += [time_derivative(g, q, t) for g in held]
     claims = reading.equations("claim")
     jets = _jets((*system, *manifold, *claims), t)
+    functions = {symbol: function for function, symbol in jets.items()}
     system, claims, manifold = ([replaced(e, jets) for e in given] for given in (system, claims, manifold))
     for branch in on_manifold(manifold, reading.domain, keep=(t, *unknowns), prefer=lagrangian.velocities):
         here = [substitute(equation, branch.values) for equation in system]
@@ -78,16 +79,19 @@ def _on_every_motion(
             yield SameEquations((*here, *seen), tuple(here), unknowns, branch.domain)
             continue
         through = {**branch.values, **solution}
-        parts = tuple(Part(f"claim {i}", claim, through=through) for i, claim in enumerate(claims, 1))
+        parts = tuple(
+            Part(f"claim {i + 1}", claim, through=through, key=f"claim[{i}]", written=functions)
+            for i, claim in enumerate(claims)
+        )
         yield Same(parts, branch.domain)
 
 
-def _jets(expressions: Sequence[Expr], t: Symbol) -> dict[Expr, Expr]:
+def _jets(expressions: Sequence[Expr], t: Symbol) -> dict[Expr, Symbol]:
     """Return a symbol for each arbitrary function of the time and each of its derivatives.
 
     At one instant they are independent of one another, and nothing is differentiated any more.
     """
-    jets: dict[Expr, Expr] = {}
+    jets: dict[Expr, Symbol] = {}
     for atom in sorted(
         set[Expr]().union(*(e.atoms(AppliedUndef, sp.Derivative) for e in expressions)), key=str
     ):

@@ -31,7 +31,7 @@ def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
     if reading.has("H"):
         yield from wrong_variables(reading.expression("H"), lagrangian.velocities, "H", "q, p and t")
         through = dict(zip(p, lagrangian.momenta, strict=True))
-        part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through)
+        part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through, "H")
         yield Same((part,), transported(domain, through), lambda: legendre(lagrangian, p, domain).H)
 
 
@@ -41,10 +41,11 @@ def hamilton_equations(reading: Reading) -> Iterator[Question]:
     system = Hamiltonian(_in_phase_space(reading, "H", q), q, p, reading.time)
     if reading.has("q_dot"):
         claimed = (*reading.expressions("q_dot", like="q"), *reading.expressions("p_dot", like="p"))
+        keys = [f"{key}[{i}]" for key in ("q_dot", "p_dot") for i in range(len(q))]
         through: dict[Symbol, Expr] = {velocity(x): rate for x, rate in zip(q, system.q_dot, strict=True)}
         parts = tuple(
-            Part(f"d{z}/dt", rate, right, through)
-            for z, rate, right in zip((*q, *p), claimed, system.vector_field, strict=True)
+            Part(f"d{z}/dt", rate, right, through, key)
+            for z, rate, right, key in zip((*q, *p), claimed, system.vector_field, keys, strict=True)
         )
         yield Same(parts, reading.domain, lambda: system.vector_field)
     if reading.has("solution"):
@@ -79,7 +80,9 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
 
 def equality(reading: Reading) -> Iterator[Question]:
     """Both sides are equal on the whole domain."""
-    yield Same((Part("lhs", reading.expression("lhs"), reading.expression("rhs")),), reading.domain)
+    yield Same(
+        (Part("lhs", reading.expression("lhs"), reading.expression("rhs"), key="lhs"),), reading.domain
+    )
 
 
 def _in_phase_space(reading: Reading, key: str, q: Sequence[Symbol]) -> Expr:

@@ -41,7 +41,7 @@ def dissipative(reading: Reading) -> Iterator[Question]:
     if reading.has("energy_rate"):
         claimed = reading.expression("energy_rate")
         rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
-        part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed))
+        part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed), "energy_rate")
         yield Same((part,), reading.domain, lambda: rate)
 
 
@@ -69,7 +69,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
         yield from wrong_variables(
             reading.expression("R"), velocities, "R", "q, the other velocities, the momenta and t"
         )
-        part = Part("the Routhian", reading.expression("R"), right, through)
+        part = Part("the Routhian", reading.expression("R"), right, through, "R")
         yield Same(
             (part,),
             transported(reading.domain, through),
@@ -77,10 +77,13 @@ def routhian(reading: Reading) -> Iterator[Question]:
         )
     if reading.has("claim"):
         conserved = tuple(time_derivative(p, q, t) for p in through.values())
-        seen = tuple(Part("", equation, through=through).residual for equation in reading.equations("claim"))
+        written = reading.equations("claim")
+        seen = tuple(substitute(equation, through) for equation in written)
         unknowns = tuple(acceleration(x) for x in q)
         domain = transported(reading.domain, through)
-        yield SameEquations((*seen, *conserved), lagrangian.equations, unknowns, domain)
+        yield SameEquations(
+            (*seen, *conserved), lagrangian.equations, unknowns, domain, written=written, through=through
+        )
 
 
 def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
@@ -123,7 +126,8 @@ def same_motion(reading: Reading, lagrangian: Lagrangian) -> SameEquations:
     """Return the question whether the claimed equations are those of a Lagrangian."""
     unknowns = tuple(acceleration(x) for x in lagrangian.q)
     right = lagrangian.equations
-    return SameEquations(reading.equations("claim"), right, unknowns, reading.domain, lambda: right)
+    claimed = reading.equations("claim")
+    return SameEquations(claimed, right, unknowns, reading.domain, lambda: right, claimed)
 
 
 def on_the_motion(lagrangian: Lagrangian, *expressions: Expr) -> dict[Symbol, Expr]:

@@ -51,12 +51,18 @@ class Part:
         What it should equal, after the substitution.
     through
         The substitution, such as p = ∂L/∂q̇ or q̈ = the true accelerations.
+    key
+        Where the claim has the expression, such as ``claim[0]``; empty where it follows from what was claimed.
+    written
+        How the claim writes what a symbol of the expression stands for.
     """
 
     name: str
     claimed: Expr
     right: Expr = sp.S.Zero
     through: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    key: str = ""
+    written: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
 
     def seen(self, expression: Expr) -> Expr:
         """Return an expression after the substitution."""
@@ -79,13 +85,30 @@ class Same:
 
 @dataclass(frozen=True)
 class SameEquations:
-    """Two systems, affine in the unknowns, have the same solutions at generic points."""
+    """Two systems, affine in the unknowns, have the same solutions at generic points.
+
+    Parameters
+    ----------
+    claimed, right, unknowns
+        The systems, and what they determine.
+    domain
+        Where they are meant.
+    answer
+        The right equations as they are shown.
+    written
+        The equations under ``claim`` as they stand there; none where the claimed system follows from something
+        else, and then there is no equation to repair.
+    through
+        What their symbols are in terms of those of the systems, such as p = ∂L/∂q̇.
+    """
 
     claimed: tuple[Expr, ...]
     right: tuple[Expr, ...]
     unknowns: tuple[Symbol, ...]
     domain: Domain
     answer: Answer | None = None
+    written: tuple[Expr, ...] = ()
+    through: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.exercise.kinds import KINDS, Shape
-from canon.exercise.sheet import Claim, ClaimError
+from canon.exercise.sheet import ASSUMPTIONS, Claim, ClaimError
 from canon.expression.language import (
     LanguageError,
     Scope,
@@ -21,6 +21,7 @@ from canon.expression.language import (
     parse_expression,
 )
 from canon.expression.symbol import Coordinate, Momentum, velocity
+from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
 
 if TYPE_CHECKING:
@@ -244,6 +245,8 @@ class Reading:
 
     def _assumptions(self, name: str) -> dict[str, bool]:
         word = self.claim.keys.get("parameters", {}).get(name, "real")
+        if word not in ASSUMPTIONS:
+            self.fault("parameters", f"{word} can't be assumed of {name}; write {', '.join(ASSUMPTIONS)}")
         return {"real": True} if word == "real" else {"real": True, word: True}
 
     def _parse(self, parse: Callable[[str, Scope], Any], text: Any, key: str) -> Any:
@@ -251,7 +254,7 @@ class Reading:
             return self.instead[key]
         try:
             parsed = parse(str(text), self.scope)
-            return parsed.xreplace(dict(self.at)) if self.at else parsed
+            return substitute(parsed, self.at) if self.at else parsed
         except LanguageError as error:
             raise InvalidClaim(
                 ClaimError(self.claim.id, key, error.message, error.column, error.caret(), self.claim.file)

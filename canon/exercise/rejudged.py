@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from itertools import chain, groupby, islice
+from itertools import chain, groupby
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.exercise.manifold import EmptyDomainError
-from canon.exercise.question import Deadline, decide
-from canon.exercise.reading import InvalidClaim, Reading
+from canon.exercise.diagnosis import Diagnosis, judged_to_hold
+from canon.exercise.reading import Reading
 from canon.exercise.tree import replaced
-from canon.exercise.variants import Change, common_slips, times, variants
+from canon.exercise.variants import Change, common_slips, slipped, times, variants
 from canon.expression.symbol import velocity
-from canon.mechanics.linear import SingularMatrixError
-from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -43,8 +40,8 @@ _ANSWERS: Mapping[str, tuple[str, ...]] = {
 """Where the answer stands in claims that are judged as a whole."""
 
 
-def another_reading(reading: Reading, deadline: float) -> str:
-    """Return which other claim, of the same formulas, is right: another type, variables exchanged, the inverse."""
+def another_reading(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+    """Yield which other claim, of the same formulas, is right: another type, variables exchanged, the inverse."""
     keys, kind = reading.claim.keys, reading.claim.kind
     trials: list[tuple[str, Mapping[str, Any], str]] = []
     if kind.startswith("generating"):
@@ -65,25 +62,26 @@ def another_reading(reading: Reading, deadline: float) -> str:
     if kind == "routhian":
         other = {"L-pq": "pq-L", "pq-L": "L-pq"}[reading.word("convention")]
         trials.append((kind, {**keys, "convention": other}, f"right under the other convention, {other}"))
-    if reading.has("map") and time.monotonic() < deadline and _holds(_inverted(reading), deadline):
-        return "what is given as the map is its inverse"
-    for other, changed, sentence in trials:
-        if time.monotonic() < deadline and _holds(_read_anew(reading, other, changed), deadline):
-            return sentence
-    return ""
+    readings = [(_read_anew(reading, other, changed), sentence) for other, changed, sentence in trials]
+    if reading.has("map"):
+        readings.insert(0, (_inverted(reading), "what is given as the map is its inverse"))
+    for trial, sentence in readings:
+        if time.monotonic() < deadline and _holds(trial, deadline):
+            yield Diagnosis(sentence, trial)
 
 
-def another_gauge(reading: Reading, deadline: float) -> str:
-    """Return whether L₂ − L₁ is the derivative of another function than the one that was given."""
+def another_gauge(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+    """Yield whether L₂ − L₁ is the derivative of another function than the one that was given."""
     if reading.claim.kind != "lagrangian-equivalence" or not reading.has("F"):
-        return ""
+        return
     others = {key: value for key, value in reading.claim.keys.items() if key != "F"}
-    found = _holds(_read_anew(reading, reading.claim.kind, others), deadline)
-    return "L2 − L1 is dF/dt of some F(q, t), but not of this one" if found else ""
+    trial = _read_anew(reading, reading.claim.kind, others)
+    if _holds(trial, deadline):
+        yield Diagnosis("L2 − L1 is dF/dt of some F(q, t), but not of this one", trial)
 
 
-def only_where(reading: Reading, deadline: float) -> str:
-    """Return a region, or a value of a parameter, for which the claim does hold."""
+def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+    """Yield a region, or a value of a parameter, for which the claim does hold."""
     keys = reading.claim.keys
     assumed = dict(keys.get("parameters", {}))
     free = [
@@ -94,23 +92,26 @@ def only_where(reading: Reading, deadline: float) -> str:
     for symbol in free[:6]:
         for word, sign in (("positive", ">"), ("negative", "<")):
             if time.monotonic() > deadline:
-                return ""
+                return
             changed = {**keys, "parameters": {**assumed, symbol.name: word}}
-            if _holds(_read_anew(reading, reading.claim.kind, changed), deadline):
-                return f"right only for {symbol} {sign} 0"
+            trial = _read_anew(reading, reading.claim.kind, changed)
+            if _holds(trial, deadline):
+                yield Diagnosis(f"right only for {symbol} {sign} 0", trial)
     variables = {
         name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
     }
     for name in [n for n in assumed if n not in variables and n in reading.scope.names][:8]:
         if time.monotonic() > deadline:
-            return ""
-        if _holds(replace(reading, at=MappingProxyType({reading.scope.names[name]: sp.S.One})), deadline):
-            return f"right only for {name} = 1"
-    return ""
+            return
+        trial = replace(reading, at=MappingProxyType({reading.scope.names[name]: sp.S.One}))
+        if _holds(trial, deadline):
+            yield Diagnosis(f"right only for {name} = 1", trial)
 
 
-def one_change(reading: Reading, deadline: float, suspects: Sequence[str] = (), held: int = 0) -> str:
-    """Return one change in the answer that makes the whole claim right.
+def one_change(
+    reading: Reading, deadline: float, suspects: Sequence[str] = (), held: int = 0
+) -> Iterator[Diagnosis]:
+    """Yield one change in the answer that makes the whole claim right.
 
     Parameters
     ----------
@@ -131,12 +132,13 @@ def one_change(reading: Reading, deadline: float, suspects: Sequence[str] = (), 
         if len(items) > 1:
             for slip, change in common_slips([e for _, e in items], symbols):
                 if time.monotonic() > deadline:
-                    return ""
-                trial = reading
+                    return
+                trial: Reading | None = reading
                 for name, expression in items:
-                    trial = trial.with_instead(name, replaced(expression, slip))
-                if _holds(trial, deadline):
-                    return f"in {key} {change}"
+                    new = slipped(expression, slip)
+                    trial = trial.with_instead(name, new) if trial is not None and new is not None else None
+                if trial is not None and _holds(trial, deadline):
+                    yield Diagnosis(f"in {key} {change}", trial)
     for number, (key, expression) in enumerate(answers, 1):
         left = deadline - time.monotonic()
         until = deadline if number == len(answers) else deadline - left / 2
@@ -145,9 +147,9 @@ def one_change(reading: Reading, deadline: float, suspects: Sequence[str] = (), 
                 break
             if _trivial(new, reading):
                 continue
-            if _holds(reading.with_instead(key, new), deadline, held if key == "K" else 0):
-                return str(change)
-    return ""
+            trial = reading.with_instead(key, new)
+            if _holds(trial, deadline, held if key == "K" else 0):
+                yield Diagnosis(str(change), trial)
 
 
 def _outer(key: str) -> str:
@@ -181,7 +183,7 @@ def _answers(reading: Reading) -> Iterator[tuple[str, Expr]]:
         if inner:
             items = reading.inside(key, value.get(inner, []))
         elif isinstance(value, list):
-            items = reading.expressions(outer)
+            items = (reading.equations if outer == "implicit" else reading.expressions)(outer)
         elif outer == "solution":
             yield from ((f"{key}.{name}", item) for name, item in reading.table(key).items())
             continue
@@ -217,15 +219,8 @@ def _read_anew(reading: Reading, kind: str, keys: Mapping[str, Any]) -> Reading:
 
 
 def _holds(reading: Reading, deadline: float, held: int = 0) -> bool:
-    """Whether a changed claim holds; the first ``held`` questions are known to and are not touched by the change."""
-    from canon.exercise.judge import JUDGES
-
-    left = min(TRIAL_SECONDS, max(0.05, deadline - time.monotonic()))
-    try:
-        questions = islice(JUDGES[reading.claim.kind](reading), held, None)
-        return all(decide(question, Deadline.after(left)).holds for question in questions)
-    except (Undecided, SingularMatrixError, InvalidClaim, EmptyDomainError):
-        return False
+    """Whether a changed claim holds; the first ``held`` questions are known to and hardly touched by the change."""
+    return judged_to_hold(reading, min(TRIAL_SECONDS, max(0.05, deadline - time.monotonic())), held)
 
 
 def _names(value: object) -> list[str]:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from canon.exercise.question import Part
     from canon.proof.domain import Domain
 
-__all__ = ["Repair", "Screen", "common_ratio", "repair"]
+__all__ = ["Repair", "Screen", "common_ratio", "repair", "repairs"]
 
 POINTS = 3
 PRECISION = 128
@@ -47,7 +47,15 @@ class Repair:
 
 
 def repair(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = ()) -> Repair | None:
-    """Return the simplest change that makes one component of an answer right, if one is found and proved.
+    """Return the simplest change that makes one component of an answer right, if one is found and proved."""
+    return next(repairs(part, domain, seconds, hints), None)
+
+
+def repairs(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = ()) -> Iterator[Repair]:
+    """Yield changes that make one component of an answer right, the simplest first, each of them proved.
+
+    A system whose equations are right one by one can still lack one, so that the whole claim is to be judged
+    with the change put in before anyone is told.
 
     Parameters
     ----------
@@ -63,17 +71,16 @@ def repair(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = (
     deadline = time.monotonic() + seconds
     screen = Screen(part, domain)
     if not screen.points:
-        return None
+        return
     for candidate in _candidates(part, screen, hints):
         if time.monotonic() > deadline:
-            return None
+            return
         if (
             _says_something(part, candidate.right)
             and screen.passes(candidate.right)
             and _is_right(part, candidate.right, domain)
         ):
-            return candidate
-    return None
+            yield candidate
 
 
 def common_ratio(parts: Sequence[Part], domain: Domain) -> Fraction | None:

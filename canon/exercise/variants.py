@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
-__all__ = ["Change", "common_slips", "times", "variants"]
+__all__ = ["Change", "common_slips", "slipped", "times", "variants"]
 
 _FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
 _FAMILIES = (
@@ -93,6 +93,21 @@ def common_slips(
             yield {symbol: factor * symbol}, Change("{} should be {} everywhere", symbol, factor * symbol)
 
 
+def slipped(expression: Expr, slip: Mapping[Expr, Expr]) -> Expr | None:
+    """Return an expression with a slip put in, None where it would stand behind a d/d….
+
+    Examples
+    --------
+    >>> x, f = sp.Symbol("x"), sp.Function("f")
+    >>> slipped(x + x**2, {x: -x}), slipped(f(x).diff(x), {x: -x})
+    (x**2 - x, None)
+    """
+    try:
+        return replaced(expression, dict(slip))
+    except (TypeError, ValueError):  # such as a derivative by −x, or a comparison with i
+        return None
+
+
 def times(factor: Fraction | Expr) -> str:
     """Return a factor in words: half, twice, 3/2 times.
 
@@ -118,7 +133,11 @@ def _one_place(
     for i, argument in enumerate(branches):
         if isinstance(argument, Expr) and not argument.is_Number:
             for new, change in _one_place(argument, edits):
-                yield expression.func(*branches[:i], new, *branches[i + 1 :]), change
+                try:
+                    whole = expression.func(*branches[:i], new, *branches[i + 1 :])
+                except (TypeError, ValueError):  # such as a derivative by a number, or a comparison with i
+                    continue
+                yield whole, change
 
 
 def _signs(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -196,7 +215,9 @@ def _multiplied(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, C
 def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
     """The same slip in all places at once, two symbols exchanged, a constant angle lost."""
     for slip, change in common_slips([expression], ()):
-        yield replaced(expression, dict(slip)), change
+        new = slipped(expression, slip)
+        if new is not None:
+            yield new, change
     own = symbols_of(expression)
     for a, b in combinations(own, 2):
         yield replaced(expression, {a: b, b: a}), Change("{} and {} should be exchanged", a, b)
