@@ -60,12 +60,12 @@ class Assembly:
         if found is None:
             symbols = graph.symbols(node)
             found = self._rates[node, factor] = [
-                graph.plain_mul((graph.derivative(node, s), graph.plain_mul((v, factor))))
+                graph.plain_mul((self.reader.derivative(node, s), graph.plain_mul((v, factor))))
                 for s, v in self._moving
                 if s in symbols
             ]
             if self.reader.t in symbols:
-                found.append(graph.plain_mul((graph.derivative(node, self.reader.t), factor)))
+                found.append(graph.plain_mul((self.reader.derivative(node, self.reader.t), factor)))
         return found
 
     def speed(self, c: Channel) -> int:
@@ -124,7 +124,7 @@ class Assembly:
         if found is None:
             graph, symbols = self.graph, self.graph.symbols(a)
             found = self._slopes[a, factor] = [
-                (i, graph.plain_mul((graph.derivative(a, s), factor)))
+                (i, graph.plain_mul((self.reader.derivative(a, s), factor)))
                 for i, s in enumerate(self.q)
                 if s in symbols
             ]
