@@ -33,11 +33,15 @@ if TYPE_CHECKING:
     from canon.flow.witness import symplectic_flow as symplectic_flow
     from canon.mechanics.appell import GibbsAppell as GibbsAppell
     from canon.mechanics.bilinear import bilinear_covariant as bilinear_covariant
+    from canon.mechanics.body import Particle as Particle
+    from canon.mechanics.body import PlanarBody as PlanarBody
+    from canon.mechanics.body import RigidBody as RigidBody
     from canon.mechanics.body import kinetic_energy as kinetic_energy
     from canon.mechanics.bracket import lagrange_bracket as lagrange_bracket
     from canon.mechanics.bracket import lie_bracket as lie_bracket
     from canon.mechanics.bracket import poisson_bracket as poisson_bracket
     from canon.mechanics.constraint import ConstrainedLagrangian as ConstrainedLagrangian
+    from canon.mechanics.force import lagrangian_of as lagrangian_of
     from canon.mechanics.generated import generated_transformation as generated_transformation
     from canon.mechanics.generating import GeneratingFunction as GeneratingFunction
     from canon.mechanics.generating import generating_function as generating_function
@@ -51,6 +55,7 @@ if TYPE_CHECKING:
     from canon.mechanics.symmetry import is_constant_of_motion as is_constant_of_motion
     from canon.mechanics.symmetry import is_gauge_equivalent as is_gauge_equivalent
     from canon.mechanics.symmetry import noether_charge as noether_charge
+    from canon.mechanics.sympy_bridge import from_sympy_mechanics as from_sympy_mechanics
     from canon.mechanics.transformation import CanonicalTransformation as CanonicalTransformation
     from canon.mechanics.transformation import point_transformation as point_transformation
     from canon.mechanics.vector_field import VectorField as VectorField
@@ -85,6 +90,9 @@ __all__ = [
     "Hamiltonian",
     "ImplicitTransformation",
     "Lagrangian",
+    "Particle",
+    "PlanarBody",
+    "RigidBody",
     "Sheet",
     "Splitting",
     "Status",
@@ -101,6 +109,7 @@ __all__ = [
     "drift_study",
     "equal",
     "equivalent_equations",
+    "from_sympy_mechanics",
     "generated_transformation",
     "generating_function",
     "integral_drift",
@@ -110,6 +119,7 @@ __all__ = [
     "judge",
     "kinetic_energy",
     "lagrange_bracket",
+    "lagrangian_of",
     "legendre",
     "lie_bracket",
     "new_hamiltonian",
@@ -138,9 +148,10 @@ _ROOMS = {
     "canon.flow.witness": ("brackets_at_points", "integral_drift", "symplectic_flow"),
     "canon.mechanics.appell": ("GibbsAppell",),
     "canon.mechanics.bilinear": ("bilinear_covariant",),
-    "canon.mechanics.body": ("kinetic_energy",),
+    "canon.mechanics.body": ("Particle", "PlanarBody", "RigidBody", "kinetic_energy"),
     "canon.mechanics.bracket": ("lagrange_bracket", "lie_bracket", "poisson_bracket"),
     "canon.mechanics.constraint": ("ConstrainedLagrangian",),
+    "canon.mechanics.force": ("lagrangian_of",),
     "canon.mechanics.generated": ("generated_transformation",),
     "canon.mechanics.generating": ("GeneratingFunction", "generating_function"),
     "canon.mechanics.hamiltonian": ("Hamiltonian", "legendre"),
@@ -150,6 +161,7 @@ _ROOMS = {
     "canon.mechanics.new_hamiltonian": ("new_hamiltonian",),
     "canon.mechanics.routh": ("routhian",),
     "canon.mechanics.symmetry": ("is_constant_of_motion", "is_gauge_equivalent", "noether_charge"),
+    "canon.mechanics.sympy_bridge": ("from_sympy_mechanics",),
     "canon.mechanics.transformation": ("CanonicalTransformation", "point_transformation"),
     "canon.mechanics.vector_field": ("VectorField",),
     "canon.proof.domain": ("Domain",),
