@@ -221,8 +221,12 @@ STUBBORN = {
         "exp(sin(x))*(sqrt(x**2) + x), Domain((e < Rational(1, 100),))",
     ),
     "a large graph of shared parts": (
-        "F = lambda s: reduce(lambda a, i: (a + 1)/(a*a + i), range(1, 15), s); e = F(x) - F(Abs(x))",
-        "e, Domain((x > 100,))",
+        "F = lambda s: reduce(lambda a, i: (a + 1)/(a**2 + i), range(1, 11), s); e = F(x) - F(y)",
+        "e, Domain((x > 100, y > 10**5, Eq(x**2, y**2)))",
+    ),
+    "a constant whose sign SymPy is slow to find": (
+        "a = Symbol('a', nonnegative=True); e = asin(Max(sqrt(2), a))",
+        "Abs(sqrt(-e**2)) - Abs(e)",
     ),
 }
 
