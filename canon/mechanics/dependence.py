@@ -6,7 +6,7 @@ redundant, its multiplier undetermined, or the rows contradict one another. For 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -77,6 +77,8 @@ def check_independent(
     DependentConstraintsError
         With the rows, the combination, and whether they contradict one another.
     """
+    for a, f in enumerate(constraints[:holonomic], 1):
+        _refuse_power(a, f)
     for c in eliminate(directions.T, domain=domain).null_directions:
         rows = tuple(a + 1 for a, factor in enumerate(c) if factor != 0)
         contradictory = _contradict(c, constraints, rests, holonomic, moving, domain)
@@ -91,6 +93,22 @@ def check_independent(
         else:
             what, remedy = f"depend on one another: {sum_} vanishes", "leave one of them out"
         raise DependentConstraintsError(f"{named} {what}; {remedy}", rows, c, contradictory)
+
+
+def _refuse_power(a: int, f: Expr) -> None:
+    """Refuse f = hᵏ, whose gradient vanishes where f does, so that no reaction follows from it."""
+    if f.has(sp.Piecewise):  # SymPy factors no polynomials in these
+        return
+    _, factors = cast("Any", sp.factor_list(f))
+    repeated = [h for h, power in factors if power > 1 and h.free_symbols]
+    if repeated:
+        raise DependentConstraintsError(
+            f"constraint {a} ({f} = 0) holds a power, so its gradient vanishes where it does; write "
+            f"{sp.Mul(*(h for h, _ in factors))} = 0",
+            (a,),
+            (),
+            contradictory=None,
+        )
 
 
 def _contradict(

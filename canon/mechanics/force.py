@@ -14,16 +14,18 @@ from sympy import Expr, Symbol
 from canon.expression.symbol import time, time_derivative, velocity
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.mechanics.body import Body
+    from canon.mechanics.body import Body, RigidBody
     from canon.proof.domain import Domain
     from canon.proof.verdict import Verdict
 
 __all__ = [
-    "charge_term", "damper", "do_no_work", "electric_field", "generalized_forces", "generalized_torques", "gravity",
+    "charge_term", "damper", "do_no_work", "electric_field", "generalized_forces", "generalized_moments",
+    "generalized_torques", "gravity",
     "lagrangian_of", "magnetic_field", "rayleigh_forces", "spring",
 ]  # fmt: skip
 
@@ -77,6 +79,41 @@ def generalized_torques(
     """
     pairs = list(zip(torques, angles, strict=True))
     return tuple(sp.Add(*(torque * angle.diff(s) for torque, angle in pairs)) for s in q)
+
+
+def generalized_moments(
+    moments: Sequence[Sequence[Expr]], bodies: Sequence[RigidBody], q: Sequence[Symbol], t: Symbol = time
+) -> tuple[Expr, ...]:
+    """Return Q = Σ M·∂ω/∂q̇ of moments on bodies in space.
+
+    Parameters
+    ----------
+    moments
+        The components of each moment along the axes of its body.
+    bodies
+        The bodies they act on.
+    q
+        The coordinates.
+
+    Examples
+    --------
+    A moment about the axis of a top works on its spin, and by cos θ on its precession:
+
+    >>> from canon import coordinates
+    >>> from canon.mechanics.body import RigidBody, euler_rotation
+    >>> from sympy import symbols
+    >>> theta, phi, psi = coordinates("theta phi psi")
+    >>> top = RigidBody(1, (), (1, 1, 2), euler_rotation(phi, theta, psi))
+    >>> [Q.trigsimp() for Q in generalized_moments([(0, 0, symbols("M"))], [top], [theta, phi, psi])]
+    [0, M*cos(theta), M]
+    """
+    kinematics = Kinematics(q, t=t)
+    pairs = [
+        (component, w)
+        for moment, body in zip(moments, bodies, strict=True)
+        for component, w in zip(moment, body.angular_velocity(kinematics), strict=True)
+    ]
+    return tuple(sp.Add(*(component * w.diff(velocity(s)) for component, w in pairs)) for s in q)
 
 
 def do_no_work(

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from canon.mechanics.constraint import ConstrainedLagrangian
     from canon.proof.verdict import Verdict
 
-__all__ = ["Pfaffian", "integrals", "is_integrable", "pfaffian"]
+__all__ = ["Pfaffian", "integrals", "is_integrable", "pfaffian", "positional_freedom"]
 
 Row = tuple[Expr, ...]
 
@@ -163,6 +163,30 @@ def integrals(constrained: ConstrainedLagrangian, domain: Domain | None = None) 
         if len(found) == len(part.forms):
             break
     return tuple(found)
+
+
+def positional_freedom(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> int:
+    """Return the dimension of the positions that can be reached: coordinates less restrictions of positions.
+
+    Truly nonholonomic constraints restrict none; those that are holonomic in disguise do.
+
+    Examples
+    --------
+    A unicycle reaches every place in every heading, although one velocity is barred:
+
+    >>> from canon import Lagrangian, coordinates
+    >>> from canon.mechanics.constraint import ConstrainedLagrangian
+    >>> from sympy import tan
+    >>> x, y, theta = coordinates("x y theta")
+    >>> L = Lagrangian((x.dot**2 + y.dot**2 + theta.dot**2)/2, [x, y, theta])
+    >>> unicycle = ConstrainedLagrangian(L, nonholonomic=[y.dot - x.dot*tan(theta)])
+    >>> positional_freedom(unicycle), unicycle.degrees_of_freedom
+    (3, 2)
+    """
+    restricted = len(constrained.holonomic)
+    if constrained.nonholonomic:
+        restricted += len(pfaffian(constrained, domain).holonomic_part.forms)
+    return len(constrained.lagrangian.q) - restricted
 
 
 def _curl(form: Row, z: Sequence[Symbol], X: Row, Y: Row) -> Expr:

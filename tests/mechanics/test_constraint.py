@@ -8,7 +8,7 @@ from canon.mechanics.constraint import ConstrainedLagrangian
 from canon.mechanics.contact import multiplier_along, multiplier_in_contact
 from canon.mechanics.dependence import DependentConstraintsError
 from canon.mechanics.embedding import eliminated, embedded, satisfies
-from canon.mechanics.frobenius import integrals, is_integrable, pfaffian
+from canon.mechanics.frobenius import integrals, is_integrable, pfaffian, positional_freedom
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
 from canon.proof.domain import Domain
@@ -350,6 +350,20 @@ def test_dependent_rows_are_named(holonomic, nonholonomic, rows, contradictory, 
         constrained.multipliers  # noqa: B018
     assert caught.value.rows == rows
     assert caught.value.contradictory is contradictory
+
+
+def test_a_constraint_given_as_a_power_is_refused():
+    squared = ConstrainedLagrangian(PLANE, holonomic=[x**2 - 2 * x * y + y**2])
+    with pytest.raises(DependentConstraintsError, match=r"holds a power.*write x - y = 0"):
+        squared.multipliers  # noqa: B018
+    assert vanishes(ConstrainedLagrangian(PLANE, holonomic=[x - y]).multipliers[0]).holds
+
+
+def test_positions_that_can_be_reached():
+    assert positional_freedom(unicycle()) == 3
+    assert positional_freedom(hollow_cylinder()) == 1
+    assert positional_freedom(rolling_disc()) == 4
+    assert positional_freedom(pendulum()[0]) == pendulum()[0].degrees_of_freedom == 1
 
 
 def hemisphere():

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from canon.expression.symbol import coordinates, parameters, time
+from canon.expression.symbol import coordinates, parameters, time, time_derivative
 from canon.mechanics.ignorable import adapted, ignorable_coordinates, ignorable_directions, is_ignorable
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.legendre import LegendreError
@@ -236,6 +238,34 @@ def test_routh_of_the_relativistic_particle():
     expected = -sp.sqrt(m**2 + P**2) * sp.sqrt(1 - y.dot**2) - k * y**2
     assert vanishes(reduced.R - expected, Domain((y.dot**2 < 1,))).holds
     assert vanishes(reduced.R + expected, Domain((y.dot**2 < 1,))).fails
+
+
+SMALL = st.integers(-3, 3)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(SMALL, min_size=6, max_size=6), st.integers(1, 4), st.integers(1, 4))
+def test_reduction_of_generated_systems(numbers, one, two):
+    """L = ½(A ẋ² + 2B ẋẏ + C ẏ²) + Eẏ − V in functions of x: Routh's equation is Lagrange's at constant p."""
+    u, v, w, e, f, h = numbers
+    A, C = one + 10 + u * sp.sin(x), two + 10 + v * x**2 / (1 + x**2)
+    L = Lagrangian(
+        A * x.dot**2 / 2
+        + w * x.dot * y.dot * sp.cos(x)
+        + C * y.dot**2 / 2
+        + e * x * y.dot
+        - f * x**3
+        - h * x,
+        [x, y],
+    )
+    reduced = routhian(L, [y], [P])
+    there = {P: L.momenta[1]}
+    p_dot = time_derivative(L.momenta[1], [x, y])
+    # d/dt of ∂R/∂ẋ at constant p differs from Lagrange's by what multiplies ṗ, which vanishes on the motion.
+    slope = reduced.R.diff(x.dot).diff(P)
+    gap = reduced.equations[0].xreplace(there) + slope.xreplace(there) * p_dot - L.equations[0]
+    assert vanishes(gap).holds
+    assert vanishes(gap + x * L.momenta[1]).fails
 
 
 @pytest.mark.parametrize(
