@@ -61,8 +61,8 @@ def _node(graph: Graph, expression: Any, operands: list[int]) -> int:
     if expression.is_Rational:
         return graph.number(Fraction(int(expression.p), int(expression.q)))
     if expression.is_Float and expression.is_finite:
-        exact = sp.Rational(expression)
-        return graph.number(Fraction(int(exact.p), int(exact.q)))
+        above, below = sp.Rational(expression).as_numer_denom()
+        return graph.number(Fraction(int(above), int(below)))
     if expression in (sp.pi, sp.E):
         return graph.named(str(expression))
     if expression.is_Add:
