@@ -167,6 +167,7 @@ class NormalForm:
         """Return the normal form of an expression."""
         found = self._memo.get(expr)
         if found is None:
+            self.tower.check_time()
             found = self._memo[expr] = self._fresh(expr)
         return found
 

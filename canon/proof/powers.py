@@ -9,6 +9,7 @@ import sympy as sp
 from flint import fmpq
 
 from canon.proof.angles import combination, cos_sin, divided, imaginary_split, phase_of_pi
+from canon.proof.factors import apart, factors_of, modulus_of_polynomial, primes, split_signs
 from canon.proof.tower import Fraction
 
 if TYPE_CHECKING:
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from canon.proof.normal_form import NormalForm
 
 __all__ = ["exponential", "logarithm", "modulus", "root"]
-
-LARGEST_FACTORED_INTEGER = 10**15
-"""Integers up to this are split into primes under roots and logarithms."""
 
 MOST_ROOTS_MULTIPLIED = 3
 MOST_ROOTS_KNOWN = 7
@@ -90,90 +88,6 @@ def _of_lambert_w(n: NormalForm, w: Fraction, kernel: tuple[object, ...]) -> Fra
     return n.over(z, w)
 
 
-# -- positive and other factors ------------------------------------------------------------------------
-
-
-def _split(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
-    """Write f = content · Π positiveᵢ^eᵢ · rest with content > 0 and positiveᵢ ≥ 0 proven.
-
-    (ab)^r = a^r b^r and log ab = log a + log b hold when a ≥ 0, so every proven factor may be taken
-    out; an even power of a real factor is that power of its modulus, and 1/p = p/|p|². The rest keeps
-    what has no proven sign.
-    """
-    t = n.tower
-    f = t.canonical(f)
-    content, factors = _factors(n, f.num)
-    for i, e in f.den:
-        unit, below = _factors(n, t.base(i))
-        content = content / unit**e
-        factors = factors + [(p, -e * k) for p, k in below]
-    sign = 1 if content > 0 else -1
-    outside: list[tuple[Fraction, int]] = []
-    rest = t.number(1)
-    for p, e in factors:
-        if p.is_constant():
-            content = content * p.leading_coefficient() ** e
-            continue
-        known = n.signs.of(p)
-        if known:
-            outside.append((Fraction(p if known.endswith("+") else -p), e))
-            sign = -sign if e % 2 and known.endswith("-") else sign
-        elif n.signs.real(p):
-            if e - e % 2:
-                outside.append((_modulus_of_polynomial(n, p), e - e % 2))
-            if e % 2:
-                rest = t.times(rest, Fraction(p))
-        else:
-            rest = t.times(rest, t.power(Fraction(p), e))
-    return abs(content), outside, t.canonical(n.scaled(sign, rest))
-
-
-def _factors(n: NormalForm, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
-    """Factor p, also as a form in the cosine and sine of an angle: 1 − c² = s², 1 − 2sc = (c − s)²."""
-    t = n.tower
-    for k in t.used(p):
-        kernel = t.generators[k]
-        if kernel[0] != "cos":
-            continue
-        homogeneous = _homogeneous(n, p, k, t.generator(("sin", kernel[1])))
-        if homogeneous is not None:
-            unit, factors = t.factors(homogeneous)
-            if len(factors) > 1 or factors[0][1] > 1:
-                return unit, factors
-    return t.factors(p)
-
-
-def _homogeneous(n: NormalForm, p: fmpq_mpoly, c: int, s: int) -> fmpq_mpoly | None:
-    """Multiply terms by c² + s² = 1 until all have one degree in c and s, if their degrees allow it."""
-    t = n.tower
-    by_degree: dict[int, fmpq_mpoly] = {}
-    for monomial, coefficient in t.terms(p):
-        degree = sum(e for k, e in monomial if k in (c, s))
-        term = t.constant(coefficient)
-        for k, e in monomial:
-            term = term * t.monomial(k, e)
-        by_degree[degree] = by_degree.get(degree, t.constant(0)) + term
-    highest = max(by_degree)
-    if highest > 8 or len({degree % 2 for degree in by_degree}) > 1 or len(p) > 40:
-        return None
-    one = t.monomial(c, 2) + t.monomial(s, 2)
-    total = t.constant(0)
-    for degree, part in by_degree.items():
-        total = total + part * one ** ((highest - degree) // 2)
-    return total
-
-
-def _primes(number: fmpq) -> list[tuple[int, int]]:
-    """Return primes and exponents of a positive rational; large integers stay whole."""
-    found: list[tuple[int, int]] = []
-    for whole, side in ((int(number.p), 1), (int(number.q), -1)):
-        if whole > LARGEST_FACTORED_INTEGER:
-            found.append((whole, side))
-        elif whole > 1:
-            found.extend((int(p), side * int(e)) for p, e in sp.factorint(whole).items())
-    return found
-
-
 # -- roots ---------------------------------------------------------------------------------------------
 
 
@@ -187,8 +101,8 @@ def root(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
         return t.power(f, int(r.p))
     if t.is_zero(f):
         return t.power(t.number(0), 1 if r > 0 else -1)
-    content, outside, rest = _split(n, f)
-    factors = [_root_kernel(n, t.number(p), r * e, "+") for p, e in _primes(content)]
+    content, outside, rest = split_signs(n, f)
+    factors = [_root_kernel(n, t.number(p), r * e, "+") for p, e in primes(content)]
     factors.extend(_root_of_nonnegative(n, p, r * e) for p, e in outside)
     if rest.num.is_constant() and not rest.den:
         if rest.num.leading_coefficient() < 0:
@@ -313,8 +227,8 @@ def logarithm(n: NormalForm, f: Fraction, *, whole_powers: bool = False) -> Frac
     t = n.tower
     if t.is_zero(f):
         raise ZeroDivisionError("the logarithm of zero")
-    content, outside, rest = _apart(n, f) if whole_powers else _split(n, f)
-    terms = [n.scaled(e, _log_kernel(n, t.number(p), "+")) for p, e in _primes(content)]
+    content, outside, rest = apart(n, f) if whole_powers else split_signs(n, f)
+    terms = [n.scaled(e, _log_kernel(n, t.number(p), "+")) for p, e in primes(content)]
     terms.extend(n.scaled(e, _log_of_factor(n, p)) for p, e in outside)
     if rest.num.is_constant() and not rest.den:
         if rest.num.leading_coefficient() < 0:
@@ -332,20 +246,6 @@ def _quarter_turns(n: NormalForm, f: Fraction) -> int | None:
         if n.only_kernel(n.scaled(sign, f)) == ("I",):
             return sign
     return None
-
-
-def _apart(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
-    """Write f = content · Π pᵢ^eᵢ · (±1) with polynomials pᵢ, not negative where their sign is proven."""
-    t = n.tower
-    f = t.canonical(f)
-    content, factors = t.factors(f.num)
-    sign = 1 if content > 0 else -1
-    powers: list[tuple[Fraction, int]] = []
-    for p, e in factors + [(t.base(i), -e) for i, e in f.den]:
-        flipped = n.signs.of(p).endswith("-")
-        sign = -sign if flipped and e % 2 else sign
-        powers.append((Fraction(-p if flipped else p), e))
-    return abs(content), powers, t.number(sign)
 
 
 def _log_of_factor(n: NormalForm, f: Fraction) -> Fraction:
@@ -384,26 +284,11 @@ def modulus(n: NormalForm, f: Fraction) -> Fraction:
         return f
     if not n.is_real(f):
         return _complex_modulus(n, f)
-    content, factors = _factors(n, f.num)
+    content, factors = factors_of(n, f.num)
     result = t.number(abs(content))
     for p, e in factors + [(t.base(i), -e) for i, e in f.den]:
-        result = t.times(result, t.power(_modulus_of_polynomial(n, p), e))
+        result = t.times(result, t.power(modulus_of_polynomial(n, p), e))
     return result
-
-
-def _modulus_of_polynomial(n: NormalForm, p: fmpq_mpoly) -> Fraction:
-    known = n.signs.of(p)
-    if known:
-        return Fraction(p if known.endswith("+") else -p)
-    t = n.tower
-    if p.leading_coefficient() < 0:
-        p = -p
-    kernel = ("abs", t.key(p))
-    if not t.knows(kernel):
-        n.arguments[kernel] = Fraction(p)
-        square = t.product(p, p)
-        t.relate(t.generator(kernel), 2, square)
-    return n.atom(kernel, "0+", lambda: sp.Abs(n.expression(p)))
 
 
 def _complex_modulus(n: NormalForm, f: Fraction) -> Fraction:

@@ -106,10 +106,17 @@ def _replaced(expr: _B, by: Mapping[sp.Basic, Expr]) -> _B:
             raise _NoValue
         else:
             try:
-                done[part] = part.func(*inner)
+                done[part] = _rebuilt(part, inner)
             except (ValueError, TypeError) as reason:
                 raise _NoValue from reason
     return cast("_B", done[expr])
+
+
+def _rebuilt(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> sp.Basic:
+    """Put a part together again; relations stay unevaluated, for SymPy may think about them without end."""
+    if isinstance(part, Relational) and not all(isinstance(a, sp.Rational | sp.Symbol) for a in inner):
+        return part.func(*inner, evaluate=False)
+    return part.func(*inner)
 
 
 def _too_long(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> bool:

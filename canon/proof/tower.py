@@ -313,6 +313,7 @@ class Tower:
         for i, e in sorted(den.items()):
             base = self.base(i)
             while e > 0 and len(base) <= len(num) <= 2000:
+                self.check_time()
                 quotient, remainder = divmod(num, base)
                 if not remainder.is_zero():
                     break
