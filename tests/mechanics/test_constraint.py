@@ -2,6 +2,8 @@
 
 import pytest
 import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from canon.expression.symbol import acceleration, coordinates, parameters, time, velocity
 from canon.mechanics.constraint import ConstrainedLagrangian
@@ -141,6 +143,29 @@ def test_multiplier_equations_hold(system):
     assert any(
         vanishes(e.xreplace(wrong)).fails for e in constrained.equations(lam)[: len(constrained.lagrangian.q)]
     )
+
+
+NUMBER = st.integers(-3, 3)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(NUMBER, min_size=8, max_size=8), st.integers(1, 3))
+def test_three_ways_agree_on_generated_systems(numbers, one):
+    """A constraint z = u(x, y, t) in L with a position-dependent metric: multipliers, elimination, Maggi."""
+    c1, c2, c3, c4, d1, d2, d3, d4 = numbers
+    u = c1 * x + c2 * x * y + c3 * y**2 + c4 * x * time
+    metric = (one + x**2) * x.dot**2 / 2 + y.dot**2 / 2 + m * z.dot**2 / 2 + d1 * x.dot * z.dot / 5
+    L = Lagrangian(metric - d2 * z**2 - d3 * x * y * z - k * y**2, [x, y, z], forces=[0, -d4 * y.dot, 0])
+    constrained = ConstrainedLagrangian(L, holonomic=[z - u])
+    reduced = embedded(L, {z: u}, [x, y])
+    found = {x.ddot: reduced.accelerations[0], y.ddot: reduced.accelerations[1]}
+    by_multipliers, _ = in_new_coordinates(constrained, {z: u}, [x, y])
+    kin = independent_velocities(constrained, [x, y])
+    by_maggi = [f.xreplace({z: u}) for f in maggi_accelerations(L, kin)]
+    for i, s_ in enumerate((x.ddot, y.ddot)):
+        assert vanishes(by_multipliers[i] - found[s_]).holds
+        assert vanishes(by_maggi[i] - found[s_]).holds
+    assert vanishes(by_maggi[1] - found[y.ddot] - k * y).fails
 
 
 def test_printed_incline():

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from canon.expression.graph import Graph
 from canon.expression.python_source import python_function
+from canon.expression.shared import shared_to_sympy
 from canon.expression.sums import SharedSums
 from canon.expression.symbol import coordinates, parameters, time
 from canon.mechanics.body import Particle, PlanarBody, kinetic_energy
@@ -114,6 +115,35 @@ def test_hamiltons_equations(name):
     )
     assert np.allclose(explicit, [*v, *p_dot, H], rtol=1e-9, atol=1e-9)
     assert not np.allclose(rates[1], -p_dot, rtol=1e-2)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_handed_back_as_sympy_objects(name):
+    """Replacements, M and f give the graph's numbers; every replacement uses earlier symbols only."""
+    bodies, q, field = SYSTEMS[name]()
+    equations = derivation(bodies, q, field=field)
+    replacements, M, f = equations.to_sympy()
+    at = numbers((*q, *equations.velocities, equations.t, *equations.parameters), seed=7)
+    values = {s: sp.Float(value, 30) for s, value in at.items()}
+    for symbol, expression in replacements:
+        assert expression.free_symbols <= set(values)
+        values[symbol] = expression.xreplace(values)
+    found = [M[i, j] for i in range(len(q)) for j in range(i + 1)] + list(f)
+    expected = equations.graph.evaluate(equations.nodes, at)
+    given = [float(sp.sympify(e).xreplace(values)) for e in found]
+    assert np.allclose(given, expected, rtol=1e-10, atol=1e-10)
+    assert M == M.T
+    assert not np.allclose(given, [-e for e in expected], rtol=1e-3)
+
+
+def test_shared_names_pass_over_those_in_use():
+    graph = Graph()
+    x0, x1 = sp.symbols("x0 x1")
+    f = sp.sin(x0 * x1)
+    replacements, (again, square) = shared_to_sympy(graph, [graph.from_sympy(f), graph.from_sympy(f**2)])
+    ((symbol, value),) = replacements
+    assert (symbol.name, value) == ("x2", f)
+    assert (again, square) == (symbol, symbol**2)
 
 
 def test_acceleration_function_solves():
