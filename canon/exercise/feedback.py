@@ -161,10 +161,11 @@ def _hints(question: Same | SameEquations) -> list[tuple[Expr, ...]]:
     """Return for each claimed equation the terms of the right ones, brought to its scale."""
     if isinstance(question, Same):
         return [() for _ in question.parts]
+    right_equations = _in_the_claims_terms(question)
     hints: list[tuple[Expr, ...]] = []
     for claimed in question.written:
         terms: dict[Expr, None] = {}
-        for right in question.right:
+        for right in right_equations:
             for u in question.unknowns:
                 above, below = claimed.diff(u), right.diff(u)
                 if above != 0 and below != 0:
@@ -176,6 +177,17 @@ def _hints(question: Same | SameEquations) -> list[tuple[Expr, ...]]:
                     terms |= dict.fromkeys(scaled)
         hints.append(tuple(terms))
     return hints
+
+
+def _in_the_claims_terms(question: SameEquations) -> tuple[Expr, ...]:
+    """Return the right equations as they are shown: those of Routh in momenta, not in ignorable velocities."""
+    if not question.through or question.answer is None:
+        return question.right
+    try:
+        answer = question.answer()
+    except (ValueError, Undecided):
+        return ()
+    return tuple(e for e in answer if isinstance(e, sp.Expr)) if isinstance(answer, tuple) else ()
 
 
 def _part_by_part(

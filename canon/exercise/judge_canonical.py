@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.generating_answer import generating_function_of
 from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.manifold import on_manifold, transported
 from canon.exercise.question import Part, Question, Regular, Same, wrong_variables
@@ -172,7 +173,7 @@ def generating(reading: Reading) -> Iterator[Question]:
     kind, F = int(reading.claim.kind[-1]), reading.expression("F")
     there, domain = map_values(reading)
     rules = rules_of(reading, kind, F)
-    yield Same(rules.on(there), domain)
+    yield Same(rules.on(there), domain, lambda: generating_function_of(reading, kind))
     yield Regular(
         rules.mixed_hessian.applyfunc(lambda entry: substitute(entry, there)),
         "the mixed Hessian",

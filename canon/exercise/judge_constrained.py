@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -18,11 +19,14 @@ from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.substitution import substitute
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.reading import Reading
 
 __all__ = ["multiplier_holonomic", "nonholonomic"]
+
+MOST_OPERATIONS = 150
+"""Size of an answer that is still shown."""
 
 
 def multiplier_holonomic(reading: Reading) -> Iterator[Question]:
@@ -68,7 +72,8 @@ def _on_every_motion(
     jets = _jets((*system, *manifold, *claims), t)
     functions = {symbol: function for function, symbol in jets.items()}
     system, claims, manifold = ([replaced(e, jets) for e in given] for given in (system, claims, manifold))
-    for branch in on_manifold(manifold, reading.domain, keep=(t, *unknowns), prefer=lagrangian.velocities):
+    branches = on_manifold(manifold, reading.domain, keep=(t, *unknowns), prefer=lagrangian.velocities)
+    for branch in branches:
         here = [substitute(equation, branch.values) for equation in system]
         try:
             solution = solved(here, unknowns, branch.domain)
@@ -83,7 +88,17 @@ def _on_every_motion(
             Part(f"claim {i + 1}", claim, through=through, key=f"claim[{i}]", written=functions)
             for i, claim in enumerate(claims)
         )
-        yield Same(parts, branch.domain)
+        yield Same(parts, branch.domain, partial(_shown, solution if len(branches) == 1 else {}))
+
+
+def _shown(solution: Mapping[Symbol, Expr]) -> tuple[str, ...] | None:
+    """Return accelerations and multipliers as text, unless they are longer than anyone reads."""
+    if not solution or sp.count_ops(sp.Tuple(*solution.values())) > MOST_OPERATIONS:
+        return None
+    return tuple(
+        f"{u} = {sp.cancel(value) if value.is_rational_function() else value}"
+        for u, value in solution.items()
+    )
 
 
 def _jets(expressions: Sequence[Expr], t: Symbol) -> dict[Expr, Symbol]:

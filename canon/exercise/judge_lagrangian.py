@@ -13,6 +13,7 @@ from canon.exercise.manifold import transported
 from canon.exercise.question import Part, Question, Regular, Same, SameEquations, wrong_variables
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.routh import routhian as routh
 from canon.mechanics.substitution import substitute
 
 if TYPE_CHECKING:
@@ -82,7 +83,13 @@ def routhian(reading: Reading) -> Iterator[Question]:
         unknowns = tuple(acceleration(x) for x in q)
         domain = transported(reading.domain, through)
         yield SameEquations(
-            (*seen, *conserved), lagrangian.equations, unknowns, domain, written=written, through=through
+            (*seen, *conserved),
+            lagrangian.equations,
+            unknowns,
+            domain,
+            lambda: routh(lagrangian, ignorable, momenta, domain=reading.domain).equations,
+            written,
+            through,
         )
 
 

@@ -14,7 +14,6 @@ from canon.exercise.report import MAX_SHOWN, Judgement, invalid
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from canon.exercise.judge import Finding
     from canon.exercise.sheet import Claim
     from canon.proof.verdict import Verdict
 
@@ -40,14 +39,13 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
         yield judgement, True
         return
     yield judgement, False
-    yield _with_feedback(judgement, finding, claim), True
-
-
-def _with_feedback(judgement: Judgement, finding: Finding, claim: Claim) -> Judgement:
     left = min(FEEDBACK_SECONDS, claim.budget - judgement.seconds)
-    sentence = feedback(finding, left) if left > 0.1 else ""
-    right = corrected(finding) if left > 0.1 else ""
-    return replace(judgement, feedback=sentence or judgement.feedback, corrected=right[:MAX_SHOWN])
+    if left <= 0.1:
+        yield judgement, True
+        return
+    judgement = replace(judgement, corrected=corrected(finding)[:MAX_SHOWN])
+    yield judgement, False  # before the diagnosis is looked for, which can be cut off
+    yield replace(judgement, feedback=feedback(finding, left) or judgement.feedback), True
 
 
 def _told(claim: Claim, verdict: Verdict) -> Judgement:

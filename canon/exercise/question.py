@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.symbol import Momentum
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.equations import equivalent_equations
@@ -67,6 +68,11 @@ class Part:
     def seen(self, expression: Expr) -> Expr:
         """Return an expression after the substitution."""
         return substitute(expression, self.through)
+
+    @property
+    def determined(self) -> tuple[Symbol, ...]:
+        """The accelerations and multipliers among the replaced symbols."""
+        return tuple(s for s in self.through if not isinstance(s, Momentum))
 
     @property
     def residual(self) -> Expr:

@@ -128,7 +128,7 @@ def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
     """
     claimed, name = part.claimed, part.name
     for terms in _as_sums(claimed):
-        for term in sorted(terms, key=lambda term: bool(part.through and term.has(*part.through))):
+        for term in sorted(terms, key=lambda term: term.has(*part.determined)):
             share = screen.share_of_residual(term)
             if share is None or share == 0:
                 continue
@@ -153,7 +153,7 @@ def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterato
 
 def _says_something(part: Part, right: Expr) -> bool:
     """Whether a repaired equation still holds an acceleration or multiplier, if the wrong one did."""
-    return part.right != 0 or not part.claimed.has(*part.through) or right.has(*part.through)
+    return part.right != 0 or not part.claimed.has(*part.determined) or right.has(*part.determined)
 
 
 def _as_sums(expression: Expr) -> Iterator[Sequence[Expr]]:

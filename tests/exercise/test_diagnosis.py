@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 from canon.exercise.diagnosis import judged_to_hold
-from canon.exercise.feedback import diagnosis
+from canon.exercise.feedback import corrected, diagnosis
 from canon.exercise.judge import examine
+from canon.exercise.judging import judgements
 from canon.exercise.sheet import Claim, read_sheet
 
 ROOT = Path(__file__).parents[2]
@@ -73,3 +74,37 @@ def test_a_slip_behind_a_derivative_is_passed_over():
         told(Claim("d", "equality-only", {**keys, "functions": {"A": ["x"]}, "parameters": {"x": "real"}}))
         is None
     )
+
+
+def test_routhian_feedback_speaks_of_momenta():
+    """The slips stand in the student's momenta, not in the velocities of the ignorable coordinates."""
+    assert told(SEED["routh-cylindrical-eom-r-read-as"], 6.0).sentence == (
+        "in equation 1 the sign of P0**2/(m*r**3) is wrong"
+    )
+    keys = dict(SEED["routh-cylindrical-eom-r-read-as"].keys)
+    lost = Claim("lost", "routhian", {**keys, "claim": ["m*r_ddot", "z_ddot + g"]})
+    assert told(lost, 6.0).sentence == "in equation 1 the term -P0**2/(m*r**3) is missing"
+    assert "theta" not in corrected(examine(lost))
+    assert "P0**2" in corrected(examine(lost))
+
+
+GENERATED = {
+    c.id: c for k in "1234" for c in read_sheet(ROOT / f"tests/data/claims/generating-F{k}.json").claims
+}
+
+
+@pytest.mark.parametrize("name", ["F1-02a", "F1-08b", "F2-05a", "F3-01a", "F3-06a", "F4-03a", "F4-05a"])
+def test_the_right_generating_function_is_shown(name, monkeypatch):
+    """By the map and by the inverse map; the claim with it put in holds."""
+    monkeypatch.setattr("canon.exercise.generating_answer.SECONDS", 10.0)  # on a busy machine too
+    claim = GENERATED[name]
+    shown = corrected(examine(claim))
+    assert shown
+    right = Claim(name, claim.kind, {**claim.keys, "F": shown}, budget=claim.budget)
+    assert examine(right).verdict.holds
+
+
+def test_the_right_answer_is_told_before_the_diagnosis_is_looked_for():
+    steps = [judgement for judgement, _ in judgements(GENERATED["F1-02a"])]
+    assert [bool(s.corrected) for s in steps] == [False, True, True]
+    assert [bool(s.feedback) for s in steps] == [False, False, True]
