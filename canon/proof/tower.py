@@ -312,7 +312,7 @@ class Tower:
         left: list[tuple[int, int]] = []
         for i, e in sorted(den.items()):
             base = self.base(i)
-            while e > 0 and len(base) <= len(num) <= 2000:
+            while e > 0 and len(base) <= len(num) <= 2000 and len(base) * len(num) <= self.limits.product:
                 self.check_time()
                 quotient, remainder = divmod(num, base)
                 if not remainder.is_zero():
