@@ -39,7 +39,9 @@ def loaded_after(statement: str) -> set[str]:
 
 
 def test_import_canon_loads_no_room():
-    assert not {"sympy", "numpy", "scipy", "heyoka", "llvmlite", "matplotlib", "flint"} & loaded_after("import canon")
+    assert not {"sympy", "numpy", "scipy", "heyoka", "llvmlite", "matplotlib", "flint"} & loaded_after(
+        "import canon"
+    )
 
 
 def test_a_verdict_needs_no_integrator():
