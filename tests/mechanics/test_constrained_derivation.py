@@ -107,7 +107,7 @@ def pendulum(**rates):
 
 def test_projection_keeps_the_constraint_at_round_off():
     start = np.array([0.8, -0.6]), np.array([0.3, 0.4])
-    steps, h = 3000, 0.05
+    steps, h = 2000, 0.05
     assert run(pendulum(), *start, h, steps, project=True) < 2e-15
     drifted = run(pendulum(), *start, h, steps, project=False)
     assert drifted > 1e-5
