@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy as sp
 
 from canon.expression.python_source import python_function
+from canon.mechanics.motion import solved
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -216,7 +217,7 @@ _NEAR = 1e-8
 
 
 def _solved(matrix: Vector, right: Vector) -> Vector:
-    return cast("Vector", np.linalg.solve(matrix, right))
+    return solved(matrix, right, "the matrix of masses and constraints")
 
 
 def _rate(equations: Equations, node: int) -> int:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Vector = NDArray[np.float64]
 
-__all__ = ["acceleration_function", "energy_function", "hamilton_function"]
+__all__ = ["acceleration_function", "energy_function", "hamilton_function", "solved"]
 
 
 def acceleration_function(
@@ -120,7 +120,27 @@ def _solved(
     matrix = np.empty((n, n))
     matrix[lower] = values
     matrix.T[lower] = values
-    return cast("Vector", np.linalg.solve(matrix, right))
+    return solved(matrix, right, "the mass matrix")
+
+
+def solved(matrix: Vector, right: Sequence[float] | Vector, name: str) -> Vector:
+    """Solve linear equations, and say so where the matrix is singular or a number is not finite.
+
+    Raises
+    ------
+    ArithmeticError
+        With the name of the matrix.
+    """
+    try:
+        found = cast("Vector", np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError as singular:
+        raise ArithmeticError(
+            f"{name} is singular at this point, so the motion is not determined there; use other coordinates "
+            "near it"
+        ) from singular
+    if not np.isfinite(found).all():
+        raise ArithmeticError(f"the equations with {name} hold a number that is not finite at this point")
+    return found
 
 
 def _numbers(symbols: Sequence[Symbol], parameters: Mapping[Symbol, float]) -> tuple[float, ...]:

@@ -159,6 +159,18 @@ def test_acceleration_function_solves():
         acceleration_function(equations, {s: a for s, a in at.items() if s.name != "m3"})
 
 
+def test_singular_and_infinite_points_are_refused():
+    """Spherical coordinates at the pole, and a start that is not a number."""
+    bodies, q, field = spherical_chain(1)
+    equations = derivation(bodies, q, field=field)
+    accelerations = acceleration_function(equations, dict.fromkeys(equations.parameters, 1.0))
+    assert np.isfinite(accelerations([0.5, 0.0], [0.0, 1.0], 0.0)).all()
+    with pytest.raises(ArithmeticError, match="mass matrix is singular at this point"):
+        accelerations([0.0, 0.0], [0.0, 1.0], 0.0)
+    with pytest.raises(ArithmeticError, match="not finite"):
+        accelerations([0.5, 0.0], [float("nan"), 1.0], 0.0)
+
+
 def test_a_long_chain_conserves_its_energy():
     """Twenty links: dH/dt = Σ ∂H/∂q q̇ + ∂H/∂p ṗ vanishes to round-off, and not if a link's mass is changed."""
     bodies, q, field = planar_pendulum(20)
