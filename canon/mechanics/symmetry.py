@@ -7,6 +7,7 @@ docs/conventions.md).
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -194,13 +195,17 @@ def gauge_function(first: Lagrangian, second: Lagrangian, domain: Domain | None 
     >>> free = Lagrangian((x.dot**2 + y.dot**2)/2, [x, y])
     >>> gauge_function(free, Lagrangian(free.L + x*y.dot + y*x.dot, [x, y]))
     x*y
+    >>> gauge_function(free, Lagrangian(free.L + (x*y.dot - y*x.dot)/(x**2 + y**2), [x, y]))
+    atan2(y, x)
     """
     q, t = _same_coordinates(first, second)
     difference = second.L - first.L
     v = [velocity(s) for s in q]
     at_rest = dict.fromkeys(v, sp.S.Zero)
     form = [*(exchanged(difference.diff(a), at_rest) for a in v), exchanged(difference, at_rest)]
-    return potential(form, (*q, t), domain or Domain())
+    angles = [sp.atan2(b, a) for a, b in combinations(q, 2)]
+    hints = {} if all(e.is_polynomial(*q) for e in form) else {angle: angle for angle in angles}
+    return potential(form, (*q, t), domain or Domain(), hints)
 
 
 def have_same_equations(first: Lagrangian, second: Lagrangian, domain: Domain | None = None) -> Verdict:
