@@ -69,7 +69,8 @@ class Reader:
         """Return the node of an expression."""
         found = self._nodes.get(f)
         if found is None:
-            found = self._nodes[f] = self.graph.from_sympy(f)
+            found = self.graph.symbol(f) if isinstance(f, sp.Symbol) else self.graph.from_sympy(f)
+            self._nodes[f] = found
         return found
 
     def slopes(self, f: Expr) -> tuple[tuple[tuple[int, int], ...], int | None]:
