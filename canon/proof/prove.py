@@ -6,8 +6,10 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
-from sympy import Ne, Piecewise, Pow, default_sort_key, false, true
+from sympy import LambertW, Ne, Piecewise, Pow, default_sort_key, false, true
 from sympy.concrete.expr_with_limits import ExprWithLimits
+from sympy.functions.elementary.hyperbolic import InverseHyperbolicFunction
+from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction
 
 from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.angles import Refine
@@ -15,7 +17,7 @@ from canon.proof.conjugates import radicals_cancel
 from canon.proof.domain import Domain
 from canon.proof.normal_form import NormalForm
 from canon.proof.phases import arcs_cancel
-from canon.proof.split import cases, settle_equalities
+from canon.proof.split import KINKED, cases, settle_equalities
 from canon.proof.tower import THOROUGH, Full, Limits, OutOfTime, TooLarge
 
 if TYPE_CHECKING:
@@ -137,6 +139,9 @@ def _prove(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt:
         return True
     if attempt.large or time.monotonic() > deadline:
         return False
+    if not limits.killable and _is_slow_to_rebuild(expr):
+        attempt.capped = True
+        return False
     pieces = cases(expr, domain)
     if pieces is None:
         return False
@@ -150,6 +155,12 @@ def _prove(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt:
             return False
     attempt.reach("cases")
     return True
+
+
+def _is_slow_to_rebuild(expr: Expr) -> bool:
+    """Tell whether SymPy may look long for a sign when a case is put in; nothing can interrupt it here."""
+    found = anatomy([expr])
+    return found.has(InverseTrigonometricFunction, InverseHyperbolicFunction, LambertW) and found.has(*KINKED)
 
 
 def _without_cases(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt: Attempt) -> bool:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["Case", "cases", "settle_equalities"]
+__all__ = ["KINKED", "Case", "cases", "settle_equalities"]
 
 MOST_VALUES = 24
 """Values or residues of an integer that are gone through one by one."""

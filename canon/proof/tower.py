@@ -33,18 +33,23 @@ class Limits:
         Size of a polynomial that is still factored; larger ones are kept whole.
     eliminated_degree
         Product of the degrees of the radicals in one number.
+    killable
+        Whether this process may be killed, so that SymPy's own evaluation may take its time.
     """
 
     product: int
     factored_terms: int
     factored_degree: int
     eliminated_degree: int
+    killable: bool
 
 
-QUICK = Limits(product=100_000, factored_terms=40, factored_degree=16, eliminated_degree=48)
+QUICK = Limits(product=100_000, factored_terms=40, factored_degree=16, eliminated_degree=48, killable=False)
 """Limits in the user's own process: no operation takes more than some milliseconds."""
 
-THOROUGH = Limits(product=20_000_000, factored_terms=200, factored_degree=40, eliminated_degree=128)
+THOROUGH = Limits(
+    product=20_000_000, factored_terms=200, factored_degree=40, eliminated_degree=128, killable=True
+)
 """Limits in the worker, which can be killed."""
 
 
