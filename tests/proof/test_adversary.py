@@ -423,7 +423,8 @@ def judge(seed, count, budget):
     if verdict.fails:
         point = {s: Rational(verdict.counterexample.point[s.name]) for s in claim.free_symbols}
         assert all(e.subs(point) == S.true for e in conditions if e.free_symbols <= set(point)), point
-        assert abs(sp.N(claim.xreplace(point), 30)) > Rational(1, 10**25), (claim, point)
+        size = max(abs(sp.N(term.xreplace(point), 30)) for term in sp.Add.make_args(claim))
+        assert abs(sp.N(claim.xreplace(point), 30)) > size / 10**25, (claim, point)
     return verdict.holds
 
 
@@ -434,4 +435,4 @@ def test_half_valid_rewritings():
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(20))
 def test_many_half_valid_rewritings(block):
-    assert sum(judge(seed, 300, 2.0) for seed in range(1000 * block, 1000 * block + 300)) > 20
+    assert sum(judge(seed, 300, 2.0) for seed in range(1000 * block, 1000 * block + 120)) > 8
