@@ -40,7 +40,7 @@ def from_sympy(graph: Graph, expression: Expr) -> int:
     """Return the node of a SymPy expression."""
     # The memo goes by identity: hashing a deep SymPy expression recurses.
     done: dict[int, int] = {}
-    waiting: list[Any] = [sp.sympify(expression)]
+    waiting: list[Any] = [sp.sympify(expression, strict=True)]
     while waiting:
         current = waiting[-1]
         if not isinstance(current, sp.Expr) or isinstance(current, (sp.Piecewise, sp.Max, sp.Min)):

@@ -132,7 +132,7 @@ def _fraction(x: Any) -> Fraction:
 
 def definite_node(graph: Graph, f: Expr, what: str) -> int:
     """Return the node of an expression without arbitrary functions; ``what`` names it in errors."""
-    arbitrary = sorted(map(str, sp.sympify(f).atoms(AppliedUndef)))
+    arbitrary = sorted(map(str, sp.sympify(f, strict=True).atoms(AppliedUndef)))
     if arbitrary:
         raise ValueError(
             f"{what} holds the arbitrary function {arbitrary[0]}, which has no numbers: put a definite one in its place"

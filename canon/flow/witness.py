@@ -118,7 +118,7 @@ def brackets_at_points(
     """
     fixed = exact_numbers(parameters)
     seen, misses = 0, list[Miss]()
-    for found in bracket_misses(transformation, sp.sympify(valence), points, seed, fixed):
+    for found in bracket_misses(transformation, sp.sympify(valence, strict=True), points, seed, fixed):
         misses.extend(found)
         seen += 1
     if not seen:

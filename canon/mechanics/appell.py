@@ -73,7 +73,7 @@ class GibbsAppell:
     ) -> None:
         object.__setattr__(self, "bodies", tuple(bodies))
         object.__setattr__(self, "kinematics", Kinematics(q, u, q_dot, t))
-        object.__setattr__(self, "V", self.kinematics.plain(sp.sympify(V)))
+        object.__setattr__(self, "V", self.kinematics.plain(sp.sympify(V, strict=True)))
         given = as_tuple(forces or (sp.S.Zero,) * len(q))
         object.__setattr__(self, "Q", tuple(self.kinematics.plain(force) for force in given))
         if len(self.Q) != len(self.q):

@@ -49,7 +49,11 @@ class Assembly:
             for g, place in zip(field, body.r, strict=False):
                 if g != 0:
                     terms = tuple(sorted(reader.node(term) for term in sp.Add.make_args(place)))
-                    factors = (reader.node(body.m), reader.node(sp.sympify(g)), self.sums.of(terms))
+                    factors = (
+                        reader.node(body.m),
+                        reader.node(sp.sympify(g, strict=True)),
+                        self.sums.of(terms),
+                    )
                     energies.append(graph.negative(graph.plain_mul(factors)))
         return energies
 

@@ -102,7 +102,9 @@ def curl(form: Sequence[Expr], x: Sequence[Symbol]) -> sp.Matrix:
     matrix = sp.zeros(n, n)
     for i in range(n):
         for j in range(i + 1, n):
-            matrix[i, j] = sp.sympify(form[i]).diff(x[j]) - sp.sympify(form[j]).diff(x[i])
+            matrix[i, j] = sp.sympify(form[i], strict=True).diff(x[j]) - sp.sympify(
+                form[j], strict=True
+            ).diff(x[i])
             matrix[j, i] = -matrix[i, j]
     return matrix
 

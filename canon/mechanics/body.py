@@ -46,7 +46,7 @@ class Particle:
     r: tuple[Expr, ...]
 
     def __init__(self, m: Expr, r: Sequence[Expr]) -> None:
-        object.__setattr__(self, "m", sp.sympify(m))
+        object.__setattr__(self, "m", sp.sympify(m, strict=True))
         object.__setattr__(self, "r", as_tuple(r))
 
     @property
@@ -82,10 +82,10 @@ class PlanarBody:
     angle: Expr
 
     def __init__(self, m: Expr, r: Sequence[Expr], moment: Expr, angle: Expr) -> None:
-        object.__setattr__(self, "m", sp.sympify(m))
+        object.__setattr__(self, "m", sp.sympify(m, strict=True))
         object.__setattr__(self, "r", as_tuple(r))
-        object.__setattr__(self, "moment", sp.sympify(moment))
-        object.__setattr__(self, "angle", sp.sympify(angle))
+        object.__setattr__(self, "moment", sp.sympify(moment, strict=True))
+        object.__setattr__(self, "angle", sp.sympify(angle, strict=True))
 
     @property
     def inertia(self) -> sp.ImmutableDenseMatrix:
@@ -135,7 +135,7 @@ class RigidBody:
             raise ValueError(f"the inertia {matrix.tolist()} is no symmetric 3×3 matrix nor three moments")
         if (rotation is None) == (omega is None):
             raise ValueError("say how the body turns by rotation or by omega, and not by both")
-        object.__setattr__(self, "m", sp.sympify(m))
+        object.__setattr__(self, "m", sp.sympify(m, strict=True))
         object.__setattr__(self, "r", as_tuple(r))
         object.__setattr__(self, "inertia", sp.ImmutableDenseMatrix(matrix))
         turned = None if rotation is None else sp.ImmutableDenseMatrix(rotation)

@@ -42,7 +42,7 @@ def poisson_bracket(f: Expr, g: Expr, q: Sequence[Symbol], p: Sequence[Symbol]) 
     y
     """
     _same_length(q, p, "coordinates", "momenta")
-    f, g = sp.sympify(f), sp.sympify(g)
+    f, g = sp.sympify(f, strict=True), sp.sympify(g, strict=True)
     return sp.Add(*(f.diff(a) * g.diff(b) - f.diff(b) * g.diff(a) for a, b in zip(q, p, strict=True)))
 
 
@@ -66,7 +66,8 @@ def lagrange_bracket(u: Symbol, v: Symbol, q: Sequence[Expr], p: Sequence[Expr])
     _same_length(q, p, "coordinates", "momenta")
     return sp.Add(
         *(
-            sp.sympify(a).diff(u) * sp.sympify(b).diff(v) - sp.sympify(a).diff(v) * sp.sympify(b).diff(u)
+            sp.sympify(a, strict=True).diff(u) * sp.sympify(b, strict=True).diff(v)
+            - sp.sympify(a, strict=True).diff(v) * sp.sympify(b, strict=True).diff(u)
             for a, b in zip(q, p, strict=True)
         )
     )
@@ -91,7 +92,7 @@ def lie_bracket(X: Sequence[Expr], Y: Sequence[Expr], x: Sequence[Symbol]) -> tu
     """
     _same_length(X, x, "components", "coordinates")
     _same_length(Y, x, "components", "coordinates")
-    first, second = [sp.sympify(a) for a in X], [sp.sympify(b) for b in Y]
+    first, second = [sp.sympify(a, strict=True) for a in X], [sp.sympify(b, strict=True) for b in Y]
     return tuple(
         sp.Add(
             *(a * second[i].diff(s) - b * first[i].diff(s) for a, b, s in zip(first, second, x, strict=True))

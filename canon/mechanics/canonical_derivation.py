@@ -131,9 +131,9 @@ def canonical_derivation(
     loads = [graph.zero if c.load is None else mul((c.weight, c.load)) for c in found]
     still = [graph.zero if c.rest is None else mul((c.weight, c.rest)) for c in found]
     momenta = [mul((c.weight, assembly.speed(c))) for c in found]
-    U = reader.node(sp.sympify(V))
+    U = reader.node(sp.sympify(V, strict=True))
     pulls = [graph.negative(a) for a in graph.gradient(U, reader.q)]
-    given = [reader.node(sp.sympify(Q)) for Q in forces or ()] or [graph.zero] * len(reader.q)
+    given = [reader.node(sp.sympify(Q, strict=True)) for Q in forces or ()] or [graph.zero] * len(reader.q)
     p_dot = zip(assembly.slopes_of_T(momenta), assembly.projected(loads), pulls, given, strict=True)
     energies = [U, *assembly.heights(bodies, field)]
     for w, c in zip(still, found, strict=True):

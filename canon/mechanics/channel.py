@@ -125,7 +125,7 @@ def channels(reader: Reader, bodies: Sequence[Body], field: Sequence[Expr] = ())
         if len(body.r) not in (0, len(field)) and field:
             raise ValueError(f"a field of {len(field)} components acts on a position of {len(body.r)}")
         mass = reader.node(body.m)
-        loads = [reader.node(sp.sympify(g)) for g in field] if body.r else []
+        loads = [reader.node(sp.sympify(g, strict=True)) for g in field] if body.r else []
         for k, place in enumerate(body.r):
             pairs, rest = reader.slopes(place)
             load = loads[k] if loads and loads[k] != zero else None

@@ -92,8 +92,8 @@ def constrained(
     (array([0. , 0.5]), array([-2.625]))
     """
     graph, q, v, t = equations.graph, equations.q, equations.velocities, equations.t
-    values = tuple(graph.from_sympy(sp.sympify(f)) for f in holonomic)
-    given = tuple(graph.from_sympy(sp.sympify(g)) for g in nonholonomic)
+    values = tuple(graph.from_sympy(sp.sympify(f, strict=True)) for f in holonomic)
+    given = tuple(graph.from_sympy(sp.sympify(g, strict=True)) for g in nonholonomic)
     rows: list[tuple[int, ...]] = []
     rests: list[int] = []
     for f, node in zip(holonomic, values, strict=True):

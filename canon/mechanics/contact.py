@@ -50,7 +50,7 @@ def multiplier_in_contact(
     if not verdict.holds:
         raise ValueError(f"the positions are not in contact: {verdict.feedback or verdict}")
     t = constrained.lagrangian.t
-    whole = {s: sp.sympify(places.get(s, s)) for s in constrained.lagrangian.q}
+    whole = {s: sp.sympify(places.get(s, s), strict=True) for s in constrained.lagrangian.q}
     rates = {velocity(s): time_derivative(place, q, t) for s, place in whole.items()}
     return substitute(constrained.multipliers[which], {**whole, **rates})
 
@@ -104,7 +104,9 @@ def multiplier_along(
     quadratic = E.diff(v, 2) / 2
     if quadratic.has(v):
         raise ValueError(f"the energy {E} is not quadratic in {v}, so {v}² does not follow from it alone")
-    squared = (substitute(E, {s: sp.sympify(start), v: sp.sympify(speed)}) - at_rest) / quadratic
+    squared = (
+        substitute(E, {s: sp.sympify(start, strict=True), v: sp.sympify(speed, strict=True)}) - at_rest
+    ) / quadratic
     multiplier = sp.expand(multiplier_in_contact(constrained, places, (s,), which))
     if differ(multiplier - exchanged(multiplier, {v: -v}), domain):
         raise ValueError(

@@ -153,10 +153,10 @@ def _add_given(terms: list[list[int]], reader: Reader, V: Expr, forces: Sequence
     """Append −∂V/∂q and the given forces to the terms of each coordinate."""
     if forces is not None and len(forces) != len(terms):
         raise ValueError(f"{len(forces)} generalized forces for {len(terms)} coordinates; give one each")
-    for i, a in enumerate(reader.graph.gradient(reader.node(sp.sympify(V)), reader.q)):
+    for i, a in enumerate(reader.graph.gradient(reader.node(sp.sympify(V, strict=True)), reader.q)):
         terms[i].append(reader.graph.negative(a))
     for i, Q in enumerate(forces or ()):
-        terms[i].append(reader.node(sp.sympify(Q)))
+        terms[i].append(reader.node(sp.sympify(Q, strict=True)))
 
 
 def derivation_of_lagrangian(lagrangian: Lagrangian) -> Equations:

@@ -56,7 +56,7 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     >>> plain(dynamicsymbols("theta", 1) ** 2 + dynamicsymbols("theta"), [theta]) == theta.dot**2 + theta
     True
     """
-    expression: Expr = sp.sympify(f)
+    expression: Expr = sp.sympify(f, strict=True)
     named = {s.name: s for s in q}
     applied = {
         g: named[g.func.__name__]

@@ -134,7 +134,7 @@ def _whole(lagrangian: Lagrangian, places: Mapping[Symbol, Expr], q: Sequence[Sy
         raise ValueError(
             f"no place is given for {', '.join(map(str, missing))}; say what it is in the new coordinates"
         )
-    return {s: sp.sympify(places.get(s, s)) for s in lagrangian.q}
+    return {s: sp.sympify(places.get(s, s), strict=True) for s in lagrangian.q}
 
 
 def _through(lagrangian: Lagrangian, whole: Mapping[Symbol, Expr], q: Sequence[Symbol]) -> dict[Symbol, Expr]:

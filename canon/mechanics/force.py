@@ -209,12 +209,15 @@ def charge_term(
 
 def electric_field(A: Sequence[Expr], phi: Expr, x: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
     """Return E = −∇φ − ∂A/∂t in Cartesian coordinates."""
-    return tuple(-sp.sympify(phi).diff(s) - sp.sympify(a).diff(t) for s, a in zip(x, A, strict=True))
+    return tuple(
+        -sp.sympify(phi, strict=True).diff(s) - sp.sympify(a, strict=True).diff(t)
+        for s, a in zip(x, A, strict=True)
+    )
 
 
 def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, Expr]:
     """Return B = ∇ × A in Cartesian coordinates."""
-    a = [sp.sympify(component) for component in A]
+    a = [sp.sympify(component, strict=True) for component in A]
     return (
         a[2].diff(x[1]) - a[1].diff(x[2]),
         a[0].diff(x[2]) - a[2].diff(x[0]),
@@ -258,7 +261,7 @@ def lagrangian_of(
     """
     from canon.mechanics.body import kinetic_energy
 
-    damping = rayleigh_forces(sp.sympify(dissipation), q)
+    damping = rayleigh_forces(sp.sympify(dissipation, strict=True), q)
     given = forces or (sp.S.Zero,) * len(q)
     Q = [a + b for a, b in zip(given, damping, strict=True)]
     L = kinetic_energy(bodies, q, t) - V

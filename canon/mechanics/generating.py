@@ -124,7 +124,7 @@ class GeneratingFunction:
             object.__setattr__(self, name, as_tuple(given))
         n = len(self.q)
         object.__setattr__(self, "kind", kinds_of(kind, n))
-        object.__setattr__(self, "F", sp.sympify(F))
+        object.__setattr__(self, "F", sp.sympify(F, strict=True))
         object.__setattr__(self, "t", t)
         object.__setattr__(self, "domain", domain or Domain())
         variables = (*self.q, *self.p, *self.new_q, *self.new_p)
@@ -240,7 +240,7 @@ class GeneratingFunction:
 
     def new_hamiltonian(self, H: Expr) -> Expr:
         """Return K = H + ∂F/∂t, still in the variables of H and of F."""
-        return sp.sympify(H) + self.F.diff(self.t)
+        return sp.sympify(H, strict=True) + self.F.diff(self.t)
 
     def _on(self, T: CanonicalTransformation) -> dict[Symbol, Expr]:
         """Return what the dependent variables are on the map, by symbol."""

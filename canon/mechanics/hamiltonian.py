@@ -56,7 +56,7 @@ class Hamiltonian:
     def __init__(
         self, H: Expr, q: Sequence[Symbol] | Symbol, p: Sequence[Symbol] | Symbol, t: Symbol = time
     ) -> None:
-        object.__setattr__(self, "H", sp.sympify(H))
+        object.__setattr__(self, "H", sp.sympify(H, strict=True))
         object.__setattr__(self, "q", (q,) if isinstance(q, Symbol) else tuple(q))
         object.__setattr__(self, "p", (p,) if isinstance(p, Symbol) else tuple(p))
         object.__setattr__(self, "t", t)

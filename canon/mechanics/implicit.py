@@ -89,7 +89,7 @@ class ImplicitTransformation:
         """Tell whether A J Aᵀ = c B J Bᵀ wherever the equations hold, with B regular."""
         J = symplectic_unit(len(self.q))
         A, B = self.old_jacobian, self.new_jacobian
-        difference = A * J * A.T - sp.sympify(valence) * B * J * B.T
+        difference = A * J * A.T - sp.sympify(valence, strict=True) * B * J * B.T
         size = 2 * len(self.q)
         entries = [
             (f"(A J Aᵀ − c B J Bᵀ)[{i + 1}, {j + 1}] = 0", entry(difference, i, j))

@@ -68,7 +68,7 @@ def new_hamiltonian(
     -p*v + p**2/(2*m)
     """
     R = potential(rate_form(transformation), transformation.variables, transformation.domain)
-    return None if R is None else valence * sp.sympify(H) + R
+    return None if R is None else valence * sp.sympify(H, strict=True) + R
 
 
 def is_new_hamiltonian(
@@ -111,8 +111,8 @@ def is_new_hamiltonian(
     domain = domain or T.domain
     if len(images) != 2 * len(T.q):
         raise ValueError(f"{len(images)} symbols for the {2 * len(T.q)} new variables; give (*Q, *P)")
-    carried = substitute(sp.sympify(after), dict(zip(images, T.images, strict=True)))
-    gap = carried - valence * sp.sympify(before)
+    carried = substitute(sp.sympify(after, strict=True), dict(zip(images, T.images, strict=True)))
+    gap = carried - valence * sp.sympify(before, strict=True)
     claims = [
         (f"∂(K − c H)/∂{z} = ∂R/∂{z}", gap.diff(z) - r)
         for z, r in zip(T.variables, rate_form(T), strict=True)

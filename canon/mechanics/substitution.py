@@ -46,7 +46,7 @@ def as_tuple(given: Sequence[Expr] | Expr) -> tuple[Expr, ...]:
     """Return one expression, or several, as a tuple of expressions."""
     if isinstance(given, Expr):
         return (given,)
-    return tuple(sp.sympify(f) for f in given)
+    return tuple(sp.sympify(f, strict=True) for f in given)
 
 
 def shortened(F: Expr) -> Expr:

@@ -138,11 +138,18 @@ def is_symmetry(
     """
     _one_each(lagrangian, xi)
     L, q, t = lagrangian.L, lagrangian.q, lagrangian.t
-    tau_dot = time_derivative(sp.sympify(tau), q, t)
-    change = [sp.sympify(tau) * L.diff(t), tau_dot * L, -time_derivative(sp.sympify(K), q, t)]
+    tau_dot = time_derivative(sp.sympify(tau, strict=True), q, t)
+    change = [
+        sp.sympify(tau, strict=True) * L.diff(t),
+        tau_dot * L,
+        -time_derivative(sp.sympify(K, strict=True), q, t),
+    ]
     for s, a in zip(q, xi, strict=True):
         v = velocity(s)
-        change += [a * L.diff(s), (time_derivative(sp.sympify(a), q, t) - v * tau_dot) * L.diff(v)]
+        change += [
+            a * L.diff(s),
+            (time_derivative(sp.sympify(a, strict=True), q, t) - v * tau_dot) * L.diff(v),
+        ]
     return all_vanish(
         [("the change of L dt is dK", sp.Add(*change))], "this is a symmetry of the action", domain
     )
@@ -169,7 +176,7 @@ def is_gauge_equivalent(
     q, t = _same_coordinates(first, second)
     difference = second.L - first.L
     if F is not None:
-        gap = difference - time_derivative(sp.sympify(F), q, t)
+        gap = difference - time_derivative(sp.sympify(F, strict=True), q, t)
         return all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", domain)
     v = [velocity(s) for s in q]
     A = [difference.diff(a) for a in v]

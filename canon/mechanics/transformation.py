@@ -176,7 +176,7 @@ class CanonicalTransformation:
         """
         if by == "all":
             return disagreement({test: self.is_canonical(test, valence, budget) for test in _TESTS})
-        c = self.valence if valence is None else sp.sympify(valence)
+        c = self.valence if valence is None else sp.sympify(valence, strict=True)
         if c is None:
             return self._without_valence(budget)
         question = f"the map is canonical{'' if c == 1 else f' with valence {c}'}"
