@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.mechanics.integral import table_integral
-from canon.mechanics.inversion import Inversion, isolate, solve_system
+from canon.mechanics.inversion import Inversion, UnstatableError, isolate, solve_system
 from canon.mechanics.potential import potential
 from canon.mechanics.witness import Witness, witnesses
 from canon.proof.domain import Domain
@@ -45,7 +45,10 @@ def test_an_isolated_unknown_is_right_wherever_its_conditions_hold(layers, seed)
     if not found_witnesses:
         return
     inversion = Inversion(found_witnesses[0])
-    found = isolate(f, Y, x, inversion)
+    try:
+        found = isolate(f, Y, x, inversion)
+    except UnstatableError:  # conditions too long to be said: the callers then return nothing
+        return
     if found is None:
         return
     assert not found.has(x)
