@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
-from sympy import LambertW, Ne, Piecewise, Pow, default_sort_key, false, true
+from sympy import Add, LambertW, Ne, Piecewise, Pow, default_sort_key, false, true
 from sympy.concrete.expr_with_limits import ExprWithLimits
 from sympy.functions.elementary.hyperbolic import InverseHyperbolicFunction
 from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction
@@ -15,6 +15,7 @@ from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.angles import Refine
 from canon.proof.conjugates import radicals_cancel
 from canon.proof.domain import Domain
+from canon.proof.groups import groups
 from canon.proof.normal_form import NormalForm
 from canon.proof.phases import arcs_cancel
 from canon.proof.split import KINKED, cases, settle_equalities
@@ -33,6 +34,12 @@ MOST_STARTS = 60
 
 LARGE = 20_000
 """Size of a tree beyond which no cases are tried."""
+
+SIZEABLE = 150
+"""Size of a tree from which its groups are tried before the whole."""
+
+GROUPS_SHARE = 0.5
+"""Part of the time that the groups may use."""
 
 MOST_CASES = 64
 """Cases into which one claim is cut at most."""
@@ -75,7 +82,11 @@ def prove_zero(expr: Expr, domain: Domain, deadline: float, limits: Limits = THO
     attempt.large = found.tree > LARGE
     try:
         case = settle_equalities(expr, _where_defined(found, domain))
-        attempt.holds = case.expr is None or _prove(case.expr, case.domain, deadline, limits, attempt)
+        attempt.holds = (
+            case.expr is None
+            or _zero_by_groups(case.expr, case.domain, deadline, limits, attempt)
+            or _prove(case.expr, case.domain, deadline, limits, attempt)
+        )
     except REFUSALS as reason:
         attempt.stop(f"no value could be given to a part: {reason}")
     return attempt
@@ -132,6 +143,27 @@ def _where_defined(found: Anatomy, domain: Domain) -> Domain:
     nonzero = [Ne(b, 0) for b in sorted(below, key=default_sort_key) if b.is_zero is None]
     added = [cast("Boolean", c) for c in nonzero if c not in (true, false)]
     return Domain((*domain.conditions, *added), domain.box)
+
+
+def _zero_by_groups(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt: Attempt) -> bool:
+    """Tell whether the sum of the terms with the same kernels is zero, kernels by kernels."""
+    apart = groups(expr) if isinstance(expr, Add) and anatomy([expr]).tree >= SIZEABLE else None
+    if apart is None:
+        return False
+    now = time.monotonic()
+    deadline = now + GROUPS_SHARE * (deadline - now)
+    unnoticed = Attempt()
+    for group in apart:
+        if group != 0 and not _without_cases(group, _about(group, domain), deadline, limits, unnoticed):
+            return False
+    attempt.reach("groups")
+    return True
+
+
+def _about(expr: Expr, domain: Domain) -> Domain:
+    """Return the domain without the conditions on symbols that the expression does not have."""
+    symbols = anatomy([expr]).symbols
+    return Domain(tuple(c for c in domain.conditions if c.free_symbols <= symbols), domain.box)
 
 
 def _prove(expr: Expr, domain: Domain, deadline: float, limits: Limits, attempt: Attempt) -> bool:

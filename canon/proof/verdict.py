@@ -160,7 +160,7 @@ class Verdict:
         if self.counterexample is not None:
             lines.append(f"  {self.counterexample}")
         elif self.residual is not None:
-            lines.append(f"  left over: {self.residual}")
+            lines.append(f"  left over: {_short(self.residual)}")
         lines.extend(f"  assumed: {proviso}" for proviso in self.assumed)
         lines.extend(f"  {e.kind}: {e.text}" for e in self.evidence)
         if self.feedback:
@@ -172,6 +172,17 @@ class Verdict:
         if self.residual is None:
             return f"${word}$"
         return f"${word}\\quad {sp.latex(self.residual)}$"
+
+
+LONGEST_PRINTED = 60
+"""Operations of a residual that are still printed; it is kept whole in ``residual``."""
+
+
+def _short(residual: sp.Basic | sp.MatrixBase) -> str:
+    operations = int(sp.count_ops(residual))
+    if operations <= LONGEST_PRINTED:
+        return str(residual)
+    return f"an expression of {operations} operations (in .residual)"
 
 
 def all_hold(verdicts: Iterable[Verdict], question: str = "") -> Verdict:
