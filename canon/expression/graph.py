@@ -13,10 +13,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cached_property
-from math import prod
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from canon.expression import translation
+from canon.expression import differentiation, evaluation, translation
 from canon.expression.arithmetic import FLOAT64
 from canon.expression.elementary import AT_ZERO, SLOPES, folded_power
 
@@ -62,25 +61,38 @@ class Graph:
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
-        self._number_of: dict[Node, int] = {}
-        self._symbols: list[frozenset[Symbol]] = []
+        self.masks: list[int] = []
+        """Which symbols each node depends on, one bit a symbol; see :meth:`mask`."""
+        self._number_of: dict[tuple[Any, ...], int] = {}
+        self._rationals: dict[Fraction | int, int] = {}
+        self._variables: dict[Symbol, int] = {}
+        self._bits: dict[Symbol, int] = {}
+        self._sets: dict[int, frozenset[Symbol]] = {0: frozenset()}
         self._derivatives: dict[Symbol, dict[int, int]] = {}
+        self._negatives: dict[int, int] = {}
 
     # building ------------------------------------------------------------------------------------
 
-    def _node(self, kind: str, operands: tuple[int, ...] = (), value: Any = None) -> int:
-        node = Node(kind, operands, value)
-        number = self._number_of.get(node)
+    def _leaf(self, node: Node, mask: int = 0) -> int:
+        self.nodes.append(node)
+        self.masks.append(mask)
+        return len(self.nodes) - 1
+
+    def _node(self, kind: str, operands: tuple[int, ...]) -> int:
+        number = self._number_of.get((kind, operands))
         if number is None:
-            number = self._number_of[node] = len(self.nodes)
-            self.nodes.append(node)
-            own = [frozenset((value,))] if kind == "symbol" else [self._symbols[o] for o in operands]
-            self._symbols.append(own[0] if len(own) == 1 else frozenset[Any]().union(*own))
+            mask = 0
+            for operand in operands:
+                mask |= self.masks[operand]
+            number = self._number_of[kind, operands] = self._leaf(Node(kind, operands), mask)
         return number
 
     def number(self, value: Fraction | int) -> int:
         """Return the node of an exact rational number."""
-        return self._node("number", value=Fraction(value))
+        found = self._rationals.get(value)
+        if found is None:
+            found = self._rationals[value] = self._leaf(Node("number", (), Fraction(value)))
+        return found
 
     @cached_property
     def zero(self) -> int:
@@ -96,22 +108,31 @@ class Graph:
         """Return the node of π (``"pi"``) or e (``"E"``)."""
         if name not in ("pi", "E"):
             raise ValueError(f"no constant is called {name!r}; the graph knows 'pi' and 'E'")
-        return self._node("named", value=name)
+        number = self._number_of.get(("named", name))
+        if number is None:
+            number = self._number_of["named", name] = self._leaf(Node("named", (), name))
+        return number
 
     def symbol(self, symbol: Symbol) -> int:
         """Return the node of a symbol."""
-        return self._node("symbol", value=symbol)
+        found = self._variables.get(symbol)
+        if found is None:
+            bit = self._bits[symbol] = 1 << len(self._bits)
+            found = self._variables[symbol] = self._leaf(Node("symbol", (), symbol), bit)
+        return found
 
     def add(self, terms: Iterable[int]) -> int:
         """Return the sum of nodes, equal terms merged."""
-        constant, coefficients = Fraction(0), dict[int, Fraction]()
+        constant, coefficients = 0, dict[int, Fraction | int]()
         for term in self._flat("add", terms):
             factor, rest = self._factored(term)
             if rest is None:
                 constant += factor
             else:
-                coefficients[rest] = coefficients.get(rest, Fraction(0)) + factor
-        operands = sorted(self.scaled(factor, rest) for rest, factor in coefficients.items() if factor)
+                coefficients[rest] = coefficients.get(rest, 0) + factor
+        operands = sorted(
+            rest if factor == 1 else self.scaled(factor, rest) for rest, factor in coefficients.items() if factor
+        )
         if constant:
             operands.insert(0, self.number(constant))
         if len(operands) < 2:
@@ -120,17 +141,17 @@ class Graph:
 
     def mul(self, factors: Iterable[int]) -> int:
         """Return the product of nodes, powers of equal bases merged."""
-        constant, exponents = Fraction(1), dict[int, Fraction]()
+        constant, exponents = 1, dict[int, Fraction | int]()
         for factor in self._flat("mul", factors):
             node = self.nodes[factor]
             if node.kind == "number":
                 constant *= node.value
                 continue
             base, exponent = self._powered(factor)
-            exponents[base] = exponents.get(base, Fraction(0)) + exponent
+            exponents[base] = exponents.get(base, 0) + exponent
         operands: list[int] = []
         for base, exponent in exponents.items():
-            power = self.pow(base, self.number(exponent))
+            power = base if exponent == 1 else self.pow(base, self.number(exponent))
             if self.nodes[power].kind == "number":
                 constant *= self.nodes[power].value
             else:
@@ -139,26 +160,29 @@ class Graph:
             return self.number(0)
         return self._product(constant, tuple(sorted(operands)))
 
-    def _product(self, constant: Fraction, operands: tuple[int, ...]) -> int:
+    def _product(self, constant: Fraction | int, operands: tuple[int, ...]) -> int:
         if constant != 1 or not operands:
             operands = (self.number(constant), *operands)
         return operands[0] if len(operands) == 1 else self._node("mul", operands)
 
     def plain_add(self, terms: Iterable[int]) -> int:
         """Return a sum whose terms stay as they are: only zeros disappear, nothing is merged or flattened."""
-        return self._plain("add", sorted(term for term in terms if term != self.zero), self.zero)
+        zero = self.zero
+        return self._plain("add", [term for term in terms if term != zero], zero)
 
     def plain_mul(self, factors: Iterable[int]) -> int:
         """Return a product whose factors stay as they are: only 1 disappears, and 0 makes it 0."""
-        operands = sorted(factor for factor in factors if factor != self.one)
-        return self.zero if self.zero in operands else self._plain("mul", operands, self.one)
+        one = self.one
+        operands = [factor for factor in factors if factor != one]
+        return self.zero if self.zero in operands else self._plain("mul", operands, one)
 
     def _plain(self, kind: str, operands: list[int], neutral: int) -> int:
         if len(operands) > 1:
+            operands.sort()
             return self._node(kind, tuple(operands))
         return operands[0] if operands else neutral
 
-    def scaled(self, factor: Fraction, node: int) -> int:
+    def scaled(self, factor: Fraction | int, node: int) -> int:
         """Return factor · node without looking at anything but node's own numerical factor."""
         own, rest = self._factored(node)
         if rest is None or not factor:
@@ -168,7 +192,10 @@ class Graph:
 
     def negative(self, node: int) -> int:
         """Return −node."""
-        return self.scaled(Fraction(-1), node)
+        found = self._negatives.get(node)
+        if found is None:
+            found = self._negatives[node] = self.scaled(-1, node)
+        return found
 
     def pow(self, base: int, exponent: int) -> int:
         """Return base**exponent, the principal value."""
@@ -200,7 +227,7 @@ class Graph:
             raise ValueError(
                 f"the graph has no function {name!r}; it knows {', '.join(sorted(SLOPES))}, atan2"
             )
-        if len(operands) == 1 and self.nodes[operands[0]] == Node("number", (), 0) and name in AT_ZERO:
+        if len(operands) == 1 and operands[0] == self.zero and name in AT_ZERO:
             return self.number(AT_ZERO[name])
         return self._node(name, operands)
 
@@ -213,21 +240,21 @@ class Graph:
             )
         return flat
 
-    def _factored(self, node: int) -> tuple[Fraction, int | None]:
+    def _factored(self, node: int) -> tuple[Fraction | int, int | None]:
         """Split c·x into its number c and the rest x (None where the node is a number)."""
         kind, operands, value = self.nodes[node]
         if kind == "number":
             return value, None
         if kind == "mul" and self.nodes[operands[0]].kind == "number":
-            return self.nodes[operands[0]].value, self._product(Fraction(1), operands[1:])
-        return Fraction(1), node
+            return self.nodes[operands[0]].value, self._product(1, operands[1:])
+        return 1, node
 
-    def _powered(self, node: int) -> tuple[int, Fraction]:
+    def _powered(self, node: int) -> tuple[int, Fraction | int]:
         """Split x**c into x and the exact number c (1 for what is no such power)."""
         kind, operands, _ = self.nodes[node]
         if kind == "pow" and self.nodes[operands[1]].kind == "number":
             return operands[0], self.nodes[operands[1]].value
-        return node, Fraction(1)
+        return node, 1
 
     # SymPy ---------------------------------------------------------------------------------------
 
@@ -261,71 +288,32 @@ class Graph:
 
     def symbols(self, node: int) -> frozenset[Symbol]:
         """Return the symbols a node depends on."""
-        return self._symbols[node]
+        mask = self.masks[node]
+        found = self._sets.get(mask)
+        if found is None:
+            found = self._sets[mask] = frozenset(s for s, bit in self._bits.items() if bit & mask)
+        return found
+
+    def mask(self, symbols: Iterable[Symbol]) -> int:
+        """Return the bits of symbols: a node depends on one of them where ``masks[node] & mask(symbols)``."""
+        total = 0
+        for symbol in symbols:
+            total |= self._bits.get(symbol, 0)
+        return total
 
     def derivative(self, node: int, symbol: Symbol) -> int:
         """Return ∂node/∂symbol (forward sweep, remembered for every subexpression).
 
         d|x|/dx is sign(x) and d sign(x)/dx is 0, which leaves out x = 0.
         """
-        known = self._derivatives.setdefault(symbol, {})
-        for each in self.reachable([node]) if node not in known else ():
-            if each in known:
-                continue
-            kind, operands, value = self.nodes[each]
-            if kind == "symbol":
-                known[each] = self.number(int(value == symbol))
-            elif symbol not in self.symbols(each):
-                known[each] = self.number(0)
-            else:
-                slopes = zip(operands, self.slopes(each), strict=True)
-                known[each] = self.add(
-                    [self.mul([slope, known[o]]) for o, slope in slopes if symbol in self.symbols(o)]
-                )
-        return known[node]
+        return differentiation.derivative(self, node, symbol, self._derivatives.setdefault(symbol, {}))
 
     def gradient(self, node: int, symbols: Sequence[Symbol]) -> tuple[int, ...]:
         """Return ∂node/∂symbol for many symbols at once (reverse sweep).
 
         The gradient costs a small multiple of the expression itself, whatever the number of symbols.
         """
-        wanted = frozenset(symbols)
-        contributions: dict[int, list[int]] = {node: [self.number(1)]}
-        for each in reversed(self.reachable([node])):
-            if each not in contributions or self.nodes[each].kind == "symbol":
-                continue
-            adjoint = self.add(contributions.pop(each))
-            for operand, slope in zip(self.nodes[each].operands, self.slopes(each), strict=True):
-                if wanted & self.symbols(operand):
-                    contributions.setdefault(operand, []).append(self.mul([adjoint, slope]))
-        return tuple(self.add(contributions.get(self.symbol(symbol), ())) for symbol in symbols)
-
-    def slopes(self, node: int) -> tuple[int, ...]:
-        """Return the partial derivatives of a node's operation by its operands."""
-        kind, operands, _ = self.nodes[node]
-        if kind == "add":
-            return (self.one,) * len(operands)
-        if kind == "mul":
-            return self._products_of_others(operands)
-        if kind == "pow":
-            base, exponent = operands
-            lowered = self.mul([exponent, self.pow(base, self.add([exponent, self.number(-1)]))])
-            if self.nodes[exponent].kind in ("number", "named"):
-                return lowered, self.number(0)
-            return lowered, self.mul([node, self.function("log", base)])
-        if kind == "atan2":
-            y, x = operands
-            inverse = self.power(self.add([self.power(x, 2), self.power(y, 2)]), -1)
-            return self.mul([x, inverse]), self.negative(self.mul([y, inverse]))
-        return (SLOPES[kind](self, operands[0], node),) if operands else ()
-
-    def _products_of_others(self, factors: tuple[int, ...]) -> tuple[int, ...]:
-        before, after = [self.one], [self.one]
-        for factor in factors[:-1]:
-            before.append(self.mul([before[-1], factor]))
-        for factor in reversed(factors[1:]):
-            after.append(self.mul([after[-1], factor]))
-        return tuple(self.mul(pair) for pair in zip(before, reversed(after), strict=True))
+        return differentiation.gradient(self, node, symbols)
 
     def substitute(self, nodes: Sequence[int], replacements: Mapping[int, int]) -> list[int]:
         """Return nodes with some subexpressions replaced by others, all at once."""
@@ -371,30 +359,4 @@ class Graph:
         KeyError
             A symbol has no value.
         """
-        done = dict[int, Any]()
-        with arithmetic.quiet():
-            for each in self.reachable(nodes):
-                kind, operands, value = self.nodes[each]
-                if kind == "symbol" and value not in values:
-                    raise KeyError(f"no value given for the symbol {value}")
-                done[each] = (
-                    values[value]
-                    if kind == "symbol"
-                    else self._value(each, [done[o] for o in operands], arithmetic)
-                )
-        return [done[node] for node in nodes]
-
-    def _value(self, node: int, x: list[Any], arithmetic: Arithmetic) -> Any:
-        kind, operands, value = self.nodes[node]
-        if kind == "number":
-            return arithmetic.number(value)
-        if kind == "named":
-            return arithmetic.named(value)
-        if kind == "add":
-            return sum(x[1:], x[0])
-        if kind == "mul":
-            return prod(x[1:], start=x[0])
-        if kind == "pow":
-            exponent = self.nodes[operands[1]]
-            return arithmetic.power(x[0], exponent.value if exponent.kind == "number" else x[1])
-        return arithmetic.functions[kind](*x)
+        return evaluation.evaluate(self, nodes, values, arithmetic)
