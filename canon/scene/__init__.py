@@ -10,9 +10,11 @@ True
 from __future__ import annotations
 
 from canon.scene import bodies, henon_heiles, kepler, lattice, oscillator, pendulum, two_degree
-from canon.scene.scene import Integral, Parameter, Scene, SceneError, Start, near
+from canon.scene.scene import Condition, Integral, Parameter, Scene, SceneError, Solution, Start, near
 
-__all__ = ["SCENES", "Integral", "Parameter", "Scene", "SceneError", "Start", "find", "names"]
+__all__ = [
+    "SCENES", "Condition", "Integral", "Parameter", "Scene", "SceneError", "Solution", "Start", "find", "names",
+]  # fmt: skip
 
 SCENES: tuple[Scene, ...] = (
     *pendulum.SCENES,
@@ -45,7 +47,7 @@ def find(name: str) -> Scene:
     'x y'
     >>> find("double-pendulm")
     Traceback (most recent call last):
-    canon.scene.scene.SceneError: there is no scene 'double-pendulm'; did you mean double-pendulum ...
+    canon.scene.parts.SceneError: there is no scene 'double-pendulm'; did you mean double-pendulum ...
     """
     wanted = name.strip().lower().replace("_", "-").replace(" ", "-")
     for scene in SCENES:

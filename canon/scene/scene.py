@@ -2,100 +2,40 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from functools import cached_property
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
+from canon.scene.parts import Condition, Integral, Parameter, SceneError, Solution, Start, near
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
     from sympy import Expr, Symbol
 
     from canon.expression.symbol import Coordinate
+    from canon.mechanics.body import Body
+    from canon.mechanics.constraint import ConstrainedLagrangian
     from canon.mechanics.hamiltonian import Hamiltonian
     from canon.mechanics.lagrangian import Lagrangian
+    from canon.scene.picture import Picture
 
-__all__ = ["Integral", "Parameter", "Scene", "SceneError", "Start", "near"]
+    Build = Callable[[SimpleNamespace], Expr]
+    BuildMany = Callable[[SimpleNamespace], Sequence[Expr]]
 
-
-class SceneError(ValueError):
-    """A scene, parameter or start that does not exist, or a value that makes no sense."""
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A constant of a scene.
-
-    Parameters
-    ----------
-    name, value, unit, meaning
-        As one would write them under a figure; ``unit`` is empty for a pure number.
-    sign
-        ``positive``, ``nonnegative`` or ``real``: what it may be.
-    """
-
-    name: str
-    value: float
-    unit: str
-    meaning: str
-    sign: str = "positive"
-
-    def __post_init__(self) -> None:
-        if not math.isfinite(self.value):
-            raise SceneError(f"{self.name} = {self.value} is not a finite number")
-        wrong = {"positive": self.value <= 0.0, "nonnegative": self.value < 0.0, "real": False}[self.sign]
-        if wrong:
-            raise SceneError(
-                f"{self.name} = {self.value:g} makes no sense: {self.meaning} must be {self.sign}"
-            )
-
-
-@dataclass(frozen=True)
-class Start:
-    """An initial state with a name.
-
-    Parameters
-    ----------
-    name, about
-        Its name, and in words what it shows.
-    q
-        Coordinates.
-    v, p
-        Either the velocities or the momenta.
-    """
-
-    name: str
-    about: str
-    q: tuple[float, ...]
-    v: tuple[float, ...] | None = None
-    p: tuple[float, ...] | None = None
-
-    def __post_init__(self) -> None:
-        if (self.v is None) == (self.p is None):
-            raise SceneError(f"the start {self.name!r} needs velocities or momenta, and not both")
-        given = (*self.q, *(self.v or self.p or ()))
-        if len(given) != 2 * len(self.q) or not all(map(math.isfinite, given)):
-            raise SceneError(f"the start {self.name!r} needs {2 * len(self.q)} finite numbers, not {given}")
-
-
-@dataclass(frozen=True)
-class Integral:
-    """A known constant of the motion as a function of q and p."""
-
-    name: str
-    build: Callable[[SimpleNamespace], Expr]
+__all__ = ["Condition", "Integral", "Parameter", "Scene", "SceneError", "Solution", "Start", "near"]
 
 
 @dataclass(frozen=True)
 class Scene:
     """A mechanical system that is ready to be derived, judged, run and looked at.
 
-    A scene is plain data: no symbol is made and nothing is derived before it is asked for.
+    A scene is plain data: no symbol is made and nothing is derived before it is asked for. What a scene says of
+    itself it says by functions of its symbols: ``s.x`` a coordinate, ``s.x.dot`` its velocity, ``s.x.momentum``
+    the momentum ∂L/∂ẋ, ``s.m`` a parameter, ``s.t`` the time.
 
     Parameters
     ----------
@@ -113,10 +53,26 @@ class Scene:
         Unit of time, empty in dimensionless scenes.
     source
         Where the system and its numbers come from.
-    L_of, H_of
-        The Lagrangian or the Hamiltonian as a function of the symbols by name; one of them suffices.
+    L_of, H_of, bodies_of
+        The Lagrangian, the Hamiltonian, or what has mass and where it is; one of them suffices. Bodies beside a
+        Lagrangian are an independent account of it: L = T(bodies) − V.
+    V_of
+        The potential energy of the bodies.
+    forces_of
+        Generalized forces Q(q, q̇, t) without potential, one a coordinate.
+    holonomic_of, nonholonomic_of
+        Constraints f(q, t) = 0, and g(q, q̇, t) = 0 affine in the velocities.
     integrals
         Known constants of the motion beside the energy.
+    solutions
+        Motions known beforehand.
+    conditions
+        What the parameters must satisfy together.
+    picture_of
+        What it looks like.
+    energy_bound, energy_why
+        What the relative change of the energy along a run of 1000 periods stays below, and why where it is more
+        than 1e-13.
 
     Examples
     --------
@@ -136,9 +92,25 @@ class Scene:
     time_scale: Callable[[Mapping[str, float]], float]
     time_unit: str
     source: str
-    L_of: Callable[[SimpleNamespace], Expr] | None = None
-    H_of: Callable[[SimpleNamespace], Expr] | None = None
+    L_of: Build | None = None
+    H_of: Build | None = None
+    bodies_of: Callable[[SimpleNamespace], Sequence[Body]] | None = None
+    V_of: Build | None = None
+    forces_of: BuildMany | None = None
+    holonomic_of: BuildMany | None = None
+    nonholonomic_of: BuildMany | None = None
     integrals: tuple[Integral, ...] = ()
+    solutions: tuple[Solution, ...] = ()
+    conditions: tuple[Condition, ...] = ()
+    picture_of: Callable[[SimpleNamespace], Picture] | None = None
+    energy_bound: float = 1e-13
+    energy_why: str = ""
+
+    def __post_init__(self) -> None:
+        for condition in self.conditions:
+            if not condition.met(self.values):
+                given = ", ".join(f"{c.name} = {c.value:g}" for c in self.parameters)
+                raise SceneError(f"{given} makes no sense: {condition.about}")
 
     @cached_property
     def q(self) -> tuple[Coordinate, ...]:
@@ -154,24 +126,61 @@ class Scene:
 
     @cached_property
     def symbols(self) -> SimpleNamespace:
-        """Coordinates and parameters as symbols, by name."""
-        from canon.expression.symbol import parameters
+        """Coordinates, parameters and the time ``t`` as symbols, by name."""
+        from canon.expression.symbol import parameters, time
 
         constants = [parameters(c.name, **{c.sign: True})[0] for c in self.parameters]
-        return SimpleNamespace(**{s.name: s for s in (*self.q, *constants)})
+        return SimpleNamespace(**{s.name: s for s in (time, *self.q, *constants)})
+
+    @property
+    def is_free(self) -> bool:
+        """Whether no constraints and no forces without potential act, so that a Hamiltonian says all."""
+        return not (self.forces_of or self.holonomic_of or self.nonholonomic_of)
 
     @cached_property
     def lagrangian(self) -> Lagrangian:
-        """The Lagrangian."""
-        if self.L_of is None:
-            return self.hamiltonian.lagrangian()
+        """The Lagrangian, with the forces that have no potential."""
         from canon.mechanics.lagrangian import Lagrangian
 
-        return Lagrangian(self.L_of(self.symbols), self.q)
+        forces = self.forces_of(self.symbols) if self.forces_of else None
+        if self.L_of is not None:
+            return Lagrangian(self.L_of(self.symbols), self.q, forces=forces)
+        if self.bodies_of is None:
+            return self.hamiltonian.lagrangian()
+        from canon.mechanics.force import lagrangian_of
+
+        V = self.V_of(self.symbols) if self.V_of else None
+        bodies = self.bodies_of(self.symbols)
+        return (
+            lagrangian_of(bodies, self.q, forces=forces)
+            if V is None
+            else lagrangian_of(bodies, self.q, V, forces)
+        )
+
+    @cached_property
+    def constrained(self) -> ConstrainedLagrangian:
+        """The Lagrangian with the constraints of the scene."""
+        from canon.mechanics.constraint import ConstrainedLagrangian
+
+        s = self.symbols
+        holonomic = self.holonomic_of(s) if self.holonomic_of else ()
+        nonholonomic = self.nonholonomic_of(s) if self.nonholonomic_of else ()
+        return ConstrainedLagrangian(self.lagrangian, holonomic, nonholonomic)
 
     @cached_property
     def hamiltonian(self) -> Hamiltonian:
-        """The Hamiltonian."""
+        """The Hamiltonian.
+
+        Raises
+        ------
+        SceneError
+            Where constraints or forces without potential act: Hamilton's equations would miss them.
+        """
+        if not self.is_free:
+            raise SceneError(
+                f"{self.name} has constraints or forces without potential, so no Hamiltonian says how it moves; "
+                "take its lagrangian, or run it by canon.scene.motion.run"
+            )
         if self.H_of is None:
             return self.lagrangian.hamiltonian(self.p)
         from canon.mechanics.hamiltonian import Hamiltonian
@@ -193,7 +202,7 @@ class Scene:
         return {getattr(self.symbols, c.name): c.value for c in self.parameters}
 
     def constants(self) -> dict[str, Expr]:
-        """Return the known constants of the motion beside the energy, as functions of q and p."""
+        """Return the known constants of the motion beside the energy, as functions of q and p (or q̇) and t."""
         return {integral.name: integral.build(self.symbols) for integral in self.integrals}
 
     def with_parameters(self, **values: float) -> Scene:
@@ -231,6 +240,7 @@ class Scene:
             return np.array([*chosen.q, *chosen.p])
         from sympy import Float
 
+        from canon.expression.symbol import time
         from canon.mechanics.substitution import exchanged
 
         lagrangian = self.lagrangian
@@ -238,15 +248,7 @@ class Scene:
             **self.values_by_symbol(),
             **dict(zip(self.q, chosen.q, strict=True)),
             **dict(zip(lagrangian.velocities, chosen.v or (), strict=True)),
+            time: 0.0,
         }
         at = {symbol: Float(value) for symbol, value in known.items()}
         return np.array([*chosen.q, *(float(exchanged(p, at)) for p in lagrangian.momenta)])
-
-
-def near(name: str, known: Iterable[str]) -> str:
-    """Return the end of an error message that names what may have been meant."""
-    choices = list(known)
-    close = get_close_matches(name, choices, n=3, cutoff=0.4)
-    if close:
-        return f"; did you mean {' or '.join(close)}?"
-    return f"; there is {', '.join(choices)}" if choices else "; it has none"
