@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import math
 import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -13,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.expression.arithmetic import FLOAT64, LONGDOUBLE
 from canon.flow.method import RK4, FixedStep, Gauss
+from canon.flow.sampling import Sampling, steps_over
 from canon.flow.stepping import Run, Watch, run
-from canon.flow.trajectory import Array, Samples
+from canon.flow.trajectory import Array, Samples, values_in
 from canon.kernel.gauss import gauss_coefficients, gauss_loop
 from canon.kernel.llvm import simd_bytes
 from canon.kernel.loop import Loop, runge_kutta_loop, splitting_loop
@@ -113,9 +112,8 @@ def fixed_steps(
     loop: Loop,
     method: FixedStep,
     states: tuple[Array, Array],
-    span: tuple[Fraction, Fraction],
+    wanted: Sampling,
     step: float | None,
-    samples: int,
     progress: Callable[[float], None],
     watch: Watch | None = None,
 ) -> Samples:
@@ -129,15 +127,17 @@ def fixed_steps(
         The method it was compiled for.
     states
         The starting states as sums of two doubles, each of shape (2n, orbits).
-    span, step, samples, progress
+    wanted
+        The span and when to sample.
+    step, progress
         As :func:`canon.flow.propagate.propagate` takes them.
     watch
         Observables to follow inside the loop.
     """
-    start, end = span
-    steps = _steps(start, end, step, method)
-    h = (end - start) / steps
-    stops = np.unique(np.linspace(0, steps, min(samples, steps) + 1).round().astype(np.int64)).tolist()
+    start = wanted.start
+    steps = steps_over(start, wanted.end, step, method)
+    h = (wanted.end - start) / steps
+    stops = wanted.stops(steps)
     numbers = [double_pair(c) for c in (start, h, *_coefficients(method, h))]
     coefficients = np.array([high for high, _ in numbers]), np.array([low for _, low in numbers])
     runs = _on_threads(loop, *states, coefficients, stops, progress, watch)
@@ -170,22 +170,19 @@ def watch_for(
     Raises
     ------
     ValueError
-        The cadence is no positive whole number, or the loop does not compute in doubles.
+        The cadence is no positive whole number; or the state is in x87 numbers or double-double and an
+        observable holds a function that double-double does not have.
     """
     if cadence < 1 or cadence != int(cadence):
         raise ValueError(f"cadence={cadence}: give a number of steps, 1 or more")
-    if dataclasses.replace(loop.number, lanes=1) != DOUBLE:
-        raise ValueError(
-            "observables are followed inside the loop in the precisions 'double' and 'compensated'"
-        )
-    wide = np.dtype(wide_number().dtype).type
-    point = [high.astype(wide) + low.astype(wide) for high, low in zip(*states, strict=True)]
-    values = dict(zip(system.inputs, (*point, wide(float(t0))), strict=True))
-    found = system.graph.evaluate(nodes, values, FLOAT64 if wide is np.float64 else LONGDOUBLE)
-    start = np.stack(
-        [np.broadcast_to(np.asarray(value, dtype=wide), point[0].shape) for value in found], axis=1
-    )
-    return Watch(_kept_watching(system, tuple(nodes), loop), cadence, start)
+    wide = wide_number(loop.number)
+    high, low = states
+    if not loop.compensated:  # the loop starts from the state rounded to its numbers
+        one = dataclasses.replace(loop.number, lanes=1)
+        high, low = (part.reshape(high.shape) for part in one.unpacked(one.packed(high.ravel(), low.ravel())))
+    found = values_in(wide, system, nodes, float(t0), high, low)
+    start = np.moveaxis(found, 0, 1)
+    return Watch(_kept_watching(system, tuple(nodes), loop), int(cadence), start)
 
 
 @functools.lru_cache(maxsize=_KEPT)
@@ -254,17 +251,6 @@ def _on_threads(
             stopped.set()
     progress(1.0)
     return found
-
-
-def _steps(start: Fraction, end: Fraction, step: float | None, method: FixedStep) -> int:
-    if step is None:
-        raise ValueError(f"{method} takes fixed steps: give step=, in the units of time")
-    if not (math.isfinite(step) and step > 0):
-        raise ValueError(f"step={step}: give a positive number; the direction of time follows from t_span")
-    ratio = abs(end - start) / Fraction(step)
-    nearest = max(1, round(ratio))
-    # A span that is a whole number of steps up to the rounding of its ends and of the step counts as one.
-    return nearest if abs(ratio - nearest) <= nearest * Fraction(1, 10**9) else math.ceil(ratio)
 
 
 def _coefficients(method: FixedStep, h: Fraction) -> list[Fraction]:

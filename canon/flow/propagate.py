@@ -13,6 +13,7 @@ from canon.flow.adaptive import adaptive_steps
 from canon.flow.fixed import compiled_loop, fixed_steps, watch_for
 from canon.flow.method import DOP853, FixedStep, Method, Taylor
 from canon.flow.precision import fixed_precision
+from canon.flow.sampling import sampling
 from canon.flow.stepping import NonFiniteStateError
 from canon.flow.trajectory import Array, Statistics, Trajectory, measured
 from canon.kernel.machine import double_pair
@@ -65,7 +66,8 @@ def propagate(
     tolerance: float | None = None,
     precision: str | int | None = None,
     parameters: Mapping[Symbol | str, Any] | None = None,
-    samples: int = 1000,
+    samples: int | None = None,
+    times: npt.ArrayLike | None = None,
     observables: Mapping[str, Expr] | None = None,
     cadence: int | None = None,
     progress: Callable[[float], None] | None = None,
@@ -96,12 +98,18 @@ def propagate(
     parameters
         A number for every parameter of H, by symbol or name.
     samples
-        How many sampled states to keep after the first, evenly spaced up to a step.
+        How many sampled states to keep after the first, evenly spaced up to a step; 1000 where not given.
+    times
+        In place of ``samples``: times at which to keep the state, in order, within the span. Both ends of the
+        span are kept as well. Taylor and DOP853 are evaluated exactly there; methods of fixed steps keep the
+        state after the step nearest to each, and ``Trajectory.t`` has the times of those steps.
     observables
         Further functions of (q, p, t) to evaluate at the samples, by name.
     cadence
-        Follow H and the observables inside the loop of a fixed-step method too, every so many steps:
-        ``Trajectory.statistics`` has the mean, the least and the greatest change between samples.
+        Follow H and the observables inside the loop of a fixed-step method too, every so many steps, in wider
+        numbers than the state's: ``Trajectory.statistics`` has of each the mean, the least and the greatest
+        change over every block of steps between two samples, and running extremes. 10⁹ steps with
+        ``samples=1000, cadence=1`` keep 1000 rows.
     progress
         Called now and then with the fraction done, 0 … 1.
 
@@ -145,24 +153,23 @@ def propagate(
         )
     nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
     high, low = _states(y0, len(system.q))
-    span = _span(t_span)
-    if samples < 1:
-        raise ValueError(f"samples={samples}: keep at least one state after the first")
-    _check_start(system, high, span[0])
+    start, end = (exact(t, "t_span") for t in t_span)
+    wanted = sampling((start, end), samples, times)
+    _check_start(system, high, start)
     report = progress or (lambda _: None)
     if isinstance(method, FixedStep):
         kind = fixed_precision(precision)
         loop = compiled_loop(system, method, kind, high.shape[1])
-        watch = None if cadence is None else watch_for(system, nodes, loop, (high, low), span[0], cadence)
-        found = fixed_steps(loop, method, (high, low), span, step, samples, report, watch)
+        watch = None if cadence is None else watch_for(system, nodes, loop, (high, low), start, cadence)
+        found = fixed_steps(loop, method, (high, low), wanted, step, report, watch)
         name = kind.name
     else:
         if step is not None:
             raise ValueError(f"{method} chooses its own steps: leave step out and set its tolerance")
         if cadence is not None:
             raise ValueError(f"{method} chooses its own steps: cadence counts those of fixed-step methods")
-        times, name = np.linspace(float(span[0]), float(span[1]), samples + 1), str(precision or "double")
-        found = adaptive_steps(system, (high, low), times, method, precision or "double", report)
+        name = str(precision or "double")
+        found = adaptive_steps(system, (high, low), wanted.instants(), method, precision or "double", report)
     watched = found.watched
     if np.ndim(y0) == 1:
         found = replace(found, y=found.y[:, :, 0], carried=found.carried[:, :, 0])
@@ -257,13 +264,6 @@ def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]
         high, low = (np.array(part).reshape(2 * n, -1) for part in zip(*pairs, strict=True))
         return high, low
     return given.reshape(2 * n, -1), np.zeros((2 * n, given.size // (2 * n)))
-
-
-def _span(t_span: tuple[float, float]) -> tuple[Fraction, Fraction]:
-    start, end = (exact(t, "t_span") for t in t_span)
-    if start == end:
-        raise ValueError(f"t_span = {t_span} has no length")
-    return start, end
 
 
 def _check_start(system: Equations, states: Array, start: Fraction) -> None:

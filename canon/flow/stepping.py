@@ -140,7 +140,7 @@ class Watch:
     cadence
         After how many steps they are evaluated each time.
     start
-        Their values at the start in wide numbers, shape (orbits, observables).
+        Their values at the start in wide numbers, shape (orbits, observables, 1), or 2 parts of double-doubles.
     """
 
     code: MachineCode
@@ -170,16 +170,18 @@ class _Job:
         self.t0, self.h = (float(part) for part in coefficients[0][:2])
         self.watch = watch
         if watch is not None:
-            self.record = np.zeros((*watch.start.shape, ENTRIES), dtype=watch.start.dtype)
-            self.record[..., 0] = watch.start
+            *observed, parts = watch.start.shape
+            self.record = np.zeros((*observed, ENTRIES, parts), dtype=watch.start.dtype)
+            self.record[..., 0, :] = watch.start
             self._forget()
 
     def _forget(self) -> None:
-        self.record[..., 1], self.record[..., 2], self.record[..., 3] = 0, np.inf, -np.inf
+        self.record[..., 1:, :] = 0
+        self.record[..., 2, 0], self.record[..., 3, 0] = np.inf, -np.inf
 
     def watched(self) -> Array:
         """Return the sums and bounds of the changes since they were last asked for, and start anew."""
-        found = self.record[..., 1:].astype(np.float64)
+        found = self.record[..., 1:, :].sum(axis=-1).astype(np.float64)
         self._forget()
         return found
 

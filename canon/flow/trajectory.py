@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from canon.expression.arithmetic import LONGDOUBLE, multiprecision
+from canon.expression.arithmetic import FLOAT64, LONGDOUBLE, multiprecision
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from canon.flow.method import Method
+    from canon.kernel.machine import MachineType
     from canon.kernel.structure import Equations
 
-__all__ = ["Samples", "Statistics", "Trajectory", "measured"]
+__all__ = ["Samples", "Statistics", "Trajectory", "measured", "values_in"]
 
 Array = npt.NDArray[np.float64]
 
@@ -67,12 +68,23 @@ class Statistics:
     Parameters
     ----------
     mean, least, greatest
-        Over the steps watched from one sample to the next, shape (times − 1,) or (times − 1, orbits).
+        Over the steps watched in each block, from one sample to the next, shape (times − 1,) or
+        (times − 1, orbits).
     """
 
     mean: Array
     least: Array
     greatest: Array
+
+    @property
+    def largest(self) -> Array:
+        """The largest size of the change in each block."""
+        return np.maximum(abs(self.least), abs(self.greatest))
+
+    @property
+    def running(self) -> Array:
+        """The largest size of the change from the start to the end of each block."""
+        return np.maximum.accumulate(self.largest, axis=0)
 
 
 @dataclass(frozen=True)
@@ -182,6 +194,29 @@ def measured(
     values = _wide_values if _WIDE and doubles else _many_digits
     found = values(system, nodes, samples.t, samples.y, samples.carried)
     return [(_rounded(value), _rounded(value - value[0])) for value in found]
+
+
+def values_in(
+    wide: MachineType, system: Equations, nodes: Sequence[int], t: float, y: Array, carried: Array
+) -> npt.NDArray[Any]:
+    """Return nodes at one time and states y + carried of shape (2n, orbits), as wide machine numbers.
+
+    The shape is (nodes, orbits, 1), or (nodes, orbits, 2) where a number is the sum of two doubles.
+    """
+    if not wide.pair:
+        arithmetic, dtype = (FLOAT64, np.float64) if wide.scalar == "double" else (LONGDOUBLE, np.longdouble)
+        point = [a.astype(dtype) + b.astype(dtype) for a, b in zip(y, carried, strict=True)]
+        found = system.graph.evaluate(
+            nodes, dict(zip(system.inputs, (*point, dtype(t)), strict=True)), arithmetic
+        )
+        return np.stack([np.broadcast_to(np.asarray(v, dtype=dtype), y.shape[1:]) for v in found])[
+            ..., np.newaxis
+        ]
+    exactly = np.stack(_many_digits(system, nodes, np.array([t]), y[:, np.newaxis], carried[:, np.newaxis]))[
+        :, 0
+    ]
+    high = exactly.astype(np.float64)
+    return np.stack([high, (exactly - high).astype(np.float64)], axis=-1)
 
 
 def _rounded(values: npt.NDArray[Any]) -> Array:

@@ -1,16 +1,17 @@
 """Observables inside the loop: every so many steps their change since the start, summed and bounded.
 
 Between two samples of a long run lie millions of steps; what a sample misses, the sums and bounds hold. They are
-computed in 64-bit-mantissa numbers where the processor has them (x86), in doubles elsewhere.
+computed in wider numbers than the state's, so that they are the trajectory's and not the evaluation's.
 """
 
 from __future__ import annotations
 
 import ctypes
+import dataclasses
 from typing import TYPE_CHECKING
 
 from canon.kernel.loop import compiled_function
-from canon.kernel.machine import DOUBLE, EXTENDED, MachineType
+from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, EXTENDED, MachineType
 from canon.kernel.writer import Writer
 
 if TYPE_CHECKING:
@@ -36,9 +37,17 @@ _PARAMETERS = ", ".join(
 )
 
 
-def wide_number() -> MachineType:
-    """Return the numbers in which observables are watched."""
-    return EXTENDED if EXTENDED.available() else DOUBLE
+def wide_number(number: MachineType) -> MachineType:
+    """Return the numbers in which observables of states in given numbers are watched.
+
+    Doubles are watched with a 64-bit mantissa where the processor has one (x86), x87 numbers in double-double;
+    double-double states, for which there is nothing wider, in double-double too.
+    """
+    if number.pair or number.scalar == "x86_fp80":
+        return DOUBLE_DOUBLE
+    if number.scalar == "float":
+        return DOUBLE
+    return EXTENDED if EXTENDED.available() else DOUBLE_DOUBLE
 
 
 def watching_function(system: Equations, nodes: Sequence[int], loop: Loop) -> MachineCode:
@@ -55,9 +64,9 @@ def watching_function(system: Equations, nodes: Sequence[int], loop: Loop) -> Ma
     nodes
         The observables.
     loop
-        A loop that computes in doubles, compensated or not.
+        The loop.
     """
-    w = Writer(DOUBLE)
+    w = Writer(dataclasses.replace(loop.number, lanes=1))
     end = w.let("add i64 %first, %steps")
     turn = w.let("sdiv i64 %first, %cadence")
     last_turn = w.let(f"sdiv i64 {w.let(f'sub i64 {end}, 1')}, %cadence")
@@ -79,23 +88,33 @@ def _watch(
 ) -> None:
     """Evaluate the nodes for one orbit and record their changes."""
     size, lanes = len(system.inputs) - 1, loop.number.lanes
-    wide = w.in_numbers(wide_number())
+    wide = w.in_numbers(wide_number(loop.number))
 
     def component(array: str, length: int, i: int) -> str:
-        start = w.let(f"mul i64 {block}, {length * lanes}")
-        shifted = w.let(f"add i64 {start}, {i * lanes}")
-        return wide.widened(w.load(array, w.let(f"add i64 {shifted}, {lane}")))
+        before = w.let(f"add i64 {w.let(f'mul i64 {block}, {length}')}, {i}")
+        return wide.widened(_in_lane(w, array, before, lanes, lane), w.number)
 
     state = [component("%y", size, i) for i in range(size)]
     if loop.compensated:
         state = [wide.algebra("add", y, component("%e", loop.carry, i)) for i, y in enumerate(state)]
-    clock = w.multiply_add(w.whole(step), w.load("%c", lanes), w.load("%c", 0))
+    start, h = (_in_lane(w, "%c", i, lanes, lane) for i in (0, 1))
+    clock = wide.widened(w.multiply_add(w.whole(step), h, start), w.number)
     orbit = w.let(f"add i64 {w.let(f'mul i64 {block}, {lanes}')}, {lane}")
     own = wide.at("%kept", w.let(f"mul i64 {orbit}, {len(nodes) * ENTRIES}"))
-    for k, value in enumerate(wide.program(system.program(nodes), [*state, wide.widened(clock)])):
+    for k, value in enumerate(wide.program(system.program(nodes), [*state, clock])):
         entry = k * ENTRIES
         change = wide.algebra("sub", value, wide.load(own, entry))
         wide.store(wide.algebra("add", wide.load(own, entry + 1), change), own, entry + 1)
         least, greatest = wide.load(own, entry + 2), wide.load(own, entry + 3)
         wide.store(wide.select(wide.less(change, least), change, least), own, entry + 2)
         wide.store(wide.select(wide.less(greatest, change), change, greatest), own, entry + 3)
+
+
+def _in_lane(w: Writer, array: str, index: str | int, lanes: int, lane: str) -> str:
+    """Read one lane of an array's element: of a pair, lanes of high parts lie before lanes of low ones."""
+    part = w.in_numbers(dataclasses.replace(w.number, pair=False))
+    first = w.let(f"add i64 {w.let(f'mul i64 {index}, {lanes * (1 + w.number.pair)}')}, {lane}")
+    high = part.load(array, first)
+    if not w.number.pair:
+        return high
+    return w.paired(high, part.load(array, w.let(f"add i64 {first}, {lanes}")))

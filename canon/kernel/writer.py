@@ -68,11 +68,25 @@ class Writer:
         other.number = number
         return other
 
-    def widened(self, double: str) -> str:
-        """Turn a double register into a number of this writer's type, without rounding."""
-        if self.number.scalar == "double":
-            return double
-        return self.let(f"fpext double {double} to {self.number.scalar}")
+    def widened(self, value: str, kind: MachineType) -> str:
+        """Turn a number of another type into one of this writer's, which is no narrower, without rounding."""
+        if self.number == kind:
+            return value
+        if not self.number.pair:
+            return self.let(f"fpext {kind.scalar} {value} to {self.number.scalar}")
+        if kind.scalar != "x86_fp80":
+            high = value if kind.scalar == "double" else self.let(f"fpext {kind.scalar} {value} to double")
+            return self.paired(high, "0.0")
+        high = self.let(f"fptrunc x86_fp80 {value} to double")
+        rest = self.let(f"fsub x86_fp80 {value}, {self.let(f'fpext double {high} to x86_fp80')}")
+        return self.paired(high, self.let(f"fptrunc x86_fp80 {rest} to double"))
+
+    def paired(self, high: str, low: str) -> str:
+        """Make a double-double number of its two parts."""
+        kind, base = f"{{ {self.number.base}, {self.number.base} }}", self.number.base
+        return self.let(
+            f"insertvalue {kind} {self.let(f'insertvalue {kind} poison, {base} {high}, 0')}, {base} {low}, 1"
+        )
 
     def lesser_integer(self, a: str, b: str) -> str:
         """Return the lesser of two i64 registers."""
@@ -175,7 +189,10 @@ class Writer:
         return self.let(f"call {kind.scalar} {full}({kind.name} {value})")
 
     def less(self, a: str, b: str) -> str:
-        """Compare: a < b, false where either is NaN; one flag a lane."""
+        """Compare: a < b, false where either is NaN; one flag a lane; of pairs by their high parts."""
+        if self.number.pair:
+            a, b = (self.let(f"extractvalue {self.number.name} {x}, 0") for x in (a, b))
+            return self.let(f"fcmp olt {self.number.base} {a}, {b}")
         return self.let(f"fcmp olt {self.number.name} {a}, {b}")
 
     def equal(self, a: str, b: str) -> str:

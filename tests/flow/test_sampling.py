@@ -1,0 +1,64 @@
+"""States at times the user names."""
+
+import numpy as np
+import pytest
+
+from canon.flow.method import DOP853, Gauss, Splitting, Taylor
+from canon.flow.propagate import propagate
+from tests.flow.systems import HENON_HEILES, HENON_HEILES_START
+
+SPAN = (0, 20)
+TIMES = np.array([0.3, 0.7, 1.9, 6.0, 17.24])
+
+
+@pytest.mark.parametrize("method", [Splitting("kahan-li-8"), Gauss(4)], ids=str)
+@pytest.mark.parametrize("direction", [1, -1])
+def test_fixed_steps_keep_the_state_after_the_nearest_step(method, direction):
+    span = SPAN[::direction]
+    times = TIMES[::direction]
+    motion = propagate(HENON_HEILES, HENON_HEILES_START, span, method=method, step=0.05, times=times)
+    every = propagate(HENON_HEILES, HENON_HEILES_START, span, method=method, step=0.05, samples=400)
+    nearest = [0, *(round(abs(t - span[0]) / 0.05) for t in times), 400]
+    np.testing.assert_array_equal(motion.t, every.t[nearest])
+    np.testing.assert_array_equal(motion.y, every.y[:, nearest])
+    assert abs(motion.t[1:-1] - times).max() <= 0.025 + 1e-12
+
+
+def test_times_nearest_to_one_step_are_kept_once():
+    motion = propagate(
+        HENON_HEILES,
+        HENON_HEILES_START,
+        (0, 1),
+        method=Splitting("verlet"),
+        step=0.1,
+        times=[0, 0.49, 0.51, 1],
+    )
+    np.testing.assert_allclose(motion.t, [0, 0.5, 1])
+
+
+@pytest.mark.parametrize("method", [Taylor(), DOP853()], ids=str)
+def test_adaptive_methods_are_evaluated_at_the_very_times(method):
+    motion = propagate(HENON_HEILES, HENON_HEILES_START, SPAN, method=method, times=TIMES)
+    np.testing.assert_array_equal(motion.t, [0, *TIMES, 20])
+    for k, t in enumerate(TIMES):
+        there = propagate(HENON_HEILES, HENON_HEILES_START, (0, t), samples=1).final
+        np.testing.assert_allclose(motion.y[:, k + 1], there, atol=1e-12 if method == Taylor() else 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"times": [1, 1, 2]}, "sort them"),
+        ({"times": [3, 2]}, "sort them"),
+        ({"times": [1, 21]}, "outside t_span"),
+        ({"times": [-1, 2]}, "outside t_span"),
+        ({"times": [1, np.nan]}, "finite"),
+        ({"times": []}, "finite"),
+        ({"times": [[1, 2]]}, "list"),
+        ({"times": [1], "samples": 3}, "one of them"),
+        ({"samples": 2.5}, "at least one state"),
+    ],
+)
+def test_times_that_make_no_sense_are_refused(wrong, message):
+    with pytest.raises(ValueError, match=message):
+        propagate(HENON_HEILES, HENON_HEILES_START, SPAN, method=Splitting("verlet"), step=0.1, **wrong)
