@@ -41,9 +41,10 @@ def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
     ['holds', 'holds']
     """
     with ExitStack() as stack:
+        workers = [stack.enter_context(Worker()) for _ in range(jobs)]
         idle: queue.SimpleQueue[Worker] = queue.SimpleQueue()
-        for _ in range(jobs):
-            idle.put(stack.enter_context(Worker()))
+        for worker in workers:
+            idle.put(worker)
         pool = stack.enter_context(ThreadPoolExecutor(jobs))
 
         def judge(claim: Claim) -> Judgement:
@@ -62,6 +63,8 @@ def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
                 yield replace(found, id=claim.id, title=title, expect=claim.expect, file=claim.file)
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+            for worker in workers:  # nobody waits for what they are judging still
+                worker.stop()
 
 
 def _said(claim: Claim) -> str:

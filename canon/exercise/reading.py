@@ -11,7 +11,8 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.exercise.kinds import KINDS, Shape
-from canon.exercise.sheet import ASSUMPTIONS, Claim, ClaimError
+from canon.exercise.form import ASSUMPTIONS
+from canon.exercise.sheet import Claim, ClaimError
 from canon.expression.language import (
     LanguageError,
     Scope,

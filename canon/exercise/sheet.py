@@ -6,25 +6,27 @@ claims a sheet.
 
 from __future__ import annotations
 
-import difflib
 import json
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from decimal import Decimal
+from decimal import Decimal, InvalidOperation
 from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-from canon.exercise.kinds import COMMON, KINDS, Shape
+from canon.exercise.form import MAX_DIGITS, faults
 
 __all__ = ["Claim", "ClaimError", "Sheet", "SheetError", "bundled_sheet", "read_sheet", "sheet_from"]
 
 MAX_BYTES = 10_000_000
+MAX_TOML_BYTES = 2_000_000
+"""TOML is written by people, and its parser takes longer than JSON's."""
 MAX_CLAIMS = 10_000
+MIN_BUDGET = Decimal("0.01")
 DEFAULT_BUDGET = 10.0
-ASSUMPTIONS = ("positive", "negative", "nonzero", "real", "integer")
 
 
 class SheetError(ValueError):
@@ -134,10 +136,11 @@ def read_sheet(path: str | Path) -> Sheet:
     """
     path = Path(path)
     try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)  # never more, even of what has no size, such as a pipe
+        if len(data) > MAX_BYTES:
+            size = path.stat().st_size
             raise SheetError(f"{path}: {size} bytes, and at most {MAX_BYTES} are read; split the sheet")
-        data = path.read_bytes()
     except OSError as error:
         raise SheetError(f"{path}: can't be read ({error.strerror or error})") from error
     return sheet_from(data, file=str(path), toml=path.suffix.lower() == ".toml")
@@ -175,7 +178,7 @@ def sheet_from(data: bytes, *, file: str = "", toml: bool = False) -> Sheet:
     except UnicodeDecodeError as error:
         raise SheetError(f"{shown}: not UTF-8 text (byte {error.start})") from error
     try:
-        found = tomllib.loads(text, parse_float=Decimal) if toml else _json(text)
+        found = _toml(text) if toml else _json(text)
     except RecursionError as error:
         raise SheetError(f"{shown}: nested too deeply to be a sheet") from error
     except ValueError as error:
@@ -183,20 +186,44 @@ def sheet_from(data: bytes, *, file: str = "", toml: bool = False) -> Sheet:
     return _sheet(found, file, shown)
 
 
+def _decimal(text: str) -> Decimal | str:
+    """Return a decimal; what is no number, or one that nobody means, stays text and is refused where it stands."""
+    try:
+        value = Decimal(text)
+    except InvalidOperation:
+        return text
+    return value if value.is_finite() and abs(value.adjusted()) <= MAX_DIGITS else text
+
+
+_LONG_DOTTED_KEY = re.compile(
+    r"""(?<![\w.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""", re.ASCII
+)
+"""Python's TOML parser takes time in proportion to the square of the length of such a key."""
+
+
+def _toml(text: str) -> Any:
+    if len(text) > MAX_TOML_BYTES:
+        raise ValueError(f"{len(text)} characters, and at most {MAX_TOML_BYTES} are read; split the sheet")
+    long = _LONG_DOTTED_KEY.search(text)
+    if long:
+        line = text.count("\n", 0, long.start()) + 1
+        raise ValueError(f"a key of more than 32 parts, at line {line}")
+    return tomllib.loads(text, parse_float=_decimal)
+
+
 def _json(text: str) -> Any:
     def no_constant(name: str) -> NoReturn:
         raise ValueError(f"{name} is not a number of JSON")
 
     def no_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        found = dict(pairs)
-        if len(found) < len(pairs):
-            keys = [key for key, _ in pairs]
-            raise ValueError(
-                f"the key {next(k for k in keys if keys.count(k) > 1)!r} stands twice in one object"
-            )
+        found: dict[str, Any] = {}
+        for key, value in pairs:
+            if key in found:
+                raise ValueError(f"the key {key[:60]!r} stands twice in one object")
+            found[key] = value
         return found
 
-    return json.loads(text, parse_float=Decimal, parse_constant=no_constant, object_pairs_hook=no_repeats)
+    return json.loads(text, parse_float=_decimal, parse_constant=no_constant, object_pairs_hook=no_repeats)
 
 
 def _sheet(found: Any, file: str, shown: str) -> Sheet:
@@ -234,114 +261,23 @@ def _claim(keys: Any, number: int, file: str) -> Claim:
     id_ = name if isinstance(name, str) and name else f"#{number}"
     said = keys.get("kind")
     kind = said if isinstance(said, str) else ""
-    faults = [("id", "missing (a name for the claim)")] if id_ != name else []
-    faults += _faults(kind, keys)
+    found = [("id", "missing (a name for the claim)")] if id_ != name else []
+    found += faults(kind, keys)
     expect = keys.get("expect", "")
     if expect not in ("", "holds", "fails"):
-        faults.append(("expect", "write holds or fails"))
-    budget = keys.get("budget", DEFAULT_BUDGET)
-    usable = isinstance(budget, (int, float, Decimal)) and not isinstance(budget, bool) and 0 < budget <= 3600
+        found.append(("expect", "write holds or fails"))
+    budget = keys.get("budget", int(DEFAULT_BUDGET))
+    usable = (
+        isinstance(budget, (int, Decimal)) and not isinstance(budget, bool) and MIN_BUDGET <= budget <= 3600
+    )
     if not usable:
-        faults.append(("budget", "write a number of seconds above 0 and up to 3600"))
+        found.append(("budget", f"write a number of seconds from {MIN_BUDGET} to 3600"))
     return Claim(
         id_,
         kind,
         MappingProxyType(keys),
         expect=str(expect),
         budget=float(budget) if usable else DEFAULT_BUDGET,
-        errors=tuple(ClaimError(id_, key, reason, file=file) for key, reason in faults),
+        errors=tuple(ClaimError(id_, key, reason, file=file) for key, reason in found),
         file=file,
     )
-
-
-def _faults(kind: str, keys: Mapping[str, Any]) -> list[tuple[str, str]]:
-    if kind not in KINDS:
-        close = difflib.get_close_matches(kind[:60], KINDS, n=2, cutoff=0.5)
-        remedy = f"is {' or '.join(close)} meant?" if close else f"known are {', '.join(KINDS)}"
-        return [("kind", f"unknown kind {kind!r}; {remedy}" if kind else f"missing; {remedy}")]
-    wanted = KINDS[kind]
-    known = {**COMMON, **wanted.required, **wanted.optional}
-    faults = [(key, f"missing ({shape.value})") for key, shape in wanted.required.items() if key not in keys]
-    if wanted.one_of and not any(all(key in keys for key in group) for group in wanted.one_of):
-        groups = " or ".join(" with ".join(group) for group in wanted.one_of)
-        faults.append((wanted.one_of[0][-1], f"missing; a claim of kind {kind} needs {groups}"))
-    for key, value in keys.items():
-        if key not in known:
-            close = difflib.get_close_matches(key[:60], known, n=1, cutoff=0.6)
-            remedy = f"is {close[0]} meant?" if close else f"known are {', '.join(known)}"
-            faults.append((key[:60], f"unknown key for the kind {kind}; {remedy}"))
-        elif not _fits(value, known[key]):
-            faults.append((key, f"should be {known[key].value}"))
-    return faults
-
-
-def _text(value: Any) -> bool:
-    return isinstance(value, (str, int, Decimal)) and not isinstance(value, bool)
-
-
-def _texts(value: Any) -> bool:
-    return _text(value) or (isinstance(value, list) and len(value) > 0 and all(_text(item) for item in value))
-
-
-def _name(value: Any) -> bool:
-    return isinstance(value, str) and value.isidentifier() and value.isascii()
-
-
-def _names(value: Any) -> bool:
-    return _name(value) or (isinstance(value, list) and all(_name(item) for item in value))
-
-
-def _table(value: Any) -> bool:
-    return isinstance(value, Mapping) and all(_name(key) for key in value)
-
-
-def _fits(value: Any, shape: Shape) -> bool:
-    match shape:
-        case Shape.TEXT:
-            return _text(value)
-        case Shape.TEXTS:
-            return _texts(value) or value == []
-        case Shape.NAMES:
-            return _names(value)
-        case Shape.WORD:
-            return isinstance(value, str)
-        case Shape.TRUE:
-            return value is True
-        case Shape.NUMBER:
-            return isinstance(value, (int, Decimal)) and not isinstance(value, bool)
-        case Shape.ASSUMPTIONS:
-            return _table(value) and all(item in ASSUMPTIONS for item in value.values())
-        case Shape.FUNCTIONS:
-            return _table(value) and all(_names(item) and item != [] for item in value.values())
-        case Shape.BOX:
-            return _table(value) and all(_interval(item) for item in value.values())
-        case Shape.EXPRESSIONS:
-            return _table(value) and all(_text(item) for item in value.values())
-        case Shape.LISTS:
-            return _table(value) and all(_texts(item) for item in value.values())
-        case Shape.BRACKETS:
-            return isinstance(value, list) and len(value) > 0 and all(_bracket(item) for item in value)
-        case Shape.BODIES:
-            return isinstance(value, list) and len(value) > 0 and all(_body(item) for item in value)
-
-
-def _interval(value: Any) -> bool:
-    if not isinstance(value, list) or len(value) != 2:
-        return False
-    numbers = all(isinstance(end, (int, Decimal)) and not isinstance(end, bool) for end in value)
-    return numbers and all(Decimal(end).is_finite() for end in value) and value[0] < value[1]
-
-
-def _bracket(value: Any) -> bool:
-    return (
-        _table(value)
-        and set(value) in ({"f", "g", "value"}, {"u", "v", "value"})
-        and all(map(_text, value.values()))
-    )
-
-
-def _body(value: Any) -> bool:
-    if not _table(value) or not set(value) <= {"m", "r", "I", "angle", "omega"}:
-        return False
-    point, rotor = {"m", "r"} <= set(value), "I" in value and bool({"angle", "omega"} & set(value))
-    return (point or rotor) and all(_texts(item) for item in value.values())

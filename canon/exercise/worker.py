@@ -2,7 +2,8 @@
 
 Parent and worker exchange JSON lines over pipes. The worker answers each claim with its verdict first and with
 the feedback afterwards, so that a feedback that takes too long costs no verdict. A worker has at most 4 GB
-of memory (where the system can limit it) and no way to pass anything but text back.
+of memory (where the system can limit it) and no way to pass anything but text back. It is killed together with
+the process in which it lets proofs run, so that nothing goes on computing what nobody waits for.
 """
 
 from __future__ import annotations
@@ -10,10 +11,12 @@ from __future__ import annotations
 import json
 import os
 import queue
+import signal
 import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
 from types import MappingProxyType
@@ -58,7 +61,7 @@ class Worker:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._stop()
+        self.stop()
 
     def judge(self, claim: Claim) -> Judgement:
         """Judge one claim within its budget; never raises for what stands in the claim."""
@@ -73,7 +76,7 @@ class Worker:
             process.stdin.write(_encoded(claim) + "\n")
             process.stdin.flush()
         except BrokenPipeError:
-            self._stop()
+            self.stop()
             return _open(claim, "the process that judged it broke off", 0.0)
         return self._answer(claim, start)
 
@@ -84,11 +87,11 @@ class Worker:
             try:
                 line = self._lines.get(timeout=max(0.0, deadline - time.monotonic()))
             except queue.Empty:
-                self._stop()
+                self.stop()
                 spent = time.monotonic() - start
                 return verdict or _open(claim, f"its budget of {claim.budget:g} s was spent", spent)
             if not line:
-                self._stop()
+                self.stop()
                 spent = time.monotonic() - start
                 return verdict or _open(
                     claim, "the process that judged it broke off (memory, or a fault)", spent
@@ -103,15 +106,16 @@ class Worker:
         """Start a process unless one is running."""
         if self._process is not None and self._process.poll() is None:
             return
-        self._stop()
+        self.stop()
         self._lines = queue.SimpleQueue()
         self._process = subprocess.Popen(  # the interpreter that runs now, and nothing of the claim
-            [sys.executable, "-m", "canon.exercise.worker"],
+            [sys.executable, "-P", "-m", "canon.exercise.worker"],  # -P: no module of the folder it is run in
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
             encoding="utf-8",
+            start_new_session=True,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)},
         )
         assert self._process.stdout is not None  # it is a pipe
@@ -119,20 +123,28 @@ class Worker:
         try:
             self._lines.get(timeout=START)
         except queue.Empty:
-            self._stop()
+            self.stop()
 
-    def _stop(self) -> None:
+    def stop(self) -> None:
+        """Kill the process, whatever it is doing; the next claim starts another one."""
         process, self._process = self._process, None
         if process is None:
             return
-        process.kill()
+        _kill(process)
         process.wait()
         for pipe in (process.stdin, process.stdout):
             if pipe is not None:
-                try:
+                with suppress(BrokenPipeError):
                     pipe.close()
-                except BrokenPipeError:
-                    continue
+
+
+def _kill(process: subprocess.Popen[str]) -> None:
+    """Kill a worker and the process of its proofs, which is of its group."""
+    if sys.platform == "win32" or process.returncode is not None:
+        process.kill()
+        return
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
 
 
 def _listen(pipe: IO[str], lines: queue.SimpleQueue[str]) -> None:
