@@ -111,7 +111,12 @@ class _Worker:
         if self._process is None:
             path = os.pathsep.join(entry or str(Path.cwd()) for entry in sys.path)
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "canon.proof.worker"],
+                [
+                    sys.executable,
+                    "-P",
+                    "-m",
+                    "canon.proof.worker",
+                ],  # -P: no module of the folder it is run in
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
