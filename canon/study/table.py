@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from canon.study.comparison import DriftRow, DriftStudy
     from canon.study.drift import Drift
 
-__all__ = ["drift_table", "error_name"]
+__all__ = ["aligned", "drift_table", "error_name"]
 
 WORDS = {
     Growth.BOUNDED: "bounded",
@@ -53,14 +53,14 @@ def drift_table(study: DriftStudy) -> str:
     head = ("method", "order", "step", f"max |{name}|", f"drift per {rate}", "grows as t^", "verdict")
     cost = ("evaluations", "CPU")
     body = [(*_cells(study, row), *_cost(row)) for row in study.rows]
-    aligned = _aligned([(*head, *cost), *body], right={1, 2, 3, 7, 8})
-    rule = "─" * max(map(len, aligned))
+    lines = aligned([(*head, *cost), *body], right={1, 2, 3, 7, 8})
+    rule = "─" * max(map(len, lines))
     verdicts = dict.fromkeys(row.drift.verdict for row in study.rows if row.drift is not None)
     notes = [f"{WORDS[verdict]}: {MEANING[verdict]}" for verdict in verdicts]
     notes.extend(f"{row.method} failed: {row.failure}" for row in study.rows if row.drift is None)
     if any(isinstance(row.method, Taylor) and row.drift for row in study.rows):
         notes.append("evaluations: of the force; for Taylor, of the whole series of its order")
-    return "\n".join([study.title, _run(study), "", aligned[0], rule, *aligned[1:], rule, *notes])
+    return "\n".join([study.title, _run(study), "", lines[0], rule, *lines[1:], rule, *notes])
 
 
 def error_name(study: DriftStudy) -> str:
@@ -126,7 +126,7 @@ def with_error(value: float, error: float) -> str:
     return f"({value / scale:.{places}f} ± {error / scale:.{places}f})e{power:+03d}"
 
 
-def _aligned(rows: Sequence[tuple[str, ...]], right: set[int]) -> list[str]:
+def aligned(rows: Sequence[tuple[str, ...]], right: set[int]) -> list[str]:
     """Return the rows with columns of equal width."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     lines: list[str] = []

@@ -1,0 +1,284 @@
+"""Short runs that show what a setting of a method costs and how its error grows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.method import DOP853, FixedStep, Gauss, Splitting, Taylor
+from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.study.comparison import StudyError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+    from sympy import Expr, Symbol
+
+    from canon.flow.method import Method
+    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.trajectory import Trajectory
+
+    Array = NDArray[np.float64]
+
+__all__ = ["Pilot", "Question", "Setting", "is_symplectic", "pilot", "seconds_per_time"]
+
+WINDOWS = 512
+"""Windows a pilot run is looked at in."""
+
+PLACES = 64
+"""Times at which positions are compared with those of the reference."""
+
+WATCHED = 200_000
+"""Steps of a pilot run at which the error is looked at, at most."""
+
+BEFORE_LOST = 0.1
+"""Relative energy error from which a run no longer shows the motion that was asked for."""
+
+REFERENCE = Taylor(1e-19)
+"""Method of the reference for positions, in 64 bits; 113 bits where the platform has no such numbers."""
+
+TIMED_SECONDS = 0.004
+"""Processor time over which a step is timed."""
+
+TIMINGS = 4
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A method with its step or tolerance and its arithmetic, the way ``propagate`` takes them."""
+
+    method: Method
+    step: float | None = None
+    tolerance: float | None = None
+    precision: str = "compensated"
+
+    @property
+    def knob(self) -> float:
+        """The step, or the tolerance of an adaptive method."""
+        return self.step if self.step is not None else self.tolerance or 2.0**-52
+
+    def turned(self, knob: float) -> Setting:
+        """Return the setting with another step or tolerance."""
+        if isinstance(self.method, FixedStep):
+            return replace(self, step=knob)
+        return replace(self, tolerance=knob)
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is to be kept over which motion.
+
+    Parameters
+    ----------
+    hamiltonian, y0, values, span
+        The motion: Hamiltonian, state (q, p) of shape (2n,), values of the parameters, duration.
+    observable
+        ``"energy"``, ``"position"``, or the name of an integral.
+    integral
+        That integral as a function of (q, p); None for the first two.
+    """
+
+    hamiltonian: HamiltonianSystem
+    y0: Array
+    values: Mapping[Symbol | str, float]
+    span: float
+    observable: str = "energy"
+    integral: Expr | None = None
+    _known: dict[float, Array] = field(default_factory=dict[float, "Array"], repr=False, compare=False)
+
+    def run(self, setting: Setting, duration: float, samples: int, cadence: int | None = None) -> Trajectory:
+        """Return a run of that duration from the start."""
+        return propagate(
+            self.hamiltonian,
+            self.y0,
+            (0.0, duration),
+            method=setting.method,
+            step=setting.step,
+            tolerance=setting.tolerance,
+            precision=setting.precision,
+            parameters=self.values,
+            samples=samples,
+            cadence=cadence,
+            observables=None if self.integral is None else {self.observable: self.integral},
+        )
+
+    def positions(self, duration: float) -> Array:
+        """Return the coordinates of the reference at PLACES + 1 even times, shape (n, times)."""
+        if duration not in self._known:
+            setting = Setting(REFERENCE, precision="extended")
+            try:
+                found = self.run(setting, duration, PLACES)
+            except ValueError:
+                found = self.run(replace(setting, precision="quad"), duration, PLACES)
+            self._known[duration] = found.q + found.carried[: len(found.q)]
+        return self._known[duration]
+
+
+@dataclass(frozen=True)
+class Pilot:
+    """A short run of a setting.
+
+    Parameters
+    ----------
+    setting
+        What was run.
+    span
+        Its duration.
+    steps, evaluations
+        Steps taken, and evaluations of the force (Taylor: of the series).
+    t
+        Middles of the windows (positions: the times of the comparison), shape (windows,).
+    mean, largest
+        Mean error and largest size of the error in each window; relative where the start is not zero.
+    energy
+        Largest energy error met.
+    failure
+        Why the run failed; empty where it did not.
+    """
+
+    setting: Setting
+    span: float
+    steps: int = 0
+    evaluations: int = 0
+    t: Array = field(default_factory=lambda: np.empty(0))
+    mean: Array = field(default_factory=lambda: np.empty(0))
+    largest: Array = field(default_factory=lambda: np.empty(0))
+    energy: float = math.inf
+    failure: str = ""
+
+    @cached_property
+    def bound(self) -> float:
+        """The largest error met; infinity where the run failed or left the motion."""
+        return float(self.largest.max()) if not self.lost else math.inf
+
+    @property
+    def lost(self) -> bool:
+        """Whether the run failed, or its energy is so wrong that it shows another motion."""
+        return bool(self.failure) or not self.energy < BEFORE_LOST
+
+
+def is_symplectic(method: Method) -> bool:
+    """Tell whether a method keeps a modified energy, so that its energy error does not grow."""
+    return isinstance(method, Splitting | Gauss)
+
+
+def pilot(question: Question, setting: Setting, duration: float) -> Pilot:
+    """Run a setting for a while and keep what its error did; a run that fails is a pilot with the reason."""
+    try:
+        if question.observable == "position":
+            return _against_reference(question, setting, duration)
+        if isinstance(setting.method, FixedStep) and setting.precision in ("double", "compensated"):
+            return _watched(question, setting, duration)
+        return _sampled(question, setting, duration)
+    except (NonFiniteStateError, ArithmeticError, ValueError) as failed:
+        return Pilot(setting, duration, failure=str(failed))
+
+
+def seconds_per_time(question: Question, setting: Setting, duration: float) -> float:
+    """Return the processor time of the steps per unit of time, the least of a few runs."""
+    trial = duration / 64.0
+    found = question.run(setting, trial, 1)
+    while found.cpu_seconds < TIMED_SECONDS and trial < duration:
+        trial = min(duration, 4.0 * trial)
+        found = question.run(setting, trial, 1)
+    again = (question.run(setting, trial, 1).cpu_seconds for _ in range(TIMINGS - 1))
+    return min(found.cpu_seconds, *again) / trial
+
+
+def _watched(question: Question, setting: Setting, duration: float) -> Pilot:
+    """Follow the error inside the loop: nothing is missed between samples."""
+    steps = math.ceil(duration / setting.knob)
+    cadence = max(1, steps // WATCHED)
+    windows = min(WINDOWS, steps // (2 * cadence))
+    found = question.run(setting, duration, windows, cadence)
+    seen = found.statistics[question.observable]
+    unit = _unit(found, question)
+    largest = np.maximum(np.abs(seen.least), np.abs(seen.greatest)) / unit
+    energy = found.statistics["energy"]
+    worst = float(max(np.abs(energy.least).max(), np.abs(energy.greatest).max()))
+    return Pilot(
+        setting=replace(setting, step=found.step),
+        span=duration,
+        steps=found.steps,
+        evaluations=found.evaluations,
+        t=(found.t[1:] + found.t[:-1]) / 2.0,
+        mean=seen.mean / unit,
+        largest=largest,
+        energy=worst / (abs(found.energy[0]) if found.relative else 1.0),
+    )
+
+
+def _sampled(question: Question, setting: Setting, duration: float) -> Pilot:
+    found = question.run(setting, duration, 4 * WINDOWS)
+    error = found.energy_change if question.integral is None else found.changes[question.observable]
+    error = error / _unit(found, question)
+    return Pilot(
+        setting=setting,
+        span=duration,
+        steps=found.steps,
+        evaluations=found.evaluations,
+        t=found.t,
+        mean=error,
+        largest=np.abs(error),
+        energy=float(np.abs(found.energy_error).max()),
+    )
+
+
+def _against_reference(question: Question, setting: Setting, duration: float) -> Pilot:
+    """Compare coordinates with the reference; a step is adjusted to meet its times."""
+    if isinstance(setting.method, FixedStep):
+        steps = PLACES * max(1, round(duration / setting.knob / PLACES))
+        setting = replace(setting, step=duration / steps)
+    true = question.positions(duration)
+    found = question.run(setting, duration, PLACES)
+    off = (found.q - true) + found.carried[: len(found.q)]
+    size = float(np.linalg.norm(true, axis=0).max())
+    away = np.linalg.norm(off, axis=0)[1:] / size
+    return Pilot(
+        setting=setting,
+        span=duration,
+        steps=found.steps,
+        evaluations=found.evaluations,
+        t=found.t[1:],
+        mean=away,
+        largest=away,
+        energy=float(np.abs(found.energy_error).max()),
+    )
+
+
+def _unit(found: Trajectory, question: Question) -> float:
+    """Return what errors are relative to: the quantity at the start, or one where it is zero."""
+    if question.integral is None:
+        return float(abs(found.energy[0])) or 1.0
+    return float(abs(found.observables[question.observable][0])) or 1.0
+
+
+def natural_step(question: Question, report: Callable[[float], None] = lambda _: None) -> float:
+    """Return the mean step of Taylor's method at the tolerance of round-off: the time scale of the motion.
+
+    Raises
+    ------
+    StudyError
+        Where the motion can't be followed at all.
+    """
+    duration = question.span * 2.0**-20
+    try:
+        while True:
+            found = question.run(Setting(Taylor(), precision="double"), duration, 1)
+            if found.steps >= 300 or duration >= question.span:
+                return duration / found.steps
+            factor = 8.0 if found.steps < 30 else 400.0 / found.steps
+            duration = min(question.span, factor * duration)
+            report(0.0)
+    except (NonFiniteStateError, ValueError) as failed:
+        raise StudyError(f"the motion can't be followed: {failed}") from failed
+
+
+def dop853_share(method: Method) -> float:
+    """Return the part of a pilot's usual duration that suffices where every step is taken in Python."""
+    return 1.0 / 16.0 if isinstance(method, DOP853) else 1.0
