@@ -1,0 +1,88 @@
+"""Sphinx: every notebook is executed, every warning is an error, nothing is fetched.
+
+Build with ``sphinx-build -W --keep-going -b html docs docs/_build``.
+"""
+
+import importlib
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parent))
+
+from canon import _ROOMS, __version__  # noqa: E402  (the checkout's canon, found through the line above)
+
+project = "canon"
+author = copyright = "The canon developers"  # noqa: A001  (Sphinx's own name)
+version = release = __version__
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.intersphinx",
+    "sphinx.ext.napoleon",
+    "sphinx-mathjax-offline",
+    "sphinx_copybutton",
+]
+myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+exclude_patterns = ["_build", "README.md"]
+
+nb_execution_mode = "cache"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+nb_merge_streams = True
+
+autosummary_generate = True
+autodoc_typehints = "none"  # the numpydoc sections say it in words, the signatures in types
+autodoc_member_order = "bysource"
+napoleon_numpy_docstring = True
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+napoleon_use_ivar = True
+
+# Kept in the repository, so that a build needs no network.
+intersphinx_mapping = {
+    "python": ("https://docs.python.org/3", "inventories/python.inv"),
+    "scipy": ("https://docs.scipy.org/doc/scipy", "inventories/scipy.inv"),
+    "sympy": ("https://docs.sympy.org/latest", "inventories/sympy.inv"),
+}
+
+html_theme = "furo"
+html_title = "canon"
+html_static_path = ["_static"]
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+
+SUBJECTS = {
+    "expression": "Writing mechanics",
+    "proof": "Is it zero?",
+    "mechanics": "Lagrange, Hamilton, Routh, Jacobi",
+    "flow": "Methods and trajectories",
+    "scene": "Scenes",
+    "study": "Drift, cost and choice",
+    "exercise": "Judging answers",
+}
+
+
+def public_names() -> str:
+    """Return the page that lists every name of the front door by room, each with a page of its own."""
+    by_room: dict[str, list[str]] = {}
+    for module, names in _ROOMS.items():
+        by_room.setdefault(module.split(".")[1], []).extend(f"{module}.{name}" for name in names)
+    lines = ["# Every public name", "", "Written from `canon/__init__.py` when the pages are built.", ""]
+    for room, names in sorted(by_room.items(), key=lambda item: list(SUBJECTS).index(item[0])):
+        lines += [f"## {SUBJECTS[room]}", "", f"{importlib.import_module(f'canon.{room}').__doc__}", ""]
+        lines += ["```{eval-rst}", ".. autosummary::", "   :toctree: generated", ""]
+        lines += [f"   {name}" for name in sorted(names, key=lambda name: name.rsplit(".", 1)[1].lower())]
+        lines += ["```", ""]
+    return "\n".join(lines)
+
+
+def setup(app: object) -> None:  # noqa: ARG001  (Sphinx gives it)
+    """Write the list of public names before Sphinx reads it."""
+    page = HERE / "reference" / "api.md"
+    text = public_names()
+    if not page.exists() or page.read_text(encoding="utf-8") != text:
+        page.write_text(text, encoding="utf-8")
