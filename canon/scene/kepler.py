@@ -83,6 +83,8 @@ KEPLER = Scene(
     time_unit="a",
     source="Goldstein, Poole & Safko, Classical Mechanics (3rd ed.), § 3.7–3.9",
     H_of=_hamiltonian,
+    energy_bound=1e-12,
+    energy_why="kinetic and potential energy at the perihelion of e = 0.9 are 20 times their sum",
     integrals=(
         Integral("angular momentum", _angular_momentum),
         Integral("Runge–Lenz vector, x", _runge_lenz_x),

@@ -62,7 +62,7 @@ TODA = Scene(
     H_of=_toda,
     integrals=(
         Integral("total momentum", _toda_momentum),
-        Integral("cubic integral", _toda_cubic),
+        Integral("cubic integral", _toda_cubic, 1e-12, "its terms are several times its value"),
     ),
 )
 

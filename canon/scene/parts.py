@@ -115,7 +115,7 @@ class Integral:
         The integral as a function of the symbols: q, p = ∂L/∂q̇ (``s.x.momentum``), in scenes with a
         Lagrangian also q̇ (``s.x.dot``), and t.
     bound
-        What its relative change along a run of 1000 periods stays below.
+        What its relative change along a run up to the scene's horizon stays below.
     why
         Why the bound is larger than 1e-13, where it is.
     """

@@ -31,6 +31,8 @@ def _simple(s: SimpleNamespace) -> Expr:
     return s.m * s.l**2 * s.theta.dot**2 / 2 + s.m * s.g * s.l * cos(s.theta)
 
 
+TURNS = "an angle that goes on growing is rounded to ever fewer digits"
+
 SIMPLE = Scene(
     name="simple-pendulum",
     title="Simple pendulum: a point mass on a massless rod in a plane",
@@ -45,6 +47,8 @@ SIMPLE = Scene(
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 11 problem 1",
     L_of=_simple,
+    energy_bound=1e-10,
+    energy_why=TURNS,
 )
 
 
@@ -136,6 +140,8 @@ SPHERICAL = Scene(
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 14 problem 1",
     L_of=_spherical,
+    energy_bound=1e-11,
+    energy_why=TURNS,
     integrals=(Integral("angular momentum about the vertical", lambda s: s.phi.momentum),),
 )
 
@@ -190,6 +196,8 @@ DOUBLE = Scene(
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 5 problem 1",
     L_of=_double,
+    energy_bound=1e-10,
+    energy_why=TURNS,
 )
 
 DOUBLE_RODS = Scene(
@@ -202,6 +210,8 @@ DOUBLE_RODS = Scene(
     time_unit="s",
     source="kinetic energy of each rod by König's theorem, central inertia m l²/12",
     L_of=_rods,
+    energy_bound=1e-10,
+    energy_why=TURNS,
 )
 
 SCENES = (SIMPLE, SLIDING_MASS, SPRING, SPHERICAL, DOUBLE, DOUBLE_RODS)

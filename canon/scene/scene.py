@@ -71,8 +71,10 @@ class Scene:
     picture_of
         What it looks like.
     energy_bound, energy_why
-        What the relative change of the energy along a run of 1000 periods stays below, and why where it is more
+        What the relative change of the energy along a run up to the horizon stays below, and why where it is more
         than 1e-13.
+    horizon
+        For how many periods a run makes sense in doubles.
 
     Examples
     --------
@@ -105,6 +107,7 @@ class Scene:
     picture_of: Callable[[SimpleNamespace], Picture] | None = None
     energy_bound: float = 1e-13
     energy_why: str = ""
+    horizon: float = 1000.0
 
     def __post_init__(self) -> None:
         for condition in self.conditions:

@@ -69,6 +69,7 @@ HYPERBOLIC = Scene(
     ),
     starts=(Start("saddle", "from near the saddle point", q=(1e-3, 1.0), p=(0.2, 0.1)),),
     time_scale=_e_folding,
+    horizon=10.0,
     time_unit="",
     source="textbook exercise; both integrals follow from {f, H} = 0",
     H_of=_hyperbolic,
