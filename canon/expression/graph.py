@@ -131,7 +131,9 @@ class Graph:
             else:
                 coefficients[rest] = coefficients.get(rest, 0) + factor
         operands = sorted(
-            rest if factor == 1 else self.scaled(factor, rest) for rest, factor in coefficients.items() if factor
+            rest if factor == 1 else self.scaled(factor, rest)
+            for rest, factor in coefficients.items()
+            if factor
         )
         if constant:
             operands.insert(0, self.number(constant))
@@ -196,6 +198,11 @@ class Graph:
         if found is None:
             found = self._negatives[node] = self.scaled(-1, node)
         return found
+
+    def apart(self, node: int) -> int:
+        """Return c·x with x as one factor, which other multiples of x then share."""
+        factor, rest = self._factored(node)
+        return node if rest is None or factor == 1 else self.plain_mul((self.number(factor), rest))
 
     def pow(self, base: int, exponent: int) -> int:
         """Return base**exponent, the principal value."""
@@ -288,7 +295,13 @@ class Graph:
 
     def symbols(self, node: int) -> frozenset[Symbol]:
         """Return the symbols a node depends on."""
-        mask = self.masks[node]
+        return self.all_symbols((node,))
+
+    def all_symbols(self, nodes: Iterable[int]) -> frozenset[Symbol]:
+        """Return the symbols that nodes depend on together."""
+        mask = 0
+        for node in nodes:
+            mask |= self.masks[node]
         found = self._sets.get(mask)
         if found is None:
             found = self._sets[mask] = frozenset(s for s, bit in self._bits.items() if bit & mask)

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Assembly"]
 
+_Slope = tuple[int, int, int]
+"""A coordinate's number, the node of the slope, and how often it occurred in the channel before."""
+
 
 class Assembly:
     """The nodes that equations of motion are assembled from.
@@ -83,9 +86,13 @@ class Assembly:
             found = self._products[a, i] = self.graph.plain_mul((a, self.v[i]))
         return found
 
-    def drift(self, c: Channel) -> int:
-        """Return u̇ without accelerations: Σ Dₜa q̇ + Dₜa₀."""
-        terms = [term for i, a in c.slopes for term in self._rate(a, self.v[i])]
+    def excess(self, c: Channel) -> int:
+        """Return u̇ without accelerations, less what the field gives: Σ Dₜa q̇ + Dₜa₀ − load.
+
+        The field stands first, so that bodies of a chain add it once.
+        """
+        terms = [] if c.load is None else [self.graph.negative(c.load)]
+        terms += [term for i, a in c.slopes for term in self._rate(a, self.v[i])]
         if c.rest is not None:
             terms += self._rate(c.rest, self.graph.one)
         return self.sums.of(tuple(term for term in terms if term != self.graph.zero))
@@ -152,20 +159,43 @@ class Assembly:
 
         In a chain the weights beyond link i depend on i alone, so w aᵢ serves the whole row.
         """
-        n = len(self.q)
-        pairs: list[dict[tuple[int, int], list[int]]] = [defaultdict(list) for _ in range(n * n)]
-        for c in self.channels:
-            for x, (i, a) in enumerate(c.slopes):
-                for j, b in c.slopes[:x]:
-                    if i >= j:
-                        pairs[i * n + j][a, b].append(c.weight)
-                    if j >= i:
-                        pairs[j * n + i][b, a].append(c.weight)
-                pairs[i * n + i][a, a].append(c.weight)
-        return tuple(tuple(self._entry(pairs[i * n + j]) for j in range(i + 1)) for i in range(n))
+        graph, mul = self.graph, self.graph.plain_mul
+        channels_of, slopes_in = self._occurrences()
+        weighted: dict[tuple[int, int], int] = {}
+        entries: list[list[list[int]]] = [[[] for _ in range(i + 1)] for i in range(len(self.q))]
+        for k, slopes in enumerate(slopes_in):
+            earlier = (1 << k) - 1
+            for x, slope in enumerate(slopes):
+                i, a, _ = slope
+                own = channels_of[slope]
+                for other in slopes[: x + 1]:
+                    common = own & channels_of[other]
+                    if common & earlier:
+                        continue  # the pair was met before, and its weights were added then
+                    j, b, _ = other
+                    row = weighted.get((common, a))
+                    if row is None:
+                        row = weighted[common, a] = mul((self._weight(common), a))
+                    product = mul((row, b))
+                    entries[i][j].append(graph.scaled(2, product) if i == j and slope != other else product)
+        return tuple(tuple(map(graph.plain_add, row)) for row in entries)
 
-    def _entry(self, group: dict[tuple[int, int], list[int]]) -> int:
-        mul = self.graph.plain_mul
-        return self.graph.plain_add(
-            [mul((mul((self.sums.of(tuple(weights)), a)), b)) for (a, b), weights in group.items()]
-        )
+    def _occurrences(self) -> tuple[dict[_Slope, int], list[list[_Slope]]]:
+        """Return the channels of each slope as bits, and the slopes of each channel by rising i.
+
+        A slope that occurs twice in a channel counts as two.
+        """
+        channels_of: dict[_Slope, int] = {}
+        slopes_in: list[list[_Slope]] = []
+        for k, c in enumerate(self.channels):
+            slopes: list[_Slope] = []
+            for i, a in sorted(c.slopes):
+                again = slopes[-1][2] + 1 if slopes and slopes[-1][:2] == (i, a) else 0
+                slopes.append((i, a, again))
+                channels_of[i, a, again] = channels_of.get((i, a, again), 0) | 1 << k
+            slopes_in.append(slopes)
+        return channels_of, slopes_in
+
+    def _weight(self, channels: int) -> int:
+        """Return the sum of the weights of channels given as bits."""
+        return self.sums.of(tuple([c.weight for k, c in enumerate(self.channels) if channels >> k & 1]))

@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.expression.graph import Graph
+from canon.expression.python_source import python_function
 from canon.expression.symbol import momentum, time, velocity
 from canon.mechanics.assembly import Assembly
 from canon.mechanics.channel import Reader, channels
 from canon.mechanics.factorisation import solved_on_graph
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from sympy import Expr, Symbol
 
@@ -71,8 +72,14 @@ class CanonicalEquations:
     def parameters(self) -> tuple[Symbol, ...]:
         """The symbols besides q, q̇ and t, by name."""
         nodes = (*(node for row in self.M for node in row), *self.drift, *self.p_dot, self.potential)
-        used = frozenset[sp.Symbol]().union(*(self.graph.symbols(node) for node in nodes))
+        used = self.graph.all_symbols(nodes)
         return tuple(sorted(used - {*self.q, *self.velocities, self.t}, key=lambda s: s.name))
+
+    @cached_property
+    def at_place(self) -> Callable[[Sequence[float]], tuple[float, ...]]:
+        """M, b and V − T₀ as a function of the numbers q, t, parameters; H and Hamilton's equations share it."""
+        nodes = (*(node for row in self.M for node in row), *self.drift, self.potential)
+        return python_function(self.graph, nodes, (*self.q, self.t, *self.parameters))
 
     @cached_property
     def momentum_excess(self) -> tuple[int, ...]:

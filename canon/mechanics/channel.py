@@ -8,8 +8,6 @@ inertia. Positions are sums; they are differentiated term by term, so bodies of 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from fractions import Fraction
-from math import prod
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -87,18 +85,8 @@ class Reader:
         return tuple(sorted(pairs)), self.graph.plain_add(rests) if rests else None
 
     def derivative(self, node: int, s: Symbol) -> int:
-        """Return ∂node/∂s; of a product with one factor that depends on s the others stay together as they are."""
-        graph = self.graph
-        kind, operands, _ = graph.nodes[node]
-        dependent = [o for o in operands if s in graph.symbols(o)] if kind == "mul" else []
-        if len(dependent) != 1:
-            return graph.derivative(node, s)
-        inner = self.derivative(dependent[0], s)
-        factors = [o for o in operands if o != dependent[0]]
-        factors += graph.nodes[inner].operands if graph.nodes[inner].kind == "mul" else (inner,)
-        numbers = [graph.nodes[o].value for o in factors if graph.nodes[o].kind == "number"]
-        rest = graph.plain_mul(o for o in factors if graph.nodes[o].kind != "number")
-        return graph.plain_mul((graph.number(prod(numbers, start=Fraction(1))), rest))
+        """Return ∂node/∂s, its numerical factor apart, so that sin and −sin share what they multiply."""
+        return self.graph.apart(self.graph.derivative(node, s))
 
     def _of_term(self, node: int) -> tuple[tuple[tuple[int, int], ...], int | None]:
         symbols = self.graph.symbols(node)

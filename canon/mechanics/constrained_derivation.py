@@ -64,7 +64,7 @@ class ConstrainedEquations:
     def parameters(self) -> tuple[Symbol, ...]:
         """The symbols besides q, q̇ and t, by name."""
         e = self.equations
-        used = frozenset[sp.Symbol]().union(*(e.graph.symbols(node) for node in self.nodes))
+        used = e.graph.all_symbols(self.nodes)
         return tuple(sorted(used - {*e.q, *e.velocities, e.t}, key=lambda s: s.name))
 
 

@@ -65,7 +65,7 @@ class Equations:
     @cached_property
     def parameters(self) -> tuple[Symbol, ...]:
         """The symbols besides q, q̇ and t, by name."""
-        used = frozenset[sp.Symbol]().union(*(self.graph.symbols(node) for node in self.nodes))
+        used = self.graph.all_symbols(self.nodes)
         return tuple(sorted(used - {*self.q, *self.velocities, self.t}, key=lambda s: s.name))
 
     @property
@@ -137,10 +137,7 @@ def derivation(
     reader = Reader(Graph(), tuple(q), t)
     graph = reader.graph
     assembly = Assembly(reader, list(channels(reader, bodies, field)))
-    along: list[int] = []
-    for c in assembly.channels:
-        excess = (assembly.drift(c),) if c.load is None else (assembly.drift(c), graph.negative(c.load))
-        along.append(graph.plain_mul((c.weight, graph.plain_add(excess))))
+    along = [graph.plain_mul((c.weight, assembly.excess(c))) for c in assembly.channels]
     terms = [[graph.negative(F)] for F in assembly.projected(along)]
     for c in assembly.channels:
         for i, term in assembly.not_a_rate(c):

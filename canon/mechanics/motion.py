@@ -99,8 +99,7 @@ def _velocity_function(
 ]:
     """Return a function (q, p, t) → q̇, p − b, V − T₀, and the numbers of the parameters."""
     constants = _numbers(equations.parameters, parameters)
-    nodes = (*(node for row in equations.M for node in row), *equations.drift, equations.potential)
-    evaluate = python_function(equations.graph, nodes, (*equations.q, equations.t, *equations.parameters))
+    evaluate = equations.at_place
     n = len(equations.q)
     lower = np.tril_indices(n)
     count = lower[0].size

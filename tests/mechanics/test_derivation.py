@@ -291,3 +291,20 @@ def test_a_zero_pivot_is_refused():
     graph = Graph()
     with pytest.raises(ZeroDivisionError, match="pivot 1"):
         solved_on_graph(graph, [[graph.zero]], [graph.one])
+
+
+def test_the_first_calls_and_the_compiled_ones_are_equal_to_the_last_bit():
+    """Many nodes: the first calls walk over the graph, later ones run compiled text."""
+    bodies, q, field = planar_pendulum(9)
+    equations = derivation(
+        bodies, q, V=sp.sqrt(1 + (q[0] - q[1]) ** 2) ** 3 / (2 + q[2] ** 4) ** 2, field=field
+    )
+    assert len(equations.graph.reachable(equations.nodes)) > 300
+    inputs = (*q, *equations.velocities, *equations.parameters)
+    function = python_function(equations.graph, equations.nodes, inputs)
+    point = np.random.default_rng(1).uniform(0.2, 1.4, len(inputs)).tolist()
+    values = [function(point) for _ in range(12)]
+    assert all(value == values[0] for value in values)
+    assert function(point[::-1]) != values[0]
+    exact = equations.graph.evaluate(equations.nodes, dict(zip(inputs, point, strict=True)))
+    assert np.allclose(values[0], np.array(exact, dtype=float), rtol=1e-13, atol=1e-13)
