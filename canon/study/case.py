@@ -1,42 +1,48 @@
-"""One case of a study: everything that determines a run, its key, and what comes of it as text."""
+"""One case of a study: everything that determines a run, its key, and the system and state it starts from."""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 from dataclasses import asdict, dataclass
 from fractions import Fraction
+from functools import lru_cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method import DOP853, RK4, FixedStep, Gauss, Splitting, Taylor
 from canon.kernel.scheme import SCHEMES
 from canon.scene import find
-from canon.study.comparison import drift_row
+from canon.study.formula import Formula, hamiltonian_of
 from canon.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from canon.flow.method import Method
-    from canon.study.comparison import DriftRow
+    from canon.flow.propagate import HamiltonianSystem
 
-__all__ = ["Case", "key_of", "method_from", "method_to", "outcome_of", "run_case", "versions"]
+__all__ = ["Case", "key_of", "method_from", "method_to", "parts_of", "versions"]
 
 LIBRARIES = ("heyoka", "llvmlite", "numpy", "scipy", "sympy")
 """Libraries whose version may change a last digit."""
 
+STEPS_A_PART = 2**20
+"""Steps of fixed size in a part of a run: a fraction of a second for small systems, minutes for huge ones."""
+
+SAMPLES_A_PART = 64
+"""Samples in a part of a run with an adaptive method."""
+
 
 @dataclass(frozen=True)
 class Case:
-    """A run of one scene from one state with one method.
+    """A run of one system from one state with one method.
 
     Parameters
     ----------
-    scene
-        Name of the scene.
+    system
+        Name of a scene, or a Hamiltonian as text.
     method
         The method.
     span
@@ -44,14 +50,17 @@ class Case:
     samples
         Samples the energy error is judged by.
     start
-        Name of a start of the scene, or a state (q, p).
+        Name of a start of the system, or a state (q, p); the system's first start where None.
     parameters
-        Values that replace the scene's own.
+        Values that replace the system's own.
     step, tolerance, precision
         As :func:`canon.flow.propagate.propagate` takes them.
+    parts
+        Parts the run is made of, None for the usual number (:func:`parts_of`). Each begins anew from the exact
+        state the last one ended with, be the run interrupted there or not.
     """
 
-    scene: str
+    system: str | Formula
     method: Method
     span: float
     samples: int = 4096
@@ -60,18 +69,54 @@ class Case:
     step: float | None = None
     tolerance: float | None = None
     precision: str | None = None
+    parts: int | None = None
+
+    @property
+    def system_name(self) -> str:
+        """What the system is called."""
+        return self.system.name if isinstance(self.system, Formula) else self.system
+
+    @property
+    def hamiltonian(self) -> HamiltonianSystem:
+        """The Hamiltonian, made once in a process."""
+        return (
+            hamiltonian_of(self.system) if isinstance(self.system, Formula) else find(self.system).hamiltonian
+        )
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The value of every parameter by name."""
+        if isinstance(self.system, Formula):
+            return {**dict(self.system.parameters), **dict(self.parameters)}
+        return find(self.system).with_parameters(**dict(self.parameters)).values
+
+    @property
+    def state(self) -> tuple[float, ...]:
+        """The state (q, p) at the start, of length 2n."""
+        if isinstance(self.start, tuple):
+            return self.start
+        if isinstance(self.system, Formula):
+            return _start_of(self.system, self.start)
+        return _scene_state(self.system, self.start, self.parameters)
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold of this case; floats survive exactly."""
         fields = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        return {**fields, "method": method_to(self.method), "parameters": dict(self.parameters)}
+        system = self.system.to_dict() if isinstance(self.system, Formula) else self.system
+        return {
+            **fields,
+            "system": system,
+            "method": method_to(self.method),
+            "parameters": dict(self.parameters),
+        }
 
     @staticmethod
     def from_dict(fields: Mapping[str, Any]) -> Case:
         """Return the case that :meth:`to_dict` wrote."""
         given: dict[str, Any] = dict(fields)
-        start = given.pop("start")
+        start, system = given.pop("start"), given.pop("system")
         return Case(
+            system=system if isinstance(system, str) else Formula.from_dict(system),
             method=method_from(given.pop("method")),
             parameters=tuple(given.pop("parameters").items()),
             start=tuple(start) if isinstance(start, list) else start,
@@ -79,13 +124,14 @@ class Case:
         )
 
 
+@lru_cache(maxsize=1)
 def versions() -> dict[str, str]:
     """Return the versions that a result depends on."""
     return {"canon": __version__, **{name: version(name) for name in LIBRARIES}}
 
 
 def key_of(case: Case) -> str:
-    """Return the SHA-256 of everything that determines the result: inputs, the scene's defaults, versions.
+    """Return the SHA-256 of everything that determines the result: inputs, the system's defaults, versions.
 
     Examples
     --------
@@ -96,54 +142,48 @@ def key_of(case: Case) -> str:
     >>> key_of(case) == key_of(Case("kepler", RK4(), span=10.0, step=0.02))
     False
     """
-    scene = find(case.scene).with_parameters(**dict(case.parameters))
-    start = None if isinstance(case.start, tuple) else asdict(scene.start(case.start))
-    whole = {"case": case.to_dict(), "values": scene.values, "start": start, "versions": versions()}
+    start = None
+    if isinstance(case.system, str) and not isinstance(case.start, tuple):
+        start = asdict(find(case.system).start(case.start))
+    whole = {"case": case.to_dict(), "values": case.values, "start": start, "versions": versions()}
     return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()
 
 
-def run_case(case: Case) -> DriftRow:
-    """Return the run of a case; it depends on the case alone."""
-    scene = find(case.scene).with_parameters(**dict(case.parameters))
-    state = np.array(case.start) if isinstance(case.start, tuple) else scene.state(case.start)
-    return drift_row(
-        scene.hamiltonian,
-        state,
-        case.span,
-        case.method,
-        step=case.step,
-        tolerance=case.tolerance,
-        precision=case.precision,
-        parameters={**scene.values},
-        samples=case.samples,
+def parts_of(case: Case) -> int:
+    """Return the number of parts a case is run in; it follows from the case alone.
+
+    At most a million steps of fixed size, or 64 samples of an adaptive method, are in a part.
+
+    Examples
+    --------
+    >>> from canon import RK4, Taylor
+    >>> parts_of(Case("kepler", RK4(), span=1e6, step=0.01)), parts_of(Case("kepler", Taylor(), span=1e6))
+    (96, 64)
+    """
+    if case.parts is not None:
+        return case.parts
+    if isinstance(case.method, FixedStep) and case.step is not None:
+        return max(1, math.ceil(case.span / case.step / STEPS_A_PART))
+    return max(1, case.samples // SAMPLES_A_PART)
+
+
+def _start_of(system: Formula, name: str | None) -> tuple[float, ...]:
+    """Return the state of that name, or the first one."""
+    for known, state in system.starts:
+        if name in (None, known):
+            return state
+    named = ", ".join(known for known, _ in system.starts)
+    what = "a start; it has none" if name is None else f"no start {name!r}; there are: {named or 'none'}"
+    raise ValueError(
+        f"{system.name} {'needs' if name is None else 'has'} {what}; a state (q, p) in numbers will do as well"
     )
 
 
-def outcome_of(row: DriftRow) -> dict[str, Any]:
-    """Return what is kept of a finished run: its numbers, exactly; not its samples, and not the time it took."""
-    found = row.drift
-    if found is None:
-        return {}
-    return {
-        "verdict": found.verdict.value,
-        "reason": found.reason,
-        "bound": found.bound,
-        "slope": found.slope,
-        "slope_error": found.slope_error,
-        "amplitude_slope": found.amplitude_slope,
-        "amplitude_slope_error": found.amplitude_slope_error,
-        "exponent": found.exponent,
-        "exponent_interval": list(found.exponent_interval),
-        "detection_limit": found.detection_limit,
-        "walk": found.walk,
-        "relative": row.relative,
-        "step": row.step,
-        "steps": row.steps,
-        "evaluations": row.evaluations,
-        "precision": row.precision,
-        "final": row.final.tolist(),
-        "means": {"t": found.blocks.t.tolist(), "mean": found.blocks.mean.tolist()},
-    }
+@lru_cache(maxsize=4096)
+def _scene_state(
+    scene: str, start: str | None, parameters: tuple[tuple[str, float], ...]
+) -> tuple[float, ...]:
+    return tuple(find(scene).with_parameters(**dict(parameters)).state(start).tolist())
 
 
 def method_to(method: Method) -> dict[str, Any]:

@@ -1,35 +1,169 @@
-"""A study as a table for other programs."""
+"""A study as a table for other programs: CSV, Parquet, and xarray datasets for NetCDF files."""
 
 from __future__ import annotations
 
 import csv
 import io
 import json
+import math
 from typing import TYPE_CHECKING, Any
 
-from canon.study.run import finished_rows
+from canon.study.result import results_of
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    import xarray
+
+    from canon.study.result import Result
     from canon.study.store import Store
 
-__all__ = ["csv_of"]
+__all__ = ["ExportError", "csv_of", "dataset_of", "rows_of", "write_netcdf", "write_parquet"]
+
+TEXTS = ("key", "state", "system", "start", "method", "precision", "verdict", "reason", "failure", "inputs")
+"""Columns of text."""
+
+
+class ExportError(ImportError):
+    """A library that writes this format is not installed."""
+
+
+def rows_of(store: Store) -> list[dict[str, Any]]:
+    """Return one flat row a case, pending and failed ones included; None where there is no number.
+
+    Columns are the inputs (``inputs`` has them all as JSON, a column ``parameter NAME`` each changed parameter), the
+    numbers of :class:`canon.study.drift.Drift`, the cost, ``final`` (the last state) and ``failure``.
+    """
+    return [_row(result) for result in results_of(store)]
 
 
 def csv_of(store: Store) -> str:
     """Return all cases of a store as CSV: one line a case, pending and failed ones included.
 
-    Floats are written so that they read back exactly; lists and tables are JSON inside their cell.
+    Floats are written so that they read back exactly; lists are JSON inside their cell.
     """
-    rows = finished_rows(store)
-    columns = list(dict.fromkeys(name for row in rows for name in row))
+    rows = rows_of(store)
     written = io.StringIO()
-    table = csv.DictWriter(written, columns, restval="", lineterminator="\n")
+    table = csv.DictWriter(written, _columns(rows), restval="", lineterminator="\n")
     table.writeheader()
     table.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
     return written.getvalue()
+
+
+def write_parquet(store: Store, path: Path) -> None:
+    """Write all cases of a store as a Parquet file, with the types of the columns and lists as lists.
+
+    Raises
+    ------
+    ExportError
+        Where pyarrow is not installed.
+    """
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError as missing:
+        raise ExportError("Parquet needs pyarrow: pip install canon-mechanics[export]") from missing
+    rows = rows_of(store)
+    table = pyarrow.table(
+        {
+            name: pyarrow.array([row.get(name) for row in rows], _arrow_type(name, pyarrow))
+            for name in _columns(rows)
+        }
+    )
+    pyarrow.parquet.write_table(table, path)
+
+
+def dataset_of(store: Store) -> xarray.Dataset:
+    """Return a study as an xarray dataset along ``case``, with block means along ``block`` and curves along ``point``.
+
+    Missing numbers are NaN, as NetCDF has it; ``state`` and ``failure`` say why they are missing.
+
+    Raises
+    ------
+    ExportError
+        Where xarray is not installed.
+    """
+    try:
+        import xarray
+    except ImportError as missing:
+        raise ExportError("NetCDF needs xarray: pip install canon-mechanics[export]") from missing
+    rows, results = rows_of(store), results_of(store)
+    variables: dict[str, Any] = {}
+    for name in _columns(rows):
+        values = [row.get(name) for row in rows]
+        if name in TEXTS:
+            variables[name] = ("case", [value or "" for value in values])
+        elif name != "final":
+            variables[name.replace(" ", "_")] = (
+                "case",
+                [math.nan if v is None else float(v) for v in values],
+            )
+    finals = [row.get("final") or [] for row in rows]
+    variables["final"] = (("case", "component"), _table(finals))
+    for group, dimension in (("means", "block"), ("curve", "point")):
+        for name in ("t", "mean") if group == "means" else ("t", "largest", "median"):
+            series = [result.numbers.get(group, {}).get(name, []) for result in results]
+            variables[f"{group}_{name}"] = (("case", dimension), _table(series))
+    return xarray.Dataset(variables)
+
+
+def write_netcdf(store: Store, path: Path) -> None:
+    """Write a study as a NetCDF file of version 3, which every reader knows; see :func:`dataset_of`."""
+    dataset_of(store).to_netcdf(path, engine="scipy")
+
+
+def _row(result: Result) -> dict[str, Any]:
+    case, numbers = result.case, dict(result.numbers)
+    numbers.pop("means", None)
+    numbers.pop("curve", None)
+    low, high = numbers.pop("exponent_interval", (None, None))
+    start = json.dumps(list(case.start)) if isinstance(case.start, tuple) else case.start
+    return {
+        "key": result.key,
+        "state": result.state.value,
+        "system": case.system_name,
+        "start": start or "",
+        **{f"parameter {name}": value for name, value in case.parameters},
+        "method": str(case.method),
+        "step": case.step,
+        "tolerance": case.tolerance,
+        "precision": case.precision or "",
+        "span": case.span,
+        "samples": case.samples,
+        **numbers,
+        "exponent_low": low,
+        "exponent_high": high,
+        "seconds": result.seconds,
+        "done": result.done,
+        "failure": result.failure,
+        "inputs": json.dumps(case.to_dict(), ensure_ascii=False),
+    }
+
+
+def _columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return every column that a row has, in the order of the fullest row."""
+    fullest = max(rows, key=len, default={})
+    return list(dict.fromkeys([*fullest, *(name for row in rows for name in row)]))
 
 
 def _cell(value: Any) -> Any:
     if value is None:
         return ""
     return json.dumps(value) if isinstance(value, dict | list) else value
+
+
+def _arrow_type(name: str, pyarrow: Any) -> Any:
+    if name in TEXTS:
+        return pyarrow.string()
+    if name == "final":
+        return pyarrow.list_(pyarrow.float64())
+    if name == "relative":
+        return pyarrow.bool_()
+    return pyarrow.int64() if name in ("samples", "steps", "evaluations") else pyarrow.float64()
+
+
+def _table(rows: Sequence[Sequence[float]]) -> list[list[float]]:
+    """Return rows of one length, the short ones filled up with NaN."""
+    width = max(map(len, rows), default=0)
+    return [[*row, *[math.nan] * (width - len(row))] for row in rows]

@@ -1,9 +1,9 @@
-"""One SQLite file that keeps what is finished: a row a case, each written in one transaction.
+"""One SQLite file that keeps what is finished and how far the rest is, each row written in one transaction.
 
 The store knows no mechanics. A case is its key (a hash of everything that determines the result) and its
-inputs as text; a record is what came of it, as text too. What is in the file was finished; what was not
-finished is not in the file, whatever stopped the program. Journal and commit are those of SQLite with
-synchronous=FULL: a commit that returned outlives a power cut.
+inputs as text; a record is what came of it, as text too; a checkpoint is where a long run stands, and goes
+when the record comes. A record in the file was finished, whatever stopped the program. Journal and commit are
+those of SQLite with synchronous=FULL: a commit that returned outlives a power cut.
 
 Two processes may use one file: a record that is there is never replaced, and cases are pure, so it does
 not matter whose it is.
@@ -25,7 +25,7 @@ __all__ = ["Record", "Store", "StoreError"]
 APPLICATION = 0x63616E6F
 """Marks the file as one of canon's ("cano")."""
 
-VERSION = 1
+VERSION = 2
 """Version of the tables below."""
 
 PATIENCE = 60.0
@@ -42,6 +42,11 @@ CREATE TABLE records (
     outcome TEXT NOT NULL,
     seconds REAL NOT NULL,
     finished TEXT NOT NULL DEFAULT (datetime('now'))
+) STRICT;
+CREATE TABLE checkpoints (
+    key TEXT PRIMARY KEY REFERENCES cases (key),
+    part INTEGER NOT NULL,
+    point TEXT NOT NULL
 ) STRICT;
 """
 
@@ -111,12 +116,71 @@ class Store:
             return dict(connection.execute("SELECT key, inputs FROM cases ORDER BY rowid"))
 
     def save(self, record: Record) -> None:
-        """Keep a record, in one transaction; one that is there already stays."""
+        """Keep a record and drop the case's checkpoint, in one transaction; a record that is there already stays."""
         with self._writing() as connection:
             connection.execute(
                 "INSERT OR IGNORE INTO records (key, failure, outcome, seconds) VALUES (?, ?, ?, ?)",
                 (record.key, record.failure, record.outcome, record.seconds),
             )
+            connection.execute("DELETE FROM checkpoints WHERE key = ?", (record.key,))
+
+    def save_checkpoint(self, key: str, part: int, point: str) -> None:
+        """Keep how far a case is, in one transaction; one that is further along, or a record, already stays.
+
+        Parameters
+        ----------
+        key
+            Key of the case.
+        part
+            Parts of the run that are done.
+        point
+            All that is needed to go on, as text.
+        """
+        with self._writing() as connection:
+            connection.execute(
+                "INSERT INTO checkpoints SELECT ?1, ?2, ?3 WHERE ?1 NOT IN (SELECT key FROM records) "
+                "ON CONFLICT (key) DO UPDATE SET part = excluded.part, point = excluded.point "
+                "WHERE excluded.part > part",
+                (key, part, point),
+            )
+
+    def checkpoint(self, key: str) -> str | None:
+        """Return the checkpoint of a case as text, None where there is none."""
+        with self._open() as connection:
+            row = connection.execute("SELECT point FROM checkpoints WHERE key = ?", (key,)).fetchone()
+            return None if row is None else str(row[0])
+
+    def parts_done(self) -> dict[str, int]:
+        """Return by key how many parts are done of each case that has a checkpoint."""
+        with self._open() as connection:
+            return dict(connection.execute("SELECT key, part FROM checkpoints"))
+
+    def counts(self) -> tuple[int, int, int, int]:
+        """Return how many cases finished, failed, are pending, and of the pending ones have a checkpoint."""
+        with self._open() as connection:
+            row = connection.execute(
+                "SELECT (SELECT count(*) FROM records WHERE failure = ''), "
+                "(SELECT count(*) FROM records WHERE failure != ''), "
+                "(SELECT count(*) FROM cases), (SELECT count(*) FROM checkpoints)"
+            ).fetchone()
+        finished, failed, cases, begun = map(int, row)
+        return finished, failed, cases - finished - failed, begun
+
+    def is_finished(self, key: str) -> bool:
+        """Tell whether a case has a record, be it from another process."""
+        with self._open() as connection:
+            return connection.execute("SELECT 1 FROM records WHERE key = ?", (key,)).fetchone() is not None
+
+    def add_from(self, other: Store) -> None:
+        """Add the cases and records of another file, in one transaction; what is here already stays."""
+        cases, records = other.cases(), other.records()
+        with self._writing() as connection:
+            connection.executemany("INSERT OR IGNORE INTO cases VALUES (?, ?)", cases.items())
+            connection.executemany(
+                "INSERT OR IGNORE INTO records (key, failure, outcome, seconds) VALUES (?, ?, ?, ?)",
+                [(each.key, each.failure, each.outcome, each.seconds) for each in records.values()],
+            )
+            connection.execute("DELETE FROM checkpoints WHERE key IN (SELECT key FROM records)")
 
     def records(self) -> dict[str, Record]:
         """Return the records of finished cases by key."""
@@ -159,7 +223,7 @@ class Store:
                 yield connection
                 connection.execute("COMMIT")
             except BaseException:
-                if connection.in_transaction:
+                if connection.in_transaction:  # SQLite itself may have rolled back, as on a full disk
                     connection.execute("ROLLBACK")
                 raise
 

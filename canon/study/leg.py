@@ -1,0 +1,247 @@
+"""A run in parts: from one exact state to the next, so that it can stop anywhere and go on as if it had not.
+
+Every run of a study is made of parts, each of which begins anew with the exact state (high and low part) that the
+one before ended with. An uninterrupted run goes through the same parts; therefore a resumed one gives the same
+numbers bit for bit, with every method, heyoka's included. Where the clock stops a leg is of no consequence.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from dataclasses import asdict, dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.method import FixedStep
+from canon.flow.propagate import propagate
+from canon.study.case import parts_of
+from canon.study.comparison import UNIT_ROUND_OFF
+from canon.study.drift import drift
+from canon.study.envelope import envelope_of
+
+if TYPE_CHECKING:
+    from canon.flow.trajectory import Trajectory
+    from canon.study.case import Case
+
+__all__ = ["Checkpoint", "FailedRun", "Outcome", "advance", "started"]
+
+CURVE = 64
+"""Points of the curve of |ΔE| that is kept of a run."""
+
+
+class FailedRun(ArithmeticError):
+    """The run of a case can't be continued; the reason is a result, and so is the time it took.
+
+    Parameters
+    ----------
+    seconds
+        Processor time up to there.
+    """
+
+    def __init__(self, reason: str, seconds: float) -> None:
+        super().__init__(reason)
+        self.seconds = seconds
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """A run after some of its parts: all that is needed to go on.
+
+    Parameters
+    ----------
+    part
+        Parts done.
+    state, carried
+        The state is state + carried, each of length 2n.
+    energy
+        H at the start of the run.
+    t, change
+        The samples so far: times, and H − H(start).
+    steps, evaluations, seconds
+        Cost so far; the processor time is that of the steps and of keeping samples.
+    step, precision
+        As the run has them.
+    """
+
+    part: int
+    state: tuple[float, ...]
+    carried: tuple[float, ...]
+    energy: float = math.nan
+    t: tuple[float, ...] = ()
+    change: tuple[float, ...] = ()
+    steps: int = 0
+    evaluations: int = 0
+    seconds: float = 0.0
+    step: float | None = None
+    precision: str = ""
+
+    def to_text(self) -> str:
+        """Return the checkpoint as JSON; floats survive exactly."""
+        return json.dumps(asdict(self))
+
+    @staticmethod
+    def from_text(text: str) -> Checkpoint:
+        """Return the checkpoint that :meth:`to_text` wrote."""
+        fields: dict[str, Any] = json.loads(text)
+        lists = {name: tuple(value) for name, value in fields.items() if isinstance(value, list)}
+        return Checkpoint(**{**fields, **lists})
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What is kept of a finished run: its numbers, exactly; not its samples.
+
+    Parameters
+    ----------
+    numbers
+        What depends on the case alone, as JSON can hold it.
+    seconds
+        Processor time.
+    """
+
+    numbers: dict[str, Any]
+    seconds: float
+
+
+def started(case: Case) -> Checkpoint:
+    """Return the checkpoint at the start of a case."""
+    return Checkpoint(0, case.state, (0.0,) * len(case.state))
+
+
+def advance(case: Case, reached: Checkpoint | None = None, seconds: float = math.inf) -> Checkpoint | Outcome:
+    """Run a case on from a checkpoint, for so many seconds or to its end.
+
+    Parameters
+    ----------
+    case
+        The case.
+    reached
+        Where to go on; the start if left out.
+    seconds
+        Time after which the next checkpoint is handed back; at least one part is run.
+
+    Raises
+    ------
+    FailedRun
+        The motion can't be continued, or its error can't be judged.
+
+    Examples
+    --------
+    >>> from canon import RK4
+    >>> from canon.study.case import Case
+    >>> case = Case("henon-heiles", RK4(), span=400.0, step=0.1, samples=600, parts=3)
+    >>> first = advance(case, seconds=0.0)
+    >>> second = advance(case, Checkpoint.from_text(first.to_text()), seconds=0.0)
+    >>> advance(case, second).numbers == advance(case).numbers
+    True
+    """
+    now, end = time.monotonic(), parts_of(case)
+    spent = 0.0 if reached is None else reached.seconds
+    try:
+        point = started(case) if reached is None else reached
+        while point.part < end:
+            point = _next(case, point, end)
+            spent = point.seconds
+            if point.part < end and time.monotonic() - now >= seconds:
+                return point
+        return Outcome(_numbers(point), point.seconds)
+    except (ArithmeticError, ValueError, RuntimeError) as error:
+        raise FailedRun(str(error), spent) from error
+
+
+def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
+    """Return the checkpoint after one more part."""
+    found = _part(case, point, end)
+    before = point.change[-1] if point.change else 0.0
+    change = tuple((before + found.energy_change).tolist())
+    first = 0 if point.part == 0 else 1  # the first sample of a part is the last one of the part before
+    return replace(
+        point,
+        part=point.part + 1,
+        state=tuple(found.y[:, -1].tolist()),
+        carried=tuple(found.carried[:, -1].tolist()),
+        energy=float(found.energy[0]) if point.part == 0 else point.energy,
+        t=point.t + tuple(found.t[first:].tolist()),
+        change=point.change + change[first:],
+        steps=point.steps + found.steps,
+        evaluations=point.evaluations + found.evaluations,
+        seconds=point.seconds + found.cpu_seconds,
+        step=found.step,
+        precision=found.precision,
+    )
+
+
+def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
+    """Run the part that follows a checkpoint."""
+    state = [Fraction(a) + Fraction(b) for a, b in zip(point.state, point.carried, strict=True)]
+    edges = np.linspace(0, case.samples, end + 1).round().astype(int)
+    samples = max(1, int(edges[point.part + 1] - edges[point.part]))
+    if isinstance(case.method, FixedStep):
+        span, step = _whole_steps(case, point.part, end)
+    else:
+        ends = np.linspace(0.0, case.span, end + 1)
+        span, step = (Fraction(ends[point.part]), Fraction(ends[point.part + 1])), None
+    found = propagate(
+        case.hamiltonian,
+        np.array(state, dtype=object),
+        span,  # pyright: ignore[reportArgumentType] - times may be exact
+        method=case.method,
+        step=step,
+        tolerance=case.tolerance,
+        precision=case.precision,
+        parameters={**case.values},
+        samples=samples,
+    )
+    if not found.autonomous:
+        raise ValueError("H depends on t, so its change is no error")
+    return found
+
+
+def _whole_steps(case: Case, part: int, end: int) -> tuple[tuple[Fraction, Fraction], float]:
+    """Return first and last time of a part and the step, so that all parts take steps of the same exact size."""
+    if case.step is None or not (math.isfinite(case.step) and case.step > 0.0):
+        raise ValueError(f"step={case.step}: {case.method} takes fixed steps, give a positive number")
+    ratio = Fraction(case.span) / Fraction(case.step)
+    near = max(1, round(ratio))
+    steps = near if abs(ratio - near) <= near * Fraction(1, 10**9) else math.ceil(ratio)
+    if steps < end:
+        raise ValueError(f"{steps} steps can't be run in {end} parts: ask for fewer")
+    h = Fraction(case.span) / steps
+    first, last = (steps * k // end for k in (part, part + 1))
+    return (first * h, last * h), float(h)
+
+
+def _numbers(point: Checkpoint) -> dict[str, Any]:
+    """Judge a run that reached its end."""
+    relative = point.energy != 0.0
+    scale = abs(point.energy) if relative else 1.0
+    t, error = np.array(point.t), np.array(point.change) / scale
+    unit = UNIT_ROUND_OFF.get(point.precision, 2.0**-53)
+    roundoff = unit * math.sqrt(point.steps) if relative else None
+    found = drift(t, error, roundoff=roundoff, resolution=unit)
+    curve = envelope_of(t, error, CURVE)
+    return {
+        "verdict": found.verdict.value,
+        "reason": found.reason,
+        "bound": found.bound,
+        "slope": found.slope,
+        "slope_error": found.slope_error,
+        "amplitude_slope": found.amplitude_slope,
+        "amplitude_slope_error": found.amplitude_slope_error,
+        "exponent": found.exponent,
+        "exponent_interval": list(found.exponent_interval),
+        "detection_limit": found.detection_limit,
+        "walk": found.walk,
+        "relative": relative,
+        "step": point.step,
+        "steps": point.steps,
+        "evaluations": point.evaluations,
+        "precision": point.precision,
+        "final": list(point.state),
+        "means": {"t": found.blocks.t.tolist(), "mean": found.blocks.mean.tolist()},
+        "curve": {} if curve is None else {name: x.tolist() for name, x in curve.items()},
+    }

@@ -1,0 +1,102 @@
+"""What a study's file says of each case: its inputs, its numbers or why there are none."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+from canon.study.case import Case, parts_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from canon.study.store import Store
+
+__all__ = ["Result", "State", "results_of"]
+
+
+class State(Enum):
+    """What became of a case."""
+
+    FINISHED = "finished"
+    FAILED = "failed"
+    PENDING = "pending"
+
+
+@dataclass(frozen=True)
+class Result:
+    """One case of a study and what became of it.
+
+    Parameters
+    ----------
+    key
+        Its key.
+    case
+        Its inputs.
+    state
+        Whether it finished, failed, or is pending.
+    numbers
+        The outcome by name, empty unless it finished; :class:`canon.study.drift.Drift` has the meanings.
+    failure
+        Why it failed, else empty.
+    seconds
+        Processor time; None while it is pending.
+    done
+        Fraction of the run that is done.
+    """
+
+    key: str
+    case: Case
+    state: State
+    numbers: Mapping[str, Any]
+    failure: str = ""
+    seconds: float | None = None
+    done: float = 1.0
+
+    @property
+    def motion(self) -> str:
+        """System, parameters and start in words: what all methods are compared on."""
+        start = self.case.start
+        shown = ", ".join(f"{x:g}" for x in start) if isinstance(start, tuple) else start
+        values = ", ".join(f"{name} = {value:g}" for name, value in self.case.parameters)
+        return "; ".join(part for part in (self.case.system_name, values, shown and f"from {shown}") if part)
+
+    @property
+    def setting(self) -> str:
+        """Method, step, tolerance and precision in words."""
+        case = self.case
+        step = f"h = {case.step:.4g}" if case.step is not None else ""
+        tolerance = f"ε = {case.tolerance:.0e}" if case.tolerance is not None else ""
+        return ", ".join(part for part in (str(case.method), step, tolerance, case.precision) if part)
+
+
+def results_of(store: Store) -> list[Result]:
+    """Return every case of a file and what became of it, in the order they were added.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from canon.study.definition import Study
+    >>> from canon.study.run import run_study
+    >>> from canon.study.store import Store
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     store = Store(f"{folder}/study.sqlite")
+    ...     _ = run_study(Study.of(system="henon-heiles", method="verlet", step=0.1, until=200.0), store)
+    ...     [(result.state.value, result.setting, result.numbers["verdict"]) for result in results_of(store)]
+    [('finished', 'verlet, h = 0.1', 'bounded')]
+    """
+    records, parts = store.records(), store.parts_done()
+    found: list[Result] = []
+    for key, inputs in store.cases().items():
+        case, record = Case.from_dict(json.loads(inputs)), records.get(key)
+        if record is None:
+            done = parts.get(key, 0) / parts_of(case)
+            found.append(Result(key, case, State.PENDING, {}, done=done))
+        elif record.failure:
+            found.append(Result(key, case, State.FAILED, {}, record.failure, record.seconds))
+        else:
+            numbers = json.loads(record.outcome)
+            found.append(Result(key, case, State.FINISHED, numbers, "", record.seconds))
+    return found

@@ -1,0 +1,135 @@
+"""SIGKILL in the middle of runs, a full disk, two processes: nothing finished is lost, not a bit changes."""
+
+from __future__ import annotations
+
+import json
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from canon import Gauss, Splitting, Taylor
+from canon.study.definition import Study
+from canon.study.run import resume, run_study, status_of
+from canon.study.store import Store
+
+LONG = Study.of(
+    system=["henon-heiles", "kepler"],
+    method=[Splitting("kahan-li-8"), Gauss(2), Taylor()],
+    step=0.05,
+    until=400.0,
+    samples=512,
+    parts=16,
+)
+
+PROGRAM = """
+import sys
+from tests.study.test_interrupted import LONG
+from canon.study.run import run_study
+
+run_study(LONG, sys.argv[1], progress=lambda status: print(status, flush=True), checkpoint_seconds=0.0)
+"""
+
+
+def outcomes(store):
+    return {key: (record.outcome, record.failure) for key, record in store.records().items()}
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    store = Store(tmp_path_factory.mktemp("study") / "whole.sqlite")
+    assert run_study(LONG, store).finished == 6
+    return outcomes(store)
+
+
+def begin(path, program=PROGRAM):
+    return subprocess.Popen([sys.executable, "-c", program, str(path)], stdout=subprocess.PIPE, text=True)
+
+
+def kill_after(program, lines, seconds=0.0):
+    """Kill a program some time after it printed so many lines; tell whether it was still at work."""
+    seen = sum(bool(program.stdout.readline()) for _ in range(lines))
+    time.sleep(seconds)
+    program.send_signal(signal.SIGKILL)
+    status = program.wait(60)
+    program.stdout.close()
+    return seen == lines and status == -signal.SIGKILL
+
+
+@pytest.mark.parametrize(
+    ("kills", "seed"), [(4, 1), pytest.param(14, 2, marks=pytest.mark.slow)], ids=["four", "fourteen"]
+)
+def test_killed_again_and_again_in_mid_run_it_ends_the_same(tmp_path, uninterrupted, kills, seed):
+    path = tmp_path / "killed.sqlite"
+    draw = random.Random(seed)
+    kept, inside = {}, 0
+    for _ in range(kills):
+        assert kill_after(begin(path), lines=96 // kills - 3, seconds=draw.uniform(0.0, 0.01))
+        store = Store(path)
+        found, parts = outcomes(store), store.parts_done()
+        assert kept.items() <= found.items() <= uninterrupted.items()
+        inside += bool(parts)
+        assert all(0 < part < 16 for part in parts.values())
+        kept = found
+    assert inside >= kills - 1  # hardly ever between two runs
+    assert len(kept) < 6
+    assert resume(path, checkpoint_seconds=1000.0).pending == 0
+    assert outcomes(Store(path)) == uninterrupted
+    assert Store(path).parts_done() == {}
+
+
+def test_every_method_was_killed_in_mid_run(tmp_path, uninterrupted):
+    """One kill inside each run, the sixteen parts of one after the other."""
+    store = Store(tmp_path / "each.sqlite")
+    methods = set()
+    for number in range(0, 6, 2):
+        program = begin(store.path)
+        assert kill_after(program, lines=16 * 2 - 8 if number else 24)
+        (key,) = store.parts_done()
+        methods.add(next(iter(json.loads(store.cases()[key])["method"])))
+    assert len(methods) >= 2
+    resume(store)
+    assert outcomes(store) == uninterrupted
+
+
+def test_two_processes_on_one_study(tmp_path, uninterrupted):
+    path = tmp_path / "shared.sqlite"
+    both = [begin(path) for _ in range(2)]
+    for program in both:
+        program.communicate(timeout=120)
+        assert program.returncode == 0
+    assert status_of(Store(path)).finished == 6
+    assert outcomes(Store(path)) == uninterrupted
+
+
+FULL_DISK = """
+import resource, sys
+from pathlib import Path
+from tests.study.test_interrupted import LONG
+from canon.study.run import run_study
+from canon.study.store import StoreError
+
+run_study(type(LONG)(LONG.cases[:1]), sys.argv[1])
+limit = Path(sys.argv[1]).stat().st_size + 20_000
+resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+try:
+    run_study(LONG, sys.argv[1], checkpoint_seconds=0.0)
+except StoreError as error:
+    print(error)
+"""
+
+
+def test_a_disk_that_fills_up_in_mid_study(tmp_path, uninterrupted):
+    """A limit on the size of files stands in for a full disk."""
+    path = tmp_path / "full.sqlite"
+    said, _ = begin(path, FULL_DISK).communicate(timeout=120)
+    assert "the disk is full" in said
+    assert "what was finished before is kept: make room and run again" in said
+    store = Store(path)
+    assert 1 <= len(store.records()) < 6
+    assert outcomes(store).items() <= uninterrupted.items()
+    run_study(LONG, store)
+    assert outcomes(store) == uninterrupted

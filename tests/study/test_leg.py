@@ -1,0 +1,109 @@
+"""A run in parts is the run: wherever it stops, it goes on with the same bits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from canon import DOP853, RK4, Gauss, Splitting, Taylor, propagate
+from canon.study.case import Case, parts_of
+from canon.study.formula import Formula
+from canon.study.leg import Checkpoint, FailedRun, Outcome, advance, started
+
+KEPLER = Case("kepler", Splitting("kahan-li-8"), span=20.0, step=0.02, start="e=0.6", samples=400, parts=7)
+
+CASES = [
+    KEPLER,
+    replace(KEPLER, precision="single"),
+    replace(KEPLER, precision="double"),
+    replace(KEPLER, precision="extended", method=Splitting("verlet")),
+    replace(KEPLER, precision="double-double", method=Splitting("verlet")),
+    replace(KEPLER, method=RK4()),
+    replace(KEPLER, method=Gauss(4)),
+    replace(KEPLER, method=Taylor(), step=None),
+    replace(KEPLER, method=Taylor(), step=None, tolerance=1e-10),
+    replace(KEPLER, method=DOP853(), step=None),
+    Case("double-pendulum", Taylor(), span=40.0, samples=300, parts=5),
+]
+
+
+def in_legs(case):
+    """Run part by part, each checkpoint once through text."""
+    reached, seen = None, []
+    while isinstance(reached := advance(case, reached, seconds=0.0), Checkpoint):
+        reached = Checkpoint.from_text(reached.to_text())
+        seen.append(reached.part)
+    assert seen == list(range(1, parts_of(case)))
+    return reached
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.method}-{case.precision}")
+def test_interrupted_after_every_part_it_ends_the_same(case):
+    whole, broken = advance(case), in_legs(case)
+    assert isinstance(whole, Outcome)
+    assert broken.numbers == whole.numbers
+
+
+@pytest.mark.parametrize("precision", ["single", "double", "compensated", "extended", "double-double"])
+@pytest.mark.parametrize("method", [Splitting("blanes-moan-4"), RK4()])
+def test_parts_of_fixed_steps_are_the_run_in_one_piece(method, precision):
+    """Second route: one call of propagate over the whole span."""
+    case = replace(KEPLER, method=method, precision=precision)
+    whole = propagate(
+        case.hamiltonian,
+        case.state,
+        (0.0, case.span),
+        method=method,
+        step=case.step,
+        precision=precision,
+        parameters=case.values,
+        samples=400,
+    )
+    found = advance(case).numbers
+    assert found["final"] == whole.final.tolist()
+    assert (found["steps"], found["evaluations"], found["step"]) == (1000, whole.evaluations, whole.step)
+    assert found["bound"] == pytest.approx(float(np.abs(whole.energy_error).max()), rel=0.1)
+
+
+def test_without_what_rounding_took_it_would_end_elsewhere():
+    """The wrong twin: a checkpoint that keeps doubles only."""
+    first = advance(KEPLER, seconds=0.0)
+    assert any(first.carried)
+    poorer = replace(first, carried=(0.0,) * len(first.carried))
+    assert advance(KEPLER, poorer).numbers["final"] != advance(KEPLER, first).numbers["final"]
+
+
+def test_the_error_is_that_since_the_start_of_the_run():
+    case = replace(KEPLER, method=RK4(), parts=4)
+    point = started(case)
+    while isinstance(found := advance(case, point, seconds=0.0), Checkpoint):
+        point = found
+    whole = propagate(
+        case.hamiltonian, case.state, (0.0, 15.0), method=RK4(), step=0.02, parameters=case.values, samples=300
+    )
+    np.testing.assert_allclose(point.t, whole.t, rtol=1e-15)
+    np.testing.assert_allclose(point.change, whole.energy_change, rtol=1e-12, atol=1e-15 * abs(point.energy))
+
+
+def test_the_number_of_parts_follows_from_the_case():
+    long = replace(KEPLER, span=1e6, parts=None)
+    assert parts_of(long) == 48
+    assert parts_of(replace(KEPLER, parts=None)) == 1
+    assert parts_of(replace(long, method=Taylor(), step=None, samples=4096)) == 64
+
+
+def test_a_collision_is_a_failed_run_with_its_reason():
+    falling = Formula("falling", "p**2/2 - 1/q", ("q",), ("p",), starts=(("rest", (1.0, 0.0)),))
+    case = Case(falling, RK4(), span=40.0, step=0.001, samples=256, parts=4)
+    point = advance(replace(case, span=1.0), seconds=0.0)
+    assert isinstance(point, Checkpoint)
+    taylor = replace(case, method=Taylor(), step=None)
+    with pytest.raises(FailedRun, match="collision or the edge of H's domain"):
+        advance(taylor)
+    driven = Formula("driven", "p**2/2 + q**2/2 + q*sin(t)", ("q",), ("p",), starts=(("rest", (1.0, 0.0)),))
+    with pytest.raises(FailedRun, match="H depends on t"):
+        advance(replace(case, system=driven))
+    with pytest.raises(FailedRun, match="10 steps can't be run in 20 parts"):
+        advance(replace(KEPLER, span=0.2, parts=20))
