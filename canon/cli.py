@@ -1,4 +1,4 @@
-"""The command line: ``canon check``, ``canon drift``, ``canon tour``.
+"""The command line: ``canon check``, ``canon drift``, ``canon scene``, ``canon tour``.
 
 Every command is a module of :mod:`canon.command` with ``DESCRIPTION``, ``EXAMPLES``, ``add_arguments(parser)``
 and ``run(arguments) -> exit status``; only the one that is asked for is imported.
@@ -21,6 +21,7 @@ __all__ = ["main"]
 COMMANDS = {
     "check": "judge sheets of claims about mechanics: right or wrong, and where",
     "drift": "run long and measure how the energy error of a method grows",
+    "scene": "list ready systems; show one's equations, run it, draw it",
     "tour": "both on bundled examples, in less than half a minute",
 }
 EXAMPLES = """\

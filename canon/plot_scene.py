@@ -85,7 +85,9 @@ def animate_scene(motion: Motion, file: str | Path, *, seconds: float = 6.0, rat
     if ending not in names:
         raise ValueError(f"{file}: animations are written as .gif or .mp4")
     if not animation.writers.is_available(names[ending]):
-        raise PlotError(f"{names[ending]} is not installed, which writes .{ending}; install it, or write .gif")
+        raise PlotError(
+            f"{names[ending]} is not installed, which writes .{ending}; install it, or write .gif"
+        )
     drawing = _Drawing(motion)
     _frame(axes, drawing)
     axes.set_title(motion.scene.title, loc="left", fontsize="small", wrap=True)
@@ -98,7 +100,9 @@ def animate_scene(motion: Motion, file: str | Path, *, seconds: float = 6.0, rat
         tail = slice(max(0, at - len(motion.t) // 5), at + 1)
         drawn[:] = _draw(axes, drawing, at)
         for index, way in enumerate(drawing.ways):
-            drawn.extend(axes.plot(*way[:, tail], color=COLOURS[index % len(COLOURS)], linewidth=0.9, alpha=0.7))
+            drawn.extend(
+                axes.plot(*way[:, tail], color=COLOURS[index % len(COLOURS)], linewidth=0.9, alpha=0.7)
+            )
         return drawn
 
     figure: Any = axes.get_figure(root=True)
@@ -208,4 +212,3 @@ def _axes(ax: Axes | None) -> Axes:
     if ax is not None:
         return ax
     return Figure(figsize=(5.0, 4.5), layout="constrained").add_subplot()
-

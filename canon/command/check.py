@@ -50,6 +50,7 @@ examples:
   canon check --json --jobs 4 class/*.json > verdicts.jsonl
   canon check --expect regression.toml
   canon check --only pendulum answers.toml
+  canon check --html report.html --junit report.xml answers.toml
 """
 
 
@@ -70,6 +71,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--json", action="store_true", help="one JSON object a line instead of a table")
     parser.add_argument(
+        "--html", metavar="FILE", help="also write a page with formulas, counterexamples and steps"
+    )
+    parser.add_argument("--junit", metavar="FILE", help="also write JUnit XML, a test case for each claim")
+    parser.add_argument(
         "--expect",
         action="store_true",
         help="compare with what each claim expects; exit 1 where a verdict differs",
@@ -88,7 +93,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Judge the sheets, print each verdict as soon as it is there, return the exit status."""
     from canon.exercise.checking import judged
-    from canon.exercise.report import Report
+    from canon.exercise.report import Report, printable
     from canon.exercise.sheet import SheetError
 
     try:
@@ -106,14 +111,32 @@ def run(arguments: argparse.Namespace) -> int:
     coming = judged([claim for _, claims in chosen for claim in claims], arguments.jobs)
     for sheet, claims in chosen:
         if not arguments.json and (sheet.title or len(sheets) > 1):
-            print(sheet.title or sheet.file)
+            print(printable(sheet.title or sheet.file))
         for judgement in islice(coming, len(claims)):
             judgements.append(judgement)
             _show(judgement, json=arguments.json)
-    report = Report("", tuple(judgements))
+    title = next((sheet.title or sheet.file for sheet in sheets), "") if len(sheets) == 1 else ""
+    report = Report(title, tuple(judgements), tuple(claim for _, claims in chosen for claim in claims))
     if not arguments.json:
         print(report.summary)
+    if not _files_written(report, arguments):
+        return 2
     return _status(report, judgements, expected=arguments.expect)
+
+
+def _files_written(report: Report, arguments: argparse.Namespace) -> bool:
+    """Write the page and the XML that were asked for, and tell whether they could be."""
+    from pathlib import Path
+
+    for name, written in ((arguments.html, report.to_html), (arguments.junit, report.to_junit)):
+        if name is None:
+            continue
+        try:
+            Path(name).write_text(written(), "utf-8")
+        except OSError as error:
+            print(f"canon check: {name}: can't be written ({error.strerror or error})", file=sys.stderr)
+            return False
+    return True
 
 
 def _status(report: Report, judgements: list[Judgement], *, expected: bool) -> int:
@@ -121,7 +144,7 @@ def _status(report: Report, judgements: list[Judgement], *, expected: bool) -> i
         return report.exit_status
     for judgement in report.unexpected:
         line = f"canon check: {judgement.id}: {judgement.status}, expected {judgement.expect}"
-        print(line, file=sys.stderr)
+        print(printable(line), file=sys.stderr)
     if any(judgement.status == "invalid" and not judgement.expect for judgement in judgements):
         return 2
     return 1 if report.unexpected else 0
@@ -148,10 +171,8 @@ def _chosen(sheet: Sheet, arguments: argparse.Namespace) -> list[Claim]:
 
 
 def _show(judgement: Judgement, *, json: bool) -> None:
-    import json as json_
-
     if json:
-        print(json_.dumps(judgement.to_dict(), ensure_ascii=False), flush=True)
+        print(judgement.json_line, flush=True)
     else:
         print(*judgement.lines(), sep="\n", flush=True)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from typing import TYPE_CHECKING
 
@@ -70,6 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the study, print its table or lines, return the exit status."""
+    from canon.command.setting import setting
     from canon.scene import SceneError, find
     from canon.study.comparison import StudyError
 
@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
         _list_scenes()
         return 0
     try:
-        scene = find(arguments.scene).with_parameters(**dict(map(_setting, arguments.set)))
+        scene = find(arguments.scene).with_parameters(**dict(map(setting, arguments.set)))
         methods = [method_named(name) for name in arguments.method] if arguments.method else None
         study = _study(scene, methods, arguments)
     except (SceneError, StudyError, ValueError) as error:
@@ -179,17 +179,6 @@ class Progress:
         if self._bar is not None:
             self._bar.close()  # pyright: ignore[reportAttributeAccessIssue]
             self._bar = None
-
-
-def _setting(text: str) -> tuple[str, float]:
-    name, equals, value = text.partition("=")
-    try:
-        number = float(value)
-    except ValueError:
-        number = math.nan
-    if not (name.strip() and equals and math.isfinite(number)):
-        raise ValueError(f"--set {text}: write a parameter's name, =, and a number, as in --set l=2")
-    return name.strip(), number
 
 
 def _list_scenes() -> None:

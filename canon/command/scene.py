@@ -1,0 +1,155 @@
+"""``canon scene``: list the ready systems; show one, run it, check what is known of it, draw it."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import argparse
+
+    from canon.scene.describe import Section
+    from canon.scene.motion import Motion
+    from canon.scene.scene import Scene
+
+__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
+
+DESCRIPTION = """\
+Ready mechanical systems. Without a name: list them. With a name: its parameters, equations of motion, Hamiltonian,
+Routhian and constants of the motion; with --run also a motion, held against everything known of it.
+"""
+EXAMPLES = """\
+examples:
+  canon scene                                       all scenes
+  canon scene spherical-pendulum                    its equations as text
+  canon scene spherical-pendulum --latex            the same in LaTeX
+  canon scene kepler --start e=0.9 --run            integrate, check every known integral and closed form
+  canon scene double-pendulum --plot sketch.png     a sketch with the way the masses take
+  canon scene spring-pendulum --animate it.gif      an animation (.mp4 where ffmpeg is installed)
+
+exit status: 0 done and all checks passed, 1 a check failed, 2 bad usage
+"""
+_LONG = 1200
+"""Formulas longer than so many characters are not shown unless asked for."""
+
+_MANY = 8
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what the command reads."""
+    parser.add_argument(
+        "scene", metavar="SCENE", nargs="?", help="a scene by name; all are listed without it"
+    )
+    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a parameter")
+    parser.add_argument("--start", metavar="NAME", help="the initial state, by its name in the scene")
+    parser.add_argument("--latex", action="store_true", help="formulas in LaTeX")
+    parser.add_argument("--all", action="store_true", help="show long formulas too")
+    parser.add_argument(
+        "--run",
+        dest="integrate",
+        action="store_true",
+        help="integrate, check every known integral and closed form",
+    )
+    parser.add_argument(
+        "--periods",
+        metavar="N",
+        type=float,
+        help="duration of --run (100), --plot and --animate (5) in periods",
+    )
+    parser.add_argument("--plot", metavar="FILE", help="write a sketch (.png, .pdf, .svg)")
+    parser.add_argument("--animate", metavar="FILE", help="write an animation (.gif, .mp4)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Show, run and draw what was asked for; return the exit status."""
+    from canon.command.setting import setting
+    from canon.scene import SceneError, find
+
+    if arguments.scene is None:
+        _list()
+        return 0
+    try:
+        scene = find(arguments.scene).with_parameters(**dict(map(setting, arguments.set)))
+        scene.start(arguments.start)
+        if not (arguments.integrate or arguments.plot or arguments.animate):
+            _show(scene, arguments)
+        status = _check(scene, arguments) if arguments.integrate else 0
+        if arguments.plot or arguments.animate:
+            _draw(scene, arguments)
+    except (SceneError, ValueError, ArithmeticError, OSError, ImportError) as error:
+        print(f"canon scene: {error}", file=sys.stderr)
+        return 2
+    return status
+
+
+def _list() -> None:
+    from canon.scene import SCENES
+
+    width = max(len(scene.name) for scene in SCENES)
+    for scene in SCENES:
+        print(f"{scene.name:{width}}  {scene.title}")
+
+
+def _show(scene: Scene, arguments: argparse.Namespace) -> None:
+    from canon.scene.describe import description
+
+    print(f"{scene.title}\n")
+    print(f"  coordinates: {', '.join(scene.coordinates.split())}")
+    for c in scene.parameters:
+        print(f"  {c.name} = {f'{c.value:g} {c.unit}'.strip()}: {c.meaning}")
+    for start in scene.starts:
+        print(f"  start {start.name!r}: {start.about}")
+    print(f"  source: {scene.source}")
+    for section in description(scene):
+        _print_section(section, arguments)
+    if scene.solutions:
+        print("\nKnown motions (--run holds them against the equations)")
+        for solution in scene.solutions:
+            print(f"  {solution.name} (start {solution.start!r})")
+
+
+def _print_section(section: Section, arguments: argparse.Namespace) -> None:
+    print(f"\n{section.title}")
+    shown = section.formulas if arguments.all else section.formulas[:_MANY]
+    for formula in shown:
+        text = formula.latex if arguments.latex else str(formula)
+        if len(text) > _LONG and not arguments.all:
+            about = f"{formula.about}: " if formula.about else ""
+            text = f"{about}{text[:60]}… ({len(text)} characters; --all shows them)"
+        print(f"  {text}")
+    if len(section.formulas) > len(shown):
+        print(f"  … {len(section.formulas) - len(shown)} more; --all shows them")
+    if section.remark:
+        print(f"  {section.remark}")
+
+
+def _check(scene: Scene, arguments: argparse.Namespace) -> int:
+    from canon.scene.check import check, conserved
+
+    passed = True
+    for each in check(scene, arguments.start, arguments.periods):
+        print(f"{'✓' if each.passed else '✗'} {each}")
+        passed &= each.passed
+    for integral in scene.integrals:
+        verdict = conserved(scene, integral)
+        print(
+            f"{'✓' if verdict.holds else '✗'} {integral.name}: conserved by the equations: {verdict.status.name}"
+        )
+        passed &= not verdict.fails
+    return 0 if passed else 1
+
+
+def _draw(scene: Scene, arguments: argparse.Namespace) -> None:
+    from canon.plot_scene import animate_scene, plot_scene
+    from canon.scene.motion import run as motion_of
+
+    periods = min(arguments.periods or 5.0, scene.horizon)
+    motion: Motion = motion_of(scene, arguments.start, periods, samples=max(400, round(200 * periods)))
+    if arguments.plot:
+        figure = plot_scene(motion).get_figure(root=True)
+        if figure is not None:
+            figure.savefig(arguments.plot, dpi=150)
+        print(f"picture: {arguments.plot}")
+    if arguments.animate:
+        animate_scene(motion, arguments.animate)
+        print(f"animation: {arguments.animate}")
