@@ -11,7 +11,11 @@ from typing import TYPE_CHECKING, Any
 from canon.version import __version__
 
 if TYPE_CHECKING:
+    from canon.exercise.checking import check as check
+    from canon.exercise.expect import expect as expect
     from canon.exercise.judge import judge as judge
+    from canon.exercise.report import Judgement as Judgement
+    from canon.exercise.report import Report as Report
     from canon.exercise.sheet import Claim as Claim
     from canon.exercise.sheet import Sheet as Sheet
     from canon.exercise.sheet import read_sheet as read_sheet
@@ -89,9 +93,11 @@ __all__ = [
     "GibbsAppell",
     "Hamiltonian",
     "ImplicitTransformation",
+    "Judgement",
     "Lagrangian",
     "Particle",
     "PlanarBody",
+    "Report",
     "RigidBody",
     "Sheet",
     "Splitting",
@@ -104,11 +110,13 @@ __all__ = [
     "__version__",
     "bilinear_covariant",
     "brackets_at_points",
+    "check",
     "coordinates",
     "drift",
     "drift_study",
     "equal",
     "equivalent_equations",
+    "expect",
     "from_sympy_mechanics",
     "generated_transformation",
     "generating_function",
@@ -139,7 +147,10 @@ __all__ = [
 ]
 
 _ROOMS = {
+    "canon.exercise.checking": ("check",),
+    "canon.exercise.expect": ("expect",),
     "canon.exercise.judge": ("judge",),
+    "canon.exercise.report": ("Judgement", "Report"),
     "canon.exercise.sheet": ("Claim", "Sheet", "read_sheet"),
     "canon.expression.language": ("parse_expression",),
     "canon.expression.symbol": ("Coordinate", "coordinates", "parameters", "time", "time_derivative"),

@@ -140,6 +140,8 @@ def _files_written(report: Report, arguments: argparse.Namespace) -> bool:
 
 
 def _status(report: Report, judgements: list[Judgement], *, expected: bool) -> int:
+    from canon.exercise.report import printable
+
     if not expected:
         return report.exit_status
     for judgement in report.unexpected:

@@ -9,18 +9,53 @@ from contextlib import ExitStack
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from canon.exercise.report import Report
+from canon.exercise.sheet import Sheet, read_sheet
 from canon.exercise.worker import Worker
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     from canon.exercise.report import Judgement
     from canon.exercise.sheet import Claim
 
-__all__ = ["judged"]
+__all__ = ["check", "judged"]
 
 _OWN_KEYS = frozenset(("id", "title", "source", "expect"))
 """Keys that say nothing about mechanics."""
+
+
+def check(sheet: str | Path | Sheet, jobs: int = 1) -> Report:
+    """Judge every claim of a sheet, each in its budget, in a process that can be killed.
+
+    Parameters
+    ----------
+    sheet
+        A sheet, or the path of one.
+    jobs
+        How many processes judge at the same time.
+
+    Returns
+    -------
+    Report
+        The judgements in the order of the claims; a notebook shows it as a page.
+
+    Raises
+    ------
+    SheetError
+        Where the file is no sheet.
+
+    Examples
+    --------
+    >>> from canon import Claim, Sheet
+    >>> keys = {"lhs": "sin(2*x)", "rhs": "2*sin(x)*cos(x)", "parameters": {"x": "real"}}
+    >>> report = check(Sheet("one", (Claim("a", "equality-only", keys),)))
+    >>> report.counts
+    {'holds': 1}
+    """
+    read = sheet if isinstance(sheet, Sheet) else read_sheet(sheet)
+    return Report(read.title or read.file, tuple(judged(read.claims, jobs)), read.claims)
 
 
 def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:

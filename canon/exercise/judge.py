@@ -22,12 +22,8 @@ from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path
 
-    from canon.exercise.report import Report
-    from canon.exercise.sheet import Sheet
-
-__all__ = ["JUDGES", "Finding", "InvalidClaim", "check", "examine", "judge"]
+__all__ = ["JUDGES", "Finding", "InvalidClaim", "examine", "judge"]
 
 Judge: TypeAlias = "Callable[[Reading], Iterator[Question]]"
 
@@ -62,12 +58,16 @@ JUDGES: Mapping[str, Judge] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Finding:
-    """A verdict on a claim, the question on which it turned where it FAILS, and how many held before it."""
+    """A verdict on a claim, the question on which it turned where it FAILS, and how many held before it.
+
+    ``asked`` has every question with its answer, in the order they were asked.
+    """
 
     reading: Reading
     verdict: Verdict
     question: Question | None = None
     held: int = 0
+    asked: tuple[tuple[Question, Verdict], ...] = ()
 
 
 def judge(claim: Claim) -> Verdict:
@@ -111,11 +111,13 @@ def examine(claim: Claim) -> Finding:
     deadline = Deadline.after(claim.budget)
     reading = Reading(claim)
     answered: list[Verdict] = []
+    asked: list[tuple[Question, Verdict]] = []
     turned: Question | None = None
     try:
         for question in JUDGES[claim.kind](reading):
             verdict = decide(question, deadline)
             answered.append(verdict)
+            asked.append((question, verdict))
             if verdict.fails:
                 turned = question
                 break
@@ -126,30 +128,8 @@ def examine(claim: Claim) -> Finding:
     seconds = claim.budget - (deadline.left if deadline.left > 0.05 else 0.0)
     verdict = replace(all_hold(answered), seconds=seconds)
     verdict = verdict if verdict.question else verdict.about(_title(claim))
-    return Finding(reading, verdict, turned, len(answered) - 1 if turned is not None else 0)
-
-
-def check(sheet: str | Path | Sheet, jobs: int = 1) -> Report:
-    """Judge every claim of a sheet, each in its budget, in a process that can be killed.
-
-    Parameters
-    ----------
-    sheet
-        A sheet, or the path of one.
-    jobs
-        How many processes judge at the same time.
-
-    Raises
-    ------
-    SheetError
-        Where the file is no sheet.
-    """
-    from canon.exercise.checking import judged
-    from canon.exercise.report import Report
-    from canon.exercise.sheet import Sheet, read_sheet
-
-    read = sheet if isinstance(sheet, Sheet) else read_sheet(sheet)
-    return Report(read.title or read.file, tuple(judged(read.claims, jobs)))
+    held = len(answered) - 1 if turned is not None else 0
+    return Finding(reading, verdict, turned, held, tuple(asked))
 
 
 def _title(claim: Claim) -> str:

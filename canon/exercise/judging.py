@@ -10,6 +10,7 @@ import sympy as sp
 from canon.exercise.feedback import corrected, feedback
 from canon.exercise.judge import InvalidClaim, examine
 from canon.exercise.report import MAX_SHOWN, Judgement, invalid
+from canon.exercise.steps import steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +24,7 @@ FEEDBACK_SECONDS = 1.0
 
 
 def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
-    """Yield the judgement on a claim, then the same with feedback; the flag marks the last one."""
+    """Yield the judgement on a claim, then the same with its steps, then with feedback; the flag marks the last."""
     try:
         finding = examine(claim)
     except InvalidClaim as error:
@@ -35,10 +36,11 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
         yield replace(invalid(claim, known), status="undecided"), True
         return
     judgement = _told(claim, finding.verdict)
+    yield judgement, False
+    judgement = replace(judgement, steps=steps(finding))
     if not finding.verdict.fails:
         yield judgement, True
         return
-    yield judgement, False
     left = min(FEEDBACK_SECONDS, claim.budget - judgement.seconds)
     if left <= 0.1:
         yield judgement, True

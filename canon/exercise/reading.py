@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import sympy as sp
 from sympy import Expr, Rational, Symbol
 
-from canon.exercise.kinds import KINDS, Shape
 from canon.exercise.form import ASSUMPTIONS
+from canon.exercise.kinds import KINDS, Shape
 from canon.exercise.sheet import Claim, ClaimError
 from canon.expression.language import (
     LanguageError,

@@ -9,17 +9,28 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from decimal import Decimal, InvalidOperation
 from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from canon.exercise.form import MAX_DIGITS, faults
 
-__all__ = ["Claim", "ClaimError", "Sheet", "SheetError", "bundled_sheet", "read_sheet", "sheet_from"]
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = [
+    "Claim",
+    "ClaimError",
+    "Sheet",
+    "SheetError",
+    "bundled_sheet",
+    "claim_from",
+    "read_sheet",
+    "sheet_from",
+]
 
 MAX_BYTES = 10_000_000
 MAX_TOML_BYTES = 2_000_000
@@ -241,7 +252,7 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
     seen: set[str] = set()
     claims: list[Claim] = []
     for number, keys in enumerate(raw, 1):
-        claim = _claim(keys, number, file)
+        claim = claim_from(keys, number, file)
         if claim.id in seen:
             error = ClaimError(
                 claim.id, "id", "another claim before it has the same id; rename one", file=file
@@ -253,7 +264,21 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
     return Sheet(str(title), tuple(claims), file)
 
 
-def _claim(keys: Any, number: int, file: str) -> Claim:
+def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
+    """Return the claim that a table of keys is, with what is wrong with its form.
+
+    Parameters
+    ----------
+    keys
+        What stands in the claim, ``id`` and ``kind`` included.
+    number, file
+        Where it stands.
+
+    Examples
+    --------
+    >>> claim_from({"id": "a", "kind": "equality-only", "lhs": "1"}).errors[0].brief
+    'key rhs: missing (an expression)'
+    """
     if not isinstance(keys, dict):
         error = ClaimError(f"#{number}", "", "a claim is a table of keys", file=file)
         return Claim(f"#{number}", "", errors=(error,), file=file)

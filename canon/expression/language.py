@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["LanguageError", "Scope", "parse_condition", "parse_equation", "parse_expression"]
+__all__ = ["LanguageError", "Scope", "parse_condition", "parse_equation", "parse_expression", "syntax_of"]
 
 MAX_EXPONENT = 1_000
 MAX_BITS = 40_000
@@ -113,7 +113,7 @@ def parse_expression(text: str, scope: Scope) -> Expr:
     x.__class__
      ^
     """
-    return _Builder(text, scope).expression(_tree(text, scope))
+    return _Builder(text, scope).expression(syntax_of(text, scope))
 
 
 def parse_condition(text: str, scope: Scope) -> Boolean:
@@ -124,7 +124,7 @@ def parse_condition(text: str, scope: Scope) -> Boolean:
     LanguageError
         With the column, the reason and a remedy.
     """
-    return _Builder(text, scope).condition(_tree(text, scope))
+    return _Builder(text, scope).condition(syntax_of(text, scope))
 
 
 def parse_equation(text: str, scope: Scope) -> Expr:
@@ -136,7 +136,7 @@ def parse_equation(text: str, scope: Scope) -> Expr:
         With the column, the reason and a remedy.
     """
     builder = _Builder(text, scope)
-    node = _tree(text, scope)
+    node = syntax_of(text, scope)
     if not isinstance(node, syntax.Comparison):
         return builder.expression(node)
     if node.relations != ("=",):
@@ -145,7 +145,14 @@ def parse_equation(text: str, scope: Scope) -> Expr:
     return left - right
 
 
-def _tree(text: str, scope: Scope) -> syntax.Node:
+def syntax_of(text: str, scope: Scope) -> syntax.Node:
+    """Return the syntax tree of a text, whose names need not mean anything yet.
+
+    Raises
+    ------
+    LanguageError
+        With the column, the reason and a remedy.
+    """
     if text.lstrip().startswith("$"):
         from canon.expression.latex import parse_latex  # only here: it loads a parser generator
 

@@ -9,7 +9,7 @@ import re
 import unicodedata
 from dataclasses import dataclass
 
-__all__ = ["LanguageError", "Token", "tokens"]
+__all__ = ["GREEK", "LanguageError", "Token", "tokens"]
 
 MAX_CHARACTERS = 50_000
 MAX_TOKENS = 20_000
@@ -59,7 +59,7 @@ _TOKEN = re.compile(
     r"|(?P<name>[^\W\d][\w\u0307\u0308]*'*)"
     r"|(?P<operator>\*\*|<=|>=|!=|==|[-+*/()<>=,−·×])"
 )
-_GREEK = {
+GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta", "η": "eta", "θ": "theta",
     "ϑ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu", "ν": "nu", "ξ": "xi", "π": "pi", "ρ": "rho",
     "σ": "sigma", "τ": "tau", "υ": "upsilon", "φ": "phi", "ϕ": "phi", "χ": "chi", "ψ": "psi", "ω": "omega",
@@ -146,9 +146,9 @@ def _named(text: str, word: str, column: int) -> Token:
         primes += 2
     elif name.endswith("\u0307"):
         primes += 1
-    plain = "".join(_GREEK.get(c, c) for c in name.rstrip("\u0307\u0308"))
+    plain = "".join(GREEK.get(c, c) for c in name.rstrip("\u0307\u0308"))
     if not plain.isascii():
-        odd = next(i for i, c in enumerate(word) if not c.isascii() and c not in _GREEK)
+        odd = next(i for i, c in enumerate(word) if not c.isascii() and c not in GREEK)
         raise LanguageError(
             text,
             column + odd,

@@ -97,7 +97,7 @@ def judged_row(claim: dict[str, Any], section: str, judgement: Any) -> str:
 
 def page() -> str:
     """Return the page."""
-    from canon.exercise.judge import check
+    from canon.exercise.checking import check
 
     entries = tomllib.loads((ROOT / "docs" / "seeds" / "entries.toml").read_text("utf-8"))["entry"]
     claims: dict[str, list[dict[str, Any]]] = {}

@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from canon.exercise.judge import check, judge
+from canon.exercise.checking import check
+from canon.exercise.judge import judge
 from canon.exercise.sheet import bundled_sheet
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "sheets" / "tour.toml"
