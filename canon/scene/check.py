@@ -185,4 +185,4 @@ def _kept(motion: Motion, name: str, node: int, bound: float, about: str, why: s
     size, of = (first, "relative") if first > terms / 10 else (terms, "of its largest term")
     if size == 0.0:
         size, of = 1.0, "in its own units"
-    return Check(name, change / size, bound, of, about, why if bound > 1e-13 else "")
+    return Check(name, change / size, bound, of, about, why if change > 1e-13 * size else "")

@@ -5,13 +5,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from canon.scene.scene import Integral, Parameter, Scene, Start
+from canon.scene.picture import Picture
+from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from types import SimpleNamespace
 
+    import numpy as np
+    from numpy.typing import NDArray
     from sympy import Expr
+
+    Array = NDArray[np.float64]
 
 __all__ = ["SCENES"]
 
@@ -21,6 +26,18 @@ _STIFFNESS = Parameter("k", 10.0, "N/m", "stiffness of the spring")
 
 def _period(value: Mapping[str, float]) -> float:
     return 2.0 * math.pi * math.sqrt(value["m"] / value["k"])
+
+
+def _harmonic(value: Mapping[str, float], t: Array) -> Array:
+    import numpy as np
+
+    return 0.1 * np.cos(math.sqrt(value["k"] / value["m"]) * t)
+
+
+def on_a_table(s: SimpleNamespace) -> Picture:
+    """Return a mass on a table with a spring to the wall, 0.3 m long when slack."""
+    table = ((-0.3, 0.02), (-0.3, -0.02), (0.15, -0.02))
+    return Picture(masses=((s.x, 0.0),), springs=(((-0.3, 0.0), (s.x, 0.0)),), ground=(table,))
 
 
 HARMONIC = Scene(
@@ -33,6 +50,8 @@ HARMONIC = Scene(
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 21",
     L_of=lambda s: s.m * s.x.dot**2 / 2 - s.k * s.x**2 / 2,
+    solutions=(Solution("place: 10 cm cos ωt", "released", lambda s: s.x, _harmonic, periods=100.0),),
+    picture_of=on_a_table,
 )
 
 
@@ -54,7 +73,20 @@ ISOTROPIC = Scene(
         Integral("angular momentum", lambda s: s.x * s.y.momentum - s.y * s.x.momentum),
         Integral("Fradkin tensor, xy", _fradkin),
     ),
+    solutions=(Solution("x: 10 cm cos ωt", "ellipse", lambda s: s.x, _harmonic),),
+    picture_of=lambda s: Picture(masses=((s.x, s.y),), springs=(((0.0, 0.0), (s.x, s.y)),)),
 )
+
+
+def _hardening(value: Mapping[str, float], t: Array) -> Array:
+    """Return x = A cn(Ωt, κ), Ω² = (k + b A²)/m, κ² = b A²/(2 (k + b A²))."""
+    import numpy as np
+    from scipy.special import ellipj
+
+    stiffness = value["k"] + value["b"] * 0.1**2
+    phase = np.sqrt(stiffness / value["m"]) * t
+    return 0.1 * ellipj(phase, value["b"] * 0.1**2 / (2.0 * stiffness))[1]
+
 
 HARDENING = Scene(
     name="duffing-oscillator",
@@ -70,6 +102,8 @@ HARDENING = Scene(
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 28",
     L_of=lambda s: s.m * s.x.dot**2 / 2 - s.k * s.x**2 / 2 - s.b * s.x**4 / 4,
+    solutions=(Solution("place: A cn(Ωt, κ)", "released", lambda s: s.x, _hardening),),
+    picture_of=on_a_table,
 )
 
 SCENES = (HARMONIC, ISOTROPIC, HARDENING)

@@ -8,13 +8,20 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from canon.scene.scene import Integral, Parameter, Scene, Start
+from canon.scene.picture import Picture, ring
+from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from types import SimpleNamespace
 
+    import numpy as np
+    from numpy.typing import NDArray
     from sympy import Expr
+
+    from canon.scene.picture import Point
+
+    Array = NDArray[np.float64]
 
 __all__ = ["SCENES"]
 
@@ -23,6 +30,34 @@ GRAVITY = Parameter("g", 9.80665, "m/s²", "standard acceleration of free fall")
 
 def _small_swing(value: Mapping[str, float]) -> float:
     return 2.0 * math.pi * math.sqrt(value["l"] / value["g"])
+
+
+def below(length: Expr, angle: Expr) -> Point:
+    """Return the point at this distance from the origin and angle from the downward vertical."""
+    from sympy import cos, sin
+
+    return (length * sin(angle), -length * cos(angle))
+
+
+def swing(amplitude: float, value: Mapping[str, float], t: Array) -> Array:
+    """Return θ(t) of a pendulum let go at rest: sin(θ/2) = k cd(√(g/l) t, k), k = sin(θ₀/2)."""
+    import numpy as np
+    from scipy.special import ellipj
+
+    k = math.sin(amplitude / 2.0)
+    _, cn, dn, _ = ellipj(math.sqrt(value["g"] / value["l"]) * t, k * k)
+    return 2.0 * np.arcsin(k * cn / dn)
+
+
+def _quarter(amplitude: float, value: Mapping[str, float]) -> float:
+    from scipy.special import ellipk
+
+    return math.sqrt(value["l"] / value["g"]) * float(ellipk(math.sin(amplitude / 2.0) ** 2))
+
+
+def _simple_picture(s: SimpleNamespace) -> Picture:
+    bob = below(s.l, s.theta)
+    return Picture(masses=(bob,), bars=(((0.0, 0.0), bob),))
 
 
 def _simple(s: SimpleNamespace) -> Expr:
@@ -47,6 +82,20 @@ SIMPLE = Scene(
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 11 problem 1",
     L_of=_simple,
+    picture_of=_simple_picture,
+    solutions=(
+        Solution(
+            "angle by Jacobi's elliptic functions", "wide", lambda s: s.theta, lambda v, t: swing(2.0, v, t)
+        ),
+        Solution(
+            "quarter of the period, √(l/g) K(sin θ₀/2)",
+            "wide",
+            lambda s: s.t,
+            lambda v, _t: _quarter(2.0, v),
+            event=lambda s: s.theta,
+            bound=1e-14,
+        ),
+    ),
     energy_bound=1e-10,
     energy_why=TURNS,
 )
@@ -61,6 +110,23 @@ def _sliding(s: SimpleNamespace) -> Expr:
 
 def _elastic(value: Mapping[str, float]) -> float:
     return 2.0 * math.pi * math.sqrt(value["m"] / value["k"])
+
+
+def _sine(angle: Expr) -> Expr:
+    from sympy import sin
+
+    return sin(angle)
+
+
+def _horizontal_place(value: Mapping[str, float], t: Array) -> Array:
+    import numpy as np
+
+    return 0.4 * math.sin(0.8) * np.cos(math.sqrt(value["k"] / value["m"]) * t)
+
+
+def _sprung_picture(s: SimpleNamespace) -> Picture:
+    bob = below(s.r, s.theta)
+    return Picture(masses=(bob,), springs=(((0.0, 0.0), bob),))
 
 
 SLIDING_MASS = Scene(
@@ -80,6 +146,16 @@ SLIDING_MASS = Scene(
     time_unit="s",
     source="a spring of zero natural length makes x and y independent oscillators: closed form",
     L_of=_sliding,
+    picture_of=_sprung_picture,
+    solutions=(
+        Solution(
+            "horizontal place: harmonic",
+            "swinging",
+            lambda s: s.r * _sine(s.theta),
+            lambda v, t: _horizontal_place(v, t),
+            bound=1e-11,
+        ),
+    ),
     integrals=(Integral("energy of the horizontal oscillator", lambda s: _horizontal(s)),),
 )
 
@@ -117,6 +193,7 @@ SPRING = Scene(
     time_unit="s",
     source="Vitt & Gorelik, Zh. Tekh. Fiz. 3, 294 (1933): resonance two to one, k l = 3 m g",
     L_of=_spring,
+    picture_of=_sprung_picture,
 )
 
 
@@ -125,6 +202,14 @@ def _spherical(s: SimpleNamespace) -> Expr:
 
     kinetic = s.m * s.l**2 * (s.theta.dot**2 + s.phi.dot**2 * sin(s.theta) ** 2) / 2
     return kinetic + s.m * s.g * s.l * cos(s.theta)
+
+
+def _spherical_picture(s: SimpleNamespace) -> Picture:
+    from sympy import cos, sin
+
+    bob = (s.l * sin(s.theta) * cos(s.phi), s.l * sin(s.theta) * sin(s.phi), -s.l * cos(s.theta))
+    equator = ring((0.0, 0.0, 0.0), (s.l, 0.0, 0.0), (0.0, s.l, 0.0))
+    return Picture(masses=(bob,), bars=(((0.0, 0.0, 0.0), bob),), ground=(equator,))
 
 
 SPHERICAL = Scene(
@@ -140,6 +225,16 @@ SPHERICAL = Scene(
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 14 problem 1",
     L_of=_spherical,
+    picture_of=_spherical_picture,
+    solutions=(
+        Solution("angle of the cone stays", "conical", lambda s: s.theta, lambda _v, _t: 1.0, periods=1.0),
+        Solution(
+            "rate of the cone, √(g/(l cos θ))",
+            "conical",
+            lambda s: s.phi,
+            lambda v, t: t * math.sqrt(v["g"] / (v["l"] * math.cos(1.0))),
+        ),
+    ),
     energy_bound=1e-11,
     energy_why=TURNS,
     integrals=(Integral("angular momentum about the vertical", lambda s: s.phi.momentum),),
@@ -170,6 +265,12 @@ def _rods(s: SimpleNamespace) -> Expr:
     return kinetic + (s.m1 / 2 + s.m2) * s.g * s.l1 * cos(a) + s.m2 * s.g * s.l2 * cos(b) / 2
 
 
+def _double_picture(s: SimpleNamespace) -> Picture:
+    middle = below(s.l1, s.theta1)
+    end = tuple(a + b for a, b in zip(middle, below(s.l2, s.theta2), strict=True))
+    return Picture(masses=(middle, end), bars=(((0.0, 0.0), middle, end),))
+
+
 def _upper_swing(value: Mapping[str, float]) -> float:
     return 2.0 * math.pi * math.sqrt(value["l1"] / value["g"])
 
@@ -196,6 +297,7 @@ DOUBLE = Scene(
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 5 problem 1",
     L_of=_double,
+    picture_of=_double_picture,
     energy_bound=1e-10,
     energy_why=TURNS,
 )
@@ -210,6 +312,7 @@ DOUBLE_RODS = Scene(
     time_unit="s",
     source="kinetic energy of each rod by König's theorem, central inertia m l²/12",
     L_of=_rods,
+    picture_of=_double_picture,
     energy_bound=1e-10,
     energy_why=TURNS,
 )
