@@ -9,7 +9,7 @@ True
 
 from __future__ import annotations
 
-from canon.scene import bodies, henon_heiles, kepler, lattice, oscillator, pendulum, two_degree
+from canon.scene import bodies, henon_heiles, kepler, lattice, oscillator, pendulum, top, two_degree
 from canon.scene.scene import Condition, Integral, Parameter, Scene, SceneError, Solution, Start, near
 
 __all__ = [
@@ -24,6 +24,7 @@ SCENES: tuple[Scene, ...] = (
     *henon_heiles.SCENES,
     *two_degree.SCENES,
     *lattice.SCENES,
+    *top.SCENES,
 )
 """Every scene."""
 
