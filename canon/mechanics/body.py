@@ -15,6 +15,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import time, velocity
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_all
 from canon.mechanics.quasi_velocity import Kinematics
 from canon.mechanics.substitution import as_tuple, entry, exchanged
 
@@ -149,8 +150,8 @@ class RigidBody:
     def angular_velocity(self, kinematics: Kinematics) -> tuple[Expr, ...]:
         """Return ω along the body's axes: the three entries of Rᵀ Ṙ."""
         if self.omega is not None:
-            return tuple(exchanged(w, kinematics.through) for w in self.omega)
-        R = sp.Matrix(self.rotation)
+            return tuple(exchanged(kinematics.plain(w), kinematics.through) for w in self.omega)
+        R = sp.Matrix(self.rotation).applyfunc(kinematics.plain)
         spin = R.T * R.applyfunc(kinematics.rate)
         return tuple(sp.expand(entry(spin, i, j)) for i, j in ((2, 1), (0, 2), (1, 0)))
 
@@ -257,23 +258,47 @@ def kinetic_form(T: Expr, q: Sequence[Symbol]) -> KineticForm:
     [m,      0],
     [0, m*r**2]])
     """
-    v = [velocity(s) for s in q]
+    q = coordinate_symbols(q)
+    T, v = plain(T, q), [velocity(s) for s in q]
     at_rest = dict.fromkeys(v, sp.S.Zero)
     slopes = [T.diff(w) for w in v]
     A = sp.ImmutableDenseMatrix([[slope.diff(w) for w in v] for slope in slopes])
     if A.has(*v):
         raise ValueError("T is not quadratic in the velocities; it cannot be the kinetic energy of bodies")
-    return KineticForm(A, tuple(exchanged(s, at_rest) for s in slopes), exchanged(T, at_rest), tuple(q))
+    return KineticForm(A, tuple(exchanged(s, at_rest) for s in slopes), exchanged(T, at_rest), q)
 
 
-def is_scleronomic(bodies: Sequence[Body], t: Symbol = time, domain: Domain | None = None) -> Verdict:
-    """Tell whether positions and orientations do not depend on time explicitly (else they are rheonomic)."""
+def is_scleronomic(
+    bodies: Sequence[Body], t: Symbol = time, domain: Domain | None = None, q: Sequence[Symbol] = ()
+) -> Verdict:
+    """Tell whether positions and orientations do not depend on time explicitly (else they are rheonomic).
+
+    Parameters
+    ----------
+    bodies
+        Particles and rigid bodies.
+    t
+        The time.
+    domain
+        Where the claim is meant.
+    q
+        The coordinates, to be named only where positions are written in SymPy's dynamicsymbols.
+
+    Examples
+    --------
+    >>> from canon import coordinates, time as t
+    >>> (s,) = coordinates("s")
+    >>> is_scleronomic([Particle(1, (s, s**2))]).status.name, is_scleronomic([Particle(1, (s + t,))]).status.name
+    ('HOLDS', 'FAILS')
+    """
+    named = coordinate_symbols(q)
     claims: list[tuple[str, Expr]] = []
     for i, body in enumerate(bodies, 1):
-        claims += [(f"∂r/∂t of body {i}", place.diff(t)) for place in body.r]
+        claims += [(f"∂r/∂t of body {i}", plain(place, named, t).diff(t)) for place in body.r]
         if isinstance(body, PlanarBody):
-            claims.append((f"∂angle/∂t of body {i}", body.angle.diff(t)))
+            claims.append((f"∂angle/∂t of body {i}", plain(body.angle, named, t).diff(t)))
         elif isinstance(body, RigidBody):
             turning = body.omega if body.rotation is None else tuple(body.rotation.flat())
-            claims += [(f"the orientation of body {i} at fixed q", part.diff(t)) for part in turning or ()]
+            parts = plain_all(turning or (), named, t)
+            claims += [(f"the orientation of body {i} at fixed q", part.diff(t)) for part in parts]
     return all_vanish(claims, "the bodies are bound scleronomically", domain)

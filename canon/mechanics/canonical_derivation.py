@@ -18,6 +18,7 @@ from canon.expression.python_source import python_function
 from canon.expression.symbol import momentum, time, velocity
 from canon.mechanics.assembly import Assembly
 from canon.mechanics.channel import Reader, channels
+from canon.mechanics.dynamicsymbols import coordinate_symbols
 from canon.mechanics.factorisation import solved_on_graph
 
 if TYPE_CHECKING:
@@ -131,16 +132,16 @@ def canonical_derivation(
     >>> spring.graph.to_sympy(spring.hamiltonian)
     k*x**2/2 + p_x**2/(2*m)
     """
-    reader = Reader(Graph(), tuple(q), t)
+    reader = Reader(Graph(), coordinate_symbols(q), t)
     graph, mul = reader.graph, reader.graph.plain_mul
     assembly = Assembly(reader, list(channels(reader, bodies, field)))
     found = assembly.channels
     loads = [graph.zero if c.load is None else mul((c.weight, c.load)) for c in found]
     still = [graph.zero if c.rest is None else mul((c.weight, c.rest)) for c in found]
     momenta = [mul((c.weight, assembly.speed(c))) for c in found]
-    U = reader.node(sp.sympify(V, strict=True))
+    U = reader.given(V)
     pulls = [graph.negative(a) for a in graph.gradient(U, reader.q)]
-    given = [reader.node(sp.sympify(Q, strict=True)) for Q in forces or ()] or [graph.zero] * len(reader.q)
+    given = [reader.given(Q) for Q in forces or ()] or [graph.zero] * len(reader.q)
     p_dot = zip(assembly.slopes_of_T(momenta), assembly.projected(loads), pulls, given, strict=True)
     energies = [U, *assembly.heights(bodies, field)]
     for w, c in zip(still, found, strict=True):

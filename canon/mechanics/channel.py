@@ -11,9 +11,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from canon.expression.symbol import velocity
+from canon.expression.translation import NotModelledError
 from canon.mechanics.body import PlanarBody, RigidBody
+from canon.mechanics.dynamicsymbols import needs_plain, plain
 from canon.mechanics.quasi_velocity import Kinematics
 from canon.mechanics.substitution import exchanged
 
@@ -67,9 +70,26 @@ class Reader:
         """Return the node of an expression."""
         found = self._nodes.get(f)
         if found is None:
-            found = self.graph.symbol(f) if isinstance(f, sp.Symbol) else self.graph.from_sympy(f)
-            self._nodes[f] = found
+            found = self._nodes[f] = self._read(f)
         return found
+
+    def given(self, f: Expr) -> int:
+        """Return the node of what a user gave beside the bodies: forces, potentials."""
+        return self.node(plain(f, self.q, self.t))
+
+    def _read(self, f: Expr) -> int:
+        if isinstance(f, sp.Symbol) and f.name != self.t.name:
+            return self.graph.symbol(f)
+        # Functions of time are rare in places; looking for them beforehand in each of a long chain would cost.
+        try:
+            node = self.graph.from_sympy(f)
+        except NotModelledError:
+            if not f.has(AppliedUndef):
+                raise
+        else:
+            if not needs_plain(self.graph.symbols(node), self.t):
+                return node
+        return self.graph.from_sympy(plain(f, self.q, self.t))
 
     def slopes(self, f: Expr) -> tuple[tuple[tuple[int, int], ...], int | None]:
         """Return the pairs (i, ∂f/∂qᵢ) term by term, by rising i, and ∂f/∂t or None where that is 0."""

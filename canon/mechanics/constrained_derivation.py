@@ -12,9 +12,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import sympy as sp
 
 from canon.expression.python_source import python_function
+from canon.mechanics.dynamicsymbols import plain
 from canon.mechanics.motion import solved
 
 if TYPE_CHECKING:
@@ -92,8 +92,8 @@ def constrained(
     (array([0. , 0.5]), array([-2.625]))
     """
     graph, q, v, t = equations.graph, equations.q, equations.velocities, equations.t
-    values = tuple(graph.from_sympy(sp.sympify(f, strict=True)) for f in holonomic)
-    given = tuple(graph.from_sympy(sp.sympify(g, strict=True)) for g in nonholonomic)
+    values = tuple(graph.from_sympy(plain(f, q, t)) for f in holonomic)
+    given = tuple(graph.from_sympy(plain(g, q, t)) for g in nonholonomic)
     rows: list[tuple[int, ...]] = []
     rests: list[int] = []
     for f, node in zip(holonomic, values, strict=True):

@@ -16,7 +16,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.dependence import check_independent
-from canon.mechanics.dynamicsymbols import plain
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain
 from canon.mechanics.linear import SingularMatrixError, solve
 from canon.mechanics.substitution import as_tuple, entry, exchanged
 
@@ -154,7 +154,7 @@ class ConstrainedLagrangian:
 
     def equations(self, multipliers: Sequence[Symbol]) -> tuple[Expr, ...]:
         """Return Lagrange's equations with these symbols as multipliers, then the constraints, each = 0."""
-        A = self.directions
+        A, multipliers = self.directions, coordinate_symbols(multipliers)
         if len(multipliers) != A.rows:
             raise ValueError(f"{len(multipliers)} multipliers for {A.rows} constraints; each needs one")
         with_reactions = (

@@ -12,6 +12,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import time_derivative, velocity
 from canon.mechanics.claim import differ
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.embedding import embedded, satisfies
 from canon.mechanics.substitution import exchanged, substitute
 
@@ -46,11 +47,13 @@ def multiplier_in_contact(
     ValueError
         Where the positions do not satisfy the constraints.
     """
+    q = coordinate_symbols(q)
     verdict = satisfies(constrained, places, q)
     if not verdict.holds:
         raise ValueError(f"the positions are not in contact: {verdict.feedback or verdict}")
     t = constrained.lagrangian.t
-    whole = {s: sp.sympify(places.get(s, s), strict=True) for s in constrained.lagrangian.q}
+    given = plain_places(places, constrained.lagrangian.q, q, t)
+    whole = {s: given.get(s, s) for s in constrained.lagrangian.q}
     rates = {velocity(s): time_derivative(place, q, t) for s, place in whole.items()}
     return substitute(constrained.multipliers[which], {**whole, **rates})
 
@@ -97,6 +100,7 @@ def multiplier_along(
     >>> multiplier_along(sphere, {r: a}, theta, sp.S(0)).factor()
     g*m*(3*cos(theta) - 2)
     """
+    (s,) = coordinate_symbols(s)
     reduced = embedded(constrained.lagrangian, places, [s])
     _conserves_energy(reduced, domain)
     v, E = velocity(s), reduced.jacobi_energy

@@ -18,6 +18,7 @@ from canon.expression.shared import shared_to_sympy
 from canon.expression.symbol import time, velocity
 from canon.mechanics.assembly import Assembly
 from canon.mechanics.channel import Reader, channels
+from canon.mechanics.dynamicsymbols import coordinate_symbols
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -112,7 +113,7 @@ def derivation(
     bodies
         Particles and rigid bodies, as functions of q and t.
     q
-        The coordinates.
+        The coordinates; SymPy's dynamicsymbols are welcome here and in everything else that is given.
     V
         The potential energy besides that of the field.
     field
@@ -134,7 +135,7 @@ def derivation(
     >>> pendulum.graph.to_sympy(pendulum.M[0][0])
     l**2*m*sin(theta)**2 + l**2*m*cos(theta)**2
     """
-    reader = Reader(Graph(), tuple(q), t)
+    reader = Reader(Graph(), coordinate_symbols(q), t)
     graph = reader.graph
     assembly = Assembly(reader, list(channels(reader, bodies, field)))
     along = [graph.plain_mul((c.weight, assembly.excess(c))) for c in assembly.channels]
@@ -150,10 +151,10 @@ def _add_given(terms: list[list[int]], reader: Reader, V: Expr, forces: Sequence
     """Append −∂V/∂q and the given forces to the terms of each coordinate."""
     if forces is not None and len(forces) != len(terms):
         raise ValueError(f"{len(forces)} generalized forces for {len(terms)} coordinates; give one each")
-    for i, a in enumerate(reader.graph.gradient(reader.node(sp.sympify(V, strict=True)), reader.q)):
+    for i, a in enumerate(reader.graph.gradient(reader.given(V), reader.q)):
         terms[i].append(reader.graph.negative(a))
     for i, Q in enumerate(forces or ()):
-        terms[i].append(reader.node(sp.sympify(Q, strict=True)))
+        terms[i].append(reader.given(Q))
 
 
 def derivation_of_lagrangian(lagrangian: Lagrangian) -> Equations:

@@ -12,9 +12,9 @@ from canon.expression.symbol import Coordinate, acceleration, time, velocity, wi
 from canon.mechanics.substitution import exchanged
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
-__all__ = ["coordinate", "plain"]
+__all__ = ["coordinate", "coordinate_symbols", "needs_plain", "plain", "plain_all", "plain_places"]
 
 
 def coordinate(x: Any) -> Symbol:
@@ -42,11 +42,50 @@ def coordinate(x: Any) -> Symbol:
     )
 
 
+def coordinate_symbols(q: Any) -> tuple[Symbol, ...]:
+    """Return the symbols of one coordinate or of several.
+
+    Examples
+    --------
+    >>> from sympy.physics.mechanics import dynamicsymbols
+    >>> coordinate_symbols(dynamicsymbols("x y"))
+    (x, y)
+    """
+    return tuple(coordinate(x) for x in ((q,) if isinstance(q, sp.Basic) else q))
+
+
+def plain_all(functions: Sequence[Any], q: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
+    """Return :func:`plain` of each."""
+    return tuple(plain(f, q, t) for f in functions)
+
+
+def plain_places(
+    places: Mapping[Any, Any], old: Sequence[Symbol], new: Sequence[Symbol], t: Symbol = time
+) -> dict[Symbol, Expr]:
+    """Return what each old coordinate is in terms of new ones, all in canon's symbols.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> from sympy.physics.mechanics import dynamicsymbols
+    >>> (x,), (s,) = coordinates("x"), coordinates("s")
+    >>> plain_places({dynamicsymbols("x"): 2*dynamicsymbols("s")}, [x], [s])
+    {x: 2*s}
+    """
+    return {coordinate(s): plain(place, (*old, *new), t) for s, place in places.items()}
+
+
+def needs_plain(symbols: Collection[Any], t: Symbol = time) -> bool:
+    """Tell whether SymPy's own time, ``dynamicsymbols._t``, is among symbols where another one is meant."""
+    bare = Symbol(t.name)
+    return bare != t and bare in symbols
+
+
 def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     """Return an expression with canon's symbols for dynamicsymbols of these coordinates, their rates and the time.
 
     A function of one symbol whose name is that of a coordinate is that coordinate. Symbols named as rates
-    (``theta_dot``) become the rates.
+    (``theta_dot``) become the rates, a symbol named as the time becomes the time.
 
     Examples
     --------
@@ -69,5 +108,6 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
         clocks[clock] = t
         expression = without_dynamicsymbols(expression, {g: s}, clock)
     rates = {rate(s).name: rate(s) for s in q for rate in (velocity, acceleration)}
+    rates[t.name] = t
     exact = {s: rates[s.name] for s in expression.atoms(Symbol) if s.name in rates}
     return exchanged(expression, {**clocks, **exact})

@@ -9,6 +9,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import eliminate, solve
 from canon.mechanics.substitution import entry, exchanged, substitute
@@ -49,6 +50,7 @@ def embedded(lagrangian: Lagrangian, places: Mapping[Symbol, Expr], q: Sequence[
     >>> embedded(free, {y: l - x}, [x]).accelerations[0].factor()
     g*(-M + m)/(M + m)
     """
+    q = coordinate_symbols(q)
     whole = _whole(lagrangian, places, q)
     jacobian = sp.Matrix([[whole[s].diff(x) for x in q] for s in lagrangian.q])
     flat = eliminate(jacobian).null_direction
@@ -71,6 +73,7 @@ def satisfies(
     domain: Domain | None = None,
 ) -> Verdict:
     """Tell whether positions given by fewer coordinates satisfy every constraint, whatever their values."""
+    q = coordinate_symbols(q)
     whole = _whole(constrained.lagrangian, places, q)
     through = _through(constrained.lagrangian, whole, q)
     constraints = (*constrained.holonomic, *constrained.nonholonomic)
@@ -110,6 +113,7 @@ def eliminated(
             "velocities are constrained besides; a nonholonomic constraint takes no coordinate away. Use "
             "quasi-velocities, or the integral of the constraint where frobenius.integrals finds it"
         )
+    dependent = coordinate_symbols(dependent)
     if len(dependent) != len(constrained.holonomic):
         raise ValueError(
             f"{len(constrained.holonomic)} constraints determine as many coordinates, not {len(dependent)}"
@@ -129,12 +133,13 @@ def eliminated(
 
 
 def _whole(lagrangian: Lagrangian, places: Mapping[Symbol, Expr], q: Sequence[Symbol]) -> dict[Symbol, Expr]:
-    missing = [s for s in lagrangian.q if s not in places and s not in q]
+    given = plain_places(places, lagrangian.q, q, lagrangian.t)
+    missing = [s for s in lagrangian.q if s not in given and s not in q]
     if missing:
         raise ValueError(
             f"no place is given for {', '.join(map(str, missing))}; say what it is in the new coordinates"
         )
-    return {s: sp.sympify(places.get(s, s), strict=True) for s in lagrangian.q}
+    return {s: given.get(s, s) for s in lagrangian.q}
 
 
 def _through(lagrangian: Lagrangian, whole: Mapping[Symbol, Expr], q: Sequence[Symbol]) -> dict[Symbol, Expr]:

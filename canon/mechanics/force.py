@@ -13,6 +13,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import time, time_derivative, velocity
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_all
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.quasi_velocity import Kinematics
 
@@ -51,6 +52,8 @@ def generalized_forces(
     >>> generalized_forces([(F, 0)], [(l*sin(theta), -l*cos(theta))], [theta])
     (F*l*cos(theta),)
     """
+    q = coordinate_symbols(q)
+    forces, positions = (tuple(plain_all(row, q) for row in rows) for rows in (forces, positions))
     return tuple(
         sp.Add(
             *(
@@ -77,7 +80,8 @@ def generalized_torques(
     >>> generalized_torques([M], [b - a], [a, b])
     (-M, M)
     """
-    pairs = list(zip(torques, angles, strict=True))
+    q = coordinate_symbols(q)
+    pairs = list(zip(plain_all(torques, q), plain_all(angles, q), strict=True))
     return tuple(sp.Add(*(torque * angle.diff(s) for torque, angle in pairs)) for s in q)
 
 
@@ -108,8 +112,9 @@ def generalized_moments(
     [0, M*cos(theta), M]
     """
     kinematics = Kinematics(q, t=t)
+    q = kinematics.q
     pairs = [
-        (component, w)
+        (kinematics.plain(sp.sympify(component, strict=True)), w)
         for moment, body in zip(moments, bodies, strict=True)
         for component, w in zip(moment, body.angular_velocity(kinematics), strict=True)
     ]
@@ -132,6 +137,7 @@ def do_no_work(
     >>> do_no_work([(-S*sin(theta), S*cos(theta))], [place], [theta]).status.name
     'HOLDS'
     """
+    q = coordinate_symbols(q)
     Q = generalized_forces(forces, positions, q)
     claims = [(f"the work along {s}", work) for s, work in zip(q, Q, strict=True)]
     return all_vanish(claims, "the reactions do no virtual work", domain)
@@ -160,7 +166,8 @@ def damper(
     c: Expr, first: Sequence[Expr], second: Sequence[Expr], q: Sequence[Symbol], t: Symbol = time
 ) -> Expr:
     """Return Rayleigh's function ½ c ḋ² of a damper between two points at the distance d."""
-    gaps = [a - b for a, b in zip(first, second, strict=True)]
+    q = coordinate_symbols(q)
+    gaps = [a - b for a, b in zip(plain_all(first, q, t), plain_all(second, q, t), strict=True)]
     square = sp.Add(*(gap**2 for gap in gaps))
     along = sp.Add(*(gap * time_derivative(gap, q, t) for gap in gaps))
     return c * along**2 / (2 * square)
@@ -168,6 +175,8 @@ def damper(
 
 def rayleigh_forces(F: Expr, q: Sequence[Symbol]) -> tuple[Expr, ...]:
     """Return Q = −∂F/∂q̇ of Rayleigh's dissipation function F(q, q̇, t)."""
+    q = coordinate_symbols(q)
+    F = plain(F, q)
     return tuple(-F.diff(velocity(s)) for s in q)
 
 
@@ -203,8 +212,9 @@ def charge_term(
     >>> charge_term(e, (x, y), [x, y], A=(0, B*x))
     B*e*x*y_dot
     """
-    along = zip(A or (sp.S.Zero,) * len(r), r, strict=True)
-    return e * (sp.Add(*(a * time_derivative(x, q, t) for a, x in along)) - phi)
+    q = coordinate_symbols(q)
+    along = zip(plain_all(A or (sp.S.Zero,) * len(r), q, t), plain_all(r, q, t), strict=True)
+    return e * (sp.Add(*(a * time_derivative(x, q, t) for a, x in along)) - plain(phi, q, t))
 
 
 def electric_field(A: Sequence[Expr], phi: Expr, x: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
@@ -261,8 +271,9 @@ def lagrangian_of(
     """
     from canon.mechanics.body import kinetic_energy
 
-    damping = rayleigh_forces(sp.sympify(dissipation, strict=True), q)
-    given = forces or (sp.S.Zero,) * len(q)
+    q = coordinate_symbols(q)
+    damping = rayleigh_forces(dissipation, q)
+    given = plain_all(forces or (sp.S.Zero,) * len(q), q, t)
     Q = [a + b for a, b in zip(given, damping, strict=True)]
-    L = kinetic_energy(bodies, q, t) - V
+    L = kinetic_energy(bodies, q, t) - plain(V, q, t)
     return Lagrangian(L, q, t, Q if any(f != 0 for f in Q) else None)

@@ -11,6 +11,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import momentum, time, velocity
 from canon.mechanics.bracket import poisson_bracket
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_places
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.legendre import LegendreError, eliminate_velocities, legendre_residual
 from canon.mechanics.linear import is_regular
@@ -56,9 +57,9 @@ class Hamiltonian:
     def __init__(
         self, H: Expr, q: Sequence[Symbol] | Symbol, p: Sequence[Symbol] | Symbol, t: Symbol = time
     ) -> None:
-        object.__setattr__(self, "H", sp.sympify(H, strict=True))
-        object.__setattr__(self, "q", (q,) if isinstance(q, Symbol) else tuple(q))
-        object.__setattr__(self, "p", (p,) if isinstance(p, Symbol) else tuple(p))
+        object.__setattr__(self, "q", coordinate_symbols(q))
+        object.__setattr__(self, "p", coordinate_symbols(p))
+        object.__setattr__(self, "H", plain(H, (*self.q, *self.p), t))
         object.__setattr__(self, "t", t)
         if len(self.q) != len(self.p):
             raise ValueError(
@@ -130,6 +131,7 @@ class Hamiltonian:
         """
         domain = domain or Domain()
         variables = (*self.q, *self.p)
+        motion = plain_places(motion, variables, (), self.t)
         missing = [str(z) for z in variables if z not in motion]
         if missing:
             raise ValueError(f"the motion does not say what {', '.join(missing)} is; give every variable")

@@ -15,6 +15,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import Coordinate, velocity
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.dynamicsymbols import coordinate as symbol_of
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import eliminate
 from canon.mechanics.substitution import exchanged
@@ -36,6 +37,7 @@ def is_ignorable(lagrangian: Lagrangian, coordinate: Symbol, domain: Domain | No
     ValueError
         Where the symbol is no coordinate of this Lagrangian.
     """
+    coordinate = symbol_of(coordinate)
     if coordinate not in lagrangian.q:
         raise ValueError(
             f"{coordinate} is no coordinate of this Lagrangian; its coordinates are "

@@ -17,6 +17,7 @@ from canon.expression.symbol import acceleration, time
 from canon.mechanics.appell import cross
 from canon.mechanics.body import Particle, RigidBody
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain_all
 from canon.mechanics.linear import eliminate
 from canon.mechanics.quasi_velocity import Kinematics
 from canon.mechanics.substitution import as_tuple, entry, exchanged
@@ -128,9 +129,10 @@ class NewtonEuler:
         t: Symbol = time,
     ) -> None:
         object.__setattr__(self, "bodies", tuple(bodies))
-        object.__setattr__(self, "q", tuple(q))
-        object.__setattr__(self, "loads", tuple(loads))
-        object.__setattr__(self, "reactions", tuple(reactions))
+        object.__setattr__(self, "q", coordinate_symbols(q))
+        object.__setattr__(self, "reactions", coordinate_symbols(reactions))
+        named = (*self.q, *self.reactions)
+        object.__setattr__(self, "loads", tuple(_plain_load(load, named, t) for load in loads))
         object.__setattr__(self, "t", t)
         for load in self.loads:
             if not 0 <= load.body < len(self.bodies):
@@ -214,12 +216,12 @@ class NewtonEuler:
         moment = self._moment(i, len(omega))
         if isinstance(body, RigidBody):
             turning = [a + b for a, b in zip(turning, cross(omega, spin), strict=True)]
-            moment = _along_the_body(body, moment)
+            moment = _along_the_body(body, kinematics, moment)
         return [a - b for a, b in zip(turning, moment, strict=True)]
 
     def _moment(self, i: int, axes: int) -> list[Expr]:
         """Return the moment of the loads on a body about its centre of mass, along fixed axes."""
-        centre = self.bodies[i].r
+        centre = plain_all(self.bodies[i].r, self.q, self.t)
         total: list[Expr] = [sp.S.Zero] * axes
         for load in self.loads:
             if load.body != i:
@@ -234,10 +236,15 @@ class NewtonEuler:
         return total
 
 
-def _along_the_body(body: RigidBody, moment: Sequence[Expr]) -> list[Expr]:
+def _plain_load(load: Load, q: tuple[Symbol, ...], t: Symbol) -> Load:
+    at = None if load.at is None else plain_all(load.at, q, t)
+    return Load(load.body, plain_all(load.force, q, t), at, plain_all(load.torque, q, t))
+
+
+def _along_the_body(body: RigidBody, kinematics: Kinematics, moment: Sequence[Expr]) -> list[Expr]:
     if all(component == 0 for component in moment):
         return list(moment)
     if body.rotation is None:
         raise ValueError("a moment acts on a body given by omega; give its rotation, to know the body's axes")
-    turned = sp.Matrix(body.rotation).T * sp.Matrix(moment)
+    turned = sp.Matrix(body.rotation).applyfunc(kinematics.plain).T * sp.Matrix(moment)
     return [entry(turned, k, 0) for k in range(3)]

@@ -17,7 +17,7 @@ from sympy.core.function import AppliedUndef
 
 from canon.expression.symbol import Rate, acceleration, time, velocity
 from canon.mechanics.claim import all_vanish
-from canon.mechanics.dynamicsymbols import coordinate, plain
+from canon.mechanics.dynamicsymbols import coordinate, coordinate_symbols, needs_plain, plain
 from canon.mechanics.linear import eliminate, solve
 from canon.mechanics.substitution import as_tuple, entry, exchanged
 
@@ -110,7 +110,7 @@ class Kinematics:
 
     def plain(self, f: Expr) -> Expr:
         """Return f with symbols in place of SymPy's dynamicsymbols of q and u."""
-        if not f.has(AppliedUndef):
+        if not (f.has(AppliedUndef) or needs_plain(f.free_symbols, self.t)):
             return f
         others = [w for w in self.u if not isinstance(w, Rate)]
         return plain(f, (*self.q, *others), self.t)
@@ -157,6 +157,7 @@ def independent_velocities(
     if free is None:
         pivots = eliminate(constrained.directions).pivots
         free = [s for j, s in enumerate(q) if j not in pivots]
+    free = coordinate_symbols(free)
     dependent = [j for j, s in enumerate(q) if s not in free]
     A = constrained.directions
     if len(dependent) != A.rows:

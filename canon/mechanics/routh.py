@@ -16,6 +16,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbol import momentum, velocity
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.ignorable import ignorable_coordinates, is_ignorable
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.legendre import eliminate_velocities
@@ -115,6 +116,8 @@ class Routhian:
         tuple of sympy.Expr
             Integrals that SymPy's tables do not have stay as ``Integral``.
         """
+        motion = plain_places(motion, self.q, self.ignorable, self.t)
+        start = plain_places(start, self.q, self.ignorable, self.t)
         along = {s: motion[s] for s in self.q} | {velocity(s): motion[s].diff(self.t) for s in self.q}
         return tuple(
             start[s] + _integral_from_zero(substitute(rate, along), self.t)
@@ -211,14 +214,16 @@ def routhian(
     """
     if convention not in get_args(Convention):
         raise ValueError(f"convention {convention!r} is unknown; write 'L-pq' or 'pq-L'")
-    ignored = tuple(ignorable) if ignorable is not None else ignorable_coordinates(lagrangian, domain)
+    ignored = (
+        coordinate_symbols(ignorable) if ignorable is not None else ignorable_coordinates(lagrangian, domain)
+    )
     for s in ignored:
         verdict = is_ignorable(lagrangian, s, domain)
         if not verdict.holds:
             raise ValueError(
                 f"{s} is not ignorable: {verdict.feedback or verdict.status.name}; leave it out of ignorable"
             )
-    p = tuple(momenta) if momenta is not None else tuple(momentum(s) for s in ignored)
+    p = coordinate_symbols(momenta) if momenta is not None else tuple(momentum(s) for s in ignored)
     if len(p) != len(ignored):
         raise ValueError(f"{len(p)} momenta for {len(ignored)} ignorable coordinates; each needs one")
     rest = tuple(s for s in lagrangian.q if s not in ignored)

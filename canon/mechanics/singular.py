@@ -14,6 +14,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbol import momentum
+from canon.mechanics.dynamicsymbols import coordinate_symbols
 from canon.mechanics.linear import eliminate
 from canon.mechanics.substitution import exchanged
 
@@ -94,7 +95,7 @@ def singularity(
             "the Hessian of L depends on the velocities; primary constraints are found only for L at most "
             "quadratic in them"
         )
-    symbols = tuple(p) if p is not None else tuple(momentum(s) for s in lagrangian.q)
+    symbols = coordinate_symbols(p) if p is not None else tuple(momentum(s) for s in lagrangian.q)
     reduced = eliminate(M, domain=domain)
     at_rest = dict.fromkeys(v, sp.S.Zero)
     shifts = [s - exchanged(b, at_rest) for s, b in zip(symbols, lagrangian.momenta, strict=True)]

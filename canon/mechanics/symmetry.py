@@ -16,6 +16,7 @@ from sympy import Expr, Symbol
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.bracket import poisson_bracket
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.dynamicsymbols import plain, plain_all
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import exchanged
@@ -65,9 +66,9 @@ def is_constant_of_motion(
     ('HOLDS', 'FAILS')
     """
     if isinstance(system, Hamiltonian):
-        rate = system.rate(I)
+        rate = system.rate(plain(I, (*system.q, *system.p), system.t))
     else:
-        rate = time_derivative(I, system.q, system.t)
+        rate = time_derivative(plain(I, system.q, system.t), system.q, system.t)
         found = dict(zip(map(acceleration, system.q), system.accelerations, strict=True))
         rate = exchanged(rate, found)
     return all_vanish([("dI/dt = 0", rate)], f"{I} is a constant of motion", domain, budget)
@@ -114,7 +115,7 @@ def noether_charge(
     >>> noether_charge(Lagrangian((x.dot**2 + y.dot**2)/2, [x, y]), [-y, x])
     x*y_dot - x_dot*y
     """
-    _one_each(lagrangian, xi)
+    xi, tau, K = _displacements(lagrangian, xi, tau, K)
     terms = (p * a for p, a in zip(lagrangian.momenta, xi, strict=True))
     return sp.Add(*terms, -tau * lagrangian.jacobi_energy, -K)
 
@@ -136,20 +137,13 @@ def is_symmetry(
     >>> boost.status.name
     'HOLDS'
     """
-    _one_each(lagrangian, xi)
     L, q, t = lagrangian.L, lagrangian.q, lagrangian.t
-    tau_dot = time_derivative(sp.sympify(tau, strict=True), q, t)
-    change = [
-        sp.sympify(tau, strict=True) * L.diff(t),
-        tau_dot * L,
-        -time_derivative(sp.sympify(K, strict=True), q, t),
-    ]
+    xi, tau, K = _displacements(lagrangian, xi, tau, K)
+    tau_dot = time_derivative(tau, q, t)
+    change = [tau * L.diff(t), tau_dot * L, -time_derivative(K, q, t)]
     for s, a in zip(q, xi, strict=True):
         v = velocity(s)
-        change += [
-            a * L.diff(s),
-            (time_derivative(sp.sympify(a, strict=True), q, t) - v * tau_dot) * L.diff(v),
-        ]
+        change += [a * L.diff(s), (time_derivative(a, q, t) - v * tau_dot) * L.diff(v)]
     return all_vanish(
         [("the change of L dt is dK", sp.Add(*change))], "this is a symmetry of the action", domain
     )
@@ -176,7 +170,7 @@ def is_gauge_equivalent(
     q, t = _same_coordinates(first, second)
     difference = second.L - first.L
     if F is not None:
-        gap = difference - time_derivative(sp.sympify(F, strict=True), q, t)
+        gap = difference - time_derivative(plain(F, q, t), q, t)
         return all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", domain)
     v = [velocity(s) for s in q]
     A = [difference.diff(a) for a in v]
@@ -245,6 +239,10 @@ def _same_coordinates(first: Lagrangian, second: Lagrangian) -> tuple[tuple[Symb
     return first.q, first.t
 
 
-def _one_each(lagrangian: Lagrangian, xi: Sequence[Expr]) -> None:
+def _displacements(
+    lagrangian: Lagrangian, xi: Sequence[Expr], tau: Expr, K: Expr
+) -> tuple[tuple[Expr, ...], Expr, Expr]:
     if len(xi) != len(lagrangian.q):
         raise ValueError(f"{len(xi)} displacements for {len(lagrangian.q)} coordinates; give one each")
+    *changes, tau, K = plain_all((*xi, tau, K), lagrangian.q, lagrangian.t)
+    return tuple(changes), tau, K

@@ -1,0 +1,222 @@
+"""SymPy's dynamicsymbols at every door: the same question with functions of time and with canon's symbols."""
+
+import pytest
+import sympy as sp
+from sympy.physics.mechanics import dynamicsymbols
+
+from canon.expression.symbol import coordinates, parameters, time
+from canon.mechanics.appell import GibbsAppell
+from canon.mechanics.body import (
+    Particle,
+    PlanarBody,
+    RigidBody,
+    euler_rotation,
+    is_scleronomic,
+    kinetic_energy,
+    kinetic_form,
+)
+from canon.mechanics.canonical_derivation import canonical_derivation
+from canon.mechanics.constrained_derivation import constrained
+from canon.mechanics.constraint import ConstrainedLagrangian
+from canon.mechanics.contact import multiplier_along, multiplier_in_contact
+from canon.mechanics.derivation import derivation, derivation_of_lagrangian
+from canon.mechanics.dynamicsymbols import plain
+from canon.mechanics.embedding import eliminated, embedded
+from canon.mechanics.force import (
+    charge_term,
+    damper,
+    do_no_work,
+    generalized_forces,
+    generalized_moments,
+    generalized_torques,
+    lagrangian_of,
+    rayleigh_forces,
+)
+from canon.mechanics.frobenius import integrals, is_integrable, positional_freedom
+from canon.mechanics.hamiltonian import Hamiltonian
+from canon.mechanics.ignorable import adapted, is_ignorable
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.newton_euler import Load, NewtonEuler
+from canon.mechanics.quasi_velocity import Kinematics, independent_velocities, maggi_equations
+from canon.mechanics.routh import routhian
+from canon.mechanics.singular import singularity
+from canon.mechanics.symmetry import is_constant_of_motion, is_gauge_equivalent, is_symmetry, noether_charge
+
+m, l, g, k, c, e, B, a = parameters("m l g k c e B a", positive=True)
+TAU = dynamicsymbols._t
+
+
+class Names:
+    """The coordinates, their rates and the time, in one way of writing or the other."""
+
+    def __init__(self, functions):
+        make = dynamicsymbols if functions else coordinates
+        self.x, self.y, self.theta, self.r = make("x y theta r")
+        self.phi, self.psi, self.s = make("phi psi s")
+        self.t = TAU if functions else time
+        self.functions = functions
+
+    def dot(self, q):
+        return q.diff(TAU) if self.functions else q.dot
+
+    def symbol(self, name):
+        return dynamicsymbols(name) if self.functions else coordinates(name)[0]
+
+    def momentum(self, q):
+        return dynamicsymbols(f"p_{q.func.__name__}") if self.functions else coordinates(f"p_{q.name}")[0]
+
+
+def dump(equations):
+    graph = equations.graph
+    return [graph.to_sympy(node) for node in equations.nodes]
+
+
+def polar(n):
+    """A particle on a spring in polar coordinates, pushed by a force that depends on time."""
+    L = m * (n.dot(n.r) ** 2 + n.r**2 * n.dot(n.theta) ** 2) / 2 - k * n.r**2 / 2
+    return Lagrangian(L, [n.r, n.theta])
+
+
+def plane(n):
+    return Lagrangian(m * (n.dot(n.x) ** 2 + n.dot(n.y) ** 2) / 2 - m * g * n.y, [n.x, n.y])
+
+
+def blade(n):
+    L = m * (n.dot(n.x) ** 2 + n.dot(n.y) ** 2 + n.dot(n.theta) ** 2) / 2
+    rule = n.dot(n.x) * sp.sin(n.theta) - n.dot(n.y) * sp.cos(n.theta)
+    return ConstrainedLagrangian(Lagrangian(L, [n.x, n.y, n.theta]), nonholonomic=[rule])
+
+
+def bob(n):
+    return Particle(m, (l * sp.sin(n.theta) + a * sp.cos(n.t), -l * sp.cos(n.theta)))
+
+
+def top(n):
+    return RigidBody(m, (), (a, a, c), euler_rotation(n.phi, n.theta, n.psi))
+
+
+DOORS = {
+    "Lagrangian, explicit time in a force": lambda n: Lagrangian(
+        m * n.dot(n.x) ** 2, [n.x], forces=[sp.cos(n.t)]
+    ),
+    "derivation": lambda n: dump(
+        derivation([bob(n)], [n.theta], k * n.theta**2, (0, -g), [-c * n.dot(n.theta) * sp.cos(n.t)])
+    ),
+    "derivation of a plane and a spatial body": lambda n: (
+        dump(derivation([PlanarBody(m, (n.x, n.y), a, n.theta)], [n.x, n.y, n.theta])),
+        dump(derivation([top(n)], [n.theta, n.phi, n.psi])),
+    ),
+    "derivation of a Lagrangian": lambda n: dump(derivation_of_lagrangian(polar(n))),
+    "canonical derivation": lambda n: (lambda d: d.graph.to_sympy(d.hamiltonian))(
+        canonical_derivation([bob(n)], [n.theta], k * n.theta**2, (0, -g))
+    ),
+    "constraints at scale": lambda n: (lambda d: [d.equations.graph.to_sympy(i) for i in d.nodes])(
+        constrained(
+            derivation([Particle(m, (n.x, n.y))], [n.x, n.y]),
+            [n.x**2 + n.y**2 - l**2],
+            [n.dot(n.x) - n.dot(n.y)],
+        )
+    ),
+    "embedded": lambda n: embedded(
+        plane(n), {n.x: l * sp.sin(n.theta), n.y: -l * sp.cos(n.theta)}, [n.theta]
+    ),
+    "eliminated": lambda n: eliminated(ConstrainedLagrangian(plane(n), holonomic=[n.y - n.x * k]), [n.y]),
+    "multiplier in contact": lambda n: multiplier_in_contact(
+        ConstrainedLagrangian(polar(n), holonomic=[n.r - a]), {n.r: a}, (n.theta,)
+    ),
+    "multiplier along": lambda n: multiplier_along(
+        ConstrainedLagrangian(polar(n), holonomic=[n.r - a]), {n.r: a}, n.theta, sp.S(0), sp.S(1)
+    ),
+    "multipliers named by functions": lambda n: ConstrainedLagrangian(
+        plane(n), holonomic=[n.x**2 + n.y**2 - l**2]
+    ).equations([n.symbol("lamda")]),
+    "routhian": lambda n: routhian(polar(n), [n.theta], [n.momentum(n.theta)]),
+    "quadrature": lambda n: routhian(polar(n)).quadrature({n.r: a + 0 * n.t}, {n.theta: sp.S(1)}),
+    "ignorable": lambda n: (is_ignorable(polar(n), n.theta).status, is_ignorable(polar(n), n.r).status),
+    "adapted": lambda n: adapted(
+        Lagrangian(n.dot(n.x) ** 2 + n.dot(n.y) ** 2 - (n.x - n.y) ** 2, [n.x, n.y])
+    ),
+    "frobenius": lambda n: (is_integrable(blade(n)).status, positional_freedom(blade(n))),
+    "integrals": lambda n: integrals(
+        ConstrainedLagrangian(plane(n), nonholonomic=[n.y * n.dot(n.x) + n.x * n.dot(n.y)])
+    ),
+    "kinematics": lambda n: (
+        Kinematics(
+            [n.x, n.y, n.theta],
+            [n.symbol("u"), n.symbol("w")],
+            [n.symbol("u") * sp.cos(n.theta), n.symbol("u") * sp.sin(n.theta), n.symbol("w")],
+        ).q_ddot
+    ),
+    "independent velocities": lambda n: independent_velocities(blade(n), [n.x, n.theta]).q_dot,
+    "maggi": lambda n: maggi_equations(blade(n).lagrangian, independent_velocities(blade(n), [n.x, n.theta])),
+    "gibbs-appell": lambda n: GibbsAppell([bob(n)], [n.theta], -m * g * l * sp.cos(n.theta)).equations,
+    "newton-euler": lambda n: (
+        NewtonEuler(
+            [bob(n)],
+            [n.theta],
+            [Load(0, (-n.symbol("S") * sp.sin(n.theta), n.symbol("S") * sp.cos(n.theta) - m * g))],
+            [n.symbol("S")],
+        ).solution
+    ),
+    "generalized forces": lambda n: generalized_forces([(-c * n.dot(n.theta), 0)], [bob(n).r], [n.theta]),
+    "generalized torques": lambda n: generalized_torques([n.dot(n.x)], [n.x - n.theta], [n.x, n.theta]),
+    "generalized moments": lambda n: generalized_moments(
+        [(0, 0, n.dot(n.psi))], [top(n)], [n.theta, n.phi, n.psi]
+    ),
+    "ideal reactions": lambda n: (
+        do_no_work(
+            [(-k * sp.sin(n.theta), k * sp.cos(n.theta))],
+            [(l * sp.sin(n.theta), -l * sp.cos(n.theta))],
+            [n.theta],
+        ).status
+    ),
+    "damper": lambda n: damper(c, (n.x, n.y), (0, 0), [n.x, n.y]),
+    "rayleigh": lambda n: rayleigh_forces(c * n.dot(n.x) ** 2 / 2, [n.x]),
+    "charge": lambda n: charge_term(e, (n.x, n.y), [n.x, n.y], (0, B * n.x), e * n.y),
+    "lagrangian of bodies": lambda n: lagrangian_of(
+        [bob(n)], [n.theta], k * n.theta, dissipation=n.dot(n.theta) ** 2
+    ),
+    "kinetic energy and its form": lambda n: (
+        kinetic_energy([bob(n)], [n.theta]),
+        kinetic_form(m * n.dot(n.x) ** 2 / 2 + n.dot(n.x) * n.x, [n.x]),
+    ),
+    "scleronomic": lambda n: (
+        is_scleronomic([bob(n)], q=[n.theta]).status,
+        is_scleronomic([Particle(m, (n.x, n.x**2))], q=[n.x]).status,
+    ),
+    "singularity": lambda n: (
+        singularity(
+            Lagrangian((n.dot(n.x) - n.y) ** 2 / 2, [n.x, n.y]), [n.momentum(n.x), n.momentum(n.y)]
+        ).primary_constraints
+    ),
+    "constants of motion": lambda n: (
+        is_constant_of_motion(n.r**2 * n.dot(n.theta), polar(n)).status,
+        is_constant_of_motion(n.r * n.dot(n.theta), polar(n)).status,
+    ),
+    "noether": lambda n: (
+        noether_charge(plane(n), [1, 0], K=n.x),
+        is_symmetry(plane(n), [n.t, 0], K=m * n.x).status,
+    ),
+    "gauge": lambda n: (
+        is_gauge_equivalent(plane(n), Lagrangian(plane(n).L, plane(n).q), F=n.x * n.y * 0).status
+    ),
+    "hamiltonian": lambda n: (
+        Hamiltonian(n.momentum(n.x) ** 2 / 2 + n.x**2 * sp.cos(n.t), [n.x], [n.momentum(n.x)]).vector_field
+    ),
+}
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_functions_of_time_are_taken_at_the_door(door):
+    with_functions, with_symbols = DOORS[door](Names(functions=True)), DOORS[door](Names(functions=False))
+    assert with_functions == with_symbols
+
+
+def test_another_function_of_time_is_not_a_coordinate():
+    """A drive a(t) stays a function; only the named coordinates become symbols."""
+    drive = sp.Function("drive")(time)
+    x = dynamicsymbols("x")
+    kept = plain(x * drive, coordinates("x"))
+    assert kept == coordinates("x")[0] * drive
+    with pytest.raises(TypeError, match="no coordinate"):
+        Lagrangian(x.diff(TAU) ** 2, [x**2])
