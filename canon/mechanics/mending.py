@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
 
 from canon.mechanics.substitution import entry, exchanged
 from canon.proof.vanish import vanishes
@@ -37,9 +38,11 @@ def constant_value(f: Expr, variables: Sequence[Symbol], t: Symbol, domain: Doma
     moving = f.free_symbols & {*variables, t}
     if not moving:
         return f
+    free = {u: sp.Dummy(real=True) for u in _arbitrary(f, moving)}
+    plain = exchanged(f, free)
     tried: set[Expr] = set()
     for place in _PLACES:
-        candidate = exchanged(f, dict.fromkeys(moving, place))
+        candidate = exchanged(plain, dict.fromkeys((*moving, *free.values()), place))
         if candidate.has(sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity) or candidate in tried:
             continue
         tried.add(candidate)
@@ -48,6 +51,12 @@ def constant_value(f: Expr, variables: Sequence[Symbol], t: Symbol, domain: Doma
         if verdict.holds:
             return candidate
     return None
+
+
+def _arbitrary(f: Expr, moving: set[Symbol]) -> list[Expr]:
+    """Return the arbitrary functions of moving variables and their derivatives: a constant takes any value for them."""
+    found = [u for kind in (sp.Subs, sp.Derivative, AppliedUndef) for u in f.atoms(kind)]
+    return [cast("Expr", u) for u in found if u.free_symbols & moving]
 
 
 def mending(T: CanonicalTransformation, c: Expr) -> str:

@@ -6,10 +6,12 @@ from map_collection import MAPS, MOVING, NOTES, E, linear_symplectic, m, p, px, 
 
 from canon.mechanics.bilinear import bilinear_covariant, canonical_covariant, displacements, is_exact
 from canon.mechanics.canonicity import disagreement
+from canon.mechanics.generating import NoGeneratingFunctionError, generating_function
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.implicit import ImplicitTransformation
 from canon.mechanics.inverse import NoClosedInverseError, inverse_transformation
 from canon.mechanics.linear import SingularMatrixError
+from canon.mechanics.mending import constant_value
 from canon.mechanics.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
 from canon.mechanics.step import midpoint_step, runge_kutta_step, splitting_step
 from canon.mechanics.transformation import CanonicalTransformation, point_transformation
@@ -253,3 +255,28 @@ def test_bilinear_covariants():
 def test_refusals_say_what_is_wrong(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+def test_maps_with_arbitrary_functions_have_their_valence_or_none():
+    """{Q, P} = f′² is no constant, whatever simple points say; 2 f′/f′ is one."""
+    f = sp.Function("f")
+    q, p, a = sp.symbols("q p a", real=True)
+    slope = f(q).diff(q)
+    stretched = CanonicalTransformation([q], [p], [f(q)], [p * slope])
+    assert stretched.valence is None
+    assert stretched.is_canonical().fails
+    with pytest.raises(NoGeneratingFunctionError, match="not canonical"):
+        generating_function(stretched, 2)
+    twice = CanonicalTransformation([q], [p], [a * f(q)], [2 * p / slope])
+    assert twice.valence == 2 * a
+    assert CanonicalTransformation([q], [p], [f(q)], [p / slope]).is_canonical().holds
+    point = CanonicalTransformation([q], [p], [f(q)], [p / slope])
+    assert generating_function(point, 2).F == f(q) * sp.Symbol("P", real=True)
+
+
+def test_a_constant_behind_an_arbitrary_function_is_found():
+    f, x, t = sp.Function("f"), sp.Symbol("x", real=True), sp.Symbol("t", real=True)
+    slope = f(x).diff(x)
+    hidden = (1 + slope) ** 2 - slope**2 - 2 * slope
+    assert constant_value(hidden, [x], t, Domain()) == 1
+    assert constant_value(hidden + slope, [x], t, Domain()) is None
