@@ -9,7 +9,9 @@ True
 
 from __future__ import annotations
 
-from canon.scene import bodies, henon_heiles, kepler, lattice, oscillator, pendulum, top, two_degree
+from canon.scene import (
+    bodies, henon_heiles, kepler, lattice, nonholonomic, oscillator, pendulum, rotating, top, two_degree,
+)  # fmt: skip
 from canon.scene.scene import Condition, Integral, Parameter, Scene, SceneError, Solution, Start, near
 
 __all__ = [
@@ -25,6 +27,8 @@ SCENES: tuple[Scene, ...] = (
     *two_degree.SCENES,
     *lattice.SCENES,
     *top.SCENES,
+    *rotating.SCENES,
+    *nonholonomic.SCENES,
 )
 """Every scene."""
 

@@ -1,8 +1,8 @@
 """What is known of a scene held against what canon derives and integrates: every check with its bound.
 
 Symbolic checks are verdicts: dI/dt vanishes by the equations of motion. Along a run an integral's change is measured in
-long double and divided by its value at the start, or by the largest of its terms where that value is less than a
-tenth of them. A driven or damped scene's energy E is held against the work W done on it: E − W is constant.
+long double and divided by its value at the start, or by the largest of its terms (the median along the run) where that
+value is less than a tenth of it. A driven or damped scene's energy E is held against the work W done on it: E − W is constant.
 """
 
 from __future__ import annotations
@@ -181,7 +181,7 @@ def _kept(motion: Motion, name: str, node: int, bound: float, about: str, why: s
     values: NDArray[Any] = motion.values([node, equation.work, *parts])
     work = values[1] if name.startswith("energy less") else 0.0
     change = float(np.abs(values[0] - values[0][0] - work).max())
-    first, terms = abs(float(values[0][0])), float(np.abs(values[2:]).max())
+    first, terms = abs(float(values[0][0])), float(np.median(np.abs(values[2:]).max(axis=0)))
     size, of = (first, "relative") if first > terms / 10 else (terms, "of its largest term")
     if size == 0.0:
         size, of = 1.0, "in its own units"

@@ -120,7 +120,8 @@ LAGRANGE = Scene(
     conditions=(
         Condition("C is at most 2 A, as no body is flatter than a disc", lambda v: v["C"] <= 2.0 * v["A"]),
         Condition(
-            "A holds m l² at least, as it is taken about the fixed point", lambda v: v["A"] >= v["m"] * v["l"] ** 2
+            "A holds m l² at least, as it is taken about the fixed point",
+            lambda v: v["A"] >= v["m"] * v["l"] ** 2,
         ),
     ),
     starts=(
@@ -145,7 +146,9 @@ LAGRANGE = Scene(
     ),
     solutions=(
         Solution("cos θ by Jacobi's sn", "cusps", lambda s: _cosine(s.theta), _nutation, bound=1e-11),
-        Solution("tilt of the regular precession stays", "steady", lambda s: s.theta, lambda _v, _t: _STEADY_TILT),
+        Solution(
+            "tilt of the regular precession stays", "steady", lambda s: s.theta, lambda _v, _t: _STEADY_TILT
+        ),
         Solution(
             "rate of the regular precession",
             "steady",
@@ -223,7 +226,10 @@ KOVALEVSKAYA = Scene(
         GRAVITY,
     ),
     conditions=(
-        Condition("C holds m l² at least: the centre of mass is off the axis", lambda v: v["C"] >= v["m"] * v["l"] ** 2),
+        Condition(
+            "C holds m l² at least: the centre of mass is off the axis",
+            lambda v: v["C"] >= v["m"] * v["l"] ** 2,
+        ),
     ),
     starts=(
         Start("tumbling", "centre of mass below, pushed", q=(1.2, 0.0, -1.0), v=(4.0, 8.0, 3.0)),
