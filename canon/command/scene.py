@@ -54,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--periods",
         metavar="N",
         type=float,
-        help="duration of --run (100), --plot and --animate (5) in periods",
+        help="duration in periods; 100 of --run, a few of --plot and --animate",
     )
     parser.add_argument("--plot", metavar="FILE", help="write a sketch (.png, .pdf, .svg)")
     parser.add_argument("--animate", metavar="FILE", help="write an animation (.gif, .mp4)")
@@ -143,8 +143,10 @@ def _draw(scene: Scene, arguments: argparse.Namespace) -> None:
     from canon.plot_scene import animate_scene, plot_scene
     from canon.scene.motion import run as motion_of
 
-    periods = min(arguments.periods or 5.0, scene.horizon)
-    motion: Motion = motion_of(scene, arguments.start, periods, samples=max(400, round(200 * periods)))
+    periods = min(arguments.periods or scene.shown, scene.horizon)
+    motion: Motion = motion_of(
+        scene, arguments.start, periods, samples=max(400, min(4000, round(200 * periods)))
+    )
     if arguments.plot:
         figure = plot_scene(motion).get_figure(root=True)
         if figure is not None:

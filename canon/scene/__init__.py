@@ -10,8 +10,19 @@ True
 from __future__ import annotations
 
 from canon.scene import (
-    bodies, henon_heiles, kepler, lattice, nonholonomic, oscillator, pendulum, rotating, top, two_degree,
-)  # fmt: skip
+    bodies,
+    charge,
+    driven,
+    henon_heiles,
+    kepler,
+    lattice,
+    nonholonomic,
+    oscillator,
+    pendulum,
+    rotating,
+    top,
+    two_degree,
+)
 from canon.scene.scene import Condition, Integral, Parameter, Scene, SceneError, Solution, Start, near
 
 __all__ = [
@@ -29,6 +40,8 @@ SCENES: tuple[Scene, ...] = (
     *top.SCENES,
     *rotating.SCENES,
     *nonholonomic.SCENES,
+    *driven.SCENES,
+    *charge.SCENES,
 )
 """Every scene."""
 

@@ -59,6 +59,7 @@ HENON_HEILES = Scene(
     time_unit="",
     source="Hénon & Heiles, Astron. J. 69, 73 (1964), doi:10.1086/109234",
     H_of=_hamiltonian,
+    shown=40.0,
 )
 
 SCENES = (HENON_HEILES,)

@@ -86,6 +86,7 @@ FOUCAULT = Scene(
             bound=1e-11,
         ),
     ),
+    shown=800.0,
     picture_of=lambda s: Picture(masses=((s.x, s.y),), ground=(ring((0.0, 0.0), (3.0, 0.0), (0.0, 3.0)),)),
 )
 

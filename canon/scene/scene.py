@@ -75,6 +75,8 @@ class Scene:
         than 1e-13.
     horizon
         For how many periods a run makes sense in doubles.
+    shown
+        How many periods its picture shows.
 
     Examples
     --------
@@ -108,6 +110,7 @@ class Scene:
     energy_bound: float = 1e-13
     energy_why: str = ""
     horizon: float = 1000.0
+    shown: float = 5.0
 
     def __post_init__(self) -> None:
         for condition in self.conditions:

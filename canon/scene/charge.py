@@ -1,0 +1,164 @@
+"""A charged particle: in a uniform field, in crossed fields, and in the field of the Earth's dipole."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from canon.scene.picture import Picture, ring
+from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from types import SimpleNamespace
+
+    import numpy as np
+    from numpy.typing import NDArray
+    from sympy import Expr
+
+    Array = NDArray[np.float64]
+
+__all__ = ["SCENES"]
+
+_CHARGE = Parameter("e", 1.602176634e-19, "C", "charge", sign="real")
+_ELECTRON = Parameter("m", 9.1093837e-31, "kg", "mass of the electron")
+
+
+def _crossed(s: SimpleNamespace) -> Expr:
+    """Return L with A = (0, B x, 0) and φ = −E x."""
+    kinetic = s.m * (s.x.dot**2 + s.y.dot**2 + s.z.dot**2) / 2
+    return kinetic + s.e * s.B * s.x * s.y.dot + s.e * s.E * s.x
+
+
+def _gyration(value: Mapping[str, float]) -> float:
+    return 2.0 * math.pi * value["m"] / abs(value["e"] * value["B"])
+
+
+def _cycloid(value: Mapping[str, float], t: Array) -> Array:
+    """Return x = E m/(e B²) (1 − cos ωt), ω = e B/m, from rest."""
+    import numpy as np
+
+    rate = value["e"] * value["B"] / value["m"]
+    return value["E"] / (value["B"] * rate) * (1.0 - np.cos(rate * t))
+
+
+def _drift(value: Mapping[str, float], t: Array) -> Array:
+    """Return y = −E/B (t − sin(ωt)/ω), from rest: a drift with E × B/B²."""
+    import numpy as np
+
+    rate = value["e"] * value["B"] / value["m"]
+    return -value["E"] / value["B"] * (t - np.sin(rate * t) / rate)
+
+
+CROSSED = Scene(
+    name="crossed-fields",
+    title="Charged particle in crossed fields, E along x and B along z: cycloids that drift with E × B/B²",
+    coordinates="x y z",
+    parameters=(
+        _ELECTRON,
+        Parameter("e", -1.602176634e-19, "C", "charge", sign="real"),
+        Parameter("B", 0.01, "T", "magnetic field"),
+        Parameter("E", 1000.0, "V/m", "electric field", sign="real"),
+    ),
+    starts=(
+        Start("rest", "let go at rest", q=(0.0, 0.0, 0.0), v=(0.0, 0.0, 0.0)),
+        Start("helix", "shot along the field and across it", q=(0.0, 0.0, 0.0), v=(1e6, 0.0, 2e5)),
+    ),
+    time_scale=_gyration,
+    time_unit="s",
+    source="Jackson, Classical Electrodynamics (3rd ed.), § 12.3",
+    L_of=_crossed,
+    integrals=(
+        Integral("canonical momentum p_y", lambda s: s.y.momentum),
+        Integral("momentum p_z", lambda s: s.z.momentum),
+        Integral(
+            "guiding centre, p_x − e B y + e E B t/B",
+            lambda s: s.x.momentum - s.e * s.B * s.y - s.e * s.E * s.t,
+            1e-11,
+            "it is the small difference of terms that grow with time",
+        ),
+    ),
+    solutions=(
+        Solution("x: cycloid", "rest", lambda s: s.x, _cycloid),
+        Solution("y: cycloid and drift", "rest", lambda s: s.y, _drift),
+    ),
+    picture_of=lambda s: Picture(masses=((s.x, s.y, s.z),)),
+    energy_bound=1e-10,
+    energy_why="it drifts away, and what is rounded is its distance, not its speed",
+)
+
+_RADIUS = 6.3712e6
+
+
+def _dipole(s: SimpleNamespace) -> Expr:
+    """Return L in cylindrical coordinates with A_φ = −B₀ R³ ρ/r³: the Earth's magnetic north pole is in the south."""
+    square = s.rho.dot**2 + s.rho**2 * s.phi.dot**2 + s.z.dot**2
+    potential = -s.B * s.R**3 * s.rho**2 * s.phi.dot / (s.rho**2 + s.z**2) ** _three_halves()
+    return s.m * square / 2 + s.e * potential
+
+
+def _three_halves() -> Expr:
+    from sympy import Rational
+
+    return Rational(3, 2)
+
+
+_START = 2.0 * _RADIUS
+_SPEED = 4.38e7
+"""Of a proton of 10 MeV (m/s)."""
+
+
+def _gyration_at_start(value: Mapping[str, float]) -> float:
+    field = value["B"] * (value["R"] / _START) ** 3
+    return 2.0 * math.pi * value["m"] / abs(value["e"] * field)
+
+
+def _dipole_picture(s: SimpleNamespace) -> Picture:
+    from sympy import cos, sin
+
+    R, origin = s.R, (0.0, 0.0, 0.0)
+    place = (s.rho * cos(s.phi), s.rho * sin(s.phi), s.z)
+    equator = ring(origin, (R, 0.0, 0.0), (0.0, R, 0.0))
+    meridian = ring(origin, (R, 0.0, 0.0), (0.0, 0.0, R))
+    other = ring(origin, (0.0, R, 0.0), (0.0, 0.0, R))
+    return Picture(masses=(place,), ground=(equator, meridian, other))
+
+
+STORMER = Scene(
+    name="stormer",
+    title="Störmer's problem: a proton of 10 MeV caught in the field of the Earth's dipole",
+    coordinates="rho phi z",
+    parameters=(
+        Parameter("m", 1.67262192e-27, "kg", "mass of the proton"),
+        _CHARGE,
+        Parameter("B", 3.07e-5, "T", "field at the equator"),
+        Parameter("R", _RADIUS, "m", "radius of the Earth"),
+    ),
+    starts=(
+        Start(
+            "bouncing",
+            "at two radii, 45° to the field: it circles, bounces between north and south, and drifts",
+            q=(_START, 0.0, 0.0),
+            v=(_SPEED * math.sqrt(0.5), 0.0, _SPEED * math.sqrt(0.5)),
+        ),
+        Start(
+            "equatorial",
+            "across the field in the plane of the equator",
+            q=(_START, 0.0, 0.0),
+            v=(_SPEED, 0.0, 0.0),
+        ),
+    ),
+    time_scale=_gyration_at_start,
+    time_unit="s",
+    source="Störmer, The Polar Aurora (Oxford, 1955); Dragt, Rev. Geophys. 3, 255 (1965), doi:10.1029/RG003i002p00255; "
+    "Newtonian mass",
+    L_of=_dipole,
+    integrals=(Integral("canonical angular momentum p_phi", lambda s: s.phi.momentum),),
+    picture_of=_dipole_picture,
+    energy_bound=1e-11,
+    energy_why="p_phi is a small difference of large terms",
+    shown=150.0,
+)
+
+SCENES = (CROSSED, STORMER)
+"""The charged particles."""
