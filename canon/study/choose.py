@@ -30,6 +30,9 @@ __all__ = ["Candidate", "Choice", "choose"]
 PILOT_STEPS = 4000.0
 """Length of a pilot run in steps of Taylor's method: some 100 periods."""
 
+RIVAL = 1.8
+"""How many times dearer than the cheapest a method may be to be tried in plain doubles too."""
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -202,27 +205,18 @@ def _settled(
     question: Question, found: list[Candidate], duration: float, accuracy: float
 ) -> tuple[list[Candidate], Candidate]:
     """Look at the cheapest candidate once more, until the cheapest one has been looked at."""
+    cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
+    rivals = [each for each in found if each.keeps and each.predicted_cost < RIVAL * cheapest]
+    plain = [double_instead(question, each, duration, accuracy) for each in rivals]
+    waiting = [*found, *(each for each in plain if each is not None)]
     looked: list[Candidate] = []
-    waiting = list(found)
-    while waiting:
-        able = [each for each in (*waiting, *looked) if each.keeps]
-        if not able:
-            break
-        cheapest = min(able, key=lambda each: each.predicted_cost)
-        if cheapest in looked:
-            return [*waiting, *looked], cheapest
-        waiting.remove(cheapest)
-        plain = double_instead(question, cheapest, duration, accuracy)
-        if plain is not None:
-            seen = confirmed(question, plain, duration, accuracy)
-            if seen.keeps:
-                looked.append(seen)
-        looked.append(confirmed(question, cheapest, duration, accuracy))
-    able = [each for each in looked if each.keeps]
-    everything = [*waiting, *looked]
-    if able:
-        return everything, min(able, key=lambda each: each.predicted_cost)
-    return everything, min(everything, key=lambda each: each.predicted_error)
+    while able := [each for each in (*waiting, *looked) if each.keeps]:
+        best = min(able, key=lambda each: each.predicted_cost)
+        if best in looked:
+            return [*waiting, *looked], best
+        waiting.remove(best)
+        looked.append(confirmed(question, best, duration, accuracy))
+    return [*waiting, *looked], min((*waiting, *looked), key=lambda each: each.predicted_error)
 
 
 def _in_higher_precision(

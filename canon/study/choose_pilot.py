@@ -172,7 +172,7 @@ def pilot(question: Question, setting: Setting, duration: float) -> Pilot:
     try:
         if question.observable == "position":
             return _against_reference(question, setting, duration)
-        if isinstance(setting.method, FixedStep) and setting.precision in ("double", "compensated"):
+        if isinstance(setting.method, FixedStep):
             return _watched(question, setting, duration)
         return _sampled(question, setting, duration)
     except (NonFiniteStateError, ArithmeticError, ValueError) as failed:
@@ -198,9 +198,7 @@ def _watched(question: Question, setting: Setting, duration: float) -> Pilot:
     found = question.run(setting, duration, windows, cadence)
     seen = found.statistics[question.observable]
     unit = _unit(found, question)
-    largest = np.maximum(np.abs(seen.least), np.abs(seen.greatest)) / unit
-    energy = found.statistics["energy"]
-    worst = float(max(np.abs(energy.least).max(), np.abs(energy.greatest).max()))
+    worst = float(found.statistics["energy"].largest.max())
     return Pilot(
         setting=replace(setting, step=found.step),
         span=duration,
@@ -208,13 +206,13 @@ def _watched(question: Question, setting: Setting, duration: float) -> Pilot:
         evaluations=found.evaluations,
         t=(found.t[1:] + found.t[:-1]) / 2.0,
         mean=seen.mean / unit,
-        largest=largest,
+        largest=seen.largest / unit,
         energy=worst / (abs(found.energy[0]) if found.relative else 1.0),
     )
 
 
 def _sampled(question: Question, setting: Setting, duration: float) -> Pilot:
-    found = question.run(setting, duration, 4 * WINDOWS)
+    found = question.run(setting, duration, 2 * WINDOWS)
     error = found.energy_change if question.integral is None else found.changes[question.observable]
     error = error / _unit(found, question)
     return Pilot(

@@ -1,4 +1,4 @@
-"""The dearest error that is still good enough: the step or tolerance a method needs, and what it costs then."""
+"""The largest error that is still good enough: the step or tolerance a method needs, and what it costs then."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from canon.flow.method import DOP853, RK4, FixedStep, Gauss, Splitting, Taylor
-from canon.flow.propagate import is_separable
+from canon.flow.propagate import NonFiniteStateError, is_separable
 from canon.kernel.scheme import SCHEMES
 from canon.study.choose_law import expected_error, order_of
 from canon.study.choose_pilot import Pilot, Question, Setting, dop853_share, pilot, seconds_per_time
@@ -32,7 +32,17 @@ HOPELESS = 4.0
 LONGEST_PILOT = 4_000_000
 """Steps of a pilot run at most."""
 
-LEAST_TOLERANCE = 2.0**-52
+LOOSEST = 3
+"""First rung of the ladder of tolerances: 0.004."""
+
+ADAPTIVE_MARGIN = 0.25
+"""Share of the accuracy that is aimed at with adaptive methods, whose errors depend on rare close encounters."""
+
+CONFIRMING = 8.0
+"""How many times longer than the pilots the last look at the cheapest candidate is."""
+
+LARGER = (2.0, 1.5)
+"""Steps beyond the one found that are tried, in units of it."""
 
 RESONANT = 3.0
 """How many times larger than at the neighbouring steps the error of a resonant one is."""
@@ -128,47 +138,102 @@ def searched(
     cheapest
         Cost of the best candidate so far: the search ends where a method can't come near it.
     """
-    fixed = isinstance(method, FixedStep)
-    setting = Setting(method, precision=precision).turned(_first_knob(method, natural, accuracy, duration))
-    duration *= dop853_share(method)
+    if not isinstance(method, FixedStep):
+        return _by_tolerance(question, method, precision, duration, accuracy, cheapest)
+    first = _first_step(method, natural, accuracy, duration)
+    setting = Setting(method, step=first, precision=precision)
     good: _Try | None = None
     bad: _Try | None = None
-    best: _Try | None = None
     for _ in range(PILOTS):
         tried = _tried(question, setting, duration)
-        if best is None or tried.error < best.error:
-            best = tried
         if tried.error <= accuracy:
-            good = tried if good is None or tried.cost < good.cost else good
+            good = tried
             if tried.error >= LOWEST * accuracy:
                 break
+        elif good is None and _is_floor(bad, tried):
+            best = min((each for each in (bad, tried) if each is not None), key=lambda each: each.error)
+            return _candidate(question, best, accuracy, note="its error falls no further")
         else:
-            floor = _is_floor(bad, tried)
-            bad = tried if bad is None or tried.knob < bad.knob else bad
-            if floor and good is None:
+            bad = tried
+        knob = _next_knob(tried, good, bad, accuracy)
+        if good is not None:
+            if knob <= good.knob * 1.02 or _cost_at(good, knob) > HOPELESS * cheapest:
                 break
-        knob = _next_knob(question, tried, good, bad, accuracy, duration)
-        limit = 1.0e-3 if not fixed else math.inf
-        knob = min(knob, limit)
-        if not fixed and knob < LEAST_TOLERANCE:
-            if tried.knob <= LEAST_TOLERANCE:
-                break
-            knob = LEAST_TOLERANCE
-        if good is not None and (knob <= good.knob * 1.02 or (bad is not None and bad.knob < 1.04 * good.knob)):
-            break
-        if duration / knob > LONGEST_PILOT and fixed:
-            break
-        if good is None and _least_cost(tried, knob) > HOPELESS * cheapest:
-            return _candidate(question, tried, accuracy, _least_cost(tried, knob), "dearer, by its order")
-        if good is not None and good.cost / (knob / good.knob if fixed else 1.6) > HOPELESS * cheapest:
-            break
+        elif duration / knob > LONGEST_PILOT or _cost_at(tried, knob) > HOPELESS * cheapest:
+            return _by_order(question, tried, accuracy)
         setting = setting.turned(knob)
     if good is not None:
-        return _candidate(question, good, accuracy)
-    if best is None or math.isinf(best.error):
-        reason = best.pilot.failure if best is not None else ""
-        return _nothing(setting, reason or "no step tried keeps the motion")
-    return _candidate(question, best, accuracy, note="its error falls no further")
+        good = _still_larger(question, good, duration, accuracy, cheapest)
+        dearer = good.error < LOWEST * accuracy and good.cost > HOPELESS * cheapest
+        return _candidate(question, good, accuracy, note="dearer at any step" if dearer else "")
+    return _by_order(question, bad, accuracy) if bad is not None else _nothing(setting, "")
+
+
+def _still_larger(question: Question, good: _Try, duration: float, accuracy: float, cheapest: float) -> _Try:
+    """Return a much larger step that keeps the accuracy too, where there is one: errors need not fall evenly."""
+    for factor in LARGER:
+        if good.cost / factor < cheapest:
+            tried = _tried(question, good.pilot.setting.turned(good.knob * factor), duration)
+            if tried.error <= MARGIN * accuracy:
+                return tried
+    return good
+
+
+def _cost_at(tried: _Try, step: float) -> float:
+    """Return what another step would cost."""
+    return tried.cost * tried.knob / step
+
+
+def _by_tolerance(
+    question: Question, method: Method, precision: str, duration: float, accuracy: float, cheapest: float
+) -> Candidate:
+    """Return an adaptive method at the largest tolerance of a ladder that is expected to suffice.
+
+    The rungs are e² apart, one order of Taylor's method each: in between heyoka's steps are the same.
+    """
+    duration *= dop853_share(method)
+    aim = accuracy * ADAPTIVE_MARGIN if question.span > duration else accuracy
+    last = _last_rung(precision)
+    good: tuple[int, _Try] | None = None
+    bad: tuple[int, _Try] | None = None
+    rung = min(last, max(LOOSEST, round(-math.log(aim) / 2.0)))
+    for _ in range(PILOTS):
+        setting = Setting(method, tolerance=tolerance_at(rung), precision=precision)
+        tried = _tried(question, setting, duration)
+        if tried.error <= aim:
+            good = rung, tried
+        else:
+            bad = rung, tried
+            if tried.cost > HOPELESS * cheapest and good is None:
+                return _by_order(question, tried, accuracy)
+        low = bad[0] if bad is not None else LOOSEST - 1
+        high = good[0] if good is not None else last + 1
+        if high - low <= 1:
+            break
+        jump = math.log(tried.error / aim) / 2.0 if 0.0 < tried.error < math.inf else 2.0
+        rung = min(max(rung + (math.ceil(jump) or -1), low + 1), high - 1)
+    if good is not None:
+        return _candidate(question, good[1], accuracy)
+    if bad is None or math.isinf(bad[1].error):
+        return _nothing(Setting(method, precision=precision), bad[1].pilot.failure if bad is not None else "")
+    return _candidate(question, bad[1], accuracy, note="its tolerance is as small as it can be")
+
+
+def tolerance_at(rung: int) -> float:
+    """Return a tolerance for which Taylor's method takes an order one higher than the rung.
+
+    Examples
+    --------
+    >>> from canon import Taylor
+    >>> [Taylor(tolerance_at(rung)).order for rung in (5, 12, 18)]
+    [6, 13, 19]
+    """
+    return math.exp(0.5 - 2.0 * rung)
+
+
+def _last_rung(precision: str) -> int:
+    bits = {"extended": 63, "quad": 112}.get(precision, 52)
+    return math.floor(0.25 + bits * math.log(2.0) / 2.0) + 1
 
 
 def _tried(question: Question, setting: Setting, duration: float) -> _Try:
@@ -176,23 +241,22 @@ def _tried(question: Question, setting: Setting, duration: float) -> _Try:
     if found.lost:
         return _Try(found, math.inf, question.span / duration * found.steps)
     error = expected_error(found, question.span, question.observable)
-    rate = seconds_per_time(question, found.setting, duration)
+    try:
+        rate = seconds_per_time(question, found.setting, duration)
+    except NonFiniteStateError:  # with a step a little smaller, to divide another span
+        return _Try(found, math.inf, math.inf)
     return _Try(found, error, rate * question.span)
 
 
-def _first_knob(method: Method, natural: float, accuracy: float, duration: float) -> float:
+def _first_step(method: FixedStep, natural: float, accuracy: float, duration: float) -> float:
     """Return where to begin: as many steps in the natural one as an ordinary error constant asks for."""
-    if not isinstance(method, FixedStep):
-        return min(1e-4, max(LEAST_TOLERANCE, 0.01 * accuracy))
     stages = method.stages
     widest = natural * (0.5 + stages / 16.0 if isinstance(method, Splitting) else 0.5 + stages / 6.0)
     return max(duration / LONGEST_PILOT, widest * min(1.0, (1e3 * accuracy) ** (1.0 / method.order)))
 
 
-def _next_knob(
-    question: Question, tried: _Try, good: _Try | None, bad: _Try | None, accuracy: float, duration: float
-) -> float:
-    """Return the step or tolerance whose error should be the one aimed at."""
+def _next_knob(tried: _Try, good: _Try | None, bad: _Try | None, accuracy: float) -> float:
+    """Return the step whose error should be the one aimed at."""
     aim = MARGIN * accuracy
     if good is not None and bad is not None:
         if math.isinf(bad.error) or good.error <= 0.0:
@@ -205,9 +269,8 @@ def _next_knob(
         return tried.knob / 2.0
     if tried.error <= 0.0:
         return tried.knob * 2.0
-    order = order_of(tried.pilot)
-    factor = (aim / tried.error) ** (1.0 / order)
-    return tried.knob * min(max(factor, 0.1 if order > 1.0 else 1e-4), 2.5 if order > 1.0 else 1e3)
+    factor = (aim / tried.error) ** (1.0 / order_of(tried.pilot))
+    return tried.knob * min(max(factor, 0.1), 2.5)
 
 
 def _is_floor(bad: _Try | None, tried: _Try) -> bool:
@@ -218,30 +281,39 @@ def _is_floor(bad: _Try | None, tried: _Try) -> bool:
     return gained < 0.25 * order_of(tried.pilot) * math.log(bad.knob / tried.knob)
 
 
-def _least_cost(tried: _Try, knob: float) -> float:
-    """Return what the next step or tolerance would cost at least."""
-    if tried.pilot.lost:
-        return 0.0
-    if tried.pilot.setting.step is not None:
-        return tried.cost * tried.knob / knob
-    return tried.cost
+def _by_order(question: Question, tried: _Try, accuracy: float) -> Candidate:
+    """Return the candidate at the step that its order lets expect, which was not tried."""
+    if math.isinf(tried.error):
+        return _nothing(tried.pilot.setting, tried.pilot.failure or "its error grows too fast")
+    knob = tried.knob * (MARGIN * accuracy / tried.error) ** (1.0 / order_of(tried.pilot))
+    setting = tried.pilot.setting
+    if setting.step is None and knob < 2.0**-52:
+        return _candidate(question, tried, accuracy, note="its tolerance is as small as it can be")
+    share = tried.knob / knob if setting.step is not None else 1.0
+    found = _candidate(question, tried, accuracy)
+    return replace(
+        found,
+        step=None if setting.step is None else knob,
+        tolerance=None if setting.tolerance is None else knob,
+        predicted_error=MARGIN * accuracy,
+        predicted_cost=found.predicted_cost * share,
+        evaluations=found.evaluations * share,
+        keeps=True,
+        note="by its order, not tried",
+    )
 
 
-def _candidate(
-    question: Question, tried: _Try, accuracy: float, cost: float | None = None, note: str = ""
-) -> Candidate:
+def _candidate(question: Question, tried: _Try, accuracy: float, note: str = "") -> Candidate:
     setting, found = tried.pilot.setting, tried.pilot
-    keeps = tried.error <= accuracy
-    share = 1.0 if cost is None else cost / tried.cost
     return Candidate(
         method=setting.method,
         step=setting.step,
         tolerance=setting.tolerance,
         precision=setting.precision,
         predicted_error=tried.error,
-        predicted_cost=tried.cost * share,
-        evaluations=found.evaluations * question.span / found.span * share,
-        keeps=keeps,
+        predicted_cost=tried.cost,
+        evaluations=found.evaluations * question.span / found.span,
+        keeps=tried.error <= accuracy,
         note=note,
     )
 
@@ -275,18 +347,21 @@ def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: 
     """Return the candidate after a longer look: at resonance, and at an error that grows late."""
     if question.span <= duration:
         return chosen
-    longer = min(question.span, 8.0 * duration * dop853_share(chosen.method))
+    longer = min(question.span, CONFIRMING * duration * dop853_share(chosen.method))
     setting, resonant = chosen.setting, False
     tried = _tried(question, setting, longer)
+    share = 1.0 if setting.step is not None or longer >= question.span else ADAPTIVE_MARGIN
     for _ in range(4):
-        if tried.error <= accuracy:
+        if tried.error <= share * accuracy:
             break
-        order = order_of(tried.pilot)
-        factor = (MARGIN * accuracy / tried.error) ** (1.0 / order) if math.isfinite(tried.error) else 0.5
-        if isinstance(setting.method, Splitting | Gauss):
+        if setting.step is not None:
             resonant = resonant or tried.error > RESONANT * chosen.predicted_error
-        setting = setting.turned(setting.knob * min(NEIGHBOUR, max(factor, 0.3)))
-        if setting.step is None and setting.knob < LEAST_TOLERANCE:
+            order = order_of(tried.pilot)
+            factor = (MARGIN * accuracy / tried.error) ** (1.0 / order) if tried.error < math.inf else 0.5
+            setting = setting.turned(setting.knob * min(NEIGHBOUR, max(factor, 0.3)))
+        elif setting.knob > tolerance_at(_last_rung(setting.precision)):
+            setting = setting.turned(setting.knob * math.exp(-2.0))
+        else:
             break
         tried = _tried(question, setting, longer)
     return replace(_candidate(question, tried, accuracy), resonant=resonant)
