@@ -1,0 +1,27 @@
+"""Pictures: Axes in, Axes out.
+
+Every function draws into the Axes it is given, or into a new figure, and returns the Axes. matplotlib is
+loaded when the first picture is asked for.
+"""
+
+from __future__ import annotations
+
+from canon.plot.energy import plot_block_means, plot_energy_error
+from canon.plot.ensemble import plot_ensemble_fan
+from canon.plot.phase import plot_phase_portrait, plot_poincare_section
+from canon.plot.study import plot_study_heatmap
+from canon.plot.style import COLOURS, PlotError
+from canon.plot.work import plot_drift_by_step, plot_work_precision
+
+__all__ = [
+    "COLOURS",
+    "PlotError",
+    "plot_block_means",
+    "plot_drift_by_step",
+    "plot_energy_error",
+    "plot_ensemble_fan",
+    "plot_phase_portrait",
+    "plot_poincare_section",
+    "plot_study_heatmap",
+    "plot_work_precision",
+]

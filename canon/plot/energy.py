@@ -1,0 +1,225 @@
+"""Energy errors along runs: their size against time, and the means that drifts are judged by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.plot.phase import several
+from canon.plot.style import COLOURS, GREY, LINES, label_ends, logarithmic, new_axes, tidy
+from canon.study.envelope import envelope_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from canon.flow.trajectory import Trajectory
+    from canon.study.comparison import DriftRow, DriftStudy
+    from canon.study.drift import Drift
+    from canon.study.result import Result
+
+    Array = NDArray[np.float64]
+
+__all__ = ["draw_guides", "plot_block_means", "plot_energy_error"]
+
+GUIDES = ((0.0, "$t^0$  bounded"), (0.5, "$t^{1/2}$  round-off"), (1.0, "$t^1$  secular"))
+
+
+def plot_energy_error(
+    of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result],
+    ax: Axes | None = None,
+    *,
+    guides: bool = True,
+) -> Axes:
+    """Draw |ΔE/E| against time, both logarithmic, one line a method.
+
+    The line is the largest error in each of about a hundred intervals of log t, the shade below it reaches down to
+    the median. Guides show how a bounded error, round-off and a secular error rise.
+
+    Parameters
+    ----------
+    of
+        A drift study, one or several trajectories, or cases of a study.
+    ax
+        Where to draw; a new figure if left out.
+    guides
+        Whether to draw the guides.
+
+    Raises
+    ------
+    PlotError
+        Where matplotlib is not installed.
+    """
+    axes = new_axes(ax)
+    found = _lines(of)
+    ends: list[tuple[float, str, str]] = []
+    for index, line in enumerate(found.lines):
+        colour = COLOURS[index % len(COLOURS)]
+        axes.fill_between(line.t, line.median, line.largest, color=colour, alpha=0.15, linewidth=0)
+        axes.plot(line.t, line.largest, color=colour, linestyle=LINES[index % len(LINES)], linewidth=1.8)
+        ends.append((float(line.largest[-1]), line.name, colour))
+    logarithmic(axes)
+    axes.set_xlabel(found.time)
+    axes.set_ylabel(f"largest {'relative energy error |ΔE/E|' if found.relative else 'energy error |ΔE|'}")
+    if found.title:
+        axes.set_title(found.title, loc="left", fontsize="medium")
+    axes.margins(x=0.0)
+    tidy(axes)
+    if found.lines and guides:
+        draw_guides(axes, [(line.t, line.largest) for line in found.lines])
+    label_ends(axes, ends)
+    return axes
+
+
+def plot_block_means(
+    found: Drift | Result, ax: Axes | None = None, *, label: str = "ΔE/E", unit: str = ""
+) -> Axes:
+    """Draw the weighted window means of an error with its fitted drift and the drift's standard error.
+
+    Parameters
+    ----------
+    found
+        What :func:`canon.study.drift.drift` returned, or a finished case of a study.
+    ax
+        Where to draw; a new figure if left out.
+    label
+        Name of the error.
+    unit
+        Unit of time.
+
+    Raises
+    ------
+    PlotError
+        Where matplotlib is not installed.
+    """
+    axes = new_axes(ax)
+    when, mean, slope, slope_error, verdict = _means(found)
+    middle, level = float(when.mean()), float(mean.mean())
+    power = math.floor(math.log10(scale)) if (scale := float(np.abs(mean).max())) > 0.0 else 0
+    factor = 10.0**-power
+    t = np.linspace(when[0], when[-1], 101)
+    line = level + slope * (t - middle)
+    spread = slope_error * np.abs(t - middle)
+    axes.fill_between(
+        t, factor * (line - spread), factor * (line + spread), color=COLOURS[1], alpha=0.2, linewidth=0
+    )
+    axes.plot(t, factor * line, color=COLOURS[1], linewidth=1.8, label="fitted drift ± standard error")
+    axes.plot(when, factor * mean, "o", color=COLOURS[0], markersize=4, label="window means")
+    axes.set_xlabel(_time(unit))
+    axes.set_ylabel(f"{label}  in units of 1e{power:+03d}")
+    axes.set_title(verdict, loc="left", fontsize="small", wrap=True)
+    axes.legend(frameon=False, fontsize="small")
+    tidy(axes)
+    return axes
+
+
+def _means(found: Drift | Result) -> tuple[Array, Array, float, float, str]:
+    """Return the windows' times and means, the drift with its standard error, and the verdict in words."""
+    from canon.study.drift import Drift
+
+    if isinstance(found, Drift):
+        verdict = f"{found.verdict.value}: {found.reason}"
+        return found.blocks.t, found.blocks.mean, found.slope, found.slope_error, verdict
+    if not found.numbers:
+        raise ValueError(f"{found.setting} is {found.state.value}: there are no means to draw")
+    numbers = found.numbers
+    t, mean = (np.array(numbers["means"][name]) for name in ("t", "mean"))
+    return t, mean, numbers["slope"], numbers["slope_error"], f"{numbers['verdict']}: {numbers['reason']}"
+
+
+@dataclass(frozen=True)
+class _Line:
+    """The size of an error in intervals of log t, and whose it is."""
+
+    name: str
+    t: Array
+    largest: Array
+    median: Array
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """What is drawn, and what the axes are called."""
+
+    lines: list[_Line]
+    time: str = "time"
+    relative: bool = True
+    title: str = ""
+
+
+def _line(name: str, t: Array, error: Array) -> list[_Line]:
+    """Return the line of an error, none where it is zero throughout."""
+    found = envelope_of(t, error)
+    return [] if found is None else [_Line(name, found["t"], found["largest"], found["median"])]
+
+
+def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]) -> _Lines:
+    from canon.study.comparison import DriftStudy
+    from canon.study.result import Result
+
+    if isinstance(of, DriftStudy):
+        rows = [row for row in of.rows if row.drift is not None]
+        unit = 1.0 if of.period is None else of.period
+        lines = [line for row in rows for line in _line(_name(row), row.t / unit, row.error)]
+        axis = "time (periods)" if of.period is not None else _time(of.time_unit)
+        return _Lines(lines, axis, all(row.relative for row in rows), of.title)
+    of_study, motions = [], []
+    for each in several(of):
+        (of_study if isinstance(each, Result) else motions).append(each)
+    if of_study:
+        drawn = [result for result in of_study if result.numbers.get("curve")]
+        return _Lines(
+            [
+                _Line(f"{result.setting}: {result.numbers['verdict']}", *_arrays(result.numbers["curve"]))
+                for result in drawn
+            ],
+            relative=all(result.numbers["relative"] for result in drawn),
+        )
+    lines = [
+        line
+        for motion in motions
+        for line in _line(str(motion.method), motion.t - motion.t[0], motion.energy_error)
+    ]
+    return _Lines(lines, relative=all(motion.relative for motion in motions))
+
+
+def _arrays(curve: Mapping[str, Sequence[float]]) -> tuple[Array, Array, Array]:
+    t, largest, median = (np.array(curve[name]) for name in ("t", "largest", "median"))
+    return t, largest, median
+
+
+def _time(unit: str) -> str:
+    return f"time ({unit})" if unit else "time"
+
+
+def _name(row: DriftRow) -> str:
+    from canon.study.drift import Growth
+
+    found = row.drift
+    if found is None:
+        return str(row.method)
+    size = f" {found.walk:.0e}" if found.verdict is Growth.ROUND_OFF else ""
+    return f"{row.method}: {found.verdict.value}{size}"
+
+
+def draw_guides(axes: Axes, curves: Sequence[tuple[Array, Array]]) -> None:
+    """Draw t⁰, t^½ and t¹ from one point, where the curves leave most room for them."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    start, end = left * (right / left) ** 0.04, left * (right / left) ** 0.45
+    levels = sorted({low, high, *(y for x, size in curves for y in size[(x >= start) & (x <= end)])})
+    steps = np.diff(np.log(levels))
+    widest = int(np.argmax(steps))
+    base = levels[widest] * math.exp(steps[widest] * 0.2)
+    for power, name in GUIDES:
+        rise = base * (end / start) ** power
+        axes.plot([start, end], [base, rise], color=GREY, linewidth=0.9, zorder=1)
+        axes.annotate(
+            name, (end, rise), (4, 0), textcoords="offset points", color=GREY, fontsize="small", va="center"
+        )
+    axes.set_xlim(left, right)
+    axes.set_ylim(low, high)

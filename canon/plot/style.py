@@ -1,0 +1,86 @@
+"""How canon's pictures look: colours, lines, axes, names at the ends of lines."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+__all__ = [
+    "COLOURS",
+    "GREY",
+    "LINES",
+    "MARKERS",
+    "PlotError",
+    "label_ends",
+    "logarithmic",
+    "new_axes",
+    "tidy",
+]
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+"""Distinct for every kind of colour vision: Okabe & Ito, https://jfly.uni-koeln.de/color/."""
+
+LINES = ("-", "--", "-.", (0, (1, 1)), (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (3, 3)))
+"""So that lines differ in print as well."""
+
+MARKERS = "osD^vPX"
+
+GREY = "#767676"
+
+
+class PlotError(ImportError):
+    """The plotting library is not installed."""
+
+
+def new_axes(ax: Axes | None) -> Axes:
+    """Return the Axes given, or those of a new figure.
+
+    Raises
+    ------
+    PlotError
+        Where matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as missing:
+        raise PlotError("pictures need matplotlib: pip install canon-mechanics[plot]") from missing
+    if ax is not None:
+        return ax
+    return Figure(figsize=(8.0, 5.0), layout="constrained").add_subplot()
+
+
+def logarithmic(axes: Axes) -> None:
+    """Make both axes logarithmic."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+
+
+def label_ends(axes: Axes, ends: Sequence[tuple[float, str, str]]) -> None:
+    """Write each line's name at its right end, far enough from one another to be read."""
+    low, high = axes.get_ylim()
+    least = 0.055
+    last = -math.inf
+    for value, name, colour in sorted(ends):
+        height = math.log(value / low) / math.log(high / low)
+        last = max(height, last + least)
+        axes.annotate(
+            name,
+            (1.0, last),
+            (6, 0),
+            xycoords="axes fraction",
+            textcoords="offset points",
+            color=colour,
+            va="center",
+        )
+
+
+def tidy(axes: Axes) -> None:
+    """Leave out what says nothing: the box's upper and right side; a faint grid behind the data."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(visible=True, which="major", color="#e5e5e5", linewidth=0.6)
+    axes.set_axisbelow(True)
