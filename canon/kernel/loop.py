@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from canon.kernel.program import Program
     from canon.kernel.structure import Equations
 
-__all__ = ["Loop", "field_function", "runge_kutta_loop", "splitting_loop"]
+__all__ = ["METHOD", "PARAMETERS", "SIGNATURE", "Loop", "field_function", "runge_kutta_loop", "splitting_loop"]
 
 _POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
-_SIGNATURE = (_POINTER, _POINTER, _POINTER, _INTEGER, _INTEGER, _INTEGER)
-_PARAMETERS = "ptr noalias %y, ptr noalias %e, ptr noalias %c, i64 %first, i64 %steps, i64 %blocks"
+SIGNATURE = (_POINTER, _POINTER, _POINTER, _INTEGER, _INTEGER, _INTEGER)
+PARAMETERS = "ptr noalias %y, ptr noalias %e, ptr noalias %c, i64 %first, i64 %steps, i64 %blocks"
 METHOD = 2
 """Where the method's own coefficients start in c."""
 
@@ -57,6 +57,8 @@ class Loop:
     implicit
         Whether after the compensation ``e`` holds the number of iterations and the last change of one that
         did not converge (0 where all did).
+    coefficients
+        What the loop reads of c after t0 and h, a function of h, where the method alone does not say.
     """
 
     code: MachineCode
@@ -65,6 +67,7 @@ class Loop:
     number: MachineType
     carry: int
     implicit: bool = False
+    coefficients: Callable[[Fraction], list[Fraction]] | None = None
 
 
 def splitting_loop(
@@ -232,7 +235,7 @@ def increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> 
 def finished(w: Writer, n: int, *, compensated: bool, carry: int = 0) -> Loop:
     """Compile what was written."""
     return Loop(
-        compiled_function(w, "advance", _PARAMETERS, _SIGNATURE),
+        compiled_function(w, "advance", PARAMETERS, SIGNATURE),
         n,
         compensated,
         w.number,

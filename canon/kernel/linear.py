@@ -1,0 +1,135 @@
+"""Linear motion: the flow of a quadratic Hamiltonian is multiplication by exp(tL).
+
+What is added to a state is (exp(tL) − 1) y. The matrix is known to 60 digits, as balls that hold it; each entry enters as
+a sum of two doubles, for an entry rounded to one would be off in the same direction in every step.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from canon.kernel.loop import increase
+from canon.kernel.machine import double_pair
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.kernel.planets import Quadratic
+    from canon.kernel.writer import Writer
+
+__all__ = ["LinearMotion", "flow_matrices"]
+
+_BITS = 280
+_ENOUGH = Fraction(1, 2**130)
+
+
+class LinearMotion:
+    """The motion of H₀ quadratic in (q, p), with kicks by a function of q.
+
+    Parameters
+    ----------
+    w
+        Where the loop is written.
+    part
+        The quadratic part, and the rest.
+    matrices
+        Where in c the matrices start: for each pair exp(tL) − 1 by columns, and after it what rounding took.
+    compensated
+        Whether round-off is carried along.
+    """
+
+    def __init__(self, w: Writer, part: Quadratic, matrices: int, *, compensated: bool) -> None:
+        self.w, self.part, self.matrices, self.compensated = w, part, matrices, compensated
+        self.size = len(part.field)
+        self.words = 2 * self.size
+        self.state = w.array(self.words)
+        self.carried = w.at(self.state, self.size) if compensated else ""
+        self.moved, self.rest = w.array(self.size), w.array(self.size)
+
+    def enter(self, y: str, e: str) -> None:
+        """Write the working state: y and e themselves."""
+        self.w.copy(y, self.state, self.size)
+        if self.compensated:
+            self.w.copy(e, self.carried, self.size)
+
+    def leave(self, y: str, e: str) -> None:
+        """Write y and e."""
+        self.w.copy(self.state, y, self.size)
+        if self.compensated:
+            self.w.copy(self.carried, e, self.size)
+
+    def count(self, steps: str) -> None:
+        """Do nothing: all moves with the steps."""
+
+    def kick(self, time: str) -> None:
+        """Write p ← p − t ∂H₁/∂q."""
+        w, n, rest = self.w, self.size // 2, self.part.rest
+        arguments = [*(w.load(self.state, i) for i in range(n)), *["poison"] * (n + 1)]
+        for i, force in enumerate(w.program(rest.program(rest.force), arguments)):
+            increase(w, self.state, self.carried, str(n + i), time, force)
+
+    def flow(self, time: str, pair: str) -> None:
+        """Write y ← y + (exp(tL) − 1) y, column by column."""
+        w, n = self.w, self.size
+        del time
+        offset = w.let(f"add i64 {w.let(f'mul i64 {pair}, {2 * n * n}')}, {self.matrices}")
+        matrix = w.at("%c", offset)
+        lost = w.at(matrix, n * n)
+        zero = w.constant(Fraction(0))
+        with w.loop(0, n) as i:
+            w.store(zero, self.moved, i)
+            w.store(zero, self.rest, i)
+        with w.loop(0, n) as j:
+            column = w.let(f"mul i64 {j}, {n}")
+            main, small = w.at(matrix, column), w.at(lost, column)
+            number = w.load(self.state, j)
+            carried = w.load(self.carried, j) if self.compensated else zero
+            with w.loop(0, n) as i:
+                w.store(w.multiply_add(w.load(main, i), number, w.load(self.moved, i)), self.moved, i)
+                rest = w.multiply_add(w.load(small, i), number, w.load(self.rest, i))
+                w.store(w.multiply_add(w.load(main, i), carried, rest), self.rest, i)
+        with w.loop(0, n) as i:
+            total = w.algebra("add", w.load(self.moved, i), w.load(self.rest, i))
+            increase(w, self.state, self.carried, i, w.constant(Fraction(1)), total)
+
+
+def flow_matrices(part: Quadratic, times: Sequence[Fraction]) -> list[Fraction]:
+    """Return exp(tL) − 1 for each time, by columns, each as doubles and then what they leave.
+
+    Raises
+    ------
+    ArithmeticError
+        A matrix is not known to 130 bits: the times are too long for it.
+    """
+    known = dict[Fraction, list[Fraction]]()
+    for time in times:
+        if time not in known:
+            known[time] = _matrix(part, time)
+    return [number for time in times for number in known[time]]
+
+
+def _matrix(part: Quadratic, time: Fraction) -> list[Fraction]:
+    from flint import arb, arb_mat, ctx, fmpq  # pyright: ignore[reportMissingTypeStubs]
+
+    n = len(part.field)
+    with ctx.workprec(_BITS):
+        scaled = [[arb(fmpq((x * time).numerator, (x * time).denominator)) for x in row] for row in part.field]
+        found = arb_mat(scaled).exp()
+        high, low = list[Fraction](), list[Fraction]()
+        for j in range(n):
+            for i in range(n):
+                value = _exact(found[i, j]) - (i == j)
+                first, second = double_pair(value)
+                high.append(Fraction(first))
+                low.append(Fraction(second))
+    return high + low
+
+
+def _exact(ball) -> Fraction:
+    mantissa, exponent = ball.mid().man_exp()
+    radius_mantissa, radius_exponent = ball.rad().man_exp()
+    radius = Fraction(int(radius_mantissa)) * Fraction(2) ** int(radius_exponent)
+    if not radius < _ENOUGH:
+        raise ArithmeticError("exp(tL) of the quadratic part is not known to 130 bits: take a smaller step")
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
