@@ -1,13 +1,16 @@
 """Lagrangians whose velocity Hessian is singular: what the momenta and the motion then have to satisfy.
 
-Where M n = 0, the momenta p = ∂L/∂q̇ are bound by primary constraints, n·(p − b) = 0 for L = ½ q̇ᵀM q̇ + b·q̇ − V, and
-Lagrange's equations hold no acceleration along n: n·(bias) = 0 restricts positions and velocities
-(P. A. M. Dirac, Lectures on Quantum Mechanics, ch. 1).
+Where M n = 0, the momenta p = ∂L/∂q̇ are bound by primary constraints, and Lagrange's equations hold no acceleration
+along n: n·(bias) = 0 restricts positions and velocities, or is an identity, and then the motion along n is arbitrary
+(P. A. M. Dirac, Lectures on Quantum Mechanics, ch. 1). For L = ½ q̇ᵀM q̇ + b·q̇ − V the constraints are n·(p − b) = 0.
+For any other L, such as those homogeneous of degree 1 in q̇, as many velocities as M has rank are eliminated for their
+momenta; Σ pₐ q̇ₐ − L is then linear in the velocities that remain, and its slopes are −p_b.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -15,14 +18,16 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import momentum
 from canon.mechanics.dynamicsymbols import coordinate_symbols
-from canon.mechanics.linear import eliminate
-from canon.mechanics.substitution import exchanged
+from canon.mechanics.legendre import LegendreError, eliminate_velocities
+from canon.mechanics.linear import SingularMatrixError, eliminate
+from canon.mechanics.substitution import exchanged, substitute
+from canon.proof.domain import Domain
+from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from canon.mechanics.lagrangian import Lagrangian
-    from canon.proof.domain import Domain
 
 __all__ = ["Singularity", "singularity"]
 
@@ -40,9 +45,13 @@ class Singularity:
     primary_constraints
         Functions of q, p, t, each = 0, that the momenta satisfy whatever the velocities.
     motion_constraints
-        The combinations n·(d/dt ∂L/∂q̇ − ∂L/∂q − Q), each = 0, which hold no acceleration.
+        The combinations n·(d/dt ∂L/∂q̇ − ∂L/∂q − Q), each = 0, which hold no acceleration; 0 where the combination
+        vanishes identically, so that the motion along n is arbitrary (a change of parameter, a gauge).
     q
         The coordinates.
+    hamiltonian
+        The canonical Hamiltonian Σ p q̇ − L on the primary constraints; None where L is regular
+        (:func:`canon.mechanics.hamiltonian.legendre` gives it then) or it was not found in closed form.
     """
 
     rank: int
@@ -50,6 +59,7 @@ class Singularity:
     primary_constraints: tuple[Expr, ...]
     motion_constraints: tuple[Expr, ...]
     q: tuple[Symbol, ...]
+    hamiltonian: Expr | None = None
 
     def __str__(self) -> str:
         n = len(self.q)
@@ -57,7 +67,12 @@ class Singularity:
             return f"L is regular: its Hessian has the rank {n}, every velocity follows from the momenta"
         lines = [f"L is singular: its Hessian has the rank {self.rank} for {n} coordinates"]
         lines += [f"  primary constraint: {c} = 0" for c in self.primary_constraints]
-        lines += [f"  without accelerations: {c} = 0" for c in self.motion_constraints]
+        lines += [
+            f"  without accelerations: {c} = 0"
+            if c != 0
+            else f"  the motion along ({', '.join(map(str, n))}) is arbitrary: Lagrange's equations hold an identity"
+            for n, c in zip(self.null_directions, self.motion_constraints, strict=True)
+        ]
         return "\n".join(lines)
 
 
@@ -69,16 +84,16 @@ def singularity(
     Parameters
     ----------
     lagrangian
-        A Lagrangian at most quadratic in the velocities.
+        The Lagrangian.
     p
         Symbols for the momenta; ``q.momentum`` unless given.
     domain
-        Where L is meant.
+        Where L is meant; for an L not quadratic in the velocities it decides between branches.
 
     Raises
     ------
     ValueError
-        Where L is not quadratic in the velocities: the primary constraints are not linear in the momenta then.
+        Where L is not quadratic in the velocities and the constraints were not found in closed form.
 
     Examples
     --------
@@ -88,21 +103,89 @@ def singularity(
     L is singular: its Hessian has the rank 1 for 2 coordinates
       primary constraint: p_y = 0
       without accelerations: x_dot - y = 0
+
+    A free relativistic particle, its path in any parameter:
+
+    >>> from canon import parameters
+    >>> from canon.proof.domain import Domain
+    >>> t, x = coordinates("t x")
+    >>> m, c = parameters("m c", positive=True)
+    >>> free = Lagrangian(-m*c*sp.sqrt(c**2*t.dot**2 - x.dot**2), [t, x], sp.Symbol("tau", real=True))
+    >>> print(singularity(free, domain=Domain((t.dot > 0, c*t.dot > x.dot, c*t.dot > -x.dot))))
+    L is singular: its Hessian has the rank 1 for 2 coordinates
+      primary constraint: c*sqrt(c**2*m**2 + p_x**2) + p_t = 0
+      the motion along (t_dot, x_dot) is arbitrary: Lagrange's equations hold an identity
     """
-    M, v = lagrangian.mass_matrix, lagrangian.velocities
-    if M.has(*v):
-        raise ValueError(
-            "the Hessian of L depends on the velocities; primary constraints are found only for L at most "
-            "quadratic in them"
-        )
+    domain = domain or Domain()
     symbols = coordinate_symbols(p) if p is not None else tuple(momentum(s) for s in lagrangian.q)
-    reduced = eliminate(M, domain=domain)
-    at_rest = dict.fromkeys(v, sp.S.Zero)
-    shifts = [s - exchanged(b, at_rest) for s, b in zip(symbols, lagrangian.momenta, strict=True)]
+    reduced = eliminate(lagrangian.mass_matrix, domain=domain)
     null = reduced.null_directions
-    primary = tuple(_along(n, shifts) for n in null)
-    motion = tuple(sp.factor_terms(_along(n, lagrangian.bias)) for n in null)
-    return Singularity(reduced.rank, null, primary, motion, lagrangian.q)
+    if not null:
+        return Singularity(reduced.rank, (), (), (), lagrangian.q)
+    motion = tuple(_simplest(_along(n, lagrangian.bias), domain) for n in null)
+    if lagrangian.mass_matrix.has(*lagrangian.velocities):
+        primary, H = _by_elimination(lagrangian, symbols, reduced.rank, domain)
+    else:
+        at_rest = dict.fromkeys(lagrangian.velocities, sp.S.Zero)
+        shifts = [s - exchanged(b, at_rest) for s, b in zip(symbols, lagrangian.momenta, strict=True)]
+        primary = tuple(_along(n, shifts) for n in null)
+        R = _partial(lagrangian, symbols, reduced.pivots, domain)
+        H = None if R is None else exchanged(R, at_rest)
+    return Singularity(reduced.rank, null, primary, motion, lagrangian.q, H)
+
+
+def _by_elimination(
+    lagrangian: Lagrangian, p: tuple[Symbol, ...], rank: int, domain: Domain
+) -> tuple[tuple[Expr, ...], Expr]:
+    """Return primary constraints and the canonical Hamiltonian, both proved."""
+    there = dict(zip(p, lagrangian.momenta, strict=True))
+    n = len(lagrangian.q)
+    for pivots in combinations(range(n), rank):
+        R = _partial(lagrangian, p, pivots, domain)
+        for primary, H in () if R is None else _candidates(R, lagrangian, p, pivots):
+            claims = [
+                *(substitute(f, there) for f in primary),
+                substitute(H, there) - lagrangian.jacobi_energy,
+            ]
+            if all(vanishes(claim, domain).holds for claim in claims):
+                return primary, _simplest(H, domain)
+    raise ValueError(
+        f"L is singular (its Hessian has the rank {rank} for {n} coordinates), and its primary constraints were not "
+        "found in closed form on this domain; narrow it with conditions that choose the branch, such as the sign of "
+        "a velocity"
+    )
+
+
+def _candidates(
+    R: Expr, lagrangian: Lagrangian, p: Sequence[Symbol], pivots: Sequence[int]
+) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
+    """Yield p_b + ∂R/∂q̇_b and R − Σ q̇_b ∂R/∂q̇_b for each choice of the signs of the q̇_b, all they can depend on."""
+    pairs = [(lagrangian.velocities[b], p[b]) for b in range(len(p)) if b not in pivots]
+    rest = R - sp.Add(*(v * R.diff(v) for v, _ in pairs))
+    for signs in product((1, -1), repeat=len(pairs)):
+        values = {v: sp.Integer(sign) for (v, _), sign in zip(pairs, signs, strict=True)}
+        yield (
+            tuple(sp.factor_terms(b + exchanged(R.diff(v), values)) for v, b in pairs),
+            exchanged(rest, values),
+        )
+
+
+def _partial(
+    lagrangian: Lagrangian, p: Sequence[Symbol], pivots: Sequence[int], domain: Domain
+) -> Expr | None:
+    """Return R = Σ pₐ q̇ₐ − L over the pivots, their velocities eliminated; None where that was not possible."""
+    old, new = [lagrangian.velocities[j] for j in pivots], [p[j] for j in pivots]
+    if not old:
+        return -lagrangian.L
+    try:
+        return eliminate_velocities(lagrangian.L, old, new, domain, "L", "velocities")
+    except (LegendreError, SingularMatrixError):
+        return None
+
+
+def _simplest(f: Expr, domain: Domain) -> Expr:
+    """Return 0 where f certainly vanishes, and else f with common factors taken out."""
+    return sp.S.Zero if vanishes(f, domain).holds else sp.factor_terms(f)
 
 
 def _along(direction: Sequence[Expr], components: Sequence[Expr]) -> Expr:

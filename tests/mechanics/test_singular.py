@@ -8,6 +8,7 @@ from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.legendre import LegendreError
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.singular import singularity
+from canon.proof.domain import Domain
 from canon.proof.vanish import vanishes
 
 m, k, B = parameters("m k B", positive=True)
@@ -93,6 +94,64 @@ def test_a_total_derivative_has_no_dynamics():
     assert all(vanishes(c).holds for c in found.motion_constraints)
 
 
-def test_what_is_not_quadratic_is_refused():
-    with pytest.raises(ValueError, match="depends on the velocities"):
-        singularity(Lagrangian(sp.sqrt(x.dot**2 + y.dot**2), [x, y]))
+def holds_identically(L, primary):
+    there = dict(zip((s.momentum for s in L.q), L.momenta, strict=True))
+    return primary.xreplace(there)
+
+
+def test_jacobis_form_of_a_pendulum_is_homogeneous():
+    """√(2 (E − V)) √(q̇ᵀM q̇): any parameter will do, p M⁻¹ p = 2 (E − V), and Σ p q̇ − L = 0."""
+    E, V = sp.Symbol("E", positive=True), k * (x**2 + y**2) / 2
+    inside = Domain((V < E, x.dot > 0, y.dot > 0))
+    L = Lagrangian(sp.sqrt(2 * (E - V)) * sp.sqrt(m * (x.dot**2 + y.dot**2)), [x, y])
+    found = singularity(L, domain=inside)
+    assert found.rank == 1
+    (primary,) = found.primary_constraints
+    energy = (x.momentum**2 + y.momentum**2) / (2 * m) + V - E
+    assert vanishes(holds_identically(L, energy), inside).holds
+    assert vanishes(holds_identically(L, primary), inside).holds
+    wrong = (x.momentum**2 + y.momentum**2) / (2 * m) - V - E
+    assert vanishes(holds_identically(L, wrong), inside).fails
+    assert primary.diff(y.momentum) != 0 or primary.diff(x.momentum) != 0
+    assert found.motion_constraints == (0,)
+    assert found.hamiltonian == 0
+    assert "arbitrary" in str(found)
+
+
+def test_a_relativistic_particle_in_any_parameter():
+    c, mass = parameters("c mass", positive=True)
+    t, s = coordinates("t s")
+    L = Lagrangian(-mass * c * sp.sqrt(c**2 * t.dot**2 - s.dot**2), [t, s], sp.Symbol("tau", real=True))
+    future = Domain((t.dot > 0, c * t.dot > s.dot, c * t.dot > -s.dot))
+    found = singularity(L, domain=future)
+    (primary,) = found.primary_constraints
+    assert vanishes(primary - (t.momentum + c * sp.sqrt(s.momentum**2 + mass**2 * c**2))).holds
+    assert vanishes(primary - (t.momentum - c * sp.sqrt(s.momentum**2 + mass**2 * c**2))).fails
+    assert found.hamiltonian == 0
+
+
+def test_part_of_a_nonquadratic_L_may_be_regular():
+    """A relativistic bead and a multiplier: p_z = 0, and H is that of the bead with the multiplier in it."""
+    c = sp.Symbol("c", positive=True)
+    slow = Domain((x.dot**2 < c**2,))
+    L = Lagrangian(-m * c**2 * sp.sqrt(1 - x.dot**2 / c**2) - z * x, [x, z])
+    found = singularity(L, domain=slow)
+    assert found.primary_constraints == (z.momentum,)
+    assert vanishes(found.hamiltonian - (c * sp.sqrt(m**2 * c**2 + x.momentum**2) + z * x)).holds
+    assert vanishes(found.hamiltonian - (c * sp.sqrt(m**2 * c**2 + x.momentum**2) - z * x)).fails
+    assert found.motion_constraints == (x,)
+
+
+def test_the_canonical_hamiltonian_of_a_quadratic_L():
+    """L = (ẋ − y)²/2: H = p_x²/2 + y p_x up to the constraint p_y = 0 (Dirac)."""
+    found = singularity(Lagrangian((x.dot - y) ** 2 / 2, [x, y]))
+    assert vanishes(found.hamiltonian - (x.momentum**2 / 2 + y * x.momentum)).holds
+    assert vanishes(found.hamiltonian - (x.momentum**2 / 2 - y * x.momentum)).fails
+    linear = singularity(Lagrangian(B * x * y.dot - k * x**2, [x, y]))
+    assert linear.hamiltonian == k * x**2
+
+
+def test_what_has_no_closed_form_is_refused():
+    quartic = (x.dot - y.dot) ** 4 + sp.exp(x.dot - y.dot)
+    with pytest.raises(ValueError, match=r"singular .* rank 1 for 2 coordinates.* not found in closed form"):
+        singularity(Lagrangian(quartic, [x, y]))
