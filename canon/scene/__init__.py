@@ -1,5 +1,10 @@
 """Ready systems, one small file a family; each is data plus its known truths.
 
+A scene is written by filling in :class:`Scene` in the file of its family and naming it in that file's ``SCENES``. It says
+what it is (parameters with units and real values, starts), how it moves (``L_of``, ``H_of`` or ``bodies_of`` and
+``V_of``, with ``forces_of``, ``holonomic_of``, ``nonholonomic_of``), what is known of it (``integrals``, ``solutions``,
+with sources) and what it looks like (``picture_of``). :func:`canon.scene.check.check` holds it to that.
+
 >>> from canon.scene import find, names
 >>> find("henon-heiles").title
 'Hénon–Heiles: a star in the meridian plane of a galaxy'
@@ -21,6 +26,7 @@ from canon.scene import (
     pendulum,
     rotating,
     top,
+    triple,
     two_degree,
 )
 from canon.scene.scene import Condition, Integral, Parameter, Scene, SceneError, Solution, Start, near
@@ -37,6 +43,7 @@ SCENES: tuple[Scene, ...] = (
     *henon_heiles.SCENES,
     *two_degree.SCENES,
     *lattice.SCENES,
+    *triple.SCENES,
     *top.SCENES,
     *rotating.SCENES,
     *nonholonomic.SCENES,

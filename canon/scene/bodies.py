@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from canon.scene.scene import Integral, Parameter, Scene, Start
+from canon.scene.picture import Picture
+from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -89,6 +90,30 @@ FIGURE_EIGHT = Scene(
         ),
     ),
     time_scale=_eight_period,
+    shown=1.0,
+    picture_of=lambda s: Picture(masses=tuple(_eight_places(s))),
+    solutions=(
+        Solution(
+            "after its period the first mass is back: x",
+            "eight",
+            lambda s: s.x0,
+            lambda _v, _t: _AT[0],
+            periods=1.0,
+            samples=1,
+            bound=1e-7,
+            source="published to 8 digits",
+        ),
+        Solution(
+            "after a third of its period it is where the third was: x",
+            "eight",
+            lambda s: s.x0,
+            lambda _v, _t: 0.0,
+            periods=1.0 / 3.0,
+            samples=1,
+            bound=1e-7,
+            source="published to 8 digits",
+        ),
+    ),
     time_unit="",
     source="Chenciner & Montgomery, Ann. Math. 152, 881 (2000), doi:10.2307/2661357; initial data by Simó",
     H_of=_eight_hamiltonian,
@@ -170,6 +195,8 @@ OUTER_SOLAR_SYSTEM = Scene(
     ),
     starts=(_planets_start(),),
     time_scale=_orbit_of_jupiter,
+    shown=21.0,
+    picture_of=lambda s: Picture(masses=tuple(_planet_places(s))),
     time_unit="d",
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration (2nd ed.), § I.2.4",
     H_of=_planets_hamiltonian,

@@ -2,7 +2,8 @@
 
 Symbolic checks are verdicts: dI/dt vanishes by the equations of motion. Along a run an integral's change is measured in
 long double and divided by its value at the start, or by the largest of its terms (the median along the run) where that
-value is less than a tenth of it. A driven or damped scene's energy E is held against the work W done on it: E − W is constant.
+value is less than a tenth of it. A driven or damped scene's energy E is held against the work W done on
+it: E − W is constant.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Driven and damped: a sprung mass, pendulums, and Duffing's oscillator; what they gain and lose is held to the work."""
+"""Driven and damped: a sprung mass, pendulums, and Duffing's oscillator; their energy follows the work."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def _parametric_bob(s: SimpleNamespace) -> tuple[Expr, Expr]:
 
 
 def _parametric(s: SimpleNamespace) -> Expr:
-    from sympy import cos, sin
+    from sympy import sin
 
     pivot = -s.a * s.W * sin(s.W * s.t)
     square = s.l**2 * s.theta.dot**2 + 2 * s.l * s.theta.dot * pivot * sin(s.theta) + pivot**2
@@ -231,7 +231,7 @@ DAMPED = Scene(
     starts=(Start("released", "drawn by 10 cm and released", q=(0.1,), v=(0.0,)),),
     time_scale=lambda value: 2.0 * math.pi * math.sqrt(value["m"] / value["k"]),
     time_unit="s",
-    source="Landau & Lifshitz, Mechanics (3rd ed.), § 25; the integral: Bateman, Phys. Rev. 38, 815 (1931)",
+    source="Landau & Lifshitz, Mechanics (3rd ed.), § 25; the integral by differentiation",
     L_of=OSCILLATOR.L_of,
     forces_of=lambda s: [-s.c * s.x.dot],
     integrals=(

@@ -5,13 +5,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from canon.scene.scene import Integral, Parameter, Scene, Start
+from canon.scene.picture import Picture, ring
+from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from types import SimpleNamespace
 
+    import numpy as np
+    from numpy.typing import NDArray
     from sympy import Expr
+
+    Array = NDArray[np.float64]
 
 __all__ = ["SCENES"]
 
@@ -69,6 +74,17 @@ def perihelion(eccentricity: float, mu: float = SUN, semi_major_axis: float = 1.
     )
 
 
+def _on_the_ellipse(value: Mapping[str, float], t: Array, eccentricity: float) -> tuple[Array, Array]:
+    """Return x = cos E − e, y = √(1 − e²) sin E with Kepler's equation E − e sin E = n t, solved by Newton's method."""
+    import numpy as np
+
+    mean = math.sqrt(value["mu"]) * t
+    E = mean + eccentricity * np.sin(mean)
+    for _ in range(50):
+        E = E - (E - eccentricity * np.sin(E) - mean) / (1.0 - eccentricity * np.cos(E))
+    return np.cos(E) - eccentricity, math.sqrt(1.0 - eccentricity**2) * np.sin(E)
+
+
 def _year(value: Mapping[str, float]) -> float:
     return 2.0 * math.pi / math.sqrt(value["mu"])
 
@@ -85,10 +101,31 @@ KEPLER = Scene(
     H_of=_hamiltonian,
     energy_bound=1e-12,
     energy_why="kinetic and potential energy at the perihelion of e = 0.9 are 20 times their sum",
+    solutions=(
+        Solution(
+            "x by Kepler's equation", "e=0.6", lambda s: s.x, lambda v, t: _on_the_ellipse(v, t, 0.6)[0]
+        ),
+        Solution(
+            "y by Kepler's equation", "e=0.6", lambda s: s.y, lambda v, t: _on_the_ellipse(v, t, 0.6)[1]
+        ),
+        Solution(
+            "x by Kepler's equation, e = 0.9",
+            "e=0.9",
+            lambda s: s.x,
+            lambda v, t: _on_the_ellipse(v, t, 0.9)[0],
+            bound=1e-11,
+        ),
+    ),
+    picture_of=lambda s: Picture(masses=((s.x, s.y),), ground=(ring((0.0, 0.0), (0.03, 0.0), (0.0, 0.03)),)),
     integrals=(
         Integral("angular momentum", _angular_momentum),
         Integral("Runge–Lenz vector, x", _runge_lenz_x),
-        Integral("Runge–Lenz vector, y", _runge_lenz_y),
+        Integral(
+            "Runge–Lenz vector, y",
+            _runge_lenz_y,
+            1e-12,
+            "its terms at the perihelion of e = 0.9 are many times its size",
+        ),
     ),
 )
 

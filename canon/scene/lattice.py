@@ -6,7 +6,8 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from canon.scene.scene import Integral, Parameter, Scene, Start
+from canon.scene.picture import Picture
+from canon.scene.scene import Integral, Parameter, Scene, SceneError, Start
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,53 +17,111 @@ if TYPE_CHECKING:
 
     from canon.expression.symbol import Coordinate
 
-__all__ = ["SCENES"]
+__all__ = ["SCENES", "toda"]
 
 
-def _ring(s: SimpleNamespace) -> list[tuple[Coordinate, Coordinate]]:
+def _ring(s: SimpleNamespace, masses: int) -> list[tuple[Coordinate, Coordinate]]:
     """Return each mass with its right-hand neighbour."""
-    return [(s.q1, s.q2), (s.q2, s.q3), (s.q3, s.q1)]
+    places = [getattr(s, f"q{i}") for i in range(1, masses + 1)]
+    return list(zip(places, [*places[1:], places[0]], strict=True))
 
 
-def _toda(s: SimpleNamespace) -> Expr:
+def _springs(s: SimpleNamespace, masses: int) -> Expr:
     from sympy import Add, exp
 
-    return Add(*(a.momentum**2 / 2 + exp(a - b) - 1 for a, b in _ring(s)))
+    return Add(*(a.momentum**2 / 2 + exp(a - b) - 1 for a, b in _ring(s, masses)))
 
 
-def _toda_momentum(s: SimpleNamespace) -> Expr:
-    from sympy import Add
+def _lax_trace(s: SimpleNamespace, masses: int, power: int) -> Expr:
+    """Return tr Lᵏ/k of Flaschka's matrix: p on the diagonal, a = e^((qᵢ − qᵢ₊₁)/2) beside it and in the corners."""
+    import sympy as sp
 
-    return Add(*(a.momentum for a, _ in _ring(s)))
+    ring = _ring(s, masses)
+    a = sp.symbols(f"a1:{masses + 1}", positive=True)
+    L = sp.zeros(masses, masses)
+    for i, (q, _) in enumerate(ring):
+        j = (i + 1) % masses
+        L[i, i] += q.momentum
+        L[i, j] += a[i]
+        L[j, i] += a[i]
+    half = L ** (power // 2)
+    rest = half * L if power % 2 else half
+    trace = sp.expand(sp.Add(*(half[i, j] * rest[j, i] for i in range(masses) for j in range(masses))))
+    springs = {x: sp.exp((q - r) / 2) for x, (q, r) in zip(a, ring, strict=True)}
+    return trace.xreplace(springs) / power
 
 
-def _toda_cubic(s: SimpleNamespace) -> Expr:
-    """Return Σ p³/3 + (pᵢ + pᵢ₊₁) e^(qᵢ − qᵢ₊₁), a third of the trace of the cube of Lax's matrix."""
-    from sympy import Add, exp
-
-    return Add(*(a.momentum**3 / 3 + (a.momentum + b.momentum) * exp(a - b) for a, b in _ring(s)))
+_DIGITS = "sums of large terms that cancel"
 
 
-def _toda_period(_value: Mapping[str, float]) -> float:
-    return 2.0 * math.pi / math.sqrt(3.0)
+def toda(masses: int, starts: tuple[Start, ...], name: str = "") -> Scene:
+    """Return Toda's ring of so many masses, with all its integrals: the traces of the powers of Flaschka's matrix.
+
+    Parameters
+    ----------
+    masses
+        At least 3.
+    starts
+        Initial states.
+    name
+        What to call it; ``toda-<masses>`` unless given.
+
+    Examples
+    --------
+    >>> ring = toda(4, (Start("a", "", q=(0.1, 0.0, 0.0, 0.0), p=(0.0, 0.1, 0.0, -0.1)),))
+    >>> [integral.name for integral in ring.integrals]
+    ['tr L', 'tr L^3/3', 'tr L^4/4']
+    """
+    if masses < 3:
+        raise SceneError(f"a ring of {masses} masses: three at least make a ring")
+    powers = [k for k in range(1, masses + 1) if k != 2]  # tr L²/2 is the energy
+
+    def integral(power: int) -> Integral:
+        title = f"tr L^{power}/{power}" if power > 1 else "tr L"
+        return Integral(title, lambda s: _lax_trace(s, masses, power), 1e-11 if power > 2 else 1e-13, _DIGITS)
+
+    return Scene(
+        name=name or f"toda-{masses}",
+        title=f"Toda's ring of {masses} masses with exponential springs: integrable",
+        coordinates=" ".join(f"q{i}" for i in range(1, masses + 1)),
+        parameters=(),
+        starts=starts,
+        time_scale=lambda _value: math.pi / math.sin(math.pi / masses),
+        time_unit="",
+        source="Hénon, Phys. Rev. B 9, 1921 (1974), doi:10.1103/PhysRevB.9.1921; Flaschka, ibid. 1924",
+        H_of=lambda s: _springs(s, masses),
+        integrals=tuple(map(integral, powers)),
+        picture_of=lambda s: _on_a_circle(s, masses),
+    )
 
 
-TODA = Scene(
-    name="toda",
-    title="Toda's ring of three masses with exponential springs: integrable",
-    coordinates="q1 q2 q3",
-    parameters=(),
-    starts=(
+def _on_a_circle(s: SimpleNamespace, masses: int) -> Picture:
+    """Return the ring drawn as one: displacements along the circumference, one radius apart at rest."""
+    from sympy import cos, pi, sin
+
+    angles = [(2 * pi * i + q) / masses for i, (q, _) in enumerate(_ring(s, masses))]
+    places = tuple((cos(angle), sin(angle)) for angle in angles)
+    return Picture(masses=places, springs=tuple(zip(places, (*places[1:], places[0]), strict=True)))
+
+
+TODA = toda(
+    3,
+    (
         Start("moderate", "energy about 1.3", q=(0.5, 0.0, -0.5), p=(0.4, -0.9, 0.5)),
         Start("wild", "energy about 7", q=(1.5, 0.0, -1.0), p=(2.0, -1.0, -1.0)),
     ),
-    time_scale=_toda_period,
-    time_unit="",
-    source="Hénon, Phys. Rev. B 9, 1921 (1974), doi:10.1103/PhysRevB.9.1921; Flaschka, ibid. 1924",
-    H_of=_toda,
-    integrals=(
-        Integral("total momentum", _toda_momentum),
-        Integral("cubic integral", _toda_cubic, 1e-12, "its terms are several times its value"),
+    name="toda",
+)
+
+TODA_SIX = toda(
+    6,
+    (
+        Start(
+            "moderate",
+            "all masses moving",
+            q=(0.3, -0.1, 0.2, -0.3, 0.1, -0.2),
+            p=(0.5, -0.4, 0.1, 0.3, -0.6, 0.1),
+        ),
     ),
 )
 
@@ -89,6 +148,16 @@ def _lowest_mode(_value: Mapping[str, float]) -> float:
     return math.pi / math.sin(math.pi / (2.0 * (_MASSES + 1)))
 
 
+def _fput_picture(s: SimpleNamespace) -> Picture:
+    """Return the chain with its displacements drawn upwards, ten times as large as the distances."""
+    places = [
+        (0.0, 0.0),
+        *((float(i), 10 * getattr(s, f"q{i}")) for i in range(1, _MASSES + 1)),
+        (_MASSES + 1.0, 0.0),
+    ]
+    return Picture(masses=tuple(places[1:-1]), bars=(tuple(places),))
+
+
 def _mode(number: int) -> tuple[float, ...]:
     return tuple(math.sin(math.pi * number * i / (_MASSES + 1)) for i in range(1, _MASSES + 1))
 
@@ -106,7 +175,9 @@ FPUT = Scene(
     time_unit="",
     source="Fermi, Pasta, Ulam & Tsingou, Studies of nonlinear problems I, Los Alamos LA-1940 (1955), fig. 1",
     H_of=_fput,
+    shown=1.0,
+    picture_of=_fput_picture,
 )
 
-SCENES = (TODA, FPUT)
+SCENES = (TODA, TODA_SIX, FPUT)
 """The chains."""
