@@ -88,6 +88,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--budget", metavar="S", type=_seconds, help="seconds a claim, whatever the sheet says"
     )
+    parser.add_argument(
+        "--implicit-multiplication",
+        action="store_true",
+        help="read factors side by side, as in 2 m g l, as a product",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -169,6 +174,9 @@ def _chosen(sheet: Sheet, arguments: argparse.Namespace) -> list[Claim]:
     claims = [claim for claim in sheet.claims if not arguments.only or claim.id in arguments.only]
     if arguments.budget is not None:
         claims = [replace(claim, budget=arguments.budget) for claim in claims]
+    if arguments.implicit_multiplication:
+        side_by_side = {"implicit_multiplication": True}
+        claims = [replace(claim, keys={**claim.keys, **side_by_side}) for claim in claims]
     return claims
 
 

@@ -35,7 +35,7 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
         known = f"the {what} that it needs is beyond the limit"
         yield replace(invalid(claim, known), status="undecided"), True
         return
-    judgement = _told(claim, finding.verdict)
+    judgement = replace(_told(claim, finding.verdict), warnings=finding.reading.warnings)
     yield judgement, False
     judgement = replace(judgement, steps=steps(finding))
     if not finding.verdict.fails:

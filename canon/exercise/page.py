@@ -120,7 +120,7 @@ def _card(judgement: Judgement, claim: Claim | None) -> Element:
         _claimed(card, claim, scope)
     _reasons(card, judgement, scope)
     for warning in judgement.warnings:
-        _put(card, "p", f"Passed over: {warning}", "warning")
+        _put(card, "p", warning, "warning")
     if judgement.steps:
         details = _put(card, "details")
         _put(details, "summary", "How it was judged")

@@ -22,6 +22,7 @@ from canon.expression.language import (
     parse_expression,
 )
 from canon.expression.symbol import Coordinate, Momentum, velocity
+from canon.expression.units import units
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
 
@@ -35,7 +36,19 @@ __all__ = ["InvalidClaim", "Reading"]
 _MAKERS: Mapping[str, Callable[..., Symbol]] = MappingProxyType(
     {"q": Coordinate, "p": Momentum, "quasi": Coordinate, "new_p": Momentum, "momenta": Momentum}
 )
-_NAME_KEYS = ("q", "p", "x", "variables", "new_q", "new_p", "cyclic", "momenta", "multipliers", "quasi")
+_NAME_KEYS = (
+    "q",
+    "p",
+    "x",
+    "variables",
+    "new_q",
+    "new_p",
+    "cyclic",
+    "momenta",
+    "multipliers",
+    "quasi",
+    "constants",
+)
 
 
 class InvalidClaim(ValueError):
@@ -127,7 +140,24 @@ class Reading:
             if name in names:
                 self.fault("functions", f"{name} is declared as a symbol too")
         signs = {name: self._assumptions(name) for name in functions}
-        return Scope({**self.names, **names}, functions, self.time, signs)
+        implicit = keys.get("implicit_multiplication") is True
+        return Scope({**self.names, **names}, functions, self.time, signs, implicit)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is passed over in reading the claim: units after numbers."""
+        kind = KINDS[self.claim.kind]
+        shapes = {**kind.required, **kind.optional, "domain": Shape.TEXTS}
+        said = {
+            key: value
+            for key, value in self.claim.keys.items()
+            if key in shapes and shapes[key] not in (Shape.NAMES, Shape.WORD)
+        }
+        found = {(key, unit.text): None for key, text in _texts_in(said) for unit in units(text, self.scope)}
+        return tuple(
+            f"the unit {unit} in {key} is passed over: numbers are read in any one consistent system of units"
+            for key, unit in found
+        )
 
     @cached_property
     def domain(self) -> Domain:
@@ -266,6 +296,18 @@ def _is_rate(name: str, names: Mapping[str, Symbol]) -> bool:
     """Whether a name is that of a declared coordinate's velocity or acceleration."""
     bases = (name.removesuffix(ending) for ending in ("_ddot", "_dot") if name.endswith(ending))
     return any(isinstance(names.get(base), Coordinate) for base in bases)
+
+
+def _texts_in(value: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every text under some keys, each with the first of the keys that lead to it."""
+    if isinstance(value, str):
+        yield key, value
+    elif isinstance(value, dict | MappingProxyType):
+        for name, item in value.items():
+            yield from _texts_in(item, key or str(name))
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from _texts_in(item, key)
 
 
 def _as_list(value: Any) -> list[Any]:

@@ -37,6 +37,8 @@ MAX_TOML_BYTES = 2_000_000
 """TOML is written by people, and its parser takes longer than JSON's."""
 MAX_CLAIMS = 10_000
 MIN_BUDGET = Decimal("0.01")
+_FOR_ALL = ("implicit_multiplication",)
+"""Keys that may stand beside the claims and are meant for each of them."""
 DEFAULT_BUDGET = 10.0
 
 
@@ -244,15 +246,16 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
             f"{shown}: no claims; write [[claim]] tables in TOML, or {{'claims': [ … ]}} in JSON"
         )
     if isinstance(found, dict):
-        unknown = sorted(set(found) - {"title", "claims", "claim", "source"})
+        unknown = sorted(set(found) - {"title", "claims", "claim", "source", *_FOR_ALL})
         if unknown:
             raise SheetError(f"{shown}: unknown key {unknown[0]!r} beside the claims")
     if len(raw) > MAX_CLAIMS:
         raise SheetError(f"{shown}: {len(raw)} claims, and at most {MAX_CLAIMS} are read; split the sheet")
+    for_all = {key: found[key] for key in _FOR_ALL if key in found} if isinstance(found, dict) else {}
     seen: set[str] = set()
     claims: list[Claim] = []
     for number, keys in enumerate(raw, 1):
-        claim = claim_from(keys, number, file)
+        claim = claim_from({**for_all, **keys} if isinstance(keys, dict) else keys, number, file)
         if claim.id in seen:
             error = ClaimError(
                 claim.id, "id", "another claim before it has the same id; rename one", file=file

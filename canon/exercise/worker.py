@@ -121,8 +121,10 @@ class Worker:
         assert self._process.stdout is not None  # it is a pipe
         threading.Thread(target=_listen, args=(self._process.stdout, self._lines), daemon=True).start()
         try:
-            self._lines.get(timeout=START)
+            ready = self._lines.get(timeout=START)
         except queue.Empty:
+            ready = ""
+        if not ready:  # it ended, or could not begin
             self.stop()
 
     def stop(self) -> None:

@@ -6,22 +6,22 @@ declared names. What SymPy would evaluate at ruinous cost (``9**9**9``) is refus
 
 from __future__ import annotations
 
-import difflib
-from dataclasses import dataclass, field
 from functools import reduce
-from types import MappingProxyType
 from typing import TYPE_CHECKING, NoReturn, cast
 
 import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.expression import syntax
-from canon.expression.symbol import Coordinate, acceleration, time, velocity
+from canon.expression.juxtaposition import parse_juxtaposed
+from canon.expression.scope import Scope
+from canon.expression.symbol import Coordinate
 from canon.expression.syntax import LanguageError, parse_syntax
-from canon.expression.vocabulary import CONSTANTS, FUNCTIONS, MAX_CHOICES, OTHER_NAMES, RELATIONS
+from canon.expression.units import without_units
+from canon.expression.vocabulary import CONSTANTS, FUNCTIONS, MAX_CHOICES, RELATIONS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable
     from decimal import Decimal
 
     from sympy.logic.boolalg import Boolean
@@ -30,59 +30,6 @@ __all__ = ["LanguageError", "Scope", "parse_condition", "parse_equation", "parse
 
 MAX_EXPONENT = 1_000
 MAX_BITS = 40_000
-
-
-@dataclass(frozen=True)
-class Scope:
-    """The names an expression may use.
-
-    A declared name overrides any built-in meaning. Each :class:`Coordinate` brings its rates along:
-    ``theta_dot`` and ``theta_ddot``, or ``theta'`` and ``theta''``.
-
-    Parameters
-    ----------
-    names
-        Symbol of each declared name.
-    functions
-        Arbitrary smooth functions: the names of the arguments each was declared with.
-    time
-        The symbol of the time.
-    signs
-        SymPy assumptions on the values of declared functions, where they are more than real.
-
-    Examples
-    --------
-    >>> from canon import coordinates
-    >>> (theta,) = coordinates("theta")
-    >>> parse_expression("theta'' + 0.5*sin(theta)", Scope({"theta": theta}))
-    theta_ddot + sin(theta)/2
-    """
-
-    names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
-    functions: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
-    time: Symbol = time
-    signs: Mapping[str, Mapping[str, bool]] = field(default_factory=lambda: MappingProxyType({}))
-
-    def symbol(self, name: str) -> Symbol | None:
-        """Return the symbol of a declared name or of a coordinate's rate, None for any other name."""
-        if name in self.names:
-            return self.names[name]
-        if name == self.time.name:
-            return self.time
-        for ending, rate in (("_ddot", acceleration), ("_dot", velocity)):
-            base = self.names.get(name.removesuffix(ending))
-            if name.endswith(ending) and isinstance(base, Coordinate):
-                return rate(base)
-        return None
-
-    def near(self, name: str) -> str:
-        """Return a remedy for an unknown name."""
-        if name in OTHER_NAMES:
-            return f"write {OTHER_NAMES[name]}, or declare the name"
-        known = [*self.names, self.time.name, *self.functions, *FUNCTIONS, *CONSTANTS]
-        known += [f"{n}_dot" for n, s in self.names.items() if isinstance(s, Coordinate)]
-        close = difflib.get_close_matches(name[:60], known, n=1, cutoff=0.75)
-        return f"is {close[0]} meant?" if close else "declare it in parameters or functions"
 
 
 def parse_expression(text: str, scope: Scope) -> Expr:
@@ -156,8 +103,18 @@ def syntax_of(text: str, scope: Scope) -> syntax.Node:
     if text.lstrip().startswith("$"):
         from canon.expression.latex import parse_latex  # only here: it loads a parser generator
 
-        return parse_latex(text, scope)
-    return parse_syntax(text)
+        return _in_place(text, without_units(text, scope), lambda blanked: parse_latex(blanked, scope))
+    if scope.implicit:
+        return _in_place(text, without_units(text, scope), lambda blanked: parse_juxtaposed(blanked, scope))
+    return _in_place(text, without_units(text, scope), parse_syntax)
+
+
+def _in_place(text: str, blanked: str, parse: Callable[[str], syntax.Node]) -> syntax.Node:
+    """Return the tree of a text without its units; an error shows the text as it was written."""
+    try:
+        return parse(blanked)
+    except LanguageError as error:
+        raise LanguageError(text, error.column, error.reason, error.remedy) from None
 
 
 class _Builder:

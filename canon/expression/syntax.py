@@ -21,6 +21,7 @@ __all__ = [
     "Negative",
     "Node",
     "Number",
+    "Parser",
     "Power",
     "Product",
     "Sum",
@@ -121,10 +122,10 @@ def parse_syntax(text: str) -> Node:
     LanguageError
         Where the text is too large or not in the grammar.
     """
-    return _Parser(text, tokens(text)).whole()
+    return Parser(text, tokens(text)).whole()
 
 
-class _Parser:
+class Parser:
     """Recursive descent; one method for each level of precedence, as in Python's own grammar."""
 
     def __init__(self, text: str, tokens: list[Token]) -> None:
@@ -135,12 +136,15 @@ class _Parser:
 
     @property
     def token(self) -> Token:
+        """The token that comes next."""
         return self.tokens[self.at]
 
     def fault(self, reason: str, remedy: str = "", token: Token | None = None) -> LanguageError:
+        """Return the error of a token, the next one unless given."""
         return LanguageError(self.text, (token or self.token).column, reason, remedy)
 
     def take(self, *operators: str) -> Token | None:
+        """Take the next token if it is one of these operators."""
         token = self.token
         if token.kind == "operator" and token.text in operators:
             self.at += 1
@@ -148,6 +152,7 @@ class _Parser:
         return None
 
     def whole(self) -> Node:
+        """Return the tree of the whole text."""
         node = self.comparison()
         token = self.token
         if token.kind == "end":
@@ -157,6 +162,7 @@ class _Parser:
         raise self.fault(f"an operator is missing before {token.text!r}", "write * for a product")
 
     def comparison(self) -> Node:
+        """Read ``a < b = c``, or one sum."""
         column = self.token.column
         operands = [self.sum()]
         relations: list[str] = []
@@ -166,6 +172,7 @@ class _Parser:
         return Comparison(tuple(operands), tuple(relations), column) if relations else operands[0]
 
     def sum(self) -> Node:
+        """Read terms with signs between them."""
         column = self.token.column
         terms = [(False, self.product())]
         while sign := self.take("+", "-"):
@@ -173,6 +180,7 @@ class _Parser:
         return Sum(tuple(terms), column) if len(terms) > 1 else terms[0][1]
 
     def product(self) -> Node:
+        """Read factors with * and / between them."""
         column = self.token.column
         factors = [(False, self.signed())]
         while sign := self.take("*", "/"):
@@ -180,6 +188,7 @@ class _Parser:
         return Product(tuple(factors), column) if len(factors) > 1 else factors[0][1]
 
     def signed(self) -> Node:
+        """Read a factor with signs before it."""
         column = self.token.column
         minus = False
         while sign := self.take("+", "-"):
@@ -188,6 +197,7 @@ class _Parser:
         return Negative(node, column) if minus else node
 
     def power(self) -> Node:
+        """Read a base, and an exponent if there is one."""
         base = self.atom()
         if sign := self.take("**"):
             self.deeper(sign)
@@ -197,6 +207,7 @@ class _Parser:
         return base
 
     def atom(self) -> Node:
+        """Read a number, a name, a call or a bracket."""
         token = self.token
         self.at += 1
         if token.kind == "number":
@@ -211,6 +222,7 @@ class _Parser:
         raise self.fault(f"{token.text!r} where a number, a name or '(' should be")
 
     def number(self, token: Token) -> Node:
+        """Return the exact value of a decimal."""
         mantissa, _, exponent = token.text.lower().partition("e")
         whole, _, fraction = mantissa.partition(".")
         power = int(exponent or "0") - len(fraction)
@@ -220,6 +232,7 @@ class _Parser:
         return Number(digits * 10 ** max(power, 0), 10 ** max(-power, 0), token.column)
 
     def named(self, token: Token) -> Node:
+        """Read the call of a function, or a name."""
         if token.primes or self.token.text != "(" or self.token.kind != "operator":
             return Name(token.text, token.primes, token.column)
         opening = self.token
@@ -234,6 +247,7 @@ class _Parser:
         return Call(token.text, tuple(arguments), token.column)
 
     def group(self, opening: Token) -> Node:
+        """Read a bracket, or the pair in it."""
         self.deeper(opening)
         items = [self.comparison()]
         comma = False
@@ -247,11 +261,13 @@ class _Parser:
         return Tuple(tuple(items), opening.column) if comma else items[0]
 
     def deeper(self, token: Token) -> None:
+        """Count one level of nesting more."""
         self.depth += 1
         if self.depth > MAX_NESTING:
             raise self.fault(f"nested more than {MAX_NESTING} deep", token=token)
 
     def unclosed(self, opening: Token) -> LanguageError:
+        """Return the error of a bracket that does not end here."""
         if self.token.kind == "end":
             return self.fault("'(' is never closed", token=opening)
         if self.token.text == "for":

@@ -68,7 +68,7 @@ GREEK = {
 }  # fmt: skip
 _ALIKE = {"−": "-", "·": "*", "×": "*"}
 _NOT_HERE = {
-    "^": "write ** for a power",
+    "^": "write ** for a power, and a unit as 9.81 [m/s^2]",
     "[": "write ( ) for grouping; there is no indexing",
     "{": "write ( ) for grouping",
     '"': "there are no string literals",
@@ -153,7 +153,9 @@ def _named(text: str, word: str, column: int) -> Token:
             text,
             column + odd,
             f"{word[odd]!r} (U+{ord(word[odd]):04X}) is not a letter of the language",
-            "names are made of Latin or Greek letters, digits and _",
+            "write **2 for a power"
+            if unicodedata.category(word[odd]) == "No"
+            else "names are made of Latin or Greek letters, digits and _",
         )
     return Token("name", plain, column, primes)
 
