@@ -10,11 +10,12 @@ from canon.plot.energy import plot_block_means, plot_energy_error
 from canon.plot.ensemble import plot_ensemble_fan
 from canon.plot.phase import plot_phase_portrait, plot_poincare_section
 from canon.plot.study import plot_study_heatmap
-from canon.plot.style import COLOURS, PlotError
+from canon.plot.style import COLOURS, GREY, PlotError
 from canon.plot.work import plot_drift_by_step, plot_work_precision
 
 __all__ = [
     "COLOURS",
+    "GREY",
     "PlotError",
     "plot_block_means",
     "plot_drift_by_step",
