@@ -4,32 +4,38 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import math
 import os
 import threading
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.measure import values_in
 from canon.flow.method import RK4, FixedStep, Gauss
-from canon.flow.sampling import Sampling, steps_over
-from canon.flow.stepping import Run, Watch, run
-from canon.flow.trajectory import Array, Samples, values_in
+from canon.flow.partial import PartialSteps, State, coefficient_pairs
+from canon.flow.sampling import Plan, Sampling, fixed_plan, steps_over
+from canon.flow.stepping import Interruption, Run, Watch, run
+from canon.flow.trajectory import Array, Samples
+from canon.flow.watchful import run_with_events
 from canon.kernel.gauss import gauss_coefficients, gauss_loop
 from canon.kernel.llvm import simd_bytes
 from canon.kernel.loop import Loop, runge_kutta_loop, splitting_loop
-from canon.kernel.machine import DOUBLE, MachineType, double_pair
+from canon.kernel.machine import DOUBLE, MachineType
 from canon.kernel.watch import watching_function, wide_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from canon.flow.event import Prepared
+    from canon.flow.job import Memory
     from canon.flow.precision import Precision
     from canon.kernel.llvm import MachineCode
     from canon.kernel.structure import Equations
 
-__all__ = ["compiled_loop", "fixed_steps", "watch_for"]
+__all__ = ["compiled_loop", "fixed_steps", "planned", "steps_between", "watch_for"]
 
 _KEPT = 64
 """Compiled loops kept for the next call."""
@@ -108,52 +114,90 @@ def _kept_gauss(system: Equations, stages: int, *, compensated: bool) -> Loop:
     return gauss_loop(system, stages, compensated=compensated)
 
 
+def planned(wanted: Sampling, step: float | None, method: FixedStep) -> Plan:
+    """Return the plan of a run: the largest step, not above the given one, that divides the span.
+
+    Raises
+    ------
+    ValueError
+        The step is missing or makes no sense.
+    """
+    steps = steps_over(wanted.start, wanted.end, step, method)
+    return fixed_plan(wanted.start, (wanted.end - wanted.start) / steps, tuple(wanted.stops(steps)))
+
+
+def steps_between(loop: Loop, method: FixedStep, plan: Plan) -> PartialSteps:
+    """Return what takes steps of any length between those of a run."""
+    assert plan.h is not None
+    return PartialSteps(loop, functools.partial(_coefficients, method), plan.start, plan.h)
+
+
 def fixed_steps(
+    system: Equations,
     loop: Loop,
     method: FixedStep,
     states: tuple[Array, Array],
-    wanted: Sampling,
-    step: float | None,
+    plan: Plan,
     progress: Callable[[float], None],
     watch: Watch | None = None,
+    so_far: Samples | None = None,
+    events: Sequence[Prepared] = (),
 ) -> Samples:
-    """Step from the first time of a span to the last and sample on the way.
+    """Step along a plan and sample on the way; an interruption ends that at the last sample reached by all orbits.
 
     Parameters
     ----------
-    loop
-        The compiled loop.
-    method
-        The method it was compiled for.
+    system
+        The equations.
+    loop, method
+        The compiled loop and the method it was compiled for.
     states
-        The starting states as sums of two doubles, each of shape (2n, orbits).
-    wanted
-        The span and when to sample.
-    step, progress
-        As :func:`canon.flow.propagate.propagate` takes them.
+        The states to start from as sums of two doubles, each of shape (2n, orbits).
+    plan
+        The steps, and after which of them to sample.
+    progress
+        Called now and then with the fraction done.
     watch
         Observables to follow inside the loop.
+    so_far
+        What was done before, where the motion is resumed.
+    events
+        Events, of one orbit.
     """
-    start = wanted.start
-    steps = steps_over(start, wanted.end, step, method)
-    h = (wanted.end - start) / steps
-    stops = wanted.stops(steps)
-    numbers = [double_pair(c) for c in (start, h, *_coefficients(method, h))]
-    coefficients = np.array([high for high, _ in numbers]), np.array([low for _, low in numbers])
-    runs = _on_threads(loop, *states, coefficients, stops, progress, watch)
+    steps, orbits = steps_between(loop, method, plan), states[0].shape[1]
+    first = 0 if so_far is None else len(so_far.t) - 1
+    stops, memory = plan.stops[first:], None if so_far is None else so_far.beyond
+    pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
+    met, end = (), Fraction(0)
+    if events:
+        start = State(*states, memory)
+        found, met, end = run_with_events(system, steps, start, stops, events, progress)
+        runs = [found]
+    else:
+        runs = _on_threads(loop, states, pairs, stops, progress, watch, memory, np.array(system.rows))
+    samples = min(found.high.shape[1] for found in runs)
+    runs = [found.first(samples) for found in runs]
     high, low = (np.concatenate(parts, axis=2) for parts in ([r.high for r in runs], [r.low for r in runs]))
-    orbits = states[0].shape[1]
-    iterations = sum(r.iterations for r in runs) if isinstance(method, Gauss) else steps * orbits
+    t = plan.instants[first : first + samples].copy()
+    taken = stops[samples - 1] - stops[0]
+    if met and met[-1].event.action == "stop":
+        t[-1], taken = met[-1].t, math.ceil(end) - stops[0]
+    beyond = np.concatenate([found.beyond[-1] for found in runs])
+    iterations = taken * orbits
+    if loop.implicit:
+        iterations = round(float(beyond[:, 0].sum() - (0 if memory is None else memory[:, 0].sum())))
     return Samples(
-        t=np.array([float(start + stop * h) for stop in stops]),
+        t=t,
         y=high[:, :, :orbits],
         carried=low[:, :, :orbits],
-        steps=steps,
+        steps=taken,
         evaluations=iterations * method.stages,
-        step=float(h),
+        step=float(steps.h),
         cpu_seconds=sum(r.cpu_seconds for r in runs),
         compile_seconds=loop.code.seconds,
-        watched=_statistics(runs, stops, watch, orbits),
+        watched=_statistics(runs, stops[:samples], watch, orbits),
+        beyond=beyond,
+        crossings=met,
     )
 
 
@@ -195,6 +239,8 @@ def _statistics(runs: Sequence[Run], stops: Sequence[int], watch: Watch | None, 
     parts = [each.watched for each in runs if each.watched is not None]
     if watch is None or not parts:
         return None
+    if len(stops) == 1:
+        return np.empty((watch.start.shape[1], 3, 0, orbits))
     found = np.concatenate(parts, axis=1)[:, :orbits].transpose(2, 3, 0, 1).copy()
     counts = np.diff([stop // watch.cadence for stop in stops])
     if not counts.all():
@@ -212,28 +258,30 @@ def _statistics(runs: Sequence[Run], stops: Sequence[int], watch: Watch | None, 
 
 def _on_threads(
     loop: Loop,
-    high: Array,
-    low: Array,
+    states: tuple[Array, Array],
     coefficients: tuple[Array, Array],
     stops: Sequence[int],
     progress: Callable[[float], None],
     watch: Watch | None,
+    memory: Memory | None,
+    rows: Memory,
 ) -> list[Run]:
     """Run orbits on as many threads as there are processors, each a whole number of blocks."""
-    lanes = loop.number.lanes
+    (high, low), lanes = states, loop.number.lanes
     orbits = high.shape[1]
     blocks = -(-orbits // lanes)
     if blocks == 1 and lanes == 1:
-        return [run(loop, high, low, coefficients, stops, progress, watch)]
+        return [run(loop, high, low, coefficients, stops, progress, watch, memory, rows)]
     # The last block is filled up with copies of the last orbit.
     filled = np.minimum(np.arange(blocks * lanes), orbits - 1)
     parts = np.array_split(filled.reshape(blocks, lanes), min(os.cpu_count() or 1, blocks))
+    own_blocks = np.array_split(np.arange(blocks), len(parts))
     stopped, done, lock = threading.Event(), [0.0] * len(parts), threading.Lock()
 
     def part(k: int) -> Run:
         def report(fraction: float) -> None:
             if stopped.is_set():
-                raise InterruptedError
+                raise Interruption
             with lock:
                 done[k] = fraction
                 if k == 0:
@@ -241,15 +289,23 @@ def _on_threads(
 
         chosen = parts[k].ravel()
         own = None if watch is None else dataclasses.replace(watch, start=watch.start[chosen])
-        return run(loop, high[:, chosen], low[:, chosen], coefficients, stops, report, own)
+        kept = None if memory is None else memory[own_blocks[k]]
+        found = run(loop, high[:, chosen], low[:, chosen], coefficients, stops, report, own, kept, rows)
+        if found.high.shape[1] < len(stops):
+            stopped.set()
+        return found
 
     with ThreadPoolExecutor(len(parts)) as pool:
         futures = [pool.submit(part, k) for k in range(len(parts))]
         try:
-            found = [future.result() for future in futures]
+            wait(futures, return_when=FIRST_EXCEPTION)
+        except KeyboardInterrupt:
+            pass
         finally:
             stopped.set()
-    progress(1.0)
+        found = [future.result() for future in futures]
+    if min(each.high.shape[1] for each in found) == len(stops):
+        progress(1.0)
     return found
 
 

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import functools
 from dataclasses import replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+from sympy import Symbol
 
-from canon.flow.adaptive import adaptive_steps
-from canon.flow.fixed import compiled_loop, fixed_steps, watch_for
+from canon.flow.event import Event, prepared
+from canon.flow.fixed import planned
+from canon.flow.job import NonFiniteStateError
 from canon.flow.method import DOP853, FixedStep, Method, Taylor
-from canon.flow.precision import fixed_precision
-from canon.flow.sampling import sampling
-from canon.flow.stepping import NonFiniteStateError
-from canon.flow.trajectory import Array, Statistics, Trajectory, measured
+from canon.flow.progress import reporting
+from canon.flow.sampling import adaptive_plan, sampling
+from canon.flow.task import Task
+from canon.flow.trajectory import Array, Interrupted, Trajectory
 from canon.kernel.machine import double_pair
 from canon.kernel.structure import Equations, equations, exact
 
@@ -24,9 +25,11 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     import numpy.typing as npt
-    from sympy import Expr, Symbol
+    from sympy import Expr
 
-__all__ = ["HamiltonianSystem", "NonFiniteStateError", "Trajectory", "is_separable", "propagate"]
+__all__ = [
+    "HamiltonianSystem", "Interrupted", "NonFiniteStateError", "Trajectory", "is_separable", "propagate",
+]  # fmt: skip
 
 _KEPT = 64
 """Systems and compiled loops kept for the next call."""
@@ -70,7 +73,9 @@ def propagate(
     times: npt.ArrayLike | None = None,
     observables: Mapping[str, Expr] | None = None,
     cadence: int | None = None,
-    progress: Callable[[float], None] | None = None,
+    events: Sequence[Event] = (),
+    dense: bool = False,
+    progress: Callable[[float], None] | bool | None = None,
 ) -> Trajectory:
     """Integrate Hamilton's equations from a starting state.
 
@@ -96,7 +101,8 @@ def propagate(
         ``"double-double"`` (106 bits; H of sums, products, quotients and square roots); Gauss methods have
         the second and third. Taylor: ``"double"``, ``"extended"``, ``"quad"`` or a number of decimal digits.
     parameters
-        A number for every parameter of H, by symbol or name.
+        A number for every parameter of H, by symbol or name; or, where it differs from orbit to orbit, an array
+        of shape (orbits,).
     samples
         How many sampled states to keep after the first, evenly spaced up to a step; 1000 where not given.
     times
@@ -110,8 +116,14 @@ def propagate(
         numbers than the state's: ``Trajectory.statistics`` has of each the mean, the least and the greatest
         change over every block of steps between two samples, and running extremes. 10⁹ steps with
         ``samples=1000, cadence=1`` keep 1000 rows.
+    events
+        What is to happen where functions of the state cross zero, see :class:`canon.Event`; of one orbit.
+    dense
+        Keep Taylor's polynomials, so that the trajectory can be called with any time: ``motion(t)``. Methods of
+        fixed steps need nothing kept for that.
     progress
-        Called now and then with the fraction done, 0 … 1.
+        A function to call now and then with the fraction done, 0 … 1; or True for a bar with an estimate on
+        standard error, where that is a terminal.
 
     Returns
     -------
@@ -130,6 +142,8 @@ def propagate(
     NonFiniteStateError
         The motion ran into a collision or out of H's domain, or the stages of an implicit method did not
         converge; the error has the last good time and state.
+    Interrupted
+        Ctrl-C: a KeyboardInterrupt whose ``motion`` is the trajectory so far; ``motion.resume()`` completes it.
 
     Examples
     --------
@@ -145,58 +159,39 @@ def propagate(
     (10000, True)
     """
     method = _with_tolerance(Taylor() if method is None else method, tolerance)
-    system = _system(hamiltonian, _numbers(parameters or {}))
     extra = dict(observables or {})
     if "energy" in extra:
         raise ValueError(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
+    fixed, varying = _by_orbit(parameters or {})
+    system = _system(hamiltonian, _numbers(fixed), tuple(varying))
     nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
-    high, low = _states(y0, len(system.q))
+    given, single = _with_parameters(y0, len(hamiltonian.q), varying)
     start, end = (exact(t, "t_span") for t in t_span)
     wanted = sampling((start, end), samples, times)
-    _check_start(system, high, start)
-    report = progress or (lambda _: None)
+    _check_start(system, given[0], start)
     if isinstance(method, FixedStep):
-        kind = fixed_precision(precision)
-        loop = compiled_loop(system, method, kind, high.shape[1])
-        watch = None if cadence is None else watch_for(system, nodes, loop, (high, low), start, cadence)
-        found = fixed_steps(loop, method, (high, low), wanted, step, report, watch)
-        name = kind.name
+        plan = planned(wanted, step, method)
     else:
-        if step is not None:
-            raise ValueError(f"{method} chooses its own steps: leave step out and set its tolerance")
-        if cadence is not None:
-            raise ValueError(f"{method} chooses its own steps: cadence counts those of fixed-step methods")
-        name = str(precision or "double")
-        found = adaptive_steps(system, (high, low), wanted.instants(), method, precision or "double", report)
-    watched = found.watched
-    if np.ndim(y0) == 1:
-        found = replace(found, y=found.y[:, :, 0], carried=found.carried[:, :, 0])
-        watched = None if watched is None else watched[..., 0]
-    (energy, change), *rest = measured(system, nodes, found, name)
-    return Trajectory(
-        t=found.t,
-        y=found.y,
-        carried=found.carried,
-        energy=energy,
-        energy_change=change,
+        _check_adaptive(method, step, cadence, precision)
+        plan = adaptive_plan(wanted)
+    task = Task(
+        system=system,
         method=method,
-        precision=name,
-        step=found.step,
-        steps=found.steps,
-        evaluations=found.evaluations,
-        cpu_seconds=found.cpu_seconds,
-        compile_seconds=found.compile_seconds,
-        autonomous=system.autonomous,
-        observables=MappingProxyType(dict(zip(extra, (value for value, _ in rest), strict=True))),
-        changes=MappingProxyType(dict(zip(extra, (each for _, each in rest), strict=True))),
-        statistics=MappingProxyType(
-            {}
-            if watched is None
-            else {k: Statistics(*v) for k, v in zip(("energy", *extra), watched, strict=True)}
-        ),
+        precision=precision,
+        states=given,
+        single=single,
+        plan=plan,
+        names=tuple(extra),
+        nodes=tuple(nodes),
+        cadence=cadence,
+        events=tuple(events),
+        dense=dense,
     )
+    _check_events(task)
+    with reporting(progress) as report:
+        return task.trajectory(report)
 
 
 def is_separable(hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, Any]) -> bool:
@@ -234,8 +229,13 @@ def _numbers(parameters: Mapping[Symbol | str, Any]) -> frozenset[tuple[str, Fra
     return frozenset((str(name), exact(value, str(name))) for name, value in parameters.items())
 
 
-def _system(hamiltonian: HamiltonianSystem, parameters: frozenset[tuple[str, Fraction]]) -> Equations:
-    return _kept_system(hamiltonian.H, tuple(hamiltonian.q), tuple(hamiltonian.p), hamiltonian.t, parameters)
+def _system(
+    hamiltonian: HamiltonianSystem,
+    parameters: frozenset[tuple[str, Fraction]],
+    varying: tuple[str, ...] = (),
+) -> Equations:
+    q, p = tuple(hamiltonian.q), tuple(hamiltonian.p)
+    return _kept_system(hamiltonian.H, q, p, hamiltonian.t, parameters, varying)
 
 
 @functools.lru_cache(maxsize=_KEPT)
@@ -245,8 +245,48 @@ def _kept_system(
     p: tuple[Symbol, ...],
     t: Symbol,
     parameters: frozenset[tuple[str, Fraction]],
+    varying: tuple[str, ...],
 ) -> Equations:
-    return equations(H, q, p, t, dict(parameters))
+    known = {symbol.name: symbol for symbol in H.free_symbols if isinstance(symbol, Symbol)}
+    missing = [name for name in varying if name not in known]
+    if missing:
+        raise KeyError(f"an array is given for {', '.join(missing)}, which H does not hold")
+    return equations(H, q, p, t, dict(parameters), [known[name] for name in varying])
+
+
+def _by_orbit(
+    parameters: Mapping[Symbol | str, Any],
+) -> tuple[dict[Symbol | str, Any], dict[str, npt.NDArray[Any]]]:
+    """Part parameters into those with one value and those with one for each orbit."""
+    varying = {str(name): np.asarray(value) for name, value in parameters.items() if np.ndim(value)}
+    return {name: value for name, value in parameters.items() if str(name) not in varying}, varying
+
+
+def _with_parameters(
+    y0: Sequence[Any] | npt.NDArray[Any], n: int, varying: Mapping[str, npt.NDArray[Any]]
+) -> tuple[tuple[Array, Array], bool]:
+    """Return the starting states with the parameters that vary, and whether it is a single one."""
+    high, low = _states(y0, n)
+    if not varying:
+        return (high, low), np.ndim(y0) == 1
+    orbits = {values.size for values in varying.values()} | (
+        {high.shape[1]} if np.ndim(y0) == 2 else set[int]()
+    )
+    shapes = {name: values.shape for name, values in varying.items() if values.ndim != 1 or not values.size}
+    if shapes or len(orbits) > 1:
+        given = ", ".join(f"{name} of shape {values.shape}" for name, values in varying.items())
+        raise ValueError(f"{given} for y0 of shape {np.shape(y0)}: parameters by orbit have shape (orbits,)")
+    count = orbits.pop()
+    pairs = [
+        [double_pair(exact(value, f"{name}[{k}]")) for k, value in enumerate(values.tolist())]
+        for name, values in varying.items()
+    ]
+    parameters = np.array(pairs).transpose(2, 0, 1)
+    states: list[Array] = []
+    for part, own in zip((high, low), parameters, strict=True):
+        wide = np.broadcast_to(part, (2 * n, count))
+        states.append(np.concatenate([wide[:n], own, wide[n:], own]))
+    return (states[0], states[1]), False
 
 
 def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]:
@@ -271,5 +311,30 @@ def _check_start(system: Equations, states: Array, start: Fraction) -> None:
     found = system.graph.evaluate([system.hamiltonian, *system.velocity, *system.force], values)
     finite = np.logical_and.reduce([np.isfinite(np.broadcast_to(x, states.shape[1:])) for x in found])
     if not finite.all():
-        wrong = states[:, np.argmin(finite)]
+        wrong = states[system.rows, np.argmin(finite)]
         raise ValueError(f"H or its derivatives are not finite at y0 = {wrong}: start inside H's domain")
+
+
+def _check_adaptive(
+    method: Taylor | DOP853, step: float | None, cadence: int | None, precision: str | int | None
+) -> None:
+    if step is not None:
+        raise ValueError(f"{method} chooses its own steps: leave step out and set its tolerance")
+    if cadence is not None:
+        raise ValueError(f"{method} chooses its own steps: cadence counts those of fixed-step methods")
+    if isinstance(method, DOP853) and precision not in (None, "double"):
+        raise ValueError(f"precision={precision!r}: {method} runs in double precision")
+
+
+def _check_events(task: Task) -> None:
+    if task.dense and not isinstance(task.method, Taylor):
+        raise ValueError(f"dense=True: {task.method} has no polynomials to keep; Taylor() has")
+    if not task.events:
+        return
+    if isinstance(task.method, DOP853):
+        raise ValueError(f"events: {task.method} does not meet any; Taylor() and methods of fixed steps do")
+    if task.states[0].shape[1] > 1:
+        raise ValueError("events are met at times of each orbit's own: propagate the orbits one by one")
+    if task.cadence is not None:
+        raise ValueError("events and cadence: statistics inside the loop do not see events; leave one out")
+    prepared(task.system, task.events)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,10 @@ if TYPE_CHECKING:
 
     from canon.flow.trajectory import Array
 
-__all__ = ["Sampling", "sampling", "steps_over"]
+__all__ = ["Plan", "Sampling", "adaptive_plan", "fixed_plan", "sampling", "steps_over"]
+
+_SLICES = 20
+"""Parts a run of an adaptive method is done in, between which progress is reported and an interruption heard."""
 
 
 @dataclass(frozen=True)
@@ -117,3 +121,88 @@ def steps_over(start: Fraction, end: Fraction, step: float | None, method: objec
     nearest = max(1, round(ratio))
     # A span that is a whole number of steps up to the rounding of its ends and of the step counts as one.
     return nearest if abs(ratio - nearest) <= nearest * Fraction(1, 10**9) else math.ceil(ratio)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The sample times of a run as a method passes them.
+
+    Parameters
+    ----------
+    start
+        The first time.
+    instants
+        The sample times as doubles, shape (times,).
+    h, stops
+        Of a fixed-step method: the exact step, and the numbers of the steps after which to sample.
+    ends
+        Of an adaptive method: the samples at which to look at progress and interruptions.
+    """
+
+    start: Fraction
+    instants: Array
+    h: Fraction | None = None
+    stops: tuple[int, ...] = ()
+    ends: tuple[int, ...] = ()
+
+    @property
+    def forward(self) -> int:
+        """1 where time runs forward, −1 where it runs back."""
+        return 1 if self.instants[-1] > self.instants[0] else -1
+
+    def slices(self, first: int) -> list[tuple[int, int]]:
+        """Return the parts of a run from sample ``first`` on, as numbers of their first and last samples."""
+        ends = [end for end in self.ends if end > first]
+        return list(itertools.pairwise([first, *ends]))
+
+    def continued(self, more: Sampling) -> Plan:
+        """Return this plan with another one after it, which starts where this ends.
+
+        Raises
+        ------
+        ValueError
+            The new end lies behind, or is not a whole number of this run's steps away.
+        """
+        if (more.end - more.start) * self.forward < 0:
+            raise ValueError(
+                f"until={float(more.end):g} lies behind t = {float(more.start):g}, where the motion has arrived"
+            )
+        if self.h is None:
+            instants, last = more.instants(), len(self.instants) - 1
+            ends = tuple(last + end for end in _slices(len(instants) - 1))
+            return replace(self, instants=np.append(self.instants, instants[1:]), ends=self.ends + ends)
+        ratio = (more.end - more.start) / self.h
+        steps = round(ratio)
+        if not steps or abs(ratio - steps) > abs(steps) * Fraction(1, 10**9):
+            near = [float(more.start + n * self.h) for n in (math.floor(ratio), math.floor(ratio) + 1)]
+            raise ValueError(
+                f"until={float(more.end):.15g} is no whole number of steps of {float(self.h):g} away from "
+                f"t = {float(more.start):.15g}: take {near[0]:.15g} or {near[1]:.15g}"
+            )
+        return fixed_plan(
+            self.start, self.h, (*self.stops, *(self.stops[-1] + s for s in more.stops(steps)[1:]))
+        )
+
+    def last(self, samples: int) -> Fraction:
+        """Return the exact time of a sample."""
+        return (
+            Fraction(float(self.instants[samples]))
+            if self.h is None
+            else self.start + self.stops[samples] * self.h
+        )
+
+
+def fixed_plan(start: Fraction, h: Fraction, stops: tuple[int, ...]) -> Plan:
+    """Return the plan of a run in steps of one size."""
+    return Plan(start, np.array([float(start + stop * h) for stop in stops]), h, stops)
+
+
+def adaptive_plan(wanted: Sampling) -> Plan:
+    """Return the plan of a run in steps that the method chooses."""
+    instants = wanted.instants()
+    return Plan(wanted.start, instants, ends=tuple(_slices(len(instants) - 1)))
+
+
+def _slices(samples: int) -> list[int]:
+    parts = np.array_split(np.arange(1, samples + 1), min(_SLICES, samples))
+    return [int(part[-1]) for part in parts]

@@ -4,43 +4,25 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from canon.kernel.watch import ENTRIES
+from canon.flow.job import Array, Job, Memory, NonFiniteStateError, Watch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from canon.kernel.llvm import MachineCode
     from canon.kernel.loop import Loop
 
-__all__ = ["NonFiniteStateError", "Run", "Watch", "run"]
-
-Array = npt.NDArray[np.float64]
-Memory = npt.NDArray[Any]
+__all__ = ["Interruption", "NonFiniteStateError", "Run", "Watch", "run"]
 
 _SLICE_SECONDS = 0.1
 """Between calls of compiled code Python can handle an interruption and report progress."""
 
 
-class NonFiniteStateError(ArithmeticError):
-    """The motion left the finite numbers: a collision, a domain left, or a step too large.
-
-    Parameters
-    ----------
-    time
-        The time of the last finite state.
-    state
-        That state (q, p), shape (2n,).
-    """
-
-    def __init__(self, message: str, time: float, state: Array) -> None:
-        super().__init__(message)
-        self.time = time
-        self.state = state
+class Interruption(Exception):
+    """Tells a thread to end its run at once and hand over what it has."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +36,8 @@ class Run:
     watched
         Where observables were watched: of each interval between two stops, orbit and observable the sum, the
         least and the greatest change, shape (times − 1, orbits, observables, 3).
+    beyond
+        What an implicit method kept beyond each state, shape (times, blocks, …).
     iterations
         Iterations of an implicit method, 0 of others.
     cpu_seconds
@@ -63,8 +47,15 @@ class Run:
     high: Array
     low: Array
     watched: Array | None
+    beyond: Memory
     iterations: int
     cpu_seconds: float
+
+    def first(self, samples: int) -> Run:
+        """Return the first so many samples of this run."""
+        watched = None if self.watched is None else self.watched[: samples - 1]
+        high, low = self.high[:, :samples], self.low[:, :samples]
+        return Run(high, low, watched, self.beyond[:samples], self.iterations, self.cpu_seconds)
 
 
 def run(
@@ -75,181 +66,72 @@ def run(
     stops: Sequence[int],
     progress: Callable[[float], None] = lambda _: None,
     watch: Watch | None = None,
+    memory: Memory | None = None,
+    rows: Memory | None = None,
 ) -> Run:
     """Advance orbits step by step and keep their states at the wanted step numbers.
+
+    An interruption (Ctrl-C, or :class:`Interruption` from ``progress``) ends the run at its last stop: fewer
+    samples than stops come back.
 
     Parameters
     ----------
     loop
         The compiled loop.
     high, low
-        The states at step 0 are high + low, shape (2n, orbits); orbits a multiple of the loop's lanes.
+        The states at the first stop are high + low, shape (2n, orbits); orbits a multiple of the loop's lanes.
     coefficients
         t0, h and the method's coefficients times h, likewise as sums of two doubles.
     stops
-        Rising step numbers at which to keep the states; the last is the end.
+        Rising step numbers at which to keep the states; the first is where the motion is, the last is the end.
     progress
         Called now and then with the fraction done, 0 … 1.
     watch
         Observables to follow between the stops.
+    memory
+        What an implicit method kept beyond the state, where a run is resumed.
+    rows
+        The components that are coordinates and momenta, for messages.
 
     Raises
     ------
     NonFiniteStateError
         A state is not finite; the error knows the last finite one.
     """
-    job = _Job(loop, high, low, coefficients, watch)
-    watched: list[Array] = []
+    job = Job(loop, high, low, coefficients, watch, memory)
+    watched, beyond = list[Array](), list[Memory]()
     kept = np.empty((2, len(high), len(stops), high.shape[1]))
-    started, done, slice_steps = time.thread_time(), 0, 64
-    for sample, stop in enumerate(stops):
-        while done < stop:
-            steps = min(slice_steps, stop - done)
-            before = job.y.copy(), job.e.copy()
-            clock = time.perf_counter()
-            job.advance(done, steps)
-            spent = time.perf_counter() - clock
-            if not np.isfinite(job.y).all():
-                raise job.lost(*before, done, steps)
-            done += steps
-            if steps == slice_steps and spent < _SLICE_SECONDS / 2:
-                slice_steps *= 2
-            elif spent > _SLICE_SECONDS and slice_steps > 1:
-                slice_steps //= 2
-            progress(done / stops[-1])
-        kept[:, :, sample] = job.states()
-        if sample and watch is not None:
-            watched.append(job.watched())
-    return Run(
+    started, done, slice_steps = time.thread_time(), stops[0], 64
+    try:
+        for sample, stop in enumerate(stops):
+            while done < stop:
+                steps = min(slice_steps, stop - done)
+                before = job.y.copy(), job.e.copy()
+                clock = time.perf_counter()
+                job.advance(done, steps)
+                spent = time.perf_counter() - clock
+                if not job.finite():
+                    raise job.lost(*before, done, steps, rows)
+                done += steps
+                if steps == slice_steps and spent < _SLICE_SECONDS / 2:
+                    slice_steps *= 2
+                elif spent > _SLICE_SECONDS and slice_steps > 1:
+                    slice_steps //= 2
+                progress(done / stops[-1])
+            kept[:, :, sample] = job.states()
+            if sample and watch is not None:
+                watched.append(job.watched())
+            beyond.append(job.beyond())
+    except (KeyboardInterrupt, Interruption):
+        if not beyond:
+            raise
+    entries = (job.orbits, job.watch.start.shape[1], 3) if job.watch is not None else ()
+    found = Run(
         kept[0],
         kept[1],
-        np.array(watched) if watch is not None else None,
-        job.iterations(),
+        np.array(watched).reshape(-1, *entries) if watch is not None else None,
+        np.array(beyond),
+        int(beyond[-1][:, 0].sum()) if loop.implicit else 0,
         time.thread_time() - started,
     )
-
-
-@dataclass(frozen=True)
-class Watch:
-    """Observables to follow inside the loop.
-
-    Parameters
-    ----------
-    code
-        The machine code of :func:`canon.kernel.watch.watching_function`.
-    cadence
-        After how many steps they are evaluated each time.
-    start
-        Their values at the start in wide numbers, shape (orbits, observables, 1), or 2 parts of double-doubles.
-    """
-
-    code: MachineCode
-    cadence: int
-    start: Memory
-
-
-class _Job:
-    """The memory of one run: blocks of as many orbits as the number type has lanes."""
-
-    def __init__(
-        self, loop: Loop, high: Array, low: Array, coefficients: tuple[Array, Array], watch: Watch | None
-    ) -> None:
-        self.loop, number = loop, loop.number
-        self.size, self.orbits = high.shape
-        self.blocks = self.orbits // number.lanes
-        # A compensated state starts with its low part in the compensation, any other rounds it to its type.
-        into_y, into_e = (np.zeros_like(low), low) if loop.compensated else (low, np.zeros_like(low))
-        self.y = number.packed(self._by_block(high), self._by_block(into_y))
-        scalars = self.y.size // (self.blocks * self.size)
-        self.e = np.zeros((self.blocks, loop.carry * scalars), dtype=number.dtype)
-        carried = self._by_block(into_e)
-        self.e[:, : self.size * scalars] = number.packed(carried, np.zeros_like(carried)).reshape(
-            self.blocks, -1
-        )
-        self.c = number.packed(*(np.repeat(part, number.lanes) for part in coefficients))
-        self.t0, self.h = (float(part) for part in coefficients[0][:2])
-        self.watch = watch
-        if watch is not None:
-            *observed, parts = watch.start.shape
-            self.record = np.zeros((*observed, ENTRIES, parts), dtype=watch.start.dtype)
-            self.record[..., 0, :] = watch.start
-            self._forget()
-
-    def _forget(self) -> None:
-        self.record[..., 1:, :] = 0
-        self.record[..., 2, 0], self.record[..., 3, 0] = np.inf, -np.inf
-
-    def watched(self) -> Array:
-        """Return the sums and bounds of the changes since they were last asked for, and start anew."""
-        found = self.record[..., 1:, :].sum(axis=-1).astype(np.float64)
-        self._forget()
-        return found
-
-    def _by_block(self, states: Array) -> Array:
-        """Reorder (2n, orbits) as blocks, components, lanes: shape (blocks · 2n, lanes)."""
-        lanes = self.loop.number.lanes
-        return states.reshape(self.size, self.blocks, lanes).transpose(1, 0, 2).reshape(-1, lanes)
-
-    def _by_orbit(self, numbers: Array) -> Array:
-        lanes = self.loop.number.lanes
-        return numbers.reshape(self.blocks, self.size, lanes).transpose(1, 0, 2).reshape(self.size, -1)
-
-    def advance(self, first: int, steps: int) -> None:
-        if self.watch is None:
-            self._call(self.y, self.e, first, steps, self.blocks)
-            return
-        arrays = (self.y.ctypes.data, self.e.ctypes.data, self.c.ctypes.data)
-        numbers = (first, steps, self.blocks, self.watch.cadence)
-        self.watch.code.call(self.loop.code.address, *arrays, *numbers, self.record.ctypes.data)
-
-    def _call(self, y: Memory, e: Memory, first: int, steps: int, blocks: int) -> None:
-        self.loop.code.call(y.ctypes.data, e.ctypes.data, self.c.ctypes.data, first, steps, blocks)
-
-    def states(self) -> tuple[Array, Array]:
-        """Return the states as sums of two doubles, each of shape (2n, orbits)."""
-        high, low = (self._by_orbit(part) for part in self.loop.number.unpacked(self.y))
-        if self.loop.compensated:
-            scalars = self.y.size // (self.blocks * self.size)
-            carried, _ = self.loop.number.unpacked(self.e[:, : self.size * scalars].copy())
-            low = low + self._by_orbit(carried)
-        return high, low
-
-    def iterations(self) -> int:
-        return int(self.e[:, self.size].sum()) if self.loop.implicit else 0
-
-    def lost(self, y: Memory, e: Memory, first: int, steps: int) -> NonFiniteStateError:
-        """Find the last finite state of the first orbit that was lost, halving the slice of steps."""
-        number = self.loop.number
-        lost = np.argwhere(~np.isfinite(self.y.reshape(self.blocks, self.size, -1, number.lanes)))
-        block, _, _, lane = (int(index) for index in lost[0])
-        length = self.y.size // self.blocks
-        y, e = y[block * length : (block + 1) * length].copy(), e[block].copy()
-
-        def finite(memory: Memory) -> bool:
-            return bool(np.isfinite(number.unpacked(memory)[0][:, lane]).all())
-
-        while steps > 1:
-            half, half_e = y.copy(), e.copy()
-            self._call(half, half_e, first, steps // 2, 1)
-            if finite(half):
-                y, e, first, steps = half, half_e, first + steps // 2, steps - steps // 2
-            else:
-                steps //= 2
-        after = e.copy()
-        self._call(y.copy(), after, first, 1, 1)
-        state = number.unpacked(y)[0][:, lane]
-        change = float(after[self.size + 1]) if self.loop.implicit else 0.0
-        orbit = block * number.lanes + lane if self.orbits > 1 else None
-        return _complaint(self.t0 + first * self.h, first + 1, state, change, orbit)
-
-
-def _complaint(t: float, step: int, state: Array, change: float, orbit: int | None) -> NonFiniteStateError:
-    if change:
-        what = f"the stages of step {step} do not converge (last change {change:.2g})"
-        why = "the step is too large for the iteration; take a smaller one, or Taylor()"
-    else:
-        what = f"the state stops being finite in step {step}"
-        why = "a collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()"
-    which = "" if orbit is None else f" of orbit {orbit}"
-    shown = ", ".join(f"{x:.6g}" for x in state[:8]) + (", …" if len(state) > 8 else "")
-    return NonFiniteStateError(f"{what}{which}, after t = {t:.9g} where (q, p) = ({shown}): {why}", t, state)
+    return found.first(len(beyond))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from fractions import Fraction
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -11,20 +11,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from canon.expression.arithmetic import FLOAT64, LONGDOUBLE, multiprecision
-
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
+    from canon.flow.event import Crossing
     from canon.flow.method import Method
-    from canon.kernel.machine import MachineType
-    from canon.kernel.structure import Equations
+    from canon.flow.task import Task
 
-__all__ = ["Samples", "Statistics", "Trajectory", "measured", "values_in"]
+__all__ = ["Array", "Interrupted", "Samples", "Statistics", "Trajectory", "joined"]
 
 Array = npt.NDArray[np.float64]
 
-_WIDE = bool(np.finfo(np.longdouble).nmant >= 63)
+Dense = Callable[[Array], Array]
+"""States (2n, times) at times."""
 
 
 @dataclass(frozen=True)
@@ -36,9 +35,9 @@ class Samples:
     t
         Sample times, shape (times,).
     y
-        States, shape (2n, times).
+        States, shape (2n, times, orbits).
     carried
-        What the states are beyond doubles: the state is y + carried, shape (2n, times).
+        What the states are beyond doubles: the state is y + carried, shape (2n, times, orbits).
     steps, evaluations
         Steps taken, and evaluations of the force (Taylor: of the series).
     step
@@ -48,6 +47,12 @@ class Samples:
     watched
         Where observables were followed inside the loop: mean, least and greatest change of each between
         samples, shape (observables, 3, times − 1, orbits).
+    beyond
+        What the method needs beyond the last state to go on with the same bits.
+    crossings
+        Events met.
+    dense
+        The motion of each orbit as a function of time, where it was asked for.
     """
 
     t: Array
@@ -59,6 +64,30 @@ class Samples:
     cpu_seconds: float
     compile_seconds: float
     watched: Array | None = None
+    beyond: Any = None
+    crossings: tuple[Crossing, ...] = ()
+    dense: tuple[Dense, ...] = ()
+
+
+def joined(before: Samples | None, after: Samples) -> Samples:
+    """Return a motion and its continuation, whose first sample is the last one before, as one motion."""
+    if before is None:
+        return after
+    watched = after.watched
+    if watched is not None and before.watched is not None:
+        watched = np.concatenate([before.watched, watched], axis=2)
+    return replace(
+        after,
+        t=np.concatenate([before.t, after.t[1:]]),
+        y=np.concatenate([before.y, after.y[:, 1:]], axis=1),
+        carried=np.concatenate([before.carried, after.carried[:, 1:]], axis=1),
+        steps=before.steps + after.steps,
+        evaluations=before.evaluations + after.evaluations,
+        cpu_seconds=before.cpu_seconds + after.cpu_seconds,
+        watched=watched,
+        crossings=before.crossings + after.crossings,
+        dense=before.dense + after.dense,
+    )
 
 
 @dataclass(frozen=True)
@@ -122,6 +151,10 @@ class Trajectory:
     statistics
         Where ``cadence`` was given: mean, least and greatest change of ``"energy"`` and the observables between
         one sample and the next, by name.
+    events
+        The events met, in their order.
+    task, samples
+        What was to be done, and what came out in full: what :meth:`resume` goes on from.
     """
 
     t: Array
@@ -140,6 +173,9 @@ class Trajectory:
     observables: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
     changes: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
     statistics: Mapping[str, Statistics] = field(default_factory=lambda: MappingProxyType({}))
+    events: tuple[Crossing, ...] = ()
+    task: Task | None = field(default=None, repr=False, compare=False)
+    samples: Samples | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return (
@@ -180,73 +216,111 @@ class Trajectory:
             raise ValueError("H depends on t, so its change is no error; energy_change has it")
         return self.energy_change / abs(self.energy[0]) if self.relative else self.energy_change
 
+    @property
+    def stopped(self) -> bool:
+        """Whether an event ended the motion."""
+        return bool(self.events) and self.events[-1].event.action == "stop"
 
-def measured(
-    system: Equations, nodes: Sequence[int], samples: Samples, precision: str
-) -> list[tuple[Array, Array]]:
-    """Return each node's values along a trajectory and their changes since the start.
+    def __call__(self, t: npt.ArrayLike) -> Array:
+        """Return the state at any time inside the span, shape (2n,), or at many, (2n, times).
 
-    They are evaluated with a 64-bit mantissa where the states are doubles and the platform's long double has
-    one (x86), with 40 digits otherwise, at the state with what it is beyond doubles: what is reported is
-    the trajectory's error, not the evaluation's.
+        Taylor, where ``propagate(…, dense=True)`` kept its polynomials: as accurate as the steps, that is to the
+        method's tolerance. Methods of fixed steps: the states of the run, bit for bit at its steps (implicit methods:
+        to round-off), from the sample before by steps of the run and one shorter step, which errs as one step of
+        the method.
+
+        Raises
+        ------
+        ValueError
+            A time lies outside the span; or what is needed was not kept.
+        """
+        from canon.flow.between import states_at
+
+        task, samples = self._origin
+        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        found = states_at(task, samples, times)[task.system.rows]
+        found = found[:, :, 0] if task.single else found
+        return found[:, 0] if np.ndim(t) == 0 else found
+
+    def resume(
+        self,
+        until: float | None = None,
+        *,
+        samples: int | None = None,
+        times: npt.ArrayLike | None = None,
+        progress: Callable[[float], None] | bool | None = None,
+    ) -> Trajectory:
+        """Go on with the motion and return all of it, from its first time on.
+
+        Methods of fixed steps take the steps that a run without the break would have taken: its states,
+        observables and statistics are the same bits. Taylor's are too where an interrupted run is completed; DOP853
+        chooses its first step anew.
+
+        Parameters
+        ----------
+        until
+            The new last time, a whole number of steps away; where not given, an interrupted run is completed.
+        samples, times
+            When to keep the state on the new part; as densely as before where not given.
+        progress
+            As :func:`canon.flow.propagate.propagate` takes it.
+
+        Raises
+        ------
+        ValueError
+            The motion has arrived and there is no new last time, or it lies behind, or not on a step; or an
+            event has ended the motion.
+
+        Examples
+        --------
+        >>> from canon import Hamiltonian, Splitting, coordinates, propagate
+        >>> import sympy
+        >>> (x,) = coordinates("x")
+        >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
+        >>> chosen = {"method": Splitting("verlet"), "step": 0.125}
+        >>> half = propagate(pendulum, [1.0, 0.0], (0, 10), samples=10, **chosen)
+        >>> whole = propagate(pendulum, [1.0, 0.0], (0, 20), samples=20, **chosen)
+        >>> bool((half.resume(20).y == whole.y).all())
+        True
+        """
+        from canon.flow.progress import reporting
+        from canon.flow.sampling import sampling
+        from canon.kernel.structure import exact
+
+        task, kept = self._origin
+        if self.stopped:
+            raise ValueError(f"the motion was ended by the event {self.events[-1].event}: it does not go on")
+        if until is not None:
+            last, end = task.plan.last(len(kept.t) - 1), exact(until, "until")
+            if len(kept.t) < len(task.plan.instants):
+                raise ValueError("complete the interrupted run first: run.resume()")
+            if samples is None and times is None:
+                density = (len(kept.t) - 1) / abs(kept.t[-1] - kept.t[0])
+                samples = max(1, round(density * abs(float(end - last))))
+            task = replace(task, plan=task.plan.continued(sampling((last, end), samples, times)))
+        elif len(kept.t) == len(task.plan.instants):
+            raise ValueError(f"the motion has arrived at t = {self.t[-1]:g}: say how far to go on, until=")
+        with reporting(progress) as report:
+            return task.trajectory(report, kept)
+
+    @property
+    def _origin(self) -> tuple[Task, Samples]:
+        if self.task is None or self.samples is None:
+            raise ValueError("this trajectory does not come from propagate(): its task is not known")
+        return self.task, self.samples
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a run; what was done up to the last sample is kept.
+
+    Parameters
+    ----------
+    motion
+        The motion so far; ``motion.resume()`` completes it.
     """
-    doubles = precision in ("single", "double", "compensated")
-    values = _wide_values if _WIDE and doubles else _many_digits
-    found = values(system, nodes, samples.t, samples.y, samples.carried)
-    return [(_rounded(value), _rounded(value - value[0])) for value in found]
 
-
-def values_in(
-    wide: MachineType, system: Equations, nodes: Sequence[int], t: float, y: Array, carried: Array
-) -> npt.NDArray[Any]:
-    """Return nodes at one time and states y + carried of shape (2n, orbits), as wide machine numbers.
-
-    The shape is (nodes, orbits, 1), or (nodes, orbits, 2) where a number is the sum of two doubles.
-    """
-    if not wide.pair:
-        arithmetic, dtype = (FLOAT64, np.float64) if wide.scalar == "double" else (LONGDOUBLE, np.longdouble)
-        point = [a.astype(dtype) + b.astype(dtype) for a, b in zip(y, carried, strict=True)]
-        found = system.graph.evaluate(
-            nodes, dict(zip(system.inputs, (*point, dtype(t)), strict=True)), arithmetic
+    def __init__(self, motion: Trajectory) -> None:
+        super().__init__(
+            f"interrupted at t = {motion.t[-1]:g}; the error's .motion has the motion so far, .motion.resume() goes on"
         )
-        return np.stack([np.broadcast_to(np.asarray(v, dtype=dtype), y.shape[1:]) for v in found])[
-            ..., np.newaxis
-        ]
-    exactly = np.stack(_many_digits(system, nodes, np.array([t]), y[:, np.newaxis], carried[:, np.newaxis]))[
-        :, 0
-    ]
-    high = exactly.astype(np.float64)
-    return np.stack([high, (exactly - high).astype(np.float64)], axis=-1)
-
-
-def _rounded(values: npt.NDArray[Any]) -> Array:
-    rounded = np.array(values, dtype=np.float64)
-    if not np.isfinite(rounded).all():
-        raise ArithmeticError(
-            "the energy or an observable is not finite at a sample: it left its own domain there"
-        )
-    return rounded
-
-
-def _wide_values(
-    system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
-) -> list[npt.NDArray[Any]]:
-    state = y.astype(np.longdouble) + carried.astype(np.longdouble)
-    times = t.astype(np.longdouble).reshape((-1,) + (1,) * (y.ndim - 2))
-    found = system.graph.evaluate(nodes, dict(zip(system.inputs, (*state, times), strict=True)), LONGDOUBLE)
-    return [np.broadcast_to(np.asarray(value, dtype=np.longdouble), y.shape[1:]) for value in found]
-
-
-def _many_digits(
-    system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
-) -> list[npt.NDArray[Any]]:
-    digits = multiprecision(40)
-    found = np.empty((len(nodes), *y.shape[1:]), dtype=object)
-    for place in np.ndindex(y.shape[1:]):
-        pairs = zip(y[(slice(None), *place)].tolist(), carried[(slice(None), *place)].tolist(), strict=True)
-        point = [*(Fraction(high) + Fraction(low) for high, low in pairs), Fraction(float(t[place[0]]))]
-        values = dict(zip(system.inputs, map(digits.number, point), strict=True))
-        for k, value in enumerate(system.graph.evaluate(nodes, values, digits)):
-            # Outside a function's real domain mpmath goes on with complex numbers.
-            found[(k, *place)] = value if hasattr(value, "man_exp") else np.nan
-    return list(found)
+        self.motion = motion

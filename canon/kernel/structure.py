@@ -41,6 +41,9 @@ class Equations:
         Whether moreover ∂²T/∂p² is constant, as Nyström methods ask.
     autonomous
         Whether t is absent from H.
+    varying
+        How many parameters differ from orbit to orbit: the last so many of q, which keep their values, and of
+        p, where each has a twin for the velocities to read.
     """
 
     graph: Graph
@@ -54,6 +57,13 @@ class Equations:
     separable: bool
     quadratic_kinetic: bool
     autonomous: bool
+    varying: int = 0
+
+    @property
+    def rows(self) -> list[int]:
+        """The components of a state that are coordinates and momenta rather than parameters."""
+        n = len(self.q) - self.varying
+        return [*range(n), *range(len(self.q), len(self.q) + n)]
 
     @property
     def inputs(self) -> tuple[Symbol, ...]:
@@ -75,6 +85,7 @@ def equations(
     p: Sequence[Symbol],
     t: Symbol,
     parameters: Mapping[str, Fraction],
+    varying: Sequence[Symbol] = (),
 ) -> Equations:
     """Return Hamilton's equations q̇ = ∂H/∂p, ṗ = −∂H/∂q, ready to compile.
 
@@ -86,6 +97,8 @@ def equations(
         Its coordinates, momenta and time.
     parameters
         An exact number for every other symbol, by name.
+    varying
+        Parameters that differ from orbit to orbit: part of the state, where they stay what they are.
 
     Raises
     ------
@@ -93,11 +106,12 @@ def equations(
         A symbol of H is neither a coordinate, a momentum, the time nor a given parameter.
     """
     q, p = tuple(q), tuple(p)
-    made = _equations(hamiltonian, q, p, t, parameters)
+    varying = tuple(varying)
+    made = _equations(hamiltonian, q, p, t, parameters, varying)
     if made.separable or not hamiltonian.is_polynomial(*q, *p):
         return made
     # (q + p)² − 2qp is separable only after multiplying out, which is cheap for polynomials.
-    expanded = _equations(sp.expand(hamiltonian), q, p, t, parameters)
+    expanded = _equations(sp.expand(hamiltonian), q, p, t, parameters, varying)
     return expanded if expanded.separable else made
 
 
@@ -107,24 +121,35 @@ def _equations(
     p: tuple[Symbol, ...],
     t: Symbol,
     parameters: Mapping[str, Fraction],
+    varying: tuple[Symbol, ...],
 ) -> Equations:
     graph = Graph()
-    node = _with_numbers(graph, hamiltonian, (*q, *p, t), parameters, "the Hamiltonian")
+    node = _with_numbers(graph, hamiltonian, (*q, *p, t, *varying), parameters, "the Hamiltonian")
     gradient = graph.gradient(node, (*q, *p))
     velocity = gradient[len(q) :]
     force = tuple(graph.negative(slope) for slope in gradient[: len(q)])
+    separable = not (_depends(graph, velocity, q) or _depends(graph, force, p))
+    quadratic = _is_linear(graph, velocity, p, (*q, t), varying)
+    # A drift reads momenta only: what it needs of the parameters lies there once more.
+    twins: tuple[Symbol, ...] = tuple(sp.Dummy(each.name, real=True) for each in varying)
+    if varying:
+        stays = (graph.number(Fraction(0)),) * len(varying)
+        moved = {graph.symbol(a): graph.symbol(b) for a, b in zip(varying, twins, strict=True)}
+        velocity = (*graph.substitute(velocity, moved), *stays)
+        force = (*force, *stays)
     return Equations(
         graph=graph,
-        q=q,
-        p=p,
+        q=(*q, *varying),
+        p=(*p, *twins),
         t=t,
         parameters=parameters,
         hamiltonian=node,
-        velocity=velocity,
-        force=force,
-        separable=not (_depends(graph, velocity, q) or _depends(graph, force, p)),
-        quadratic_kinetic=_is_linear(graph, velocity, p, (*q, t)),
+        velocity=tuple(velocity),
+        force=tuple(force),
+        separable=separable,
+        quadratic_kinetic=quadratic,
         autonomous=t not in graph.symbols(node),
+        varying=len(varying),
     )
 
 
@@ -134,14 +159,18 @@ def _depends(graph: Graph, nodes: Sequence[int], symbols: Sequence[Symbol]) -> b
 
 
 def _is_linear(
-    graph: Graph, velocity: Sequence[int], p: tuple[Symbol, ...], others: tuple[Symbol, ...]
+    graph: Graph,
+    velocity: Sequence[int],
+    p: tuple[Symbol, ...],
+    others: tuple[Symbol, ...],
+    constants: tuple[Symbol, ...],
 ) -> bool:
     """Return whether velocities are linear in the momenta with constant coefficients."""
     if _depends(graph, velocity, others):
         return False
     momenta = frozenset[Any](p)
     return not any(
-        graph.symbols(slope)
+        graph.symbols(slope) - set(constants)
         for v in velocity
         for slope in graph.gradient(v, tuple(momenta & graph.symbols(v)))
     )

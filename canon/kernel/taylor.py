@@ -5,6 +5,7 @@ from __future__ import annotations
 import decimal
 import math
 from fractions import Fraction
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
     from canon.expression.graph import Graph
     from canon.kernel.structure import Equations
 
-__all__ = ["heyoka_equations", "heyoka_expressions", "heyoka_number", "taylor_integrator"]
+__all__ = [
+    "heyoka_equations", "heyoka_expressions", "heyoka_functions", "heyoka_number", "taylor_integrator",
+]  # fmt: skip
 
 _SAME_NAME = (
     "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
@@ -109,16 +112,26 @@ def heyoka_expressions(
     return [done[node] for node in nodes]
 
 
+def heyoka_functions(
+    system: Equations, nodes: Sequence[int], number: Callable[[Fraction], Any] = float
+) -> list[Any]:
+    """Return functions of (q, p, t) in the variables of :func:`heyoka_equations`."""
+    import heyoka as hy
+
+    return heyoka_expressions(system.graph, nodes, {**_variables(system), system.t: hy.time}, number)
+
+
 def heyoka_equations(system: Equations, number: Callable[[Fraction], Any] = float) -> list[tuple[Any, Any]]:
     """Return Hamilton's equations as heyoka takes them: pairs of a variable and its rate, (q, p) in order."""
+    rates = heyoka_functions(system, (*system.velocity, *system.force), number)
+    return list(zip(_variables(system).values(), rates, strict=True))
+
+
+def _variables(system: Equations) -> dict[Symbol, Any]:
     import heyoka as hy
 
     names = [f"{letter}{i}" for letter in "qp" for i in range(len(system.q))]
-    variables = dict(zip((*system.q, *system.p), map(hy.expression, names), strict=True))
-    rates = heyoka_expressions(
-        system.graph, (*system.velocity, *system.force), {**variables, system.t: hy.time}, number
-    )
-    return list(zip(variables.values(), rates, strict=True))
+    return dict(zip((*system.q, *system.p), map(hy.expression, names), strict=True))
 
 
 def taylor_integrator(
@@ -127,6 +140,7 @@ def taylor_integrator(
     t0: Fraction,
     tolerance: float | None,
     number: Callable[[Fraction], Any] = float,
+    events: Mapping[str, Sequence[Any]] = MappingProxyType({}),
 ) -> Any:
     """Return heyoka's adaptive integrator of Hamilton's equations.
 
@@ -140,6 +154,8 @@ def taylor_integrator(
         Relative tolerance of a step; the rounding unit where None.
     number
         Makes the numbers it computes with; see :func:`heyoka_number`.
+    events
+        heyoka's ``t_events`` and ``nt_events``.
     """
     import heyoka as hy
 
@@ -153,4 +169,5 @@ def taylor_integrator(
         fp_type=type(state[0]),
         compact_mode=number is not float or size > _COMPACT_FROM,
         **options,
+        **events,
     )

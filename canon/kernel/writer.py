@@ -81,6 +81,13 @@ class Writer:
         rest = self.let(f"fsub x86_fp80 {value}, {self.let(f'fpext double {high} to x86_fp80')}")
         return self.paired(high, self.let(f"fptrunc x86_fp80 {rest} to double"))
 
+    def as_double(self, value: str) -> str:
+        """Round a scalar to a double register: its sign is kept, unless it is too small for a double."""
+        if self.number.pair:
+            return self.let(f"extractvalue {self.number.name} {value}, 0")
+        narrowing = {"float": "fpext", "x86_fp80": "fptrunc"}.get(self.number.scalar)
+        return self.let(f"{narrowing} {self.number.scalar} {value} to double") if narrowing else value
+
     def paired(self, high: str, low: str) -> str:
         """Make a double-double number of its two parts."""
         kind, base = f"{{ {self.number.base}, {self.number.base} }}", self.number.base

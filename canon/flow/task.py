@@ -1,0 +1,131 @@
+"""One run as a value: what to integrate, how, and what to keep; carried out, interrupted, resumed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from canon.flow.adaptive import dop853_motion
+from canon.flow.event import Event, prepared
+from canon.flow.fixed import compiled_loop, fixed_steps, watch_for
+from canon.flow.measure import measured
+from canon.flow.method import DOP853, FixedStep, Method, Taylor
+from canon.flow.precision import fixed_precision
+from canon.flow.series import taylor_motion
+from canon.flow.trajectory import Array, Interrupted, Samples, Statistics, Trajectory, joined
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from canon.flow.sampling import Plan
+    from canon.kernel.structure import Equations
+
+__all__ = ["Task"]
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What a run is to do.
+
+    Parameters
+    ----------
+    system, method, precision
+        What to integrate, how, and in which numbers.
+    states
+        The starting states as sums of two doubles, each of shape (2n, orbits), parameters that vary included.
+    single
+        Whether one state was given rather than several.
+    plan
+        Steps and sample times.
+    names, nodes
+        The observables; H, then they, on the system's graph.
+    cadence, events, dense
+        As :func:`canon.flow.propagate.propagate` takes them.
+    """
+
+    system: Equations
+    method: Method
+    precision: str | int | None
+    states: tuple[Array, Array]
+    single: bool
+    plan: Plan
+    names: tuple[str, ...]
+    nodes: tuple[int, ...]
+    cadence: int | None
+    events: tuple[Event, ...]
+    dense: bool
+
+    def trajectory(self, progress: Callable[[float], None], so_far: Samples | None = None) -> Trajectory:
+        """Carry the task out, from the start or from what was done before.
+
+        Raises
+        ------
+        Interrupted
+            Ctrl-C; the error has the motion as far as it came.
+        NonFiniteStateError
+            The motion can't be continued.
+        """
+        found = joined(so_far, self._continued(progress, so_far))
+        made = self._made(found)
+        if len(found.t) < len(self.plan.instants) and not made.stopped:
+            raise Interrupted(made)
+        return made
+
+    def _continued(self, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
+        states = self.states if so_far is None else (so_far.y[:, -1], so_far.carried[:, -1])
+        events, orbits = prepared(self.system, self.events), states[0].shape[1]
+        if isinstance(self.method, FixedStep):
+            loop = compiled_loop(self.system, self.method, fixed_precision(self.precision), orbits)
+            watch = None
+            if self.cadence is not None:
+                t0 = self.plan.start
+                watch = watch_for(self.system, self.nodes, loop, self.states, t0, self.cadence)
+            return fixed_steps(
+                self.system, loop, self.method, states, self.plan, progress, watch, so_far, events
+            )
+        if isinstance(self.method, DOP853):
+            return dop853_motion(self.system, states[0], self.plan, self.method, progress, so_far)
+        precision, dense = self.precision or "double", self.dense
+        return taylor_motion(
+            self.system, states, self.plan, self.method, precision, progress, so_far, events, dense=dense
+        )
+
+    @property
+    def precision_name(self) -> str:
+        """The precision's keyword."""
+        if isinstance(self.method, Taylor | DOP853):
+            return str(self.precision or "double")
+        return fixed_precision(self.precision).name
+
+    def _made(self, found: Samples) -> Trajectory:
+        watched, kept = found.watched, found
+        if self.single:
+            watched = None if watched is None else watched[..., 0]
+            found = replace(found, y=found.y[:, :, 0], carried=found.carried[:, :, 0])
+        (energy, change), *rest = measured(self.system, self.nodes, found, self.precision_name)
+        rows, names = self.system.rows, ("energy", *self.names)
+        all_rows = len(rows) == len(found.y)
+        return Trajectory(
+            t=found.t,
+            y=found.y if all_rows else found.y[rows],
+            carried=found.carried if all_rows else found.carried[rows],
+            energy=energy,
+            energy_change=change,
+            method=self.method,
+            precision=self.precision_name,
+            step=found.step,
+            steps=found.steps,
+            evaluations=found.evaluations,
+            cpu_seconds=found.cpu_seconds,
+            compile_seconds=found.compile_seconds,
+            autonomous=self.system.autonomous,
+            observables=MappingProxyType(dict(zip(self.names, (value for value, _ in rest), strict=True))),
+            changes=MappingProxyType(dict(zip(self.names, (each for _, each in rest), strict=True))),
+            statistics=MappingProxyType(
+                {} if watched is None else {k: Statistics(*v) for k, v in zip(names, watched, strict=True)}
+            ),
+            events=found.crossings,
+            task=self,
+            samples=kept,
+        )

@@ -1,0 +1,80 @@
+"""Events inside the loop: step until a function of the state may have crossed zero."""
+
+from __future__ import annotations
+
+import ctypes
+import dataclasses
+from typing import TYPE_CHECKING
+
+from canon.kernel.loop import compiled_function
+from canon.kernel.machine import DOUBLE
+from canon.kernel.writer import Writer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.kernel.llvm import MachineCode
+    from canon.kernel.loop import Loop
+    from canon.kernel.structure import Equations
+
+__all__ = ["sentry_function"]
+
+_POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
+_SIGNATURE = (*[_POINTER] * 8, *[_INTEGER] * 2)
+_PARAMETERS = ", ".join(
+    (
+        "ptr %advance, ptr %y, ptr %e, ptr %c, ptr %before_y, ptr %before_e",
+        "ptr %kept, ptr %done",
+        "i64 %first, i64 %steps",
+    )
+)
+
+
+def sentry_function(
+    system: Equations, values: Sequence[int], rates: Sequence[int], loop: Loop
+) -> MachineCode:
+    """Compile ``drive(advance, y, e, c, before_y, before_e, kept, done, first, steps)``.
+
+    It calls the loop's own machine code for one step at a time, so that the motion is bit for bit the one
+    without it, and returns after the first step in which some event may have happened: its function g
+    changed sign, or g approached zero at the start of the step and recedes at its end. ``before`` has the
+    state from which that step started, ``done`` the number of steps taken since step 0.
+
+    Parameters
+    ----------
+    system
+        The equations.
+    values, rates
+        The nodes of each g and of dg/dt along the motion.
+    loop
+        A loop for one orbit. ``kept`` has the direction of time, ±1, and for each event the sign that g has
+        had last (0: not known yet) and dg/dt, positive where g rises in the order of passing.
+    """
+    w = Writer(dataclasses.replace(loop.number, lanes=1))
+    size = len(system.inputs) - 1
+    d = w.in_numbers(DOUBLE)
+    zero, direction = "0.0", d.load("%kept", 0)
+    with w.loop("%first", w.let("add i64 %first, %steps")) as step:
+        w.copy("%y", "%before_y", size)
+        w.copy("%e", "%before_e", loop.carry)
+        w.line(f"call void %advance(ptr %y, ptr %e, ptr %c, i64 {step}, i64 1, i64 1)")
+        after = w.let(f"add i64 {step}, 1")
+        w.line(f"store i64 {after}, ptr %done")
+        state = [w.load("%y", i) for i in range(size)]
+        if loop.compensated:
+            state = [w.algebra("add", y, w.load("%e", i)) for i, y in enumerate(state)]
+        clock = w.multiply_add(w.whole(after), w.load("%c", 1), w.load("%c", 0))
+        found = [w.as_double(x) for x in w.program(system.program((*values, *rates)), [*state, clock])]
+        flag = "false"
+        for i, (value, rate) in enumerate(zip(found[: len(values)], found[len(values) :], strict=True)):
+            side, before = d.load("%kept", 1 + 2 * i), d.load("%kept", 2 + 2 * i)
+            passed = d.algebra("mul", direction, rate)
+            d.store(passed, "%kept", 2 + 2 * i)
+            crossed = d.less(d.algebra("mul", side, value), zero)
+            came, goes = d.algebra("mul", side, before), d.algebra("mul", side, passed)
+            dipped = w.let(f"and i1 {d.less(came, zero)}, {d.less(zero, goes)}")
+            unknown = d.equal(side, zero)
+            for each in (crossed, dipped, unknown):
+                flag = w.let(f"or i1 {flag}, {each}")
+        w.leave_if(flag)
+    return compiled_function(w, "drive", _PARAMETERS, _SIGNATURE)
