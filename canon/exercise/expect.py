@@ -62,7 +62,7 @@ def expect(kind: str, /, *, budget: float = DEFAULT_BUDGET, **keys: Any) -> None
     said = {key: _written(value, q) for key, value in keys.items()}
     claim = claim_from({"id": "answer", **said, "kind": kind, "budget": Decimal(str(budget))})
     if claim.errors:
-        raise SheetError(claim.errors[0].brief)
+        raise SheetError("; ".join(error.brief for error in claim.errors))
     judgement = _worker(os.getpid()).judge(claim)
     if judgement.status == "undecided":
         raise Undecided(f"neither proved nor refuted: {judgement.known}")
