@@ -22,6 +22,7 @@ COMMANDS = {
     "check": "judge sheets of claims about mechanics: right or wrong, and where",
     "drift": "run long and measure how the energy error of a method grows",
     "scene": "list ready systems; show one's equations, run it, draw it",
+    "study": "run, resume, export and report studies of many cases, on one machine or many",
     "tour": "both on bundled examples, in less than half a minute",
 }
 EXAMPLES = """\

@@ -1,0 +1,270 @@
+"""``canon study``: run, watch, resume, export and report studies of many cases."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Sequence
+    from concurrent.futures import Executor
+
+    from canon.study.result import Result
+    from canon.study.run import Status
+    from canon.study.store import Store
+
+__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
+
+DESCRIPTION = """\
+Run every combination of systems, starts, parameters, methods and steps of a study and keep what comes of it in one
+SQLite file. What is finished is never run again; what was interrupted, killed or cut off goes on from its last
+checkpoint, to the same bits.
+"""
+EXAMPLES = """\
+a study (TOML):
+
+  [system.quartic]                       a Hamiltonian of one's own, in canon's expression language
+  H = "p**2/(2*m) + k*q**4/4"
+  q = "q"
+  p = "p"
+  parameters = { m = 1.0, k = 2.0 }
+  starts = { near = [0.5, 0.0], far = [2.0, 0.0] }
+
+  [[study]]                              every combination of what is listed
+  system = ["quartic", "simple-pendulum"]
+  method = ["verlet", "kahan-li-8", { gauss = 4 }, "taylor"]
+  step = [0.05, 0.1, 0.2]
+  until = 10000.0
+
+examples:
+  canon study run drifts.toml --jobs 4              keeps its results in drifts.sqlite
+  canon study status drifts.sqlite --plot now.png   how far it is; every case a cell
+  canon study resume drifts.sqlite
+  canon study export drifts.sqlite drifts.csv       or .parquet, .nc
+  canon study report drifts.sqlite drifts.html      one page, figures inside
+  canon study run drifts.toml --share 3/16 --store part3.sqlite    one of sixteen jobs of a queue
+  canon study merge drifts.sqlite part*.sqlite
+
+exit status: 0 every case finished, 1 some failed, 3 some are pending, 2 bad usage or a file that can't be used
+"""
+
+FORMATS = {".csv": "CSV", ".parquet": "Parquet", ".nc": "NetCDF"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what the command reads."""
+    actions = parser.add_subparsers(metavar="action", dest="action", required=True)
+    run_ = actions.add_parser("run", help="run the cases of a study file that are not finished")
+    run_.add_argument("study", metavar="STUDY.toml", type=Path, help="the study")
+    run_.add_argument("--store", metavar="FILE", type=Path, help="keep the results here (STUDY.sqlite)")
+    run_.add_argument("--share", metavar="K/N", type=_share, help="only the K-th of N shares of the cases")
+    run_.add_argument("--retry", action="store_true", help="run failed cases again")
+    resume = actions.add_parser("resume", help="run the pending cases of a results file")
+    resume.add_argument("--retry", action="store_true", help="run failed cases again")
+    status = actions.add_parser("status", help="tell how far a study is, and why cases failed")
+    export = actions.add_parser("export", help="write all cases as a table: .csv, .parquet or .nc (NetCDF)")
+    report = actions.add_parser("report", help="write one HTML page with the figures inside")
+    merge = actions.add_parser("merge", help="add the cases and results of other files to one")
+    for action in (resume, status, export, report, merge):
+        action.add_argument("store", metavar="FILE", type=Path, help="the results file")
+    for action in (run_, resume):
+        action.add_argument("--jobs", metavar="N", type=_jobs, default=1, help="worker processes (1)")
+        action.add_argument("--dask", metavar="ADDRESS", help="run on the dask cluster with this scheduler")
+        action.add_argument(
+            "--checkpoint", metavar="S", type=_seconds, default=30.0, help="seconds between checkpoints (30)"
+        )
+    for action in (run_, resume, status):
+        action.add_argument("--plot", metavar="IMAGE", type=Path, help="draw the study, every case a cell")
+    for action in (export, report):
+        action.add_argument("output", metavar="OUTPUT", type=Path, help="where to write it")
+    merge.add_argument("others", metavar="OTHER", type=Path, nargs="+", help="files to add")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do what is asked, print how far the study is, return the exit status."""
+    from canon.plot import PlotError
+    from canon.study.comparison import StudyError
+    from canon.study.export import ExportError
+
+    actions = {"run": _run, "resume": _resume, "status": _status, "export": _export, "report": _report}
+    try:
+        return {**actions, "merge": _merge}[arguments.action](arguments)
+    except (StudyError, PlotError, ExportError, OSError) as error:
+        print(f"canon study: {error}", file=sys.stderr)
+        return 2
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from canon.study.definition import read_study
+    from canon.study.run import run_study
+    from canon.study.store import Store
+
+    study = read_study(arguments.study)
+    if arguments.share is not None:
+        study = study.share(*arguments.share)
+    store = Store(arguments.store or arguments.study.with_suffix(".sqlite"))
+    _forget_failed(store, arguments)
+    with _executor(arguments) as executor, _progress() as progress:
+        run_study(study, store, executor, progress, arguments.checkpoint)
+    return _told(store, arguments.plot)
+
+
+def _resume(arguments: argparse.Namespace) -> int:
+    from canon.study.run import resume
+
+    store = _existing(arguments.store)
+    _forget_failed(store, arguments)
+    with _executor(arguments) as executor, _progress() as progress:
+        resume(store, executor, progress, arguments.checkpoint)
+    return _told(store, arguments.plot)
+
+
+def _status(arguments: argparse.Namespace) -> int:
+    return _told(_existing(arguments.store), arguments.plot)
+
+
+def _export(arguments: argparse.Namespace) -> int:
+    from canon.study.comparison import StudyError
+    from canon.study.export import csv_of, write_netcdf, write_parquet
+
+    kind, store = FORMATS.get(arguments.output.suffix.lower()), _existing(arguments.store)
+    if kind is None:
+        known = ", ".join(f"{ending} ({name})" for ending, name in FORMATS.items())
+        raise StudyError(f"{arguments.output}: the ending of its name says the format; there are {known}")
+    if kind == "CSV":
+        arguments.output.write_text(csv_of(store), encoding="utf-8")
+    else:
+        {"Parquet": write_parquet, "NetCDF": write_netcdf}[kind](store, arguments.output)
+    print(f"{kind}: {arguments.output}")
+    return 0
+
+
+def _report(arguments: argparse.Namespace) -> int:
+    from canon.plot.report import study_report
+    from canon.study.case import versions
+    from canon.study.result import results_of
+
+    page = study_report(results_of(_existing(arguments.store)), arguments.store.stem, versions())
+    arguments.output.write_text(page, encoding="utf-8")
+    print(f"report: {arguments.output}")
+    return 0
+
+
+def _merge(arguments: argparse.Namespace) -> int:
+    from canon.study.store import Store
+
+    store = Store(arguments.store)
+    for other in arguments.others:
+        store.add_from(_existing(other))
+    return _told(store, None)
+
+
+def _existing(path: Path) -> Store:
+    """Return the store in a file; reading should not make an empty one where a name is mistyped."""
+    from canon.study.store import Store, StoreError
+
+    if not path.exists():
+        raise StoreError(f"there is no file {path}; 'canon study run STUDY.toml' makes one")
+    return Store(path)
+
+
+def _forget_failed(store: Store, arguments: argparse.Namespace) -> None:
+    if arguments.retry:
+        store.forget([key for key, record in store.records().items() if record.failure])
+
+
+def _told(store: Store, plot: Path | None) -> int:
+    """Print how far a study is and why cases failed; draw it where that is asked for."""
+    from canon.study.result import State, results_of
+    from canon.study.run import status_of
+
+    status, results = status_of(store), results_of(store)
+    print(f"{store.path}: {status}")
+    for result in results:
+        if result.state is State.FAILED:
+            print(f"  failed: {result.motion}, {result.setting}: {result.failure}")
+        elif result.done and result.state is State.PENDING:
+            print(f"  begun: {result.motion}, {result.setting}: {100 * result.done:.0f} % done")
+    if plot is not None and results:
+        _draw(results, plot)
+    return 1 if status.failed else 3 if status.pending else 0
+
+
+def _draw(results: Sequence[Result], plot: Path) -> None:
+    from canon.plot import plot_study_heatmap
+
+    figure = plot_study_heatmap(results).get_figure(root=True)
+    if figure is not None:
+        figure.savefig(plot, dpi=150, bbox_inches="tight")
+    print(f"figure: {plot}")
+
+
+@contextmanager
+def _executor(arguments: argparse.Namespace) -> Generator[Executor | None]:
+    """Start what the cases are run on: worker processes, a cluster's client, or nothing."""
+    if arguments.dask:
+        from canon.study.comparison import StudyError
+
+        try:
+            from distributed import Client
+        except ImportError as missing:
+            raise StudyError("a dask cluster needs: pip install canon-mechanics[cluster]") from missing
+        with Client(arguments.dask) as client:
+            yield client.get_executor()
+    elif arguments.jobs > 1:
+        import multiprocessing
+        from concurrent.futures import ProcessPoolExecutor
+
+        with ProcessPoolExecutor(arguments.jobs, multiprocessing.get_context("spawn")) as pool:
+            yield pool
+    else:
+        yield None
+
+
+@contextmanager
+def _progress() -> Generator[Callable[[Status], None] | None]:
+    """Show a bar with the remaining time on stderr; nothing when piped or where tqdm is not installed."""
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        yield None
+        return
+    if not sys.stderr.isatty():
+        yield None
+        return
+    with tqdm(unit="case", leave=False) as bar:
+
+        def show(status: Status) -> None:
+            if bar.total is None:
+                bar.initial = status.finished + status.failed - 1
+                bar.reset(total=status.total)
+            bar.set_postfix_str(f"{status.failed} failed" if status.failed else "")
+            bar.update(status.finished + status.failed - bar.n)
+
+        yield show
+
+
+def _share(text: str) -> tuple[int, int]:
+    number, slash, of = text.partition("/")
+    if not (slash and number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise argparse.ArgumentTypeError(f"{text!r} should be K/N, such as 3/16")
+    return int(number), int(of)
+
+
+def _jobs(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= 1024:
+        raise argparse.ArgumentTypeError(f"{text!r} should be a whole number from 1 to 1024")
+    return int(text)
+
+
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = -1.0
+    if not 0 <= seconds < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} should be a number of seconds, 0 or more")
+    return seconds
