@@ -10,6 +10,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import sympy as sp
 
 from canon.plot import COLOURS, GREY, PlotError
 
@@ -119,7 +120,7 @@ class _Drawing:
         points = self.picture.points
         self.flat = len(points[0]) == 2
         node = motion.equation.node
-        nodes = [node(x, "the picture") for point in points for x in point]
+        nodes = [node(sp.sympify(x, strict=True), "the picture") for point in points for x in point]
         values = motion.values(nodes).astype(np.float64).reshape(len(points), len(points[0]), -1)
         self.places: Array = values if self.flat else np.array([_projected(place) for place in values])
 
@@ -147,7 +148,8 @@ def _picture(motion: Motion) -> Picture:
     scene = motion.scene
     if scene.picture_of is not None:
         return scene.picture_of(scene.symbols)
-    point: Point = tuple(scene.q[:2]) if len(scene.q) > 1 else (scene.q[0], scene.p[0])
+    first, *others = scene.q
+    point: Point = (first, others[0] if others else first.momentum)
     return Picture(masses=(point,))
 
 

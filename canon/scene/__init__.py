@@ -1,7 +1,7 @@
 """Ready systems, one small file a family; each is data plus its known truths.
 
-A scene is written by filling in :class:`Scene` in the file of its family and naming it in that file's ``SCENES``. It says
-what it is (parameters with units and real values, starts), how it moves (``L_of``, ``H_of`` or ``bodies_of`` and
+A scene is written by filling in :class:`Scene` in the file of its family and naming it in that file's ``SCENES``. It
+says what it is (parameters with units and real values, starts), how it moves (``L_of``, ``H_of`` or ``bodies_of`` and
 ``V_of``, with ``forces_of``, ``holonomic_of``, ``nonholonomic_of``), what is known of it (``integrals``, ``solutions``,
 with sources) and what it looks like (``picture_of``). :func:`canon.scene.check.check` holds it to that.
 

@@ -79,10 +79,11 @@ def _on_the_ellipse(value: Mapping[str, float], t: Array, eccentricity: float) -
     import numpy as np
 
     mean = math.sqrt(value["mu"]) * t
-    E = mean + eccentricity * np.sin(mean)
+    anomaly = mean + eccentricity * np.sin(mean)
     for _ in range(50):
-        E = E - (E - eccentricity * np.sin(E) - mean) / (1.0 - eccentricity * np.cos(E))
-    return np.cos(E) - eccentricity, math.sqrt(1.0 - eccentricity**2) * np.sin(E)
+        missing = anomaly - eccentricity * np.sin(anomaly) - mean
+        anomaly = anomaly - missing / (1.0 - eccentricity * np.cos(anomaly))
+    return np.cos(anomaly) - eccentricity, math.sqrt(1.0 - eccentricity**2) * np.sin(anomaly)
 
 
 def _year(value: Mapping[str, float]) -> float:

@@ -70,14 +70,14 @@ def toda(masses: int, starts: tuple[Start, ...], name: str = "") -> Scene:
     --------
     >>> ring = toda(4, (Start("a", "", q=(0.1, 0.0, 0.0, 0.0), p=(0.0, 0.1, 0.0, -0.1)),))
     >>> [integral.name for integral in ring.integrals]
-    ['tr L', 'tr L^3/3', 'tr L^4/4']
+    ['total momentum', 'cubic integral', 'tr L^4/4']
     """
     if masses < 3:
         raise SceneError(f"a ring of {masses} masses: three at least make a ring")
     powers = [k for k in range(1, masses + 1) if k != 2]  # tr L²/2 is the energy
 
     def integral(power: int) -> Integral:
-        title = f"tr L^{power}/{power}" if power > 1 else "tr L"
+        title = {1: "total momentum", 3: "cubic integral"}.get(power, f"tr L^{power}/{power}")
         return Integral(title, lambda s: _lax_trace(s, masses, power), 1e-11 if power > 2 else 1e-13, _DIGITS)
 
     return Scene(

@@ -246,7 +246,7 @@ def _hamiltonian_equation(scene: Scene) -> Equation:
     H = Field(graph, x, t, numbers, ()).node(hamiltonian.H, "the Hamiltonian")
     slopes = graph.gradient(H, x)
     rates = (*slopes[n:], *map(graph.negative, slopes[:n]))
-    named = dict(zip(map(velocity, hamiltonian.q), slopes[n:], strict=True))
+    named: dict[Symbol, int] = dict(zip(map(velocity, hamiltonian.q), slopes[n:], strict=True))
     field = Field(graph, x, t, numbers, rates)
     return _with_work(Equation(field, H, graph.zero, (), named), graph.derivative(H, t))
 

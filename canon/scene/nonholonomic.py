@@ -204,10 +204,11 @@ def _disc_picture(s: SimpleNamespace) -> Picture:
     from sympy import sin
 
     from canon.mechanics.body import euler_rotation
+    from canon.mechanics.substitution import entry
 
     R = euler_rotation(s.phi, s.theta, s.psi)
     centre = (s.x, s.y, s.R * sin(s.theta))
-    first, second = ([s.R * R[i, j] for i in range(3)] for j in range(2))
+    first, second = ([s.R * entry(R, i, j) for i in range(3)] for j in range(2))
     spoke = (centre, tuple(c + a for c, a in zip(centre, first, strict=True)))
     return Picture(masses=(centre,), bars=(ring(centre, first, second), spoke))
 

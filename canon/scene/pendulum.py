@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from sympy import Expr
 
-    from canon.scene.picture import Point
-
     Array = NDArray[np.float64]
 
 __all__ = ["SCENES"]
@@ -32,7 +30,7 @@ def _small_swing(value: Mapping[str, float]) -> float:
     return 2.0 * math.pi * math.sqrt(value["l"] / value["g"])
 
 
-def below(length: Expr, angle: Expr) -> Point:
+def below(length: Expr, angle: Expr) -> tuple[Expr, Expr]:
     """Return the point at this distance from the origin and angle from the downward vertical."""
     from sympy import cos, sin
 

@@ -32,9 +32,10 @@ __all__ = ["SCENES"]
 def _axes(s: SimpleNamespace) -> list[tuple[Expr, Expr, Expr]]:
     """Return the body's axes along fixed ones."""
     from canon.mechanics.body import euler_rotation
+    from canon.mechanics.substitution import entry
 
     R = euler_rotation(s.phi, s.theta, s.psi)
-    return [(R[0, i], R[1, i], R[2, i]) for i in range(3)]
+    return [(entry(R, 0, i), entry(R, 1, i), entry(R, 2, i)) for i in range(3)]
 
 
 def _symmetric_body(s: SimpleNamespace) -> Sequence[Body]:

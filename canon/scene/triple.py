@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
+    from canon.expression.symbol import Coordinate
     from canon.mechanics.body import Body
-    from canon.scene.picture import Point
 
 __all__ = ["SCENES"]
 
 
-def _arms(s: SimpleNamespace) -> list[tuple[Expr, Expr, Expr]]:
+def _arms(s: SimpleNamespace) -> list[tuple[Expr, Expr, Coordinate]]:
     """Return mass, length and angle of each arm, from above."""
     return [(s.m1, s.l1, s.theta1), (s.m2, s.l2, s.theta2), (s.m3, s.l3, s.theta3)]
 
 
-def _places(s: SimpleNamespace) -> list[Point]:
+def _places(s: SimpleNamespace) -> list[tuple[Expr, Expr]]:
     steps = [below(length, angle) for _, length, angle in _arms(s)]
     return list(accumulate(steps, lambda a, b: (a[0] + b[0], a[1] + b[1])))
 
