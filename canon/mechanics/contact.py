@@ -14,6 +14,7 @@ from canon.expression.symbol import time_derivative, velocity
 from canon.mechanics.claim import differ
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.embedding import embedded, satisfies
+from canon.mechanics.routh import routhian
 from canon.mechanics.substitution import exchanged, substitute
 
 if TYPE_CHECKING:
@@ -66,26 +67,31 @@ def multiplier_along(
     speed: Expr = sp.S.Zero,
     which: int = 0,
     domain: Domain | None = None,
+    others: Mapping[Symbol, Expr] | None = None,
 ) -> Expr:
-    """Return λ along a motion with one degree of freedom, its velocity eliminated by the energy.
+    """Return λ along a motion as a function of one coordinate, velocities eliminated by energy and momenta.
 
-    The contact of f ≥ 0 ends at the first zero of the result.
+    The contact of f ≥ 0 ends at the first zero of the result. Beside the coordinate s only ignorable ones may be left
+    in contact: their constant momenta give their velocities, and Jacobi's energy of Routh's function gives ṡ².
 
     Parameters
     ----------
     constrained, places, which
         As for :func:`multiplier_in_contact`.
     s
-        The one coordinate left in contact.
+        The coordinate that the result is to depend on.
     start, speed
         Where and how fast the motion starts.
     domain
         Where the energy is meant.
+    others
+        The coordinates left in contact besides, and how fast each changes at the start.
 
     Raises
     ------
     ValueError
-        Where Jacobi's energy is not conserved, or λ depends on the direction of motion.
+        Where Jacobi's energy is not conserved, one of the others is not ignorable, or λ depends on the direction of
+        motion.
 
     Examples
     --------
@@ -101,17 +107,29 @@ def multiplier_along(
     g*m*(3*cos(theta) - 2)
     """
     (s,) = coordinate_symbols(s)
-    reduced = embedded(constrained.lagrangian, places, [s])
+    turning = plain_places(others or {}, constrained.lagrangian.q, (s,), constrained.lagrangian.t)
+    whole = embedded(constrained.lagrangian, places, [s, *turning])
+    started = {s: sp.sympify(start, strict=True), velocity(s): sp.sympify(speed, strict=True)}
+    started |= {velocity(x): rate for x, rate in turning.items()}
+    reduction = routhian(whole, tuple(turning), domain=domain)
+    momenta = (substitute(whole.L.diff(velocity(x)), started) for x in turning)
+    conserved = dict(zip(reduction.momenta, momenta, strict=True))
+    reduced = reduction.lagrangian
     _conserves_energy(reduced, domain)
-    v, E = velocity(s), reduced.jacobi_energy
+    v, E = velocity(s), exchanged(reduced.jacobi_energy, conserved)
     at_rest = exchanged(E, {v: sp.S.Zero})
     quadratic = E.diff(v, 2) / 2
     if quadratic.has(v):
         raise ValueError(f"the energy {E} is not quadratic in {v}, so {v}² does not follow from it alone")
-    squared = (
-        substitute(E, {s: sp.sympify(start, strict=True), v: sp.sympify(speed, strict=True)}) - at_rest
-    ) / quadratic
-    multiplier = sp.expand(multiplier_in_contact(constrained, places, (s,), which))
+    squared = (substitute(E, started) - at_rest) / quadratic
+    rates = zip(turning, reduction.ignorable_velocities, strict=True)
+    through = {velocity(x): exchanged(rate, conserved) for x, rate in rates}
+    reaction = exchanged(multiplier_in_contact(constrained, places, (s, *turning), which), through)
+    if reaction.has(*turning):
+        raise ValueError(
+            f"the multiplier {reaction} depends on {', '.join(map(str, turning))}; take multiplier_in_contact"
+        )
+    multiplier = sp.expand(reaction)
     if differ(multiplier - exchanged(multiplier, {v: -v}), domain):
         raise ValueError(
             f"the multiplier {multiplier} depends on the direction of motion; take multiplier_in_contact"

@@ -8,7 +8,7 @@ coordinate counted along c is ignorable (E. T. Whittaker, Analytical Dynamics, �
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -21,7 +21,7 @@ from canon.mechanics.linear import eliminate
 from canon.mechanics.substitution import exchanged
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from canon.proof.domain import Domain
     from canon.proof.verdict import Verdict
@@ -69,8 +69,10 @@ def ignorable_directions(
 ) -> tuple[tuple[Expr, ...], ...]:
     """Return independent constant directions c with Σ cᵢ ∂L/∂qᵢ = 0 and Σ cᵢ Qᵢ = 0, each proved.
 
-    They are read off the derivatives multiplied out, so a direction that only identities between different
-    functions would show may be missed.
+    They are read off the derivatives ∂L/∂q over a common denominator, multiplied out, sines and cosines of sums and
+    multiples taken apart and sin² written as 1 − cos². That finds every direction where ∂L/∂q is rational in q, q̇, t
+    and in sines, cosines and exponentials of linear combinations with rational coefficients of them; elsewhere, as with
+    roots of different sums, one that only identities between different functions would show may be missed.
 
     Examples
     --------
@@ -172,10 +174,45 @@ def _constant_combinations(slopes: Sequence[Expr], lagrangian: Lagrangian) -> tu
     """Return constants c with Σ cᵢ fᵢ = 0 term by term, after multiplying out."""
     moving = (*lagrangian.q, *lagrangian.velocities, lagrangian.t)
     rows: dict[Expr, list[Expr]] = {}
-    for i, slope in enumerate(slopes):
-        for term in sp.Add.make_args(cast("Expr", sp.expand(slope))):
+    for i, slope in enumerate(_over_common_denominator(slopes)):
+        for term in sp.Add.make_args(slope):
             constant, function = term.as_independent(*moving, as_Add=False)
             row = rows.setdefault(function, [sp.S.Zero] * len(slopes))
             row[i] += constant
     matrix = sp.Matrix(list(rows.values())) if rows else sp.zeros(1, len(slopes))
     return eliminate(matrix).null_directions
+
+
+def _over_common_denominator(slopes: Sequence[Expr]) -> list[Expr]:
+    """Return all of them times one function, as sums of terms that differ in an independent product of functions."""
+    fractions = [sp.fraction(sp.together(_in_sines(slope))) for slope in slopes]
+    denominators = list(dict.fromkeys(below for _, below in fractions))
+    return [
+        _multiplied_out(above * sp.Mul(*(other for other in denominators if other != below)))
+        for above, below in fractions
+    ]
+
+
+def _in_sines(f: Expr) -> Expr:
+    for function, quotient in _QUOTIENTS.items():
+        f = cast("Expr", f.replace(function, quotient))
+    return cast("Expr", sp.expand_trig(f))
+
+
+_QUOTIENTS: dict[Any, Callable[[Expr], Expr]] = {
+    sp.tan: lambda a: sp.sin(a) / sp.cos(a),
+    sp.cot: lambda a: sp.cos(a) / sp.sin(a),
+    sp.sec: lambda a: 1 / sp.cos(a),
+    sp.csc: lambda a: 1 / sp.sin(a),
+}
+
+
+def _multiplied_out(f: Expr) -> Expr:
+    """Multiply out, and leave no power of a sine."""
+    expanded = sp.expand(f)
+    powers = {
+        e: (1 - sp.cos(e.base.args[0]) ** 2) ** (e.exp // 2) * e.base ** (e.exp % 2)
+        for e in expanded.atoms(sp.Pow)
+        if isinstance(e.base, sp.sin) and e.exp.is_Integer and e.exp > 1
+    }
+    return cast("Expr", sp.expand(exchanged(expanded, powers)))

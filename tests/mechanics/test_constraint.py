@@ -249,6 +249,21 @@ def test_leaving_the_hemisphere():
     assert vanishes(pushed.subs(theta, 0)).holds
 
 
+def test_leaving_the_hemisphere_sideways():
+    """With a spin about the vertical: λ = 3 m g cos θ − 2 E/a, by energy alone (Newton: m v²/a inwards)."""
+    phi, start, spin = (*coordinates("phi"), *parameters("start spin", positive=True))
+    T = m * (r.dot**2 + r**2 * theta.dot**2 + r**2 * sin(theta) ** 2 * phi.dot**2) / 2
+    free = Lagrangian(T - m * g * r * cos(theta), [r, theta, phi])
+    sphere = ConstrainedLagrangian(free, holonomic=[r - a])
+    along = multiplier_along(sphere, {r: a}, theta, start, others={phi: spin})
+    E = m * a**2 * sin(start) ** 2 * spin**2 / 2 + m * g * a * cos(start)
+    assert vanishes(along - (3 * m * g * cos(theta) - 2 * E / a)).holds
+    assert vanishes(along - (3 * m * g * cos(theta) - E / a)).fails
+    tilted = ConstrainedLagrangian(Lagrangian(free.L - k * cos(phi), free.q), holonomic=[r - a])
+    with pytest.raises(ValueError, match="phi is not ignorable"):
+        multiplier_along(tilted, {r: a}, theta, start, others={phi: spin})
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [

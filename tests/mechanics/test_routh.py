@@ -171,6 +171,25 @@ def test_masses_on_a_line_with_unequal_weights():
     assert ignorable_directions(held) == ()
 
 
+@pytest.mark.parametrize(
+    ("V", "direction"),
+    [
+        (sp.cos(2 * x) * sp.cos(2 * y) + 4 * sp.sin(x) * sp.cos(x) * sp.sin(y) * sp.cos(y), (1, 1)),
+        (sp.cos(2 * x) * sp.cos(2 * y) - 4 * sp.sin(x) * sp.cos(x) * sp.sin(y) * sp.cos(y), (1, -1)),
+        (sp.cos(2 * x) * sp.cos(2 * y) - 3 * sp.sin(x) * sp.cos(x) * sp.sin(y) * sp.cos(y), None),
+        ((x**2 - y**2) / (x + y) + 1 / (x - y), (1, 1)),
+        ((x**2 - y**2) / (x + y) + 1 / (x + y), None),
+        ((sp.tan(x) - sp.tan(y)) / (1 + sp.tan(x) * sp.tan(y)), (1, 1)),
+        ((sp.tan(x) + sp.tan(y)) / (1 + sp.tan(x) * sp.tan(y)), None),
+        (sp.exp(2 * x) / (sp.exp(2 * x) + sp.exp(2 * y)), (1, 1)),
+    ],
+)
+def test_directions_behind_identities(V, direction):
+    """cos 2(x ∓ y), x − y, tan(x − y) in disguise, and twins that depend on both coordinates."""
+    found = ignorable_directions(Lagrangian(m * (x.dot**2 + y.dot**2) / 2 - k * V, [x, y]))
+    assert [[c / found_[0] for c in found_] for found_ in found] == ([list(direction)] if direction else [])
+
+
 def test_a_force_along_it_makes_a_coordinate_not_ignorable():
     dragged = Lagrangian(m * (x.dot**2 + y.dot**2) / 2, [x, y], forces=[-k * x.dot, 0])
     assert ignorable_coordinates(dragged) == (y,)
