@@ -1,4 +1,4 @@
-"""The command line: ``canon check``, ``canon drift``, ``canon scene``, ``canon tour``.
+"""The command line: ``canon check``, ``canon drift``, ``canon scene``, ``canon study``, ``canon tour``.
 
 Every command is a module of :mod:`canon.command` with ``DESCRIPTION``, ``EXAMPLES``, ``add_arguments(parser)``
 and ``run(arguments) -> exit status``; only the one that is asked for is imported.
