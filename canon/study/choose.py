@@ -13,7 +13,7 @@ from canon.flow.propagate import propagate
 from canon.scene.scene import Scene, near
 from canon.study.choose_pilot import Question, natural_step
 from canon.study.choose_search import Candidate, candidate_methods, confirmed, double_instead, searched
-from canon.study.comparison import StudyError
+from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -11,7 +11,7 @@ import numpy as np
 
 from canon.flow.method import DOP853, FixedStep, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
-from canon.study.comparison import StudyError
+from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

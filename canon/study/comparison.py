@@ -1,30 +1,32 @@
-"""Methods side by side on one motion: what their energy error does, and what they cost."""
+"""Methods side by side on one motion: what their errors do, and what they cost."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from canon.flow.method import RK4, FixedStep, Gauss, Splitting, Taylor
-from canon.flow.propagate import NonFiniteStateError, is_separable, propagate
+from canon.flow.propagate import is_separable
 from canon.scene.scene import Scene
-from canon.study.drift import FEWEST, Drift, drift
+from canon.study.drift import FEWEST
+from canon.study.errors import StudyError
+from canon.study.observed import ENERGY, observables_of
+from canon.study.rows import UNIT_ROUND_OFF, DriftRow, Run, drift_row, drift_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
-    from sympy import Symbol
+    from sympy import Expr, Symbol
 
     from canon.flow.method import Method
     from canon.flow.propagate import HamiltonianSystem
-    from canon.flow.trajectory import Trajectory
 
-__all__ = ["DriftRow", "DriftStudy", "StudyError", "drift_row", "drift_study"]
+__all__ = ["UNIT_ROUND_OFF", "DriftRow", "DriftStudy", "StudyError", "drift_row", "drift_study"]
 
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 
@@ -41,64 +43,12 @@ SAMPLES_PER_PERIOD = 14.0 + GOLDEN
 MOST_SAMPLES = 2**17
 """Samples that are kept at most unless more are asked for."""
 
-UNIT_ROUND_OFF = {"single": 2.0**-24, "extended": 2.0**-64, "quad": 2.0**-113, "double-double": 2.0**-106}
-"""Unit round-off by precision; 2⁻⁵³ for the others."""
-
-
-TIMED_STEPS = 20_000
-"""Steps that are timed without samples."""
-
-
-class StudyError(ValueError):
-    """A study that can't be run as asked."""
-
-
-@dataclass(frozen=True)
-class DriftRow:
-    """One method's run.
-
-    Parameters
-    ----------
-    method
-        The method.
-    step
-        Its step, None where it chooses its own.
-    t, error
-        The sampled times, and the energy error (E(t) − E(0))/|E(0)|; empty where the run failed.
-    relative
-        Whether the error is relative; it is E(t) − E(0) where E(0) = 0.
-    drift
-        How the error grew; None where the run failed.
-    failure
-        Why the run failed; empty where it did not.
-    steps, evaluations
-        Steps taken, and evaluations of the force (Taylor: of the series).
-    cpu_seconds, compile_seconds
-        Processor time of the steps (keeping samples left out), and the time that compiling their loop took.
-    precision
-        The arithmetic.
-    final
-        The state at the end, shape (2n,); empty where the run failed.
-    """
-
-    method: Method
-    step: float | None
-    t: NDArray[np.float64]
-    error: NDArray[np.float64]
-    relative: bool = True
-    drift: Drift | None = None
-    failure: str = ""
-    steps: int = 0
-    evaluations: int = 0
-    cpu_seconds: float = 0.0
-    compile_seconds: float = 0.0
-    precision: str = ""
-    final: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-
+BLOCKS_KEPT = 2**13
+"""Blocks that a run is judged by where the observables are followed inside the loop."""
 
 @dataclass(frozen=True)
 class DriftStudy:
-    """The energy error of several methods on one motion.
+    """The errors of several methods on one motion.
 
     Parameters
     ----------
@@ -111,7 +61,7 @@ class DriftStudy:
     time_unit
         Unit of time.
     rows
-        One a method, in the order asked for.
+        One a method and observable, in the order asked for.
     """
 
     title: str
@@ -119,6 +69,15 @@ class DriftStudy:
     period: float | None
     time_unit: str
     rows: tuple[DriftRow, ...]
+
+    @property
+    def observables(self) -> tuple[str, ...]:
+        """What was followed."""
+        return tuple(dict.fromkeys(row.observable for row in self.rows))
+
+    def only(self, observable: str) -> DriftStudy:
+        """Return the rows of one observable."""
+        return replace(self, rows=tuple(row for row in self.rows if row.observable == observable))
 
 
 def drift_study(
@@ -134,9 +93,13 @@ def drift_study(
     precision: str | None = None,
     parameters: Mapping[Symbol | str, float] | None = None,
     samples: int | None = None,
+    observables: Sequence[str] | Mapping[str, Expr] = (ENERGY,),
+    orbits: int = 1,
+    scatter: float = 1e-3,
+    seed: int = 0,
     progress: Callable[[str, float], None] | None = None,
 ) -> DriftStudy:
-    """Run one motion with several methods and judge the energy error of each.
+    """Run one motion with several methods and judge how the errors of each grow.
 
     Parameters
     ----------
@@ -161,14 +124,23 @@ def drift_study(
     parameters
         Values of parameters by symbol or name; a scene has its own, which these replace.
     samples
-        Samples to keep of each run; about 16 a period, at most 131072, if left out.
+        Samples to keep of each run; about 16 a period if left out. Where that is more than 131072, methods of
+        fixed step are followed inside their loops instead, 16 times a period.
+    observables
+        What should stay constant: ``"energy"``, ``"momenta"`` (those of ignorable coordinates), ``"integrals"``
+        (a scene's known ones), ``"symplecticity"`` (the bilinear covariant of two variations), any of them by
+        name; or functions of (q, p) of your own by name, such as the residual of a constraint.
+    orbits
+        How many orbits to run: the start, and others near it.
+    scatter, seed
+        Relative size of the (normal) distances of their starts from it, and the seed they are drawn with.
     progress
         Called with the method's name and the fraction of its run that is done.
 
     Returns
     -------
     DriftStudy
-        One row a method. A run that fails is a row with the reason, never data.
+        One row a method and observable. A run that fails is a row with the reason, never data.
 
     Raises
     ------
@@ -198,94 +170,29 @@ def drift_study(
     kept = samples if samples is not None else _usual_samples(span, known_period)
     if kept < FEWEST:
         raise StudyError(f"{kept} samples are too few to judge growth: keep at least {FEWEST}")
-    rows = tuple(
-        drift_row(
+    followed = observables_of(system, hamiltonian, observables, state, values)
+    starts = _starts(state, orbits, scatter, seed)
+    inside = samples is None and known_period is not None and kept >= MOST_SAMPLES
+    rows: list[DriftRow] = []
+    for method in chosen:
+        fixed = _is_fixed(method)
+        run = Run(
             hamiltonian,
-            state,
+            starts,
             span,
             method,
-            step=h if _is_fixed(method) else None,
-            tolerance=None if _is_fixed(method) else tolerance,
-            precision=precision if _is_fixed(method) else None,
+            BLOCKS_KEPT if fixed and inside else kept,
+            step=h if fixed else None,
+            tolerance=None if fixed else tolerance,
+            precision=precision if fixed else None,
             parameters=values,
-            samples=kept,
-            progress=partial(progress, str(method)) if progress is not None else None,
+            cadence=_cadence(h, known_period) if fixed and inside else None,
         )
-        for method in chosen
-    )
+        rows.extend(drift_rows(run, followed, partial(progress, str(method)) if progress else None))
     if all(row.failure for row in rows):
         reasons = "; ".join(f"{row.method}: {row.failure}" for row in rows)
         raise StudyError(f"every run failed: {reasons}")
-    return DriftStudy(_title(system, y0), span, known_period, _time_unit(system), rows)
-
-
-def drift_row(
-    hamiltonian: HamiltonianSystem,
-    y0: NDArray[np.float64],
-    span: float,
-    method: Method,
-    *,
-    samples: int,
-    step: float | None = None,
-    tolerance: float | None = None,
-    precision: str | None = None,
-    parameters: Mapping[Symbol | str, float] | None = None,
-    progress: Callable[[float], None] | None = None,
-) -> DriftRow:
-    """Run one method and judge its energy error; a run that fails is a row with the reason.
-
-    The parameters are those of :func:`drift_study` and :func:`canon.flow.propagate.propagate`.
-    """
-
-    def run(duration: float, kept: int, report: Callable[[float], None] | None = None) -> Trajectory:
-        return propagate(
-            hamiltonian,
-            y0,
-            (0.0, duration),
-            method=method,
-            step=step,
-            tolerance=tolerance,
-            precision=precision,
-            parameters=parameters,
-            samples=kept,
-            progress=report,
-        )
-
-    try:
-        found = run(span, samples, progress)
-        error = found.energy_error
-        unit = UNIT_ROUND_OFF.get(found.precision, 2.0**-53)
-        roundoff = unit * math.sqrt(found.steps) if found.relative else None
-        judged = drift(found.t, error, roundoff=roundoff, resolution=unit)
-    except (NonFiniteStateError, ValueError) as failed:
-        return DriftRow(method, step, np.empty(0), np.empty(0), failure=str(failed))
-    return DriftRow(
-        found.method,
-        found.step,
-        found.t,
-        error,
-        relative=found.relative,
-        drift=judged,
-        steps=found.steps,
-        evaluations=found.evaluations,
-        cpu_seconds=_seconds_of_steps(found, run),
-        compile_seconds=found.compile_seconds,
-        precision=found.precision,
-        final=found.final,
-    )
-
-
-def _seconds_of_steps(found: Trajectory, run: Callable[[float, int], Trajectory]) -> float:
-    """Return the processor time of the steps alone.
-
-    Keeping a sample costs a method of fixed step as much as a thousand cheap steps do; so a part of the run is
-    timed again without samples. Its steps all cost the same.
-    """
-    if found.step is None:
-        return found.cpu_seconds
-    part = min(found.steps, TIMED_STEPS)
-    again = min(run(part * found.step, 1).cpu_seconds for _ in range(2))
-    return min(found.cpu_seconds, again * found.steps / part)
+    return DriftStudy(_title(system, y0), span, known_period, _time_unit(system), tuple(rows))
 
 
 def _usual_methods(
@@ -295,6 +202,25 @@ def _usual_methods(
     if is_separable(hamiltonian, parameters):
         return Splitting("kahan-li-8"), Splitting("verlet"), RK4(), Taylor()
     return Gauss(4), Gauss(1), RK4(), Taylor()
+
+
+def _starts(state: NDArray[np.float64], orbits: int, scatter: float, seed: int) -> NDArray[np.float64]:
+    """Return the start, or starts scattered about it, shape (2n, orbits), the first one unmoved."""
+    if orbits < 1:
+        raise StudyError(f"{orbits} orbits: run at least one")
+    if orbits == 1:
+        return state
+    if not (math.isfinite(scatter) and scatter > 0.0):
+        raise StudyError(f"a scatter of {scatter} makes no sense: give a positive, finite one")
+    n = state.size // 2
+    size = np.repeat([np.linalg.norm(half) / math.sqrt(n) for half in (state[:n], state[n:])], n)
+    moved = np.random.default_rng(seed).normal(size=(2 * n, orbits - 1)) * (scatter * size)[:, None]
+    return state[:, None] + np.concatenate([np.zeros((2 * n, 1)), moved], axis=1)
+
+
+def _cadence(step: float | None, period: float | None) -> int:
+    """Return after how many steps observables are looked at to see a period about 16 times."""
+    return max(1, int((period or 1.0) / (step or 1.0) / SAMPLES_PER_PERIOD))
 
 
 def _is_fixed(method: Method) -> bool:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from canon.flow.method import Taylor
 from canon.study.drift import Growth
+from canon.study.observed import ENERGY
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,18 +56,23 @@ def drift_table(study: DriftStudy) -> str:
     cost = ("evaluations", "CPU")
     body = [(*_cells(study, row), *_cost(row)) for row in study.rows]
     lines = aligned([(*head, *cost), *body], right={1, 2, 3, 7, 8})
+    if study.observables != (ENERGY,):
+        column = aligned([("observable",), *((row.observable,) for row in study.rows)], right=set())
+        width = max(map(len, column))
+        lines = [f"{name:{width}}  {line}" for name, line in zip(column, lines, strict=True)]
     rule = "─" * max(map(len, lines))
     verdicts = dict.fromkeys(row.drift.verdict for row in study.rows if row.drift is not None)
     notes = [f"{WORDS[verdict]}: {MEANING[verdict]}" for verdict in verdicts]
-    notes.extend(f"{row.method} failed: {row.failure}" for row in study.rows if row.drift is None)
+    notes.extend(dict.fromkeys(f"{row.method} failed: {row.failure}" for row in study.rows if row.drift is None))
     if any(isinstance(row.method, Taylor) and row.drift for row in study.rows):
         notes.append("evaluations: of the force; for Taylor, of the whole series of its order")
     return "\n".join([study.title, _run(study), "", lines[0], rule, *lines[1:], rule, *notes])
 
 
 def error_name(study: DriftStudy) -> str:
-    """Return ΔE/E, or ΔE where the energy at the start is zero."""
-    return "ΔE/E" if all(row.relative for row in study.rows) else "ΔE"
+    """Return ΔE/E, or ΔE where the energy at the start is zero; ΔI where other quantities are followed."""
+    letter = "E" if study.observables == (ENERGY,) else "I"
+    return f"Δ{letter}/{letter}" if all(row.relative for row in study.rows) else f"Δ{letter}"
 
 
 def _run(study: DriftStudy) -> str:
@@ -90,7 +97,7 @@ def _cells(study: DriftStudy, row: DriftRow) -> tuple[str, ...]:
         f"{found.bound:.1e}",
         with_error(found.slope * unit, found.slope_error * unit),
         "" if found.verdict is Growth.DIVERGED else f"{found.exponent:.2f} ({low:.2f} to {high:.2f})",
-        _verdict(found, unit),
+        _verdict(found, unit) if not row.orbits else _verdicts(row.orbits),
     )
 
 
@@ -100,6 +107,12 @@ def _verdict(found: Drift, unit: float) -> str:
     if found.verdict is Growth.ROUND_OFF:
         return f"round-off ({found.walk:.0e} in all)"
     return WORDS[found.verdict]
+
+
+def _verdicts(orbits: Sequence[Drift]) -> str:
+    """Return how many orbits have which verdict; the other columns show the worst of them."""
+    count = Counter(found.verdict for found in orbits)
+    return "orbits: " + ", ".join(f"{count[growth]} {WORDS[growth]}" for growth in Growth if count[growth])
 
 
 def _cost(row: DriftRow) -> tuple[str, str]:
