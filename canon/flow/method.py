@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from canon.flow.solvable import SolvableSplitting
 from canon.kernel.gauss import HIGHEST_STAGES
 from canon.kernel.order import order
 from canon.kernel.scheme import SCHEMES, Scheme
@@ -234,7 +235,7 @@ class DOP853:
         return f"DOP853({self.tolerance:g})"
 
 
-FixedStep = Splitting | Gauss | RK4
+FixedStep = Splitting | Gauss | RK4 | SolvableSplitting
 """Methods that take steps of one size."""
 
 Method = FixedStep | Taylor | DOP853

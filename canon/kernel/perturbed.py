@@ -18,12 +18,12 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.kernel.gauss import gauss_tableau
-from canon.kernel.scheme import Scheme
+from canon.kernel.scheme import Scheme, palindrome
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["HIGHEST_CORRECTOR", "Corrector", "corrector", "saba", "sbab", "wisdom_holman"]
+__all__ = ["ABA", "HIGHEST_CORRECTOR", "Corrector", "corrector", "saba", "sbab", "wisdom_holman"]
 
 HIGHEST_STAGES = 8
 HIGHEST_CORRECTOR = 17
@@ -80,6 +80,49 @@ def _stages(stages: int, family: str) -> int:
         raise ValueError(f"{family}({stages}): the number of stages is 1 … {HIGHEST_STAGES}")
     return stages
 
+
+_BLANES = (
+    "S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, New families of symplectic splitting methods for "
+    "numerical integration in dynamical astronomy, Appl. Numer. Math. 68 (2013) 58–72, doi:10.1016/j.apnum.2013.01.003"
+)
+
+ABA = {
+    "8-6-4": palindrome(
+        "aba-8-6-4",
+        4,
+        (
+            "0.0711334264982231177779387300061549964174022959237396067",
+            "0.2411534279566400987364877953262896496178146780493351793",
+            "0.5214117617728147892121360780679942299914364788502635428",
+        ),
+        (
+            "0.1830836874721972219617037571664302910726241265515976168",
+            "0.3107828598985748695075222910542627963751573211162577268",
+            "-0.0265646185119588006972121379164987592663297728525475852",
+        ),
+        _BLANES,
+        odd="b",
+    ),
+    "10-6-4": palindrome(
+        "aba-10-6-4",
+        4,
+        (
+            "0.0380944974224121954569753223086375653406600603958069702",
+            "0.1452987161169137492940200726606637497443088851461260237",
+            "0.2076276957255412507162056113249882065158369684461609151",
+            "0.4359097036515261592231548624010651844006887964943272550",
+        ),
+        (
+            "0.0958588808370752106107715037714588477693422260407147003",
+            "0.2044461531429987806805077839164344779763299586173710678",
+            "0.2170703479789911017143385924306336714529759820421083216",
+        ),
+        _BLANES,
+        odd="a",
+    ),
+}
+"""Schemes that take ε² τ² away too, named by their orders in ε, ε² and ε³; the digits beyond those published by Newton's
+method on the order conditions."""
 
 _DIGITS = 60
 

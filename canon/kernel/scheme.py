@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["SCHEMES", "Scheme"]
+__all__ = ["SCHEMES", "Scheme", "palindrome"]
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Scheme:
         return len(self.b) > 1 and self.a[0] == self.a[-1] == 0
 
 
-def _palindrome(
+def palindrome(
     name: str,
     order: int,
     a: Sequence[str],
@@ -120,7 +120,20 @@ _ALL = (
         "M. Suzuki, Fractal decomposition of exponential operators, Phys. Lett. A 146 (1990) 319–323, "
         "doi:10.1016/0375-9601(90)90962-N",
     ),
-    _palindrome(
+    palindrome(
+        "mclachlan-4",
+        4,
+        # (14 − √19)/108 and (20 − 7√19)/108
+        (
+            "0.0892694542264752448866946112605591142672499636552551395",
+            "-0.0973360426368955080153599433983084223514724766354362459",
+        ),
+        ("2/5", "-1/10"),
+        "R. I. McLachlan, On the numerical integration of ordinary differential equations by symmetric composition "
+        "methods, SIAM J. Sci. Comput. 16 (1995) 151–168, doi:10.1137/0916010",
+        odd="b",
+    ),
+    palindrome(
         "blanes-moan-4",
         4,
         (
@@ -135,7 +148,7 @@ _ALL = (
         _BLANES_MOAN + " (S6)",
         odd="a",
     ),
-    _palindrome(
+    palindrome(
         "blanes-moan-6",
         6,
         (
@@ -154,7 +167,7 @@ _ALL = (
         _BLANES_MOAN + " (S10)",
         odd="a",
     ),
-    _palindrome(
+    palindrome(
         "srkn-6b",
         6,
         (
@@ -176,7 +189,7 @@ _ALL = (
         odd="a",
         nystrom=True,
     ),
-    _palindrome(
+    palindrome(
         "srkn-6a",
         6,
         (

@@ -3,7 +3,8 @@
 A call runs three tables of (kick, flow) pairs: once what leads into the loop, the steps, and once what leads out of it.
 So neighbouring flows of two steps are one, and a symplectic corrector is applied where a state is asked for
 only. The state that the steps work on is kept in ``e`` from call to call, so that the motion does not depend on
-where it was looked at; ``y`` and ``e`` get what leads out of a copy of it.
+where it was looked at; ``y`` and ``e`` get what leads out of a copy of it. It is used where y, the round-off in e and
+h are what the last call left, and made anew from y where an event, say, has changed them.
 
 ``c`` holds t0, h, then for every pair the times of kick and flow, then what flows need beyond their times.
 """
@@ -82,22 +83,21 @@ def solvable_loop(
     size, w = 2 * degrees, Writer(DOUBLE)
     pairs = sum(map(len, tables))
     motion, extra = _motion(w, part, pairs, compensated=compensated)
-    carry = size + 1 + motion.words
+    carry = size + 2 + 2 * size + motion.words
     with w.loop(0, "%blocks") as block:
         y = w.at("%y", w.let(f"mul i64 {block}, {size}"))
         e = w.at("%e", w.let(f"mul i64 {block}, {carry}"))
-        kept = w.at(e, size)
-        fresh = w.let(f"zext i1 {w.equal(w.load(kept, 0), w.constant(Fraction(0)))} to i64")
+        record, kept = w.at(e, size), w.at(e, 3 * size + 2)
+        fresh = _differs(w, record, (y, e), size)
         with w.loop(0, fresh):
             motion.enter(y, e)
         with w.loop(fresh, 1):
-            w.copy(w.at(kept, 1), motion.state, motion.words)
+            w.copy(kept, motion.state, motion.words)
         with w.loop(0, 3) as phase:
             leading_in, leading_out = (w.let(f"icmp eq i64 {phase}, {number}") for number in (0, 2))
             with w.loop(0, w.let(f"zext i1 {leading_out} to i64")):
                 motion.count("%steps")
-                w.copy(motion.state, w.at(kept, 1), motion.words)
-                w.store(w.constant(Fraction(1)), kept, 0)
+                w.copy(motion.state, kept, motion.words)
             once = w.let(f"select i1 {leading_in}, i64 {fresh}, i64 1")
             looped = w.let(f"icmp eq i64 {phase}, 1")
             times = w.let(f"select i1 {looped}, i64 %steps, i64 {once}")
@@ -111,6 +111,10 @@ def solvable_loop(
                     with w.loop(0, w.let(f"zext i1 {moving} to i64")):
                         flow(time)
         motion.leave(y, e)
+        w.store(w.constant(Fraction(1)), record, 0)
+        w.store(w.load("%c", 1), record, 1)
+        w.copy(y, w.at(record, 2), size)
+        w.copy(e, w.at(record, 2 + size), size)
     code = compiled_function(w, "advance", PARAMETERS, SIGNATURE)
 
     def coefficients(h: Fraction) -> list[Fraction]:
@@ -118,6 +122,21 @@ def solvable_loop(
         return [*(time for pair in times for time in pair), *extra([a for _, a in times])]
 
     return Loop(code, degrees, compensated, DOUBLE, carry, coefficients=coefficients)
+
+
+def _differs(w: Writer, record: str, state: tuple[str, str], size: int) -> str:
+    """Return 1 where y, e or h is not what the last call left, or there was none, and 0 otherwise."""
+    same = w.array(1)
+    w.store(w.load(record, 0), same, 0)
+
+    def compare(a: str, b: str) -> None:
+        w.store(w.select(w.equal(a, b), w.load(same, 0), w.constant(Fraction(0))), same, 0)
+
+    compare(w.load(record, 1), w.load("%c", 1))
+    for part, array in enumerate(state):
+        with w.loop(0, size) as i:
+            compare(w.load(array, i), w.load(w.at(record, 2 + part * size), i))
+    return w.let(f"zext i1 {w.equal(w.load(same, 0), w.constant(Fraction(0)))} to i64")
 
 
 def _motion(w: Writer, part: Part, pairs: int, *, compensated: bool):
