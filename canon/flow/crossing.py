@@ -25,6 +25,9 @@ __all__ = ["Guard"]
 _IN_ONE_STEP = 100
 """More events in one step than this pile up towards an instant."""
 
+_AT_ONCE = Fraction(1, 2**30)
+"""Nor does one that changes the state come again after so small a part of a step unless it does."""
+
 _TRIES = 200
 
 
@@ -93,6 +96,7 @@ class Guard:
         at_end = self.look(end, self.steps.time(n, Fraction(1)))
         found_at = [(begin, rate) for _, rate in self.look(base, self.steps.time(n, begin))]
         self.sides = [side or _sign(g) for side, (g, _) in zip(self.sides, at_end, strict=True)]
+        changed = dict[int, Fraction]()
         for _ in range(_IN_ONE_STEP):
             places = [self._first(i, n, base, begin, found_at[i], at_end[i]) for i in range(len(self.events))]
             earliest = min((p, i) for i, p in enumerate(places)) if places else (Fraction(2), 0)
@@ -111,6 +115,9 @@ class Guard:
             if event.jump is None:
                 self._meet(event, t, here, rising, None)
                 continue
+            if changed.get(i, Fraction(-1)) > place - _AT_ONCE:
+                break
+            changed[i] = place
             base, begin = self._jumped(event, here, t), place
             self._meet(event, t, here, rising, base)
             end = self.steps.moved(base, n, begin, Fraction(1))
@@ -120,8 +127,8 @@ class Guard:
             at_end = self.look(end, self.steps.time(n, Fraction(1)))
         t, y = float(self.steps.time(n, begin)), base.high[self.system.rows, 0]
         raise NonFiniteStateError(
-            f"{self.met[-1].event if self.met else 'an event'} happens more than {_IN_ONE_STEP} times within one "
-            f"step, near {described(t, y)}: events pile up there; stop the motion before",
+            f"{self.met[-1].event if self.met else 'an event'} is met again at once at {described(t, y)}: events "
+            "pile up there; stop the motion before",
             t,
             y,
         )

@@ -54,7 +54,11 @@ def _bar() -> Generator[Callable[[float], None]]:
 
     shown = "{l_bar}{bar}| {elapsed} < {remaining}"
     with tqdm(total=1.0, delay=_PATIENCE, bar_format=shown, leave=False, file=sys.stderr) as bar:
-        yield lambda fraction: bar.update(fraction - bar.n) and None
+
+        def report(fraction: float) -> None:
+            bar.update(fraction - bar.n)
+
+        yield report
 
 
 @contextlib.contextmanager

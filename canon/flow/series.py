@@ -12,12 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.event import Crossing
 from canon.flow.job import NonFiniteStateError, described
-from canon.flow.measure import values_in
+from canon.flow.meeting import Meeting
 from canon.flow.trajectory import Samples
-from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, EXTENDED
-from canon.kernel.taylor import heyoka_functions, heyoka_number, taylor_integrator
+from canon.kernel.taylor import heyoka_number, taylor_integrator
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -29,6 +27,9 @@ if TYPE_CHECKING:
     from canon.kernel.structure import Equations
 
 __all__ = ["taylor_motion"]
+
+_SMALL_PART = 2.0**-30
+"""What part of a step is passed without events after one that changed the state."""
 
 
 def taylor_motion(
@@ -71,26 +72,31 @@ def taylor_motion(
     number = heyoka_number(precision)
     first = 0 if so_far is None else len(so_far.t) - 1
     grid = np.array([number(Fraction(t)) for t in plan.instants[first:].tolist()])
-    meeting = _Meeting(system, events, precision, number, float(plan.instants[0]), forward=plan.forward)
-    orbits = _orbits(system, states, Fraction(float(plan.instants[first])), method, number, meeting)
+    meeting = Meeting(system, events, precision, number, forward=plan.forward)
+    t0, span = Fraction(float(plan.instants[first])), grid[-1] - grid[0]
+    orbits = _orbits(system, states, t0, method, number, meeting, span)
     if so_far is not None:
         for orbit, (state, clock) in zip(orbits, so_far.beyond, strict=True):
             orbit.integrator.state[:], orbit.integrator.dtime = state, clock
     compiled = time.perf_counter() - compiling
+    if events and so_far is None and meeting.at_zero(float(plan.instants[0]), *states):
+        orbits[0].leave([], None, dense=dense)
     shape = (1, len(states[0]), len(orbits))
-    rows, beyond = [np.array([o.integrator.state for o in orbits]).T.reshape(shape).copy()], _ends(orbits)
+    start = [
+        np.array([number(Fraction(a) + Fraction(b)) for a, b in zip(h, l, strict=True)])
+        for h, l in zip(states[0].T.tolist(), states[1].T.tolist(), strict=True)
+    ]
+    rows, beyond = [np.stack(start, axis=1).reshape(shape)], _ends(orbits)
     steps = spent = kept = stopped = 0
     with ThreadPoolExecutor(min(os.cpu_count() or 1, len(orbits))) as pool:
         try:
             for begin, end in plan.slices(first):
                 part = grid[begin - first : end - first + 1]
                 made = list(pool.map(lambda orbit, part=part: orbit.advance(part, dense=dense), orbits))
-                if meeting.trouble is not None:
-                    raise meeting.trouble
-                stopped = any(each.stopped for each in made)
                 for orbit, each in zip(orbits, made, strict=True):
-                    if not each.finite or (each.failed and not stopped):
+                    if each.outcome is not None:
                         raise orbit.lost(each.outcome, system.rows)
+                stopped = any(each.stopped for each in made)
                 rows.append(np.stack([each.rows for each in made], axis=2))
                 steps += sum(each.steps for each in made)
                 spent += sum(each.seconds for each in made)
@@ -148,46 +154,90 @@ class Polynomials:
 
 @dataclass(frozen=True)
 class _Slice:
+    """States reached, shape (times, 2n), and what they cost; ``outcome`` where the motion can't go on."""
+
     rows: Any
     steps: int
     seconds: float
     outcome: Any
-    finite: bool
-    failed: bool
     stopped: bool
 
 
 @dataclass(eq=False)
 class _Orbit:
+    """One orbit on its way: heyoka's integrator, and one without events to leave their zeros with."""
+
     integrator: Any
-    meeting: _Meeting
+    meeting: Meeting
+    free: Any
+    span: Any
     pieces: list[Any] = field(default_factory=list[Any])
 
     def advance(self, grid: Any, *, dense: bool) -> _Slice:
         """Go from the first time of a grid to its last and return the states at all but the first."""
-        from heyoka import taylor_outcome
+        started, rows, steps, left = time.thread_time(), list[Any](), 0, list(grid[1:])
+        failure, stopped = None, False
+        while left:
+            steps_taken, found, outcome = self._towards(self.integrator, left, dense=dense)
+            steps += steps_taken
+            rows += found
+            left = left[len(found) :]
+            event = self.meeting.event_of(outcome)
+            if event is None:
+                failure = outcome
+                break
+            if event.jump is None:
+                rows.append(self.integrator.state.copy())
+                stopped = True
+                break
+            self.integrator.state[:] = self.meeting.met_state
+            steps_taken, found = self.leave(left, event, dense=dense)
+            steps += steps_taken
+            rows += found
+            left = left[len(found) :]
+        made = np.array(rows).reshape(len(rows), -1)
+        if not left and not np.isfinite(made.astype(np.float64)).all():
+            failure = "the state is not finite"
+        if stopped or (not left and not isinstance(failure, str)):
+            failure = None
+        return _Slice(made, steps, time.thread_time() - started, failure, stopped)
 
-        started = time.thread_time()
-        if dense:
-            outcome, _, _, steps, piece, _ = self.integrator.propagate_until(grid[-1], c_output=True)
-            reached = (
-                [] if piece is None else [t for t in grid[1:] if min(piece.bounds) <= t <= max(piece.bounds)]
-            )
-            if piece is not None:
-                self.pieces.append(piece)
-            rows = np.array([np.array(piece(t)) for t in reached]).reshape(len(reached), -1)
-        else:
-            outcome, _, _, steps, _, found = self.integrator.propagate_grid(grid)
-            rows = found[1:]
-        spent = time.thread_time() - started
-        stopped = self.meeting.stopped_by(outcome)
-        if stopped:
-            state = self.integrator.state.copy()[np.newaxis]
-            rows = np.concatenate([rows.reshape(-1, state.shape[1]), state])
-        finite = bool(np.isfinite(rows.astype(np.float64)).all())
-        return _Slice(rows, steps, spent, outcome, finite, outcome != taylor_outcome.time_limit, stopped)
+    def leave(self, left: list[Any], event: Prepared | None, *, dense: bool) -> tuple[int, list[Any]]:
+        """Move off an event's zero, by a small part of a step that looks for no events.
+
+        heyoka takes a zero at the very beginning of a step for others of the step too.
+        """
+        free, own = self.free, self.integrator
+        free.state[:], free.dtime = own.state, own.dtime
+        before, clock = own.state.copy(), own.dtime
+        _, natural = free.step(self.span)
+        free.state[:], free.dtime = before, clock
+        end = own.time + natural * type(natural)(_SMALL_PART)
+        at_once = [before for t in left if t == own.time]
+        near = [t for t in left if t != own.time and (t - end) * self.meeting.forward < 0]
+        steps, found, _ = self._towards(free, [*near, end], dense=dense)
+        if event is not None:
+            self.meeting.check_left(event, before, own.time, free.state)
+        own.state[:], own.dtime = free.state, free.dtime
+        if self.meeting.terminal:
+            own.reset_cooldowns()
+        return steps, [*at_once, *found[: len(near)]]
+
+    def _towards(self, integrator: Any, times: list[Any], *, dense: bool) -> tuple[int, list[Any], Any]:
+        """Return steps taken, the states at the times reached, and the outcome."""
+        if not dense:
+            grid = np.array([integrator.time, *times])
+            outcome, _, _, steps, _, found = integrator.propagate_grid(grid)
+            return steps, list(found[1:]), outcome
+        outcome, _, _, steps, piece, _ = integrator.propagate_until(times[-1], c_output=True)
+        if piece is None:
+            return steps, [], outcome
+        self.pieces.append(piece)
+        first, last = sorted(piece.bounds)
+        return steps, [np.array(piece(t)) for t in times if first <= t <= last], outcome
 
     def lost(self, outcome: object, rows: Sequence[int]) -> NonFiniteStateError:
+        """Return the error that says where the motion ended."""
         t, state = float(self.integrator.time), self.integrator.state.astype(np.float64)[list(rows)]
         return NonFiniteStateError(
             f"the motion can't be continued after {described(t, state)} ({outcome}): a collision or the edge of "
@@ -203,104 +253,23 @@ def _orbits(
     t0: Fraction,
     method: Taylor,
     number: Callable[[Fraction], Any],
-    meeting: _Meeting,
+    meeting: Meeting,
+    span: Any,
 ) -> list[_Orbit]:
     """Compile one integrator and copy it for the other orbits."""
-    made: list[_Orbit] = []
+    made, free = list[_Orbit](), None
     for high, low in zip(states[0].T.tolist(), states[1].T.tolist(), strict=True):
         y0 = [Fraction(a) + Fraction(b) for a, b in zip(high, low, strict=True)]
         if not made:
-            integrator = taylor_integrator(system, y0, t0, method.tolerance, number, meeting.heyoka_events())
+            settings = system, y0, t0, method.tolerance, number
+            integrator = taylor_integrator(*settings, meeting.heyoka_events())
+            free = taylor_integrator(*settings) if meeting.events else None
         else:
             integrator = copy.deepcopy(made[0].integrator)
             integrator.state[:] = [number(x) for x in y0]
-        made.append(_Orbit(integrator, meeting))
+        made.append(_Orbit(integrator, meeting, free, span))
     return made
 
 
 def _ends(orbits: Sequence[_Orbit]) -> list[tuple[Any, Any]]:
     return [(orbit.integrator.state.copy(), orbit.integrator.dtime) for orbit in orbits]
-
-
-class _Meeting:
-    """Events as heyoka's, and the crossings it calls back for."""
-
-    def __init__(
-        self,
-        system: Equations,
-        events: Sequence[Prepared],
-        precision: str | int,
-        number: Callable[[Fraction], Any],
-        t0: float,
-        *,
-        forward: int,
-    ) -> None:
-        self.system, self.number, self.t0, self.forward = system, number, t0, forward
-        self.recorded = [event for event in events if event.event.action == "record"]
-        self.terminal = [event for event in events if event.event.action != "record"]
-        self.met: list[Crossing] = []
-        self.trouble: NonFiniteStateError | None = None
-        self.wide = {"double": EXTENDED if EXTENDED.available() else DOUBLE}.get(
-            str(precision), DOUBLE_DOUBLE
-        )
-        if precision not in ("double", "extended") and any(event.jump for event in events):
-            raise ValueError(
-                f"precision={precision!r}: the state is changed at events in 'double' and 'extended' only"
-            )
-
-    def heyoka_events(self) -> dict[str, list[Any]]:
-        import heyoka as hy
-
-        if not (self.recorded or self.terminal):
-            return {}
-        kinds = {0: hy.event_direction.any, 1: hy.event_direction.positive, -1: hy.event_direction.negative}
-
-        def of(event: Prepared, make: Any, **options: Any) -> Any:
-            direction = kinds[event.event.direction * self.forward]
-            (function,) = heyoka_functions(self.system, [event.value], self.number)
-            return make(function, direction=direction, fp_type=type(self.number(Fraction(0))), **options)
-
-        return {
-            "nt_events": [of(e, hy.nt_event, callback=self._recorder(e)) for e in self.recorded],
-            "t_events": [of(e, hy.t_event, callback=self._changer(e)) for e in self.terminal],
-        }
-
-    def stopped_by(self, outcome: Any) -> bool:
-        """Return whether an outcome is the stop at an event, and not the end of time or a failure."""
-        return bool(self.terminal) and -len(self.terminal) <= outcome.value < 0 and self.trouble is None
-
-    def _recorder(self, event: Prepared) -> Callable[[Any, Any, int], None]:
-        def recorded(integrator: Any, t: Any, sign: int) -> None:
-            if float(t) == self.t0:  # a motion that starts at the zero does not cross it there
-                return
-            integrator.update_d_output(t)
-            self._meet(event, float(t), integrator.d_output, sign, None)
-
-        return recorded
-
-    def _changer(self, event: Prepared) -> Callable[[Any, int], bool]:
-        def changed(integrator: Any, sign: int) -> bool:
-            t, state = float(integrator.time), integrator.state.copy()
-            if event.jump is None:
-                self._meet(event, t, state, sign, None)
-                return False
-            high = state.astype(np.float64)
-            low = (state - high).astype(np.float64)
-            found = values_in(self.wide, self.system, event.jump, t, high[:, np.newaxis], low[:, np.newaxis])[
-                :, 0
-            ]
-            new = [
-                self.number(sum((Fraction(*x.as_integer_ratio()) for x in parts), Fraction(0)))
-                for parts in found
-            ]
-            integrator.state[:] = new
-            self._meet(event, t, state, sign, integrator.state.copy())
-            return True
-
-        return changed
-
-    def _meet(self, event: Prepared, t: float, state: Any, sign: int, after: Any) -> None:
-        rows = self.system.rows
-        moved = None if after is None else after.astype(np.float64)[rows]
-        y = state.astype(np.float64)[rows]
-        self.met.append(Crossing(event.event, t, y, sign * self.forward > 0, moved))

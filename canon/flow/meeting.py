@@ -1,0 +1,153 @@
+"""Events as heyoka meets them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.event import Crossing
+from canon.flow.job import NonFiniteStateError, described
+from canon.flow.measure import values_in
+from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, EXTENDED
+from canon.kernel.taylor import heyoka_functions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.flow.event import Prepared
+    from canon.flow.job import Array
+    from canon.kernel.structure import Equations
+
+__all__ = ["Meeting"]
+
+
+class Meeting:
+    """Events of one orbit as heyoka's, and the crossings it tells of.
+
+    Parameters
+    ----------
+    system, events
+        The equations and what to look for.
+    precision, number
+        The precision's keyword and what makes its numbers.
+    forward
+        1 where time runs forward, −1 where it runs back.
+
+    Raises
+    ------
+    ValueError
+        An event changes the state in a precision in which that is not done.
+    """
+
+    def __init__(
+        self,
+        system: Equations,
+        events: Sequence[Prepared],
+        precision: str | int,
+        number: Callable[[Fraction], Any],
+        *,
+        forward: int,
+    ) -> None:
+        self.system, self.events, self.number, self.forward = system, events, number, forward
+        self.recorded = [event for event in events if event.event.action == "record"]
+        self.terminal = [event for event in events if event.event.action != "record"]
+        self.met: list[Crossing] = []
+        self.met_state: Any = None
+        self.wide = {"double": EXTENDED if EXTENDED.available() else DOUBLE}.get(
+            str(precision), DOUBLE_DOUBLE
+        )
+        if precision not in ("double", "extended") and any(event.jump for event in events):
+            raise ValueError(
+                f"precision={precision!r}: the state is changed at events in 'double' and 'extended' only"
+            )
+
+    def heyoka_events(self) -> dict[str, list[Any]]:
+        """Return what heyoka's integrator takes."""
+        import heyoka as hy
+
+        if not self.events:
+            return {}
+        kinds = {0: hy.event_direction.any, 1: hy.event_direction.positive, -1: hy.event_direction.negative}
+
+        def of(event: Prepared, make: Any, callback: Any) -> Any:
+            direction = kinds[event.event.direction * self.forward]
+            (function,) = heyoka_functions(self.system, [event.value], self.number)
+            kind = type(self.number(Fraction(0)))
+            return make(function, direction=direction, fp_type=kind, callback=callback)
+
+        return {
+            "nt_events": [of(e, hy.nt_event, self._recorder(e)) for e in self.recorded],
+            "t_events": [of(e, hy.t_event, self._stopper(e)) for e in self.terminal],
+        }
+
+    def event_of(self, outcome: Any) -> Prepared | None:
+        """Return the event at which the motion stands, if its outcome is one."""
+        place = -outcome.value - 1
+        return self.terminal[place] if 0 <= place < len(self.terminal) else None
+
+    def at_zero(self, t: float, high: Array, low: Array) -> bool:
+        """Return whether the motion starts where some event's function is exactly zero."""
+        return any(self._value(event, t, high[:, 0], low[:, 0]) == 0 for event in self.events)
+
+    def check_left(self, event: Prepared, changed: Any, t: Any, after: Any) -> None:
+        """Make sure that a motion has left an event's zero to the side to which it was sent.
+
+        Raises
+        ------
+        NonFiniteStateError
+            It is back already: events pile up.
+        """
+        now = self._value(event, float(t), *_parts(after))
+        sent = self._value(event, float(t), *_parts(changed), rate=True) * self.forward
+        if now * sent <= 0:
+            y = changed.astype(np.float64)[self.system.rows]
+            raise NonFiniteStateError(
+                f"{event.event} is met again at once at {described(float(t), y)}: events pile up there; stop the "
+                "motion before",
+                float(t),
+                y,
+            )
+
+    def _value(self, event: Prepared, t: float, high: Array, low: Array, *, rate: bool = False) -> float:
+        node = event.rate if rate else event.value
+        found = values_in(self.wide, self.system, [node], t, high[:, np.newaxis], low[:, np.newaxis])
+        return float(found[0, 0].sum())
+
+    def _recorder(self, event: Prepared) -> Callable[[Any, Any, int], None]:
+        def recorded(integrator: Any, t: Any, sign: int) -> None:
+            integrator.update_d_output(t)
+            self._meet(event, float(t), integrator.d_output, sign, None)
+
+        return recorded
+
+    def _stopper(self, event: Prepared) -> Callable[[Any, int], bool]:
+        def met(integrator: Any, sign: int) -> bool:
+            t, state = float(integrator.time), integrator.state.copy()
+            after = None if event.jump is None else self._changed(event.jump, t, state)
+            self.met_state = after
+            self._meet(event, t, state, sign, after)
+            return False
+
+        return met
+
+    def _changed(self, jump: tuple[int, ...], t: float, state: Any) -> Any:
+        high, low = _parts(state)
+        found = values_in(self.wide, self.system, jump, t, high[:, np.newaxis], low[:, np.newaxis])[:, 0]
+        if not np.isfinite(found.astype(np.float64)).all():
+            y = high[self.system.rows]
+            raise NonFiniteStateError(f"the new state of an event is not finite at {described(t, y)}", t, y)
+        exact = [sum((Fraction(*x.as_integer_ratio()) for x in parts), Fraction(0)) for parts in found]
+        return np.array([self.number(x) for x in exact])
+
+    def _meet(self, event: Prepared, t: float, state: Any, sign: int, after: Any) -> None:
+        rows = self.system.rows
+        moved = None if after is None else after.astype(np.float64)[rows]
+        y = state.astype(np.float64)[rows]
+        self.met.append(Crossing(event.event, t, y, sign * self.forward > 0, moved))
+
+
+def _parts(state: Any) -> tuple[Array, Array]:
+    high = state.astype(np.float64)
+    return high, (state - high).astype(np.float64)
