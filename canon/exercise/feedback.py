@@ -15,7 +15,7 @@ import sympy as sp
 from canon.exercise.affine import solved
 from canon.exercise.convention import convention
 from canon.exercise.diagnosis import Diagnosis, judged_to_hold
-from canon.exercise.question import Part, Same, SameEquations
+from canon.exercise.question import Part, Same, SameEquations, Stated
 from canon.exercise.rejudged import another_gauge, another_reading, one_change, only_where
 from canon.exercise.repair import Screen, repairs
 from canon.exercise.tree import replaced
@@ -122,7 +122,7 @@ def _suspects(parts: Sequence[Part], domain: Domain) -> list[str]:
 def corrected(finding: Finding) -> str:
     """Return the right answer as text, where canon has it."""
     question = finding.question
-    if not isinstance(question, Same | SameEquations):
+    if not isinstance(question, Same | SameEquations | Stated):
         return ""
     if question.answer is None:
         shown = (

@@ -125,6 +125,10 @@ def _fits(value: Any, shape: Shape) -> bool:
             return isinstance(value, list) and len(value) > 0 and all(_bracket(item) for item in value)
         case Shape.BODIES:
             return isinstance(value, list) and len(value) > 0 and all(_body(item) for item in value)
+        case Shape.FORCES:
+            return isinstance(value, list) and len(value) > 0 and all(_force(item) for item in value)
+        case Shape.WORDS:
+            return isinstance(value, list) and len(value) > 0 and all(isinstance(w, str) for w in value)
 
 
 def _interval(value: Any) -> bool:
@@ -146,3 +150,9 @@ def _body(value: Any) -> bool:
         return False
     point, rotor = {"m", "r"} <= set(value), "I" in value and bool({"angle", "omega"} & set(value))
     return (point or rotor) and all(_texts(item) for item in value.values())
+
+
+def _force(value: Any) -> bool:
+    if not _table(value) or set(value) not in ({"F", "r"}, {"torque", "angle"}, {"torque", "omega"}):
+        return False
+    return all(_texts(item) for item in value.values())

@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from flint import acb, arb, arb_mat
+from sympy import Symbol
 
 from canon.exercise.tree import symbols_of
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     import sympy as sp
-    from sympy import Expr, Symbol
+    from sympy import Expr
 
 __all__ = ["enclosed", "refuted_at_a_point"]
 
@@ -61,7 +62,8 @@ def refuted_at_a_point(
     >>> print(refuted_at_a_point(step, (q, p), (Q, P), {"0": P - P, "P": P}, Domain()).question)
     P
     """
-    given = [s for s in symbols_of(*equations, *should_vanish.values(), *old) if s not in new]
+    named = {s for condition in domain.conditions for s in condition.free_symbols if isinstance(s, Symbol)}
+    given = [s for s in symbols_of(*equations, *should_vanish.values(), *old, *named) if s not in new]
     conditions = [c for c in domain.conditions if c.free_symbols <= set(given)]
     drawn = Domain(tuple(conditions), {s: ends for s, ends in domain.box.items() if s in given})
     with precision(PRECISION):

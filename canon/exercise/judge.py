@@ -9,9 +9,18 @@ from typing import TYPE_CHECKING, TypeAlias
 from canon.exercise import (
     judge_appell,
     judge_canonical,
+    judge_conserved,
     judge_constrained,
+    judge_constraint_class,
+    judge_energy,
     judge_hamiltonian,
+    judge_invariance,
     judge_lagrangian,
+    judge_passive,
+    judge_reaction,
+    judge_small,
+    judge_solution,
+    judge_variation,
 )
 from canon.exercise.manifold import EmptyDomainError
 from canon.exercise.question import Deadline, Question, decide
@@ -51,6 +60,21 @@ JUDGES: Mapping[str, Judge] = MappingProxyType(
         "constant-of-motion": judge_hamiltonian.constant_of_motion,
         "lagrangian-equivalence": judge_lagrangian.lagrangian_equivalence,
         "equality-only": judge_hamiltonian.equality,
+        "kinetic-energy": judge_energy.kinetic_energy,
+        "generalized-force": judge_energy.generalized_force,
+        "constraint-class": judge_constraint_class.constraint_class,
+        "degrees-of-freedom": judge_constraint_class.degrees_of_freedom,
+        "reaction": judge_reaction.reaction,
+        "leaving-condition": judge_reaction.leaving_condition,
+        "conserved-or-not": judge_conserved.conserved_or_not,
+        "solution": judge_solution.solution,
+        "linearisation": judge_small.linearisation,
+        "first-order": judge_small.first_order,
+        "invariance": judge_invariance.invariance,
+        "jacobi-identity": judge_invariance.jacobi_identity,
+        "positive-real": judge_passive.positive_real,
+        "variation": judge_variation.variation,
+        "differential": judge_variation.differential,
     }
 )
 """What each kind of claim comes down to."""

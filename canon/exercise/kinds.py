@@ -29,6 +29,8 @@ class Shape(enum.Enum):
     LISTS = "a table of lists of expressions"
     BRACKETS = "a list of tables, each with three expressions"
     BODIES = "a list of tables {m, r, I, angle, omega}"
+    FORCES = "a list of tables {F, r}, {torque, angle} or {torque, omega}"
+    WORDS = "a list of words"
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,7 @@ COMMON: Mapping[str, Shape] = MappingProxyType(
         "domain": Shape.TEXTS,
         "box": Shape.BOX,
         "budget": Shape.NUMBER,
+        "implicit_multiplication": Shape.TRUE,
     }
 )
 """Keys that every claim may have."""
@@ -76,6 +79,7 @@ _CANONICITY = Kind(
     one_of=(("Q", "P"), ("new_q", "new_p", "implicit")),
 )
 _GENERATING = Kind({**_PHASE, **_NEW, "F": _T}, _MAP_EITHER_WAY, one_of=(("map",), ("inverse_map",)))
+_MOTION = {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS}
 _CONSTRAINED = Kind({**_LAGRANGE, "constraints": _TS, "multipliers": _N, "claim": _TS})
 
 KINDS: Mapping[str, Kind] = MappingProxyType(
@@ -130,6 +134,53 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
         ),
         "lagrangian-equivalence": Kind({"q": _N, "L1": _T, "L2": _T, "relation": Shape.WORD}, {"F": _T}),
         "equality-only": Kind({"lhs": _T, "rhs": _T}),
+        "kinetic-energy": Kind({"q": _N, "bodies": Shape.BODIES, "T": _T}, {"constraints": _TS}),
+        "generalized-force": Kind(
+            {"q": _N, "Q": _TS},
+            {"forces": Shape.FORCES, "work": _T, "power": _T, "V": _T},
+            one_of=(("forces",), ("work",), ("power",), ("V",)),
+        ),
+        "constraint-class": Kind({"q": _N, "constraints": _TS, "class": Shape.WORDS}),
+        "degrees-of-freedom": Kind({"q": _N, "dof": _T}, {"constraints": _TS, "counting": Shape.WORD}),
+        "reaction": Kind(
+            {**_LAGRANGE, "constraints": _TS, "multipliers": _N},
+            {"Qnc": _TS, "integrals": _TS, "values": Shape.EXPRESSIONS, "force": _TS},
+            one_of=(("values",), ("force",)),
+        ),
+        "leaving-condition": Kind(
+            {**_LAGRANGE, "contact": _T, "leaves": _T},
+            {"constraints": _TS, "Qnc": _TS, "integrals": _TS},
+        ),
+        "conserved-or-not": Kind(
+            {},
+            {**_MOTION, "conserved": _TS, "not_conserved": _TS, "Qnc": _TS},
+            one_of=(("conserved",), ("not_conserved",)),
+        ),
+        "solution": Kind(
+            {},
+            {
+                **_MOTION,
+                "Qnc": _TS,
+                "equations": _TS,
+                "solution": Shape.EXPRESSIONS,
+                "rates": Shape.EXPRESSIONS,
+                "initial": Shape.EXPRESSIONS,
+                "t0": _T,
+                "constants": _N,
+            },
+            one_of=(("solution",), ("rates",)),
+        ),
+        "linearisation": Kind({**_LAGRANGE, "equilibrium": Shape.EXPRESSIONS, "claim": _TS}, {"Qnc": _TS}),
+        "first-order": Kind({"exact": _TS, "small": _N, "claim": _TS}, {"q": _N, "order": Shape.NUMBER}),
+        "invariance": Kind(
+            {"q": _N, "of": Shape.WORD},
+            {"p": _N, "Q": _TS, "P": _TS, **_NEW, "F": _T, "type": Shape.NUMBER},
+            one_of=(("Q",), ("new_q", "new_p", "F", "type")),
+        ),
+        "jacobi-identity": Kind({"x": _N, "pairs": Shape.BRACKETS}, {"casimirs": _TS}),
+        "positive-real": Kind({"variables": _N, "H": _T, "is": Shape.WORDS}),
+        "variation": Kind({**_LAGRANGE, "boundary": _T, "integrand": _T}, {"Qnc": _TS}),
+        "differential": Kind({"x": _N, "f": _T, "claim": _T}, {"given": Shape.EXPRESSIONS}),
     }
 )
 """Every kind of claim that can stand in a sheet."""

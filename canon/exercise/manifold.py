@@ -79,6 +79,8 @@ def on_manifold(
     ------
     Undecided
         Where a constraint can't be solved for any symbol in closed form.
+    EmptyDomainError
+        Where no point of the domain satisfies the constraints: a claim about none is not taken for right.
 
     Examples
     --------
@@ -92,6 +94,8 @@ def on_manifold(
         branches = [part for branch in branches for part in _restricted(branch, constraint, keep, prefer)]
         if len(branches) > MAX_BRANCHES:
             raise Undecided(f"the constraints have more than {MAX_BRANCHES} branches; split the claim")
+    if not branches:
+        raise EmptyDomainError("no point satisfies the constraints, assumptions and conditions")
     return branches
 
 

@@ -25,12 +25,16 @@ if TYPE_CHECKING:
 __all__ = [
     "Answer",
     "Deadline",
+    "Differ",
     "Part",
     "Question",
     "Regular",
     "Same",
     "SameEquations",
+    "Stated",
     "decide",
+    "fails",
+    "opposite",
     "wrong_variables",
 ]
 
@@ -82,11 +86,22 @@ class Part:
 
 @dataclass(frozen=True)
 class Same:
-    """All these components are right."""
+    """All these components are right.
+
+    Parameters
+    ----------
+    parts, domain
+        The components, and where they are meant.
+    answer
+        What would be right.
+    said
+        A sentence on a component that was refuted, where no better diagnosis is found.
+    """
 
     parts: tuple[Part, ...]
     domain: Domain
     answer: Answer | None = None
+    said: Callable[[Part], str] | None = None
 
 
 @dataclass(frozen=True)
@@ -127,7 +142,24 @@ class Regular:
     singular_is: str = ""
 
 
-Question: TypeAlias = Same | SameEquations | Regular | Verdict
+@dataclass(frozen=True)
+class Stated:
+    """A verdict that was reached elsewhere, and what would be right."""
+
+    verdict: Verdict
+    answer: Answer | None = None
+
+
+@dataclass(frozen=True)
+class Differ:
+    """A component is not what it is compared with: its residual does not vanish identically."""
+
+    part: Part
+    domain: Domain
+    feedback: str
+
+
+Question: TypeAlias = Same | SameEquations | Regular | Stated | Differ | Verdict
 
 
 @dataclass(frozen=True)
@@ -157,13 +189,40 @@ def wrong_variables(f: Expr, foreign: Sequence[Symbol], name: str, variables: st
         )
 
 
+def opposite(verdict: Verdict, feedback: str) -> Verdict:
+    """Return the verdict on the opposite claim; an open question stays open.
+
+    Examples
+    --------
+    >>> opposite(Verdict(Status.HOLDS, "x = y", "exact"), "they are equal").feedback
+    'they are equal'
+    """
+    if verdict.undecided:
+        return verdict
+    if verdict.holds:
+        return Verdict(
+            Status.FAILS, verdict.question, verdict.certificate, assumed=verdict.assumed, feedback=feedback
+        )
+    return Verdict(Status.HOLDS, verdict.question, verdict.certificate)
+
+
+def fails(question: str, feedback: str, residual: Expr | None = None) -> Verdict:
+    """Return FAILS for what is wrong by its form or by an exact count."""
+    return Verdict(Status.FAILS, question, "exact", residual, feedback=feedback)
+
+
 def decide(question: Question, deadline: Deadline) -> Verdict:
     """Return the answer to one question."""
     match question:
         case Verdict():
             return question
-        case Same(parts, domain):
-            return _all_vanish(parts, domain, deadline)
+        case Stated(verdict):
+            return verdict
+        case Differ(part, domain, feedback):
+            verdict = replace(vanishes(part.residual, domain, budget=deadline.left), feedback="")
+            return opposite(verdict.about(part.name), feedback)
+        case Same(parts, domain, said=said):
+            return _all_vanish(parts, domain, deadline, said)
         case SameEquations(claimed, right, unknowns, domain):
             return _same_equations(claimed, right, unknowns, domain, deadline)
         case Regular(matrix, name, domain, singular_is):
@@ -171,7 +230,9 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
 
 
-def _all_vanish(parts: Sequence[Part], domain: Domain, deadline: Deadline) -> Verdict:
+def _all_vanish(
+    parts: Sequence[Part], domain: Domain, deadline: Deadline, said: Callable[[Part], str] | None
+) -> Verdict:
     """Ask for all components at once, so that one that is easily refuted spares the long proofs of the others."""
     residuals = [part.residual for part in parts]
     verdict = replace(vanishes(sp.Matrix(residuals), domain, budget=deadline.left), feedback="")
@@ -183,6 +244,8 @@ def _all_vanish(parts: Sequence[Part], domain: Domain, deadline: Deadline) -> Ve
     if verdict.fails and turned.right != 0:  # ask again for the values of both sides
         both = equal(turned.seen(turned.claimed), turned.right, domain, budget=1.0)
         verdict = replace(verdict, counterexample=both.counterexample or verdict.counterexample)
+    if verdict.fails and said is not None:
+        verdict = replace(verdict, feedback=said(turned))
     return verdict.about(turned.name)
 
 

@@ -1,0 +1,65 @@
+"""Claims about which quantities are conserved and which are not, the explicit time included."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.judge_energy import shown_short
+from canon.exercise.question import Differ, Part, Question, Same
+from canon.expression.symbol import acceleration, velocity
+from canon.mechanics.hamiltonian import Hamiltonian
+from canon.mechanics.lagrangian import Lagrangian
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.exercise.reading import Reading
+
+__all__ = ["conserved_or_not", "motion_of"]
+
+
+def conserved_or_not(reading: Reading) -> Iterator[Question]:
+    """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes for the one list and does not vanish identically for the other."""
+    rates, t = motion_of(reading), reading.time
+    for key in ("conserved", "not_conserved"):
+        if not reading.has(key):
+            continue
+        for i, I in enumerate(reading.expressions(key)):
+            if I.has(*(s for s in _accelerations(reading) if s not in rates)):
+                reading.fault(f"{key}[{i}]", "should depend on the state and the time only")
+            rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
+            if key == "conserved":
+                yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
+            else:
+                why = f"{I} is conserved: its rate vanishes on every motion"
+                yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
+
+
+def motion_of(reading: Reading) -> dict[Symbol, Expr]:
+    """Return the rate of each state variable of a system given by H, L or X."""
+    if reading.has("H"):
+        q, p = reading.phase_space("q", "p")
+        system = Hamiltonian(reading.expression("H"), q, p, reading.time)
+        return dict(zip((*q, *p), system.vector_field, strict=True))
+    if reading.has("L"):
+        q = reading.symbols("q")
+        forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
+        lagrangian = Lagrangian(reading.expression("L"), q, reading.time, forces)
+        rates: dict[Symbol, Expr] = {x: velocity(x) for x in q}
+        return rates | dict(zip(lagrangian.velocities, lagrangian.accelerations, strict=True))
+    if not reading.has("X"):
+        reading.fault("L", "missing; give q with L, q and p with H, or x with X")
+    return dict(zip(reading.symbols("x"), reading.expressions("X", like="x"), strict=True))
+
+
+def _accelerations(reading: Reading) -> list[Symbol]:
+    """Return what no state variable is: the accelerations, and in phase space the velocities too."""
+    q = reading.symbols("q")
+    return [f(x) for x in q for f in (velocity, acceleration)]
+
+
+def _not_conserved(part: Part) -> str:
+    return f"not conserved: on the motion {part.name} = {shown_short(part.claimed)}"

@@ -1,0 +1,191 @@
+"""Claims about what a map leaves invariant for arbitrary functions, and about brackets given by their structure.
+
+Poisson's brackets of all functions, Lagrange's brackets of all variables and phase volume are invariant exactly where
+M J Mᵀ = J (volume: det² M = 1). Hamilton's equations keep their form for every H exactly where M J Mᵀ = c J with a
+constant c ≠ 0 (then K = c H + …); Lagrange's for every L where ∂Q/∂q is regular.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
+
+from canon.exercise.judge_canonical import canonical_parts, rules_of
+from canon.exercise.judge_energy import shown_short
+from canon.exercise.question import Part, Question, Regular, Same, Stated
+from canon.expression.symbol import velocity
+from canon.mechanics.bracket import lagrange_bracket, poisson_bracket
+from canon.mechanics.substitution import exchanged
+from canon.proof.verdict import Status, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from canon.exercise.reading import Reading
+
+__all__ = ["invariance", "jacobi_identity"]
+
+_SUBJECTS = (
+    "poisson-brackets",
+    "lagrange-brackets",
+    "hamilton-equations",
+    "phase-volume",
+    "lagrange-equations",
+)
+
+
+def invariance(reading: Reading) -> Iterator[Question]:
+    """The map leaves brackets, volume, or the form of the equations of motion invariant for all functions."""
+    subject = reading.word("of")
+    if subject not in _SUBJECTS:
+        reading.fault("of", f"write {', '.join(_SUBJECTS[:-1])} or {_SUBJECTS[-1]}")
+    if subject == "lagrange-equations":
+        yield _point_transformation(reading)
+        return
+    for key in ("p",) if reading.has("F") else ("p", "P"):
+        if not reading.has(key):
+            reading.fault(key, f"missing; a map of phase space is needed for {subject}")
+    if reading.has("F"):
+        yield from _generated(reading)
+        return
+    q, p = reading.phase_space("q", "p")
+    Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
+    if subject == "phase-volume":
+        M = sp.Matrix([[f.diff(z) for z in (*q, *p)] for f in (*Q, *P)])
+        part = Part("the square of the determinant", M.det(method="berkowitz") ** 2, sp.S.One)
+        yield Same((part,), reading.domain, _no_answer, is_instead)
+    elif subject == "poisson-brackets":
+        yield Same(canonical_parts(Q, P, q, p), reading.domain, _no_answer, is_instead)
+    elif subject == "lagrange-brackets":
+        yield Same(_lagrange_parts(Q, P, q, p), reading.domain, _no_answer, is_instead)
+    else:
+        yield from _hamiltonian_form(reading, Q, P, q, p)
+
+
+def _hamiltonian_form(
+    reading: Reading, Q: Sequence[Expr], P: Sequence[Expr], q: Sequence[Symbol], p: Sequence[Symbol]
+) -> Iterator[Question]:
+    """M J Mᵀ = c J with the same c ≠ 0 at all points and times."""
+    valence = poisson_bracket(Q[0], P[0], q, p)
+    yield Regular(sp.Matrix([[valence]]), "{Q, P}", reading.domain, "{Q, P} = 0: the map is singular")
+    slopes = [(z, valence.diff(z)) for z in (*q, *p, reading.time)]
+    rates = tuple(Part(f"∂{{Q, P}}/∂{z}", slope) for z, slope in slopes)
+    yield Same(rates, reading.domain, _no_answer, is_instead)
+    yield Same(canonical_parts(Q, P, q, p, valence), reading.domain, _no_answer, is_instead)
+
+
+def _lagrange_parts(
+    Q: Sequence[Expr], P: Sequence[Expr], q: Sequence[Symbol], p: Sequence[Symbol]
+) -> tuple[Part, ...]:
+    """[z, z′] formed with Q and P is what it is with q and p: Mᵀ J M = J."""
+    z, n = (*q, *p), len(q)
+    return tuple(
+        Part(f"[{z[i]}, {z[j]}]", lagrange_bracket(z[i], z[j], Q, P), sp.S.One if j - i == n else sp.S.Zero)
+        for i, j in combinations(range(2 * n), 2)
+    )
+
+
+def _generated(reading: Reading) -> Iterator[Question]:
+    """A map given by a generating function, arbitrary perhaps: Lagrange's brackets in the variables of F agree.
+
+    Σ dq∧dp = Σ dQ∧dP in the variables of F is invariance of Lagrange's brackets, and for a regular map of the rest.
+    """
+    kind = int(reading.claim.keys["type"])
+    if kind not in (1, 2, 3, 4):
+        reading.fault("type", "should be 1, 2, 3 or 4")
+    q, p = reading.phase_space("q", "p")
+    Q, P = reading.phase_space("new_q", "new_p")
+    if len(Q) != len(q):
+        reading.fault("new_q", f"{len(Q)} new coordinates for {len(q)} old ones")
+    F = reading.expression("F")
+    if F.has(*((*p, *P) if kind == 1 else (*p, *Q) if kind == 2 else (*q, *P) if kind == 3 else (*q, *Q))):
+        reading.fault("F", f"depends on variables that a generating function of type {kind} can't depend on")
+    rules = rules_of(reading, kind, F)
+    hessian = _with_free_jets(rules.mixed_hessian)
+    yield Regular(
+        hessian, "the mixed Hessian", reading.domain, "the mixed Hessian is singular: F generates no map"
+    )
+    given: Mapping[Symbol, Expr] = dict(zip(rules.foreign, rules.values, strict=True))
+    old, new = (tuple(given.get(z, z) for z in side) for side in ((*q, *p), (*Q, *P)))
+    n = len(q)
+    parts = tuple(
+        Part(
+            f"[{u}, {v}]", lagrange_bracket(u, v, new[:n], new[n:]), lagrange_bracket(u, v, old[:n], old[n:])
+        )
+        for u, v in combinations((*rules.old, *rules.new), 2)
+    )
+    yield Same(parts, reading.domain, _no_answer, is_instead)
+
+
+def _with_free_jets(matrix: sp.Matrix) -> sp.Matrix:
+    """Return a matrix with a symbol for each derivative of an arbitrary function: at one point they are independent."""
+    atoms = sorted(matrix.atoms(AppliedUndef, sp.Derivative), key=str)
+    jets: dict[sp.Basic, Expr] = {atom: Symbol(f"jet{i}", real=True) for i, atom in enumerate(atoms)}
+    return matrix.applyfunc(lambda entry: exchanged(entry, jets))
+
+
+def _no_answer() -> None:
+    """Return nothing: many maps would be right."""
+
+
+def is_instead(part: Part) -> str:
+    """Say what a component is, and what it should be."""
+    return f"{part.name} is {shown_short(part.seen(part.claimed))}, and should be {shown_short(part.right)}"
+
+
+def _point_transformation(reading: Reading) -> Question:
+    """Q = Q(q, t) with a regular ∂Q/∂q: then Lagrange's equations of every L keep their form."""
+    if not reading.has("Q"):
+        reading.fault("Q", "missing; give the new coordinates as functions of the old ones")
+    q, Q = reading.symbols("q"), reading.expressions("Q", like="q")
+    if any(f.has(*(velocity(x) for x in q)) for f in Q):
+        why = "new coordinates that hold velocities are no point transformation: the equations get third derivatives"
+        return Verdict(Status.FAILS, "a point transformation", "structure", feedback=why)
+    jacobian = sp.Matrix([[f.diff(x) for x in q] for f in Q])
+    return Regular(jacobian, "∂Q/∂q", reading.domain, "∂Q/∂q is singular: Q are no coordinates")
+
+
+def jacobi_identity(reading: Reading) -> Iterator[Question]:
+    """{xᵢ, xⱼ} = Jᵢⱼ(x), antisymmetric, satisfies Σ_l (J_il ∂_l J_jk + J_jl ∂_l J_ki + J_kl ∂_l J_ij) = 0."""
+    x = reading.symbols("x")
+    J = _structure(reading, x)
+    n = len(x)
+
+    def turned(i: int, j: int, k: int) -> Expr:
+        return sp.Add(*(J(i, m) * J(j, k).diff(x[m]) for m in range(n)))
+
+    parts = [
+        Part(f"{{{x[i]}, {{{x[j]}, {x[k]}}}}} + cyclic", turned(i, j, k) + turned(j, k, i) + turned(k, i, j))
+        for i, j, k in combinations(range(n), 3)
+    ]
+    if parts:
+        yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
+    else:
+        yield Stated(Verdict(Status.HOLDS, "Jacobi's identity of two variables", "structure"))
+    for i, C in enumerate(reading.expressions("casimirs") if reading.has("casimirs") else ()):
+        kept = [
+            Part(f"{{{x[k]}, casimirs[{i}]}}", sp.Add(*(J(k, m) * C.diff(x[m]) for m in range(n))))
+            for k in range(n)
+        ]
+        yield Same(tuple(kept), reading.domain, _no_answer, is_instead)
+
+
+def _structure(reading: Reading, x: Sequence[Symbol]) -> Callable[[int, int], Expr]:
+    table: dict[tuple[int, int], Expr] = {}
+    for number, (u, v, value) in enumerate(reading.brackets("u", "v")):
+        for letter, s in (("u", u), ("v", v)):
+            if s not in x:
+                reading.fault(f"pairs[{number}].{letter}", f"{s} is not one of {', '.join(map(str, x))}")
+        i, j = x.index(cast("Symbol", u)), x.index(cast("Symbol", v))
+        if i == j or (i, j) in table:
+            reading.fault(f"pairs[{number}]", f"{{{u}, {v}}} is given already, or zero by antisymmetry")
+        table[i, j], table[j, i] = value, -value
+
+    def entry(i: int, j: int) -> Expr:
+        return table.get((i, j), sp.S.Zero)
+
+    return entry

@@ -1,0 +1,215 @@
+"""Claims about rational transfer functions: positive real, and therefore passive, or not.
+
+H = n/d with n, d coprime is positive real exactly where n + d has all its zeros in Re s < 0 and
+Re n(jω) d(−jω) ≥ 0 for every ω: then (H − 1)/(H + 1) is bounded by 1 in the right half plane (A. Talbot, in
+Recent Developments in Network Theory, Pergamon 1963; B. D. O. Anderson, S. Vongpanitlerd, Network Analysis and
+Synthesis, § 2.7). A linear system with a rational H is passive exactly where H is positive real.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Rational, Symbol
+
+from canon.exercise.question import Question, Stated
+from canon.exercise.tree import replaced, symbols_of
+from canon.proof.generic import proved_sign
+from canon.proof.verdict import Counterexample, Status, Undecided, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.reading import Reading
+    from canon.proof.domain import Domain
+
+__all__ = ["is_positive_real_at", "positive_real"]
+
+POINTS = 24
+MOST_DEGREE = 12
+_WORDS = ("positive-real", "passive", "not positive-real", "not passive")
+
+
+@dataclass(frozen=True)
+class _Fault:
+    """Why a function with numbers for coefficients is not positive real."""
+
+    feedback: str
+    place: str
+    value: str
+
+
+def positive_real(reading: Reading) -> Iterator[Question]:
+    """H is positive real for all values of the parameters, or for none."""
+    words = reading.claim.keys["is"]
+    for i, word in enumerate(words):
+        if word not in _WORDS:
+            reading.fault(f"is[{i}]", f"should be one of {', '.join(_WORDS)}")
+    if len(reading.symbols("variables")) != 1:
+        reading.fault("variables", "should be one name, that of the complex frequency")
+    (s,) = reading.symbols("variables")
+    above, below = _polynomials(reading, s)
+    for word in words:
+        yield Stated(_judged(above, below, s, reading.domain, negated=word.startswith("not")).about(word))
+
+
+def is_positive_real_at(above: sp.Poly, below: sp.Poly) -> _Fault | None:
+    """Return why n/d, with rational coefficients, is not positive real; None where it is.
+
+    Examples
+    --------
+    >>> s = sp.Symbol("s")
+    >>> is_positive_real_at(sp.Poly(s, s), sp.Poly(s**2 + 3*s + 1, s)) is None
+    True
+    >>> is_positive_real_at(sp.Poly(1, s), sp.Poly(s**2 + 3*s + 1, s)).feedback
+    'Re H(jω) < 0 for some ω'
+    """
+    (s,) = below.gens
+    common = sp.gcd(above, below)
+    above, below = (sp.Poly(sp.quo(f, common), s, domain="QQ") for f in (above, below))
+    real = _real_part(above, below)
+    for w in _between_roots(real):
+        if real.eval(w) < 0:
+            value = real.eval(w) / _modulus_squared(below, w)
+            return _Fault("Re H(jω) < 0 for some ω", f"j*sqrt({w})", str(sp.N(value, 15)))
+    if not _is_hurwitz(above + below):
+        why = (
+            "H has a pole with Re s > 0, or one on the axis that is multiple or whose residue is not positive"
+        )
+        return _Fault(why, "a zero of H + 1 with Re s ≥ 0", "-1")
+    return None
+
+
+def _judged(above: sp.Poly, below: sp.Poly, s: Symbol, domain: Domain, *, negated: bool) -> Verdict:
+    parameters = [x for x in symbols_of(above.as_expr(), below.as_expr()) if x != s]
+    for point in domain.points(parameters, POINTS, seed=5) if parameters else ({},):
+        pair = [sp.Poly(replaced(f.as_expr(), point), s) for f in (above, below)]
+        if pair[1].is_zero or not all(c.is_Rational for f in pair for c in f.all_coeffs()):
+            continue
+        fault = is_positive_real_at(*(sp.Poly(f, s, domain="QQ") for f in pair))
+        if (fault is None) == negated:
+            return _refuted(point, fault, str(s))
+        if not parameters:
+            return Verdict(Status.HOLDS, certificate="exact")
+    proved = _never(above, below, domain) if negated else _always(above, below, domain)
+    if proved:
+        return Verdict(Status.HOLDS, certificate="exact")
+    raise Undecided(f"no counterexample at {POINTS} values of the parameters, and no proof for all of them")
+
+
+def _refuted(point: Mapping[Symbol, Rational], fault: _Fault | None, s: str) -> Verdict:
+    there = {x.name: str(value) for x, value in point.items()}
+    if fault is None:
+        why = "H is positive real" + (" for some values of the parameters" if point else "")
+        return Verdict(Status.FAILS, certificate="exact", feedback=why)
+    example = Counterexample({**there, s: fault.place}, fault.value, "0", 15)
+    return Verdict(Status.FAILS, certificate="exact", counterexample=example, feedback=fault.feedback)
+
+
+def _polynomials(reading: Reading, s: Symbol) -> tuple[sp.Poly, sp.Poly]:
+    H = reading.expression("H")
+    above, below = sp.fraction(sp.cancel(sp.together(H)))
+    try:
+        pair = [sp.Poly(f, s) for f in (above, below)]
+    except sp.PolynomialError:
+        pair = []
+    if not pair or any(c.has(s, sp.I) for f in pair for c in f.all_coeffs()):
+        reading.fault("H", f"should be a quotient of polynomials in {s} with real coefficients")
+    if max(f.degree() for f in pair) > MOST_DEGREE:
+        reading.fault("H", f"has a degree above {MOST_DEGREE}")
+    return pair[0], pair[1]
+
+
+def _real_part(above: sp.Poly, below: sp.Poly) -> sp.Poly:
+    """Return Re n(jω) d(−jω) as a polynomial in w = ω²."""
+    w = sp.Dummy("w", nonnegative=True)
+
+    def split(f: sp.Poly) -> tuple[Expr, Expr]:
+        """Return a, b with f(jω) = a(w) + jω b(w)."""
+        even = odd = sp.S.Zero
+        for k, c in enumerate(reversed(f.all_coeffs())):
+            term = (-1) ** (k // 2) * c * w ** (k // 2)
+            even, odd = (even + term, odd) if k % 2 == 0 else (even, odd + term)
+        return even, odd
+
+    (a, b), (c, d) = split(above), split(below)
+    return sp.Poly(sp.expand(a * c + w * b * d), w)
+
+
+def _modulus_squared(f: sp.Poly, w: Rational) -> Expr:
+    real = _real_part(f, f)
+    return real.eval(w)
+
+
+def _between_roots(f: sp.Poly) -> list[Rational]:
+    """Return a rational point in each interval of w ≥ 0 on which f keeps its sign, and 0."""
+    if f.is_zero or f.degree() == 0:
+        return [sp.S.Zero]
+    roots = [ends for ends, _ in f.sqf_part().intervals(inf=0)] if f.degree() else []
+    points = [sp.S.Zero]
+    edges = [sp.Rational(end) for ends in roots for end in ends]
+    for left, right in pairwise(edges):
+        points.append((left + right) / 2)
+    points += edges
+    points.append((edges[-1] if edges else sp.S.Zero) + 1)
+    return sorted(set(points))
+
+
+def _is_hurwitz(f: sp.Poly) -> bool:
+    """Tell whether all zeros have Re s < 0, by Routh's array; a zero in its first column says no."""
+    if f.is_zero:
+        return False
+    top, next_ = f.all_coeffs()[::2], f.all_coeffs()[1::2]
+    sign = sp.sign(f.LC())
+    for _ in range(f.degree()):
+        if not next_ or next_[0] == 0 or sp.sign(next_[0]) != sign:
+            return False
+        padded = [*next_, *[sp.S.Zero] * (len(top) - len(next_))]
+        after = [
+            (next_[0] * top[i + 1] - top[0] * (padded[i + 1] if i + 1 < len(padded) else 0)) / next_[0]
+            for i in range(len(top) - 1)
+        ]
+        top, next_ = next_, after
+    return True
+
+
+def _always(above: sp.Poly, below: sp.Poly, domain: Domain) -> bool:
+    """Prove both conditions for all values of the parameters."""
+    return _hurwitz_for_all(above + below, domain) and _nonnegative(_real_part(above, below), domain)
+
+
+def _never(above: sp.Poly, below: sp.Poly, domain: Domain) -> bool:
+    """Prove Re H(jω) < 0 at ω → 0, at ω → ∞, or at the top of a parabola, for all values of the parameters."""
+    real = _real_part(above, below)
+    if real.is_zero:
+        return False
+    coefficients = real.all_coeffs()
+    signs = [proved_sign(c, domain) for c in coefficients]
+    return signs[0] == "-" or (signs[-1] == "-" and real.eval(0) != 0)
+
+
+def _hurwitz_for_all(f: sp.Poly, domain: Domain) -> bool:
+    coefficients: Sequence[Expr] = f.all_coeffs()
+    if proved_sign(coefficients[0], domain) == "-":
+        coefficients = [-c for c in coefficients]
+    if any(proved_sign(c, domain) != "+" for c in coefficients):
+        return False
+    n = f.degree()
+    H = sp.Matrix(n, n, lambda i, j: coefficients[2 * j - i + 1] if 0 <= 2 * j - i + 1 <= n else sp.S.Zero)
+    minors = (H[:k, :k].det(method="berkowitz") for k in range(2, n))
+    return all(proved_sign(sp.expand(minor), domain) == "+" for minor in minors)
+
+
+def _nonnegative(f: sp.Poly, domain: Domain) -> bool:
+    """Prove f(w) ≥ 0 for w ≥ 0."""
+    signs = {proved_sign(c, domain) for c in f.all_coeffs() if c != 0}
+    if signs <= {"+", "0+"}:
+        return True
+    if f.degree() == 2:
+        a, b, c = f.all_coeffs()
+        inside = proved_sign(sp.expand(4 * a * c - b**2), domain) in ("+", "0+")
+        return inside and proved_sign(a, domain) in ("+", "0+") and proved_sign(c, domain) in ("+", "0+")
+    return proved_sign(f.as_expr(), domain) in ("+", "0+")

@@ -1,0 +1,197 @@
+"""Claims about reactions along a motion, and where a one-sided contact is lost.
+
+With d/dt ∂L/∂q̇ − ∂L/∂q = Q + Σ λₐ ∂fₐ/∂q (∂gₐ/∂q̇ for constraints on velocities). ``integrals`` are first integrals
+with their values, such as the energy of a start from rest: the motions meant are those on which they hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.affine import solved
+from canon.exercise.implicit_point import refuted_at_a_point
+from canon.exercise.judge_energy import shown_short
+from canon.exercise.manifold import Branch, on_manifold
+from canon.exercise.question import Deadline, Part, Question, Same, Stated, decide
+from canon.exercise.tree import symbols_of
+from canon.expression.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.substitution import substitute
+from canon.proof.generic import proved_sign
+from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.reading import Reading
+
+__all__ = ["leaving_condition", "reaction"]
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """One branch of the constraint manifold, accelerations and multipliers on it, and the directions of reactions."""
+
+    branch: Branch
+    solution: Mapping[Symbol, Expr]
+    directions: sp.Matrix
+
+    def seen(self, f: Expr) -> Expr:
+        """Return an expression on the motion."""
+        return substitute(f, {**self.branch.values, **self.solution})
+
+
+def reaction(reading: Reading) -> Iterator[Question]:
+    """Multipliers or generalized forces of constraint are what is claimed, on every motion that is meant."""
+    q, multipliers = reading.symbols("q"), reading.symbols("multipliers")
+    constraints = reading.equations("constraints")
+    if len(multipliers) != len(constraints):
+        reading.fault("multipliers", f"{len(multipliers)} multipliers for {len(constraints)} constraints")
+    for motion in _motions(reading, constraints, multipliers):
+        parts: list[Part] = []
+        if reading.has("values"):
+            names = {s.name: s for s in multipliers}
+            for name, value in reading.table("values").items():
+                if name not in names:
+                    reading.fault(f"values.{name}", "is not among the multipliers")
+                right = motion.solution[names[name]]
+                parts.append(Part(name, value, right, _rates(motion, q, value), f"values.{name}"))
+        if reading.has("force"):
+            forces = motion.directions.T * sp.Matrix(multipliers)
+            for i, (x, value) in enumerate(zip(q, reading.expressions("force", like="q"), strict=True)):
+                name = f"the force of constraint on {x}"
+                parts.append(
+                    Part(name, value, motion.seen(forces[i]), _rates(motion, q, value), f"force[{i}]")
+                )
+        yield Same(tuple(parts), motion.branch.domain, lambda parts=parts: _answer(parts))
+
+
+def leaving_condition(reading: Reading) -> Iterator[Question]:
+    """The reaction of the contact f ≥ 0 vanishes exactly where the claimed equation holds."""
+    contact = reading.expression("contact")
+    if contact.has(*(velocity(x) for x in reading.symbols("q"))):
+        reading.fault("contact", "a contact f ≥ 0 depends on coordinates and time only")
+    others = reading.equations("constraints") if reading.has("constraints") else ()
+    multipliers = tuple(sp.Dummy(f"lam{i}", real=True) for i in range(1 + len(others)))
+    (leaves,) = reading.equations("leaves")
+    deadline = Deadline.after(0.8 * reading.claim.budget)
+    for motion in _motions(reading, (contact, *others), multipliers):
+        force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
+        claimed = motion.seen(leaves)
+        if claimed == 0:
+            reading.fault("leaves", "holds all along the contact")
+        verdict = _same_zeros(force, claimed, motion.branch, reading.symbols("q"), deadline)
+        yield Stated(verdict, lambda force=force: f"the reaction {shown_short(sp.factor_terms(force))} = 0")
+
+
+def _motions(
+    reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]
+) -> Iterator[_Motion]:
+    q, t = reading.symbols("q"), reading.time
+    v, a = tuple(velocity(x) for x in q), tuple(acceleration(x) for x in q)
+    if any(g.diff(u).has(*v) for g in constraints for u in v):
+        reading.fault("constraints", "every constraint should be affine in the velocities")
+    positions = [f for f in constraints if not f.has(*v)]
+    held = [time_derivative(f, q, t) if f in positions else f for f in constraints]
+    directions = sp.Matrix([[g.diff(u) for u in v] for g in held])
+    integrals = reading.equations("integrals") if reading.has("integrals") else ()
+    forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
+    lagrangian = Lagrangian(reading.expression("L"), q, t, forces)
+    reactions = directions.T * sp.Matrix(multipliers)
+    system = [e - r for e, r in zip(lagrangian.equations, reactions, strict=True)]
+    system += [time_derivative(g, q, t) for g in held]
+    for branch in _with_integrals(on_manifold((*positions, *held), reading.domain, (t,), v), integrals, v, t):
+        here = [substitute(e, branch.values) for e in system]
+        motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions)
+        _check_constant(reading, integrals, motion)
+        yield motion
+
+
+def _with_integrals(
+    branches: Sequence[Branch], integrals: Sequence[Expr], v: Sequence[Symbol], t: Symbol
+) -> Iterator[Branch]:
+    """Restrict the manifold to given values of first integrals, solved for velocities where that can be done."""
+    for branch in branches:
+        here = [substitute(f, branch.values) for f in integrals]
+        others = [s for s in symbols_of(*here) if s not in v]
+        try:
+            parts = on_manifold(here, branch.domain, (t, *others), v)
+        except Undecided:
+            parts = on_manifold(here, branch.domain, (t,), v)
+        for part in parts:
+            values = {s: substitute(f, part.values) for s, f in branch.values.items()}
+            yield Branch({**values, **part.values}, part.domain)
+
+
+def _check_constant(reading: Reading, integrals: Sequence[Expr], motion: _Motion) -> None:
+    """Refuse "integrals" that a motion does not keep: no whole motion would be meant."""
+    for i, f in enumerate(integrals):
+        rate = motion.seen(time_derivative(f, reading.symbols("q"), reading.time))
+        kept = decide(
+            Same((Part("rate", rate),), motion.branch.domain), Deadline.after(reading.claim.budget / 4)
+        )
+        if kept.fails:
+            reading.fault(
+                f"integrals[{i}]", "is not constant along the motion, so no whole motion satisfies it"
+            )
+        if kept.undecided:
+            raise Undecided(f"whether integrals[{i}] is constant along the motion was not decided")
+
+
+def _rates(motion: _Motion, q: Sequence[Symbol], value: Expr) -> dict[Symbol, Expr]:
+    """Return what is put into a claimed value: the manifold, and accelerations where it holds any."""
+    a = [acceleration(x) for x in q]
+    known = {s: motion.solution[s] for s in a if value.has(s)}
+    return {**motion.branch.values, **known}
+
+
+def _answer(parts: Sequence[Part]) -> tuple[str, ...]:
+    return tuple(f"{part.name} = {shown_short(sp.factor_terms(part.right))}" for part in parts)
+
+
+def _same_zeros(
+    force: Expr, claimed: Expr, branch: Branch, q: Sequence[Symbol], deadline: Deadline
+) -> Verdict:
+    """Tell whether two expressions vanish at the same points of a domain."""
+    name = "the reaction of the contact"
+    ratio = sp.fraction(sp.cancel(sp.together(force / claimed)))
+    if all(proved_sign(side, branch.domain) in ("+", "-") for side in ratio):
+        return Verdict(Status.HOLDS, name, "exact")
+    both = [
+        _follows(claimed, force, "there the reaction does not vanish", branch, q, deadline),
+        _follows(force, claimed, "the reaction vanishes elsewhere too", branch, q, deadline),
+    ]
+    return all_hold(both, name)
+
+
+def _follows(
+    given: Expr, wanted: Expr, feedback: str, branch: Branch, q: Sequence[Symbol], deadline: Deadline
+) -> Verdict:
+    """Tell whether one expression vanishes wherever another does."""
+    try:
+        parts = on_manifold([given], branch.domain)
+        verdict = all_hold(
+            decide(Same((Part("the reaction", wanted, through=b.values),), b.domain), deadline) for b in parts
+        )
+    except Undecided as reason:
+        verdict = Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
+        for x in symbols_of(given):
+            if x in q:
+                found = refuted_at_a_point(
+                    [given], [sp.Dummy(x.name, real=True)], [x], {"the reaction": wanted}, branch.domain
+                )
+                verdict = found if found is not None else verdict
+    if not verdict.fails:
+        return verdict
+    return Verdict(
+        Status.FAILS,
+        verdict.question,
+        verdict.certificate,
+        verdict.residual,
+        verdict.counterexample,
+        feedback=feedback,
+    )

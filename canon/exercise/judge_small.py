@@ -1,0 +1,230 @@
+"""Claims to first order in something small: expansions, and equations linearised about an equilibrium.
+
+"To order n in λ" means that the two sides differ by o(λⁿ) at λ → 0, everything else fixed; where there are several
+small quantities, all of them are of one order. The two sides must be quotients of functions analytic at λ = 0.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.judge_energy import shown_short
+from canon.exercise.question import Deadline, Part, Question, Same, SameEquations, Stated, decide
+from canon.expression.symbol import acceleration, velocity
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.substitution import substitute
+from canon.proof.domain import Domain
+from canon.proof.generic import proved_sign
+from canon.proof.vanish import vanishes
+from canon.proof.verdict import Status, Undecided, Verdict, all_hold
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.reading import Reading
+
+__all__ = ["first_order", "linearisation"]
+
+MOST_ORDERS = 8
+_ORDINALS = ("zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+_KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside, sp.atan2, sp.LambertW)
+
+
+def first_order(reading: Reading) -> Iterator[Question]:
+    """Both sides have the same expansion in the small quantities, up to the order that is claimed."""
+    exact, claimed = reading.expressions("exact"), reading.expressions("claim")
+    if len(exact) != len(claimed):
+        reading.fault("claim", f"{len(claimed)} expressions for the {len(exact)} under exact")
+    order = int(reading.claim.keys.get("order", 1))
+    if order != reading.claim.keys.get("order", 1) or not -MOST_ORDERS <= order <= MOST_ORDERS:
+        reading.fault("order", f"should be a whole number from -{MOST_ORDERS} to {MOST_ORDERS}")
+    small = _small(reading)
+    names, deadline = ", ".join(map(str, small)), Deadline.after(0.9 * reading.claim.budget)
+    said = f"right to {_ordinal(order)} order in {names}"
+    verdicts: list[Verdict] = []
+    for i, (f, g) in enumerate(zip(exact, claimed, strict=True)):
+        name = f"claim {i + 1}, to {_ordinal(order)} order in {names}"
+        verdict, at = _same_to_order(f, g, small, order, reading.domain, deadline)
+        if verdict.fails:
+            yield Stated(
+                Verdict(
+                    Status.FAILS,
+                    name,
+                    verdict.certificate,
+                    verdict.residual,
+                    verdict.counterexample,
+                    feedback=_where_wrong(at, verdict.residual, names),
+                ),
+                lambda f=f: _expanded(f, small, order, reading.domain),
+            )
+            return
+        verdicts.append(verdict)
+    whole = all_hold(verdicts, said)
+    if whole.holds:
+        whole = Verdict(
+            Status.HOLDS, said, f"exact to {_ordinal(order)} order in {names}", assumed=whole.assumed
+        )
+    yield Stated(whole)
+
+
+def linearisation(reading: Reading) -> Iterator[Question]:
+    """The place is an equilibrium, and the claimed equations are Lagrange's to first order in q, q̇, q̈ about it."""
+    q = reading.symbols("q")
+    table, names = reading.table("equilibrium"), {x.name: x for x in q}
+    if set(table) != set(names):
+        reading.fault("equilibrium", f"should say where each of {', '.join(names)} rests, and nothing else")
+    place = {names[name]: value for name, value in table.items()}
+    if any(value.has(*q, reading.time) for value in place.values()):
+        reading.fault("equilibrium", "should be given by parameters only")
+    forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
+    equations = Lagrangian(reading.expression("L"), q, reading.time, forces).equations
+    domain = Domain(tuple(c for c in reading.domain.conditions if not c.has(*q)), reading.domain.box)
+    rates = [r(x) for x in q for r in (velocity, acceleration)]
+    still = {**place, **dict.fromkeys(rates, sp.S.Zero)}
+    parts = tuple(
+        Part(f"the force on {x} at the equilibrium", substitute(e, still))
+        for x, e in zip(q, equations, strict=True)
+    )
+    at_rest = decide(Same(parts, domain), Deadline.after(reading.claim.budget / 2))
+    if at_rest.fails:
+        why = "this is no equilibrium: there the equations of motion are not satisfied at rest"
+        yield Verdict(
+            Status.FAILS, at_rest.question, at_rest.certificate, at_rest.residual, at_rest.counterexample,
+            feedback=why,
+        )  # fmt: skip
+        return
+    yield at_rest
+    linear = tuple(_linear(e, q, rates, place) for e in equations)
+    written = reading.equations("claim")
+    unknowns = tuple(acceleration(x) for x in q)
+    yield SameEquations(written, linear, unknowns, domain, lambda: tuple(map(shown_short, linear)), written)
+
+
+def _linear(
+    equation: Expr, q: Sequence[Symbol], rates: Sequence[Symbol], place: Mapping[Symbol, Expr]
+) -> Expr:
+    """Return the terms of first order in the deviations from a place."""
+    still = {**place, **dict.fromkeys(rates, sp.S.Zero)}
+    _check_analytic(equation, still, Domain())
+    terms = [substitute(equation.diff(s), still) * s for s in (*q, *rates)]
+    if any(term.has(sp.nan, sp.zoo, sp.oo, -sp.oo) for term in terms):
+        raise Undecided("the equations have no derivative at the equilibrium")
+    return sp.Add(*terms)
+
+
+def _small(reading: Reading) -> list[Symbol]:
+    names = reading.claim.keys["small"]
+    found: list[Symbol] = []
+    for name in names if isinstance(names, list) else [names]:
+        symbol = reading.scope.symbol(name)
+        if symbol is None or symbol == reading.time:
+            reading.fault("small", f"{name} is not declared; {reading.scope.near(name)}")
+        found.append(symbol)
+    return found
+
+
+def _same_to_order(
+    f: Expr, g: Expr, small: Sequence[Symbol], order: int, domain: Domain, deadline: Deadline
+) -> tuple[Verdict, int]:
+    """Tell whether f − g = o(εⁿ), and at which order it fails first."""
+    epsilon = sp.Dummy("epsilon", real=True)
+    domain = Domain(tuple(c for c in domain.conditions if not c.has(*small)), domain.box)
+    above, below = _quotient(f - g, small, epsilon, domain)
+    start, lowest = _order_of(below, epsilon, domain, deadline)
+    verdicts: list[Verdict] = []
+    for k in range(max(0, order + start + 1)):
+        coefficient = _coefficient(above, epsilon, k)
+        verdict = vanishes(coefficient, domain, budget=deadline.left)
+        if verdict.fails:
+            shown = shown_short(coefficient / lowest * _power_of(small, k - start))
+            return Verdict(
+                Status.FAILS, "", verdict.certificate, shown, verdict.counterexample, verdict.assumed
+            ), k - start
+        verdicts.append(verdict)
+    return all_hold(verdicts), order
+
+
+def _power_of(small: Sequence[Symbol], k: int) -> Expr:
+    """Return λᵏ for one small quantity; for several the coefficient shows the powers itself."""
+    return small[0] ** k if len(small) == 1 else sp.S.One
+
+
+def _quotient(f: Expr, small: Sequence[Symbol], epsilon: Symbol, domain: Domain) -> tuple[Expr, Expr]:
+    """Return numerator and denominator, both analytic at ε = 0, of f with every small quantity s as ε s."""
+    size = {s: epsilon * (s if len(small) > 1 else 1) for s in small}
+    scaled = substitute(f, size)
+    above, below = sp.fraction(sp.together(scaled)) if _singular(scaled, epsilon) else (scaled, sp.S.One)
+    for side in (above, below):
+        _check_analytic(side, {epsilon: sp.S.Zero}, domain)
+    return above, below
+
+
+def _singular(f: Expr, epsilon: Symbol) -> bool:
+    return any(
+        substitute(part.base, {epsilon: sp.S.Zero}) == 0
+        for part in f.atoms(sp.Pow)
+        if part.exp.is_negative and part.has(epsilon)
+    ) or bool(f.has(sp.tan, sp.cot, sp.sec, sp.csc))
+
+
+def _check_analytic(f: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> None:
+    """Refuse what is not certainly analytic where some symbols have these values."""
+    moving = tuple(place)
+    for part in sp.preorder_traversal(f):
+        if not isinstance(part, Expr) or not part.has(*moving):
+            continue
+        bad = isinstance(part, _KINKED)
+        if isinstance(part, sp.Pow) and not part.exp.is_integer:
+            bad = part.exp.has(*moving) and not part.base.is_positive
+            bad = bad or proved_sign(substitute(part.base, place), domain) != "+"
+        elif isinstance(part, sp.Pow) and part.exp.is_negative:
+            bad = vanishes(substitute(part.base, place), domain, budget=0.5).holds
+        elif isinstance(part, sp.log):
+            bad = proved_sign(substitute(part.args[0], place), domain) != "+"
+        elif isinstance(part, sp.asin | sp.acos | sp.atanh | sp.acosh | sp.acot | sp.acoth):
+            bad = substitute(part.args[0], place) != 0 or isinstance(part, sp.acosh | sp.acot)
+        if bad:
+            raise Undecided(f"{part} is not certainly analytic there, so it has no expansion that is proved")
+
+
+def _order_of(f: Expr, epsilon: Symbol, domain: Domain, deadline: Deadline) -> tuple[int, Expr]:
+    """Return the lowest order of f at ε = 0, and its coefficient."""
+    for k in range(MOST_ORDERS + 1):
+        coefficient = _coefficient(f, epsilon, k)
+        verdict = vanishes(coefficient, domain, budget=deadline.left)
+        if verdict.fails:
+            return k, coefficient
+        if verdict.undecided:
+            break
+    raise Undecided("the order of a denominator in the small quantity was not decided")
+
+
+def _coefficient(f: Expr, epsilon: Symbol, k: int) -> Expr:
+    found = substitute(f.diff(epsilon, k), {epsilon: sp.S.Zero}) / sp.factorial(k)
+    if found.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
+        raise Undecided(f"the coefficient of order {k} is not finite")
+    return found
+
+
+def _expanded(f: Expr, small: Sequence[Symbol], order: int, domain: Domain) -> Expr | None:
+    """Return the expansion up to an order, where f itself is analytic."""
+    epsilon = sp.Dummy("epsilon", real=True)
+    above, below = _quotient(f, small, epsilon, domain)
+    if below != 1:
+        start, _ = _order_of(below, epsilon, domain, Deadline.after(1.0))
+        above = sp.series(above / below, epsilon, 0, order + 1).removeO() if start < MOST_ORDERS else above
+        return shown_short(substitute(above, {epsilon: small[0] if len(small) == 1 else sp.S.One}))
+    terms = (_coefficient(above, epsilon, k) * _power_of(small, k) for k in range(order + 1))
+    return sp.Add(*map(shown_short, terms))
+
+
+def _where_wrong(at: int, residual: object, names: str) -> str:
+    known = f"right to {_ordinal(at - 1)} order in {names} only; " if at - 1 >= 0 else ""
+    return f"{known}the terms of {_ordinal(at)} order are wrong: exact less claimed is {residual} there"
+
+
+def _ordinal(order: int) -> str:
+    return _ORDINALS[order] if 0 <= order < len(_ORDINALS) else f"({order})th"

@@ -1,0 +1,181 @@
+"""Claims about solutions of equations of motion.
+
+A solution is given as functions of the time, or as velocities from which it follows by quadrature.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.judge_conserved import motion_of
+from canon.exercise.judge_energy import shown_short
+from canon.exercise.judge_invariance import is_instead
+from canon.exercise.manifold import transported
+from canon.exercise.question import Part, Question, Regular, Same, fails
+from canon.expression.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.substitution import substitute
+from canon.proof.verdict import Undecided
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.reading import Reading
+    from canon.proof.domain import Domain
+
+__all__ = ["solution"]
+
+
+def solution(reading: Reading) -> Iterator[Question]:
+    """The claimed motion satisfies the equations and the initial values, and is general if constants are named."""
+    if reading.has("solution") and reading.has("rates"):
+        reading.fault("rates", "give solution or rates, not both")
+    yield from _of_functions(reading) if reading.has("solution") else _of_rates(reading)
+
+
+def _of_functions(reading: Reading) -> Iterator[Question]:
+    """x = x(t): put into the equations it satisfies them."""
+    t, state = reading.time, _state(reading)
+    variables = tuple(x for x in state if x not in state.values())
+    table = _table(reading, "solution", variables)
+    for x, value in table.items():
+        if value.has(*variables, *state.values()):
+            reading.fault(f"solution.{x}", f"should depend on {t}, parameters and constants only")
+    motion: dict[Symbol, Expr] = {}
+    for x, value in table.items():
+        motion[x] = value
+        if _second_order(reading):
+            motion |= {velocity(x): value.diff(t), acceleration(x): value.diff(t, 2)}
+    domain = transported(reading.domain, motion)
+    parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
+    yield Same(parts, domain, _no_answer, _left_over)
+    yield from _initial(reading, {x: motion[x] for x in state if x in motion}, t)
+    if reading.has("constants"):
+        values = [motion[x] for x in _ordered(state)]
+        yield from _general(reading, values, domain)
+
+
+def _of_rates(reading: Reading) -> Iterator[Question]:
+    """ẋ = r(x, t): every motion with these velocities satisfies the equations; x(t) follows by quadrature."""
+    if not _second_order(reading):
+        reading.fault("rates", "belong to equations of second order; give q with L, or q with equations")
+    q, t = reading.symbols("q"), reading.time
+    v = tuple(velocity(x) for x in q)
+    rates = _table(reading, "rates", q)
+    for x, value in rates.items():
+        if value.has(*v, *(acceleration(y) for y in q)):
+            reading.fault(f"rates.{x}", "should depend on coordinates, time, parameters and constants only")
+    motion = {velocity(x): r for x, r in rates.items()}
+    motion |= {acceleration(x): substitute(time_derivative(r, q, t), motion) for x, r in rates.items()}
+    domain = transported(reading.domain, motion)
+    parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
+    yield Same(parts, domain, _no_answer, _left_over)
+    if reading.has("initial"):
+        yield from _initial_rates(reading, q, rates)
+    if reading.has("constants"):
+        yield from _general(reading, [rates[x] for x in q], domain)
+
+
+def _second_order(reading: Reading) -> bool:
+    return reading.has("q") and not reading.has("H")
+
+
+def _state(reading: Reading) -> Mapping[Symbol, Expr]:
+    """Return the rate of each state variable; of accelerations nothing is known where equations are given."""
+    if _second_order(reading):
+        return {x: velocity(x) for x in reading.symbols("q")}
+    return dict.fromkeys(motion_of(reading), sp.S.Zero)
+
+
+def _ordered(state: Mapping[Symbol, Expr]) -> list[Symbol]:
+    rates = [v for v in state.values() if isinstance(v, Symbol)]
+    return [*state, *rates]
+
+
+def _equations(reading: Reading, motion: Mapping[Symbol, Expr]) -> list[tuple[str, Expr]]:
+    """Return what should vanish on the motion."""
+    if reading.has("equations"):
+        if not reading.has("q"):
+            reading.fault("equations", "are in the coordinates q; declare them")
+        return [(f"equation {i + 1}", e) for i, e in enumerate(reading.equations("equations"))]
+    if _second_order(reading):
+        q = reading.symbols("q")
+        forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
+        if not reading.has("L"):
+            reading.fault("L", "missing; give L, or equations")
+        lagrangian = Lagrangian(reading.expression("L"), q, reading.time, forces)
+        return [(f"the equation of {x}", e) for x, e in zip(q, lagrangian.equations, strict=True)]
+    t = reading.time
+    return [(f"the equation of {x}", motion[x].diff(t) - rate) for x, rate in motion_of(reading).items()]
+
+
+def _table(reading: Reading, key: str, variables: Sequence[Symbol]) -> dict[Symbol, Expr]:
+    table, names = reading.table(key), {x.name: x for x in variables}
+    if set(table) != set(names):
+        reading.fault(key, f"should say what each of {', '.join(names)} is, and nothing else")
+    return {names[name]: value for name, value in table.items()}
+
+
+def _initial(reading: Reading, motion: Mapping[Symbol, Expr], t: Symbol) -> Iterator[Question]:
+    """The motion starts where the claim says."""
+    if not reading.has("initial"):
+        return
+    start = reading.expression("t0", sp.S.Zero)
+    known = dict(motion)
+    if _second_order(reading):
+        known |= {velocity(x): value.diff(t) for x, value in motion.items()}
+    parts: list[Part] = []
+    for name, wanted in reading.table("initial").items():
+        symbol = reading.scope.symbol(name)
+        if symbol not in known:
+            reading.fault(f"initial.{name}", f"should be one of {', '.join(map(str, known))}")
+        there = substitute(known[symbol], {t: start})
+        if there.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
+            raise Undecided(f"{symbol} at {t} = {start} is a limit, which is not taken")
+        parts.append(Part(f"{name} at {t} = {start}", there, wanted))
+    yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
+
+
+def _left_over(part: Part) -> str:
+    return f"the motion does not satisfy {part.name}: {shown_short(part.claimed)} is left over"
+
+
+def _no_answer() -> None:
+    """Return nothing: equations of motion have many solutions, and not all in closed form."""
+
+
+def _initial_rates(reading: Reading, q: Sequence[Symbol], rates: Mapping[Symbol, Expr]) -> Iterator[Question]:
+    table = reading.table("initial")
+    names = {s.name for x in q for s in (x, velocity(x))}
+    if not set(table) <= names:
+        reading.fault("initial", f"should give values of {', '.join(sorted(names))}")
+    start = {x: table[x.name] for x in q if x.name in table}
+    start[reading.time] = reading.expression("t0", sp.S.Zero)
+    parts: list[Part] = []
+    for x in q:
+        name = velocity(x).name
+        if name not in table:
+            continue
+        there = substitute(rates[x], start)
+        if there.has(*q, sp.nan, sp.zoo):
+            reading.fault("initial", "should give the place of every coordinate that the rate depends on")
+        parts.append(Part(f"{name} at the start", there, table[name]))
+    yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
+
+
+def _general(reading: Reading, values: Sequence[Expr], domain: Domain) -> Iterator[Question]:
+    """As many constants as the state has variables, and the state depends regularly on them."""
+    constants = reading.symbols("constants")
+    if len(constants) != len(values):
+        why = f"the general solution has {len(values)} constants, not {len(constants)}"
+        yield fails("the number of constants", why)
+        return
+    yield Regular(
+        sp.Matrix([[value.diff(c) for c in constants] for value in values]),
+        "the derivatives by the constants",
+        domain,
+        "the constants are not independent: the solution is not general",
+    )
