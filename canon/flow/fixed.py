@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.measure import values_in
-from canon.flow.method import RK4, FixedStep, Gauss
+from canon.flow.method import RK4, FixedStep, Gauss, Splitting
 from canon.flow.partial import PartialSteps, State, coefficient_pairs
 from canon.flow.sampling import Plan, Sampling, fixed_plan, steps_over
+from canon.flow.solvable import SolvableSplitting
+from canon.flow.solvable import loop_of as solvable_loop_of
 from canon.flow.stepping import Interruption, Run, Watch, run
 from canon.flow.trajectory import Array, Samples
 from canon.flow.watchful import run_with_events
@@ -63,6 +65,10 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
         A splitting is asked of a Hamiltonian that does not split; a Nyström method of one whose kinetic energy
         is not quadratic; or a Gauss method in other numbers than doubles.
     """
+    if isinstance(method, Splitting) and method.parts is not None:
+        method = SolvableSplitting(method.scheme, parts=method.parts)
+    if isinstance(method, SolvableSplitting):
+        return solvable_loop_of(system, method, precision)
     number = _with_lanes(precision.number, system) if orbits > 1 else precision.number
     if isinstance(method, Gauss):
         if precision.number != DOUBLE:
@@ -129,7 +135,8 @@ def planned(wanted: Sampling, step: float | None, method: FixedStep) -> Plan:
 def steps_between(loop: Loop, method: FixedStep, plan: Plan) -> PartialSteps:
     """Return what takes steps of any length between those of a run."""
     assert plan.h is not None
-    return PartialSteps(loop, functools.partial(_coefficients, method), plan.start, plan.h)
+    coefficients = loop.coefficients or functools.partial(_coefficients, method)
+    return PartialSteps(loop, coefficients, plan.start, plan.h)
 
 
 def fixed_steps(
@@ -309,7 +316,7 @@ def _on_threads(
     return found
 
 
-def _coefficients(method: FixedStep, h: Fraction) -> list[Fraction]:
+def _coefficients(method: Splitting | Gauss | RK4, h: Fraction) -> list[Fraction]:
     if isinstance(method, Gauss):
         return [Fraction(x) for x in gauss_coefficients(method.stages, h)]
     if isinstance(method, RK4):

@@ -16,6 +16,8 @@ from canon.kernel.scheme import SCHEMES, Scheme
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from sympy import Expr
+
 __all__ = ["DOP853", "RK4", "FixedStep", "Gauss", "Method", "Splitting", "Taylor"]
 
 Coefficient = float | int | str | Fraction
@@ -29,12 +31,15 @@ class Splitting:
     Parameters
     ----------
     name
-        One of ``verlet``, ``forest-ruth``, ``suzuki-4``, ``blanes-moan-4``, ``blanes-moan-6``,
-        ``kahan-li-6``, ``kahan-li-8``, ``sofroniou-spaletta-10``; or ``srkn-6a``, ``srkn-6b`` where T is
+        One of ``verlet``, ``forest-ruth``, ``suzuki-4``, ``mclachlan-4``, ``blanes-moan-4``,
+        ``blanes-moan-6``, ``kahan-li-6``, ``kahan-li-8``, ``sofroniou-spaletta-10``; or ``srkn-6a``, ``srkn-6b`` where T is
         quadratic in p.
     a, b
         Coefficients of your own instead: drift a₁h, kick b₁h, drift a₂h …; as many drifts as kicks, or one
         more.
+    parts
+        H₀ and H₁ with H = H₀ + H₁, in place of T and V: the flow of H₀, which is quadratic in (q, p) or Kepler's motion,
+        takes the drifts' place, kicks by H₁, a function of q, the kicks'. See also :func:`canon.flow.solvable.SABA`.
 
     Raises
     ------
@@ -52,6 +57,7 @@ class Splitting:
     """
 
     scheme: Scheme
+    parts: tuple[Expr, Expr] | None = None
 
     def __init__(
         self,
@@ -59,7 +65,9 @@ class Splitting:
         *,
         a: Sequence[Coefficient] | None = None,
         b: Sequence[Coefficient] | None = None,
+        parts: tuple[Expr, Expr] | None = None,
     ) -> None:
+        object.__setattr__(self, "parts", parts)
         if (name is None) == (a is None) or (a is None) != (b is None):
             raise ValueError("say which splitting: Splitting('kahan-li-8'), or Splitting(a=[…], b=[…])")
         if name is not None:
@@ -70,13 +78,15 @@ class Splitting:
             object.__setattr__(self, "scheme", _own_scheme(a, b))
 
     def __repr__(self) -> str:
+        parts = f", parts={self.parts}" if self.parts else ""
         if self.scheme.name:
-            return f"Splitting({self.scheme.name!r})"
+            return f"Splitting({self.scheme.name!r}{parts})"
         a, b = ([float(x) for x in half] for half in (self.scheme.a, self.scheme.b))
-        return f"Splitting(a={a}, b={b})"
+        return f"Splitting(a={a}, b={b}{parts})"
 
     def __str__(self) -> str:
-        return self.scheme.name or f"splitting, order {self.order}, {self.stages} stages"
+        name = self.scheme.name or f"splitting, order {self.order}, {self.stages} stages"
+        return f"{name}, own parts" if self.parts else name
 
     @cached_property
     def order(self) -> int:

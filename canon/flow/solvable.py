@@ -46,8 +46,6 @@ class SolvableSplitting:
     def __post_init__(self) -> None:
         if self.corrector:
             corrector(self.scheme, self.corrector)
-        if self.scheme.a[0] == 0 and len(self.scheme.b) < 2:
-            raise ValueError("a splitting by solvable parts needs a flow of H0: a₁ = 0 leaves kicks only")
 
     def __str__(self) -> str:
         corrected = f", corrector {self.corrector}" if self.corrector else ""
@@ -128,7 +126,9 @@ def SABA(stages: int | str, *, corrector: int = 0, parts: Parts = None) -> Solva
     """
     if isinstance(stages, str):
         if stages not in ABA:
-            raise ValueError(f"SABA({stages!r}): give a number of stages from 1 to 8, or one of {', '.join(ABA)}")
+            raise ValueError(
+                f"SABA({stages!r}): give a number of stages from 1 to 8, or one of {', '.join(ABA)}"
+            )
         return SolvableSplitting(ABA[stages], corrector, parts)
     return SolvableSplitting(saba(stages), corrector, parts)
 
@@ -166,9 +166,13 @@ def loop_of(system: Equations, method: SolvableSplitting, precision: Precision) 
             f"precision={precision.name!r}: splittings by solvable parts have 'double' and 'compensated'; Taylor() has more"
         )
     if not system.autonomous:
-        raise UnsolvableError("H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')")
+        raise UnsolvableError(
+            "H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')"
+        )
     if system.varying:
-        raise UnsolvableError("parameters that differ by orbit: splittings by solvable parts take one number for each")
+        raise UnsolvableError(
+            "parameters that differ by orbit: splittings by solvable parts take one number for each"
+        )
     return _kept(system, method, compensated=precision.compensated)
 
 

@@ -160,7 +160,7 @@ def _tables(scheme: Scheme, corrector: Corrector | None) -> tuple[Pairs, Pairs, 
     a, b = scheme.a, scheme.b
     forth = corrector.pairs(inverse=False) if corrector else []
     back = corrector.pairs(inverse=True) if corrector else []
-    if a[0] == 0:
+    if scheme.kick_first:
         step = [(b[0] + b[-1], a[1]), *zip(b[1:-1], a[2:-1], strict=True)]
         return [*forth, (-b[-1], Fraction(0))], step, [(b[-1], Fraction(0)), *back]
     step = [*zip(b[:-1], a[1:-1], strict=True), (b[-1], a[-1] + a[0])]
