@@ -20,7 +20,8 @@ __all__ = ["main"]
 
 COMMANDS = {
     "check": "judge sheets of claims about mechanics: right or wrong, and where",
-    "drift": "run long and measure how the energy error of a method grows",
+    "choose": "find the cheapest method, step and precision for a wanted accuracy",
+    "drift": "run long and measure how the errors of a method grow",
     "scene": "list ready systems; show one's equations, run it, draw it",
     "study": "run, resume, export and report studies of many cases, on one machine or many",
     "tour": "both on bundled examples, in less than half a minute",

@@ -1,9 +1,11 @@
-"""``canon drift``: run a scene long and judge how the energy error of each method grows."""
+"""``canon drift``: run a scene long and judge how the errors of each method grow."""
 
 from __future__ import annotations
 
 import sys
 from typing import TYPE_CHECKING
+
+from canon.command.progress import Progress
 
 if TYPE_CHECKING:
     import argparse
@@ -13,15 +15,19 @@ if TYPE_CHECKING:
     from canon.scene.scene import Scene
     from canon.study.comparison import DriftRow, DriftStudy
 
-__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
+__all__ = ["DESCRIPTION", "EXAMPLES", "Progress", "add_arguments", "list_scenes", "method_named", "run"]
 
 DESCRIPTION = """\
-Integrate a scene with several methods and tell how the energy error of each one grows: bounded, as round-off does
-(t^1/2), or secularly. Long runs show their progress; the states between the samples are not kept.
+Integrate a scene with several methods and tell how the error of its energy, or of whatever else should stay constant,
+grows with each one: bounded, as round-off does (t^1/2), or secularly. Long runs show their progress; the states
+between the samples are not kept.
 """
 EXAMPLES = """\
 methods: kahan-li-8, verlet, blanes-moan-4, … (symplectic splittings, for H = T(p) + V(q)), gauss-1 … gauss-8
 (symplectic, for every H), taylor (heyoka's, adaptive), rk4, dop853 (not symplectic)
+
+observables: energy, momenta (of ignorable coordinates), integrals (all known constants of the scene), symplecticity
+(the bilinear covariant of two variations carried along by the method), or one of them by its name
 
 reading the table:
   max |ΔE/E|   the largest energy error met
@@ -34,6 +40,8 @@ examples:
   canon drift kepler --method kahan-li-8 --method rk4 --step 0.02 --periods 10000
   canon drift simple-pendulum --set l=2 --start large --plot pendulum.png
   canon drift henon-heiles --method taylor --tolerance 1e-10 --json
+  canon drift kepler --observable energy --observable "angular momentum" --method verlet --method rk4
+  canon drift henon-heiles --orbits 64 --method kahan-li-8 --precision double
 
 exit status: 0 every run finished, 1 a run failed, 2 bad usage
 """
@@ -56,14 +64,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--periods", metavar="N", type=float, default=1000.0, help="duration in periods (1000)"
     )
     length.add_argument("--until", metavar="T", type=float, help="duration in units of time")
-    precisions = ["single", "double", "compensated", "extended", "double-double"]
-    parser.add_argument("--precision", choices=precisions, help="of the fixed-step methods (compensated)")
+    precisions = ["single", "double", "compensated", "extended", "double-double", "quad"]
+    parser.add_argument(
+        "--precision",
+        choices=precisions,
+        help="arithmetic: fixed steps have all but quad (compensated unless given), Taylor double, extended and quad",
+    )
+    parser.add_argument(
+        "--observable", metavar="NAME", action="append", help="what to follow; may be repeated (energy)"
+    )
+    parser.add_argument(
+        "--orbits", metavar="N", type=int, default=1, help="run so many orbits that start near one another"
+    )
+    parser.add_argument("--seed", metavar="N", type=int, default=0, help="of the starts of those orbits (0)")
     parser.add_argument("--samples", metavar="N", type=int, help="states kept of each run")
     parser.add_argument(
         "--json", action="store_true", help="one JSON object a method and line instead of a table"
     )
     parser.add_argument(
-        "--plot", metavar="FILE", help="write a figure of |ΔE/E| over time (.png, .pdf, .svg)"
+        "--plot", metavar="FILE", help="write a figure of the error over time (.png, .pdf, .svg)"
     )
 
 
@@ -74,7 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
     from canon.study.comparison import StudyError
 
     if arguments.scene == "list":
-        _list_scenes()
+        list_scenes()
         return 0
     try:
         scene = find(arguments.scene).with_parameters(**dict(map(setting, arguments.set)))
@@ -89,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
         from canon.study.table import drift_table
 
         print(drift_table(study))
-    if arguments.plot and not save_figure(study, arguments.plot):
+    if arguments.plot and not save_figure(study.only(study.observables[0]), arguments.plot):
         return 2
     return 1 if any(row.failure for row in study.rows) else 0
 
@@ -137,51 +156,15 @@ def _study(scene: Scene, methods: Sequence[Method] | None, arguments: argparse.N
             until=arguments.until,
             precision=arguments.precision,
             samples=arguments.samples,
+            observables=arguments.observable or ("energy",),
+            orbits=arguments.orbits,
+            seed=arguments.seed,
             progress=progress,
         )
 
 
-class Progress:
-    """A bar a method on stderr with the remaining time; silent when piped or where tqdm is not installed."""
-
-    def __init__(self) -> None:
-        self._bar: object = None
-        self._method = ""
-
-    def __enter__(self) -> Progress:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._close()
-
-    def __call__(self, method: str, done: float) -> None:
-        """Show that this fraction of a method's run is done."""
-        if not sys.stderr.isatty():
-            return
-        try:
-            from tqdm import tqdm
-        except ImportError:
-            return
-        if method != self._method or self._bar is None:
-            self._close()
-            self._method = method
-            self._bar = tqdm(
-                total=100,
-                desc=method,
-                unit="%",
-                leave=False,
-                bar_format="{desc} {percentage:3.0f}% {bar} {remaining}",
-            )
-        bar: tqdm = self._bar  # pyright: ignore[reportAssignmentType, reportMissingTypeArgument]
-        bar.update(100 * done - bar.n)
-
-    def _close(self) -> None:
-        if self._bar is not None:
-            self._bar.close()  # pyright: ignore[reportAttributeAccessIssue]
-            self._bar = None
-
-
-def _list_scenes() -> None:
+def list_scenes() -> None:
+    """Print every scene with its starts and parameters."""
     from canon.scene import SCENES
 
     width = max(len(scene.name) for scene in SCENES)
@@ -203,6 +186,7 @@ def _print_lines(study: DriftStudy) -> None:
 def _line(row: DriftRow) -> dict[str, object]:
     line: dict[str, object] = {
         "method": str(row.method),
+        "observable": row.observable,
         "order": row.method.order,
         "step": row.step,
         "steps": row.steps,
@@ -225,4 +209,5 @@ def _line(row: DriftRow) -> dict[str, object]:
         "exponent_interval": list(found.exponent_interval),
         "verdict": found.verdict.value,
         "reason": found.reason,
+        **({"orbits": [each.verdict.value for each in row.orbits]} if row.orbits else {}),
     }

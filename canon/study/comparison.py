@@ -43,6 +43,9 @@ SAMPLES_PER_PERIOD = 14.0 + GOLDEN
 MOST_SAMPLES = 2**17
 """Samples that are kept at most unless more are asked for."""
 
+ADAPTIVE_ONLY = ("extended", "quad")
+"""Precisions that adaptive methods are asked for too."""
+
 BLOCKS_KEPT = 2**13
 """Blocks that a run is judged by where the observables are followed inside the loop."""
 
@@ -120,7 +123,8 @@ def drift_study(
     period
         Period of the motion; the scene's if left out.
     precision
-        Arithmetic of the methods of fixed step, ``"compensated"`` or ``"double"``.
+        Arithmetic, as :func:`canon.flow.propagate.propagate` takes it; of those meant for fixed steps, adaptive
+        methods take none and run in doubles.
     parameters
         Values of parameters by symbol or name; a scene has its own, which these replace.
     samples
@@ -184,7 +188,7 @@ def drift_study(
             BLOCKS_KEPT if fixed and inside else kept,
             step=h if fixed else None,
             tolerance=None if fixed else tolerance,
-            precision=precision if fixed else None,
+            precision=precision if fixed or precision in ADAPTIVE_ONLY else None,
             parameters=values,
             cadence=_cadence(h, known_period) if fixed and inside else None,
         )
