@@ -72,6 +72,8 @@ if TYPE_CHECKING:
     from canon.proof.verdict import Status as Status
     from canon.proof.verdict import Undecided as Undecided
     from canon.proof.verdict import Verdict as Verdict
+    from canon.study.choose import Choice as Choice
+    from canon.study.choose import choose as choose
     from canon.study.comparison import drift_study as drift_study
     from canon.study.drift import Drift as Drift
     from canon.study.drift import drift as drift
@@ -81,6 +83,7 @@ __all__ = [
     "DOP853",
     "RK4",
     "CanonicalTransformation",
+    "Choice",
     "Claim",
     "ConstrainedLagrangian",
     "Coordinate",
@@ -111,6 +114,7 @@ __all__ = [
     "bilinear_covariant",
     "brackets_at_points",
     "check",
+    "choose",
     "coordinates",
     "drift",
     "drift_study",
@@ -179,6 +183,7 @@ _ROOMS = {
     "canon.proof.equations": ("equivalent_equations",),
     "canon.proof.vanish": ("equal", "vanishes"),
     "canon.proof.verdict": ("Counterexample", "Evidence", "Status", "Undecided", "Verdict"),
+    "canon.study.choose": ("Choice", "choose"),
     "canon.study.comparison": ("drift_study",),
     "canon.study.drift": ("Drift", "drift"),
     "canon.study.precision": ("work_precision",),
