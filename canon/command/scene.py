@@ -140,7 +140,7 @@ def _check(scene: Scene, arguments: argparse.Namespace) -> int:
 
 
 def _draw(scene: Scene, arguments: argparse.Namespace) -> None:
-    from canon.plot_scene import animate_scene, plot_scene
+    from canon.plot.scene import animate_scene, plot_scene
     from canon.scene.motion import run as motion_of
 
     periods = min(arguments.periods or scene.shown, scene.horizon)

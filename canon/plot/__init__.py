@@ -9,6 +9,7 @@ from __future__ import annotations
 from canon.plot.energy import plot_block_means, plot_energy_error
 from canon.plot.ensemble import plot_ensemble_fan
 from canon.plot.phase import plot_phase_portrait, plot_poincare_section
+from canon.plot.scene import animate_scene, plot_scene
 from canon.plot.study import plot_study_heatmap
 from canon.plot.style import COLOURS, GREY, PlotError
 from canon.plot.work import plot_drift_by_step, plot_work_precision
@@ -17,12 +18,14 @@ __all__ = [
     "COLOURS",
     "GREY",
     "PlotError",
+    "animate_scene",
     "plot_block_means",
     "plot_drift_by_step",
     "plot_energy_error",
     "plot_ensemble_fan",
     "plot_phase_portrait",
     "plot_poincare_section",
+    "plot_scene",
     "plot_study_heatmap",
     "plot_work_precision",
 ]

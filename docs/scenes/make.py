@@ -1,7 +1,7 @@
 """Write docs/scenes.md and its pictures: every scene with its equations, integrals and measured drift.
 
-    python docs/scenes/make.py            # all of it, about two minutes
-    python docs/scenes/make.py kepler     # the pictures of some scenes only
+python docs/scenes/make.py            # all of it, about two minutes
+python docs/scenes/make.py kepler     # the pictures of some scenes only
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from canon.plot_scene import plot_scene
+from canon.plot.scene import plot_scene
 from canon.scene import SCENES
 from canon.scene.check import check, conserved
 from canon.scene.describe import description
@@ -90,7 +90,9 @@ def section(scene: Scene, checks: tuple[Check, ...]) -> str:
     lines = [f"## {scene.name}", "", f"{scene.title}.", "", f"![{scene.name}](scenes/{scene.name}.png)", ""]
     if scene.parameters:
         lines += ["| parameter | value | |", "|---|---|---|"]
-        lines += [f"| {c.name} | {f'{c.value:.6g} {c.unit}'.strip()} | {c.meaning} |" for c in scene.parameters]
+        lines += [
+            f"| {c.name} | {f'{c.value:.6g} {c.unit}'.strip()} | {c.meaning} |" for c in scene.parameters
+        ]
         lines.append("")
     lines += [f"Starts: {'; '.join(f'*{s.name}*, {s.about}' for s in scene.starts)}.", ""]
     for part in description(scene):

@@ -10,9 +10,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import sympy as sp
 
-from canon.plot import COLOURS, GREY, PlotError
+from canon.plot.style import COLOURS, GREY, PlotError, new_axes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -49,7 +48,7 @@ def plot_scene(motion: Motion, ax: Axes | None = None, *, at: int = 0) -> Axes:
     PlotError
         Where matplotlib is not installed.
     """
-    axes = _axes(ax)
+    axes = _square(ax)
     drawing = _Drawing(motion)
     _frame(axes, drawing)
     for index, way in enumerate(drawing.ways):
@@ -78,7 +77,7 @@ def animate_scene(motion: Motion, file: str | Path, *, seconds: float = 6.0, rat
     ValueError
         Where the ending of the file is another.
     """
-    axes = _axes(None)
+    axes = _square(None)
     from matplotlib import animation
 
     ending = str(file).rsplit(".", 1)[-1].lower()
@@ -115,12 +114,14 @@ class _Drawing:
     """The points of a scene's picture along a motion, projected to the plane."""
 
     def __init__(self, motion: Motion) -> None:
+        from sympy import sympify
+
         self.scene = motion.scene
         self.picture = _picture(motion)
         points = self.picture.points
         self.flat = len(points[0]) == 2
         node = motion.equation.node
-        nodes = [node(sp.sympify(x, strict=True), "the picture") for point in points for x in point]
+        nodes = [node(sympify(x, strict=True), "the picture") for point in points for x in point]
         values = motion.values(nodes).astype(np.float64).reshape(len(points), len(points[0]), -1)
         self.places: Array = values if self.flat else np.array([_projected(place) for place in values])
 
@@ -206,11 +207,8 @@ def _frame(axes: Axes, drawing: _Drawing) -> None:
     axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
 
 
-def _axes(ax: Axes | None) -> Axes:
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as missing:
-        raise PlotError("pictures need matplotlib: pip install canon-mechanics[plot]") from missing
-    if ax is not None:
-        return ax
-    return Figure(figsize=(5.0, 4.5), layout="constrained").add_subplot()
+def _square(ax: Axes | None) -> Axes:
+    axes = new_axes(ax)
+    if ax is None:
+        axes.get_figure(root=True).set_size_inches(5.0, 4.5)
+    return axes
