@@ -104,6 +104,11 @@ class Graph:
         """The node of 1."""
         return self.number(1)
 
+    @cached_property
+    def minus_one(self) -> int:
+        """The node of −1."""
+        return self.number(-1)
+
     def named(self, name: str) -> int:
         """Return the node of π (``"pi"``) or e (``"E"``)."""
         if name not in ("pi", "E"):
@@ -202,7 +207,11 @@ class Graph:
     def apart(self, node: int) -> int:
         """Return c·x with x as one factor, which other multiples of x then share."""
         factor, rest = self._factored(node)
-        return node if rest is None or factor == 1 else self.plain_mul((self.number(factor), rest))
+        return node if rest is None or factor == 1 else self.multiple(factor, rest)
+
+    def multiple(self, factor: Fraction | int, node: int) -> int:
+        """Return factor · node with the node as it is."""
+        return self._node("mul", (self.number(factor), node))
 
     def pow(self, base: int, exponent: int) -> int:
         """Return base**exponent, the principal value."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.expression.sums import SharedSums
+from canon.expression.pythagoras import without_squares
+from canon.expression.sums import SharedSums, signed_product
 from canon.expression.symbol import velocity
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ class Assembly:
         self._rates: dict[tuple[int, int], list[int]] = {}
         self._products: dict[tuple[int, int], int] = {}
         self._slopes: dict[tuple[int, int], list[tuple[int, int]]] = {}
+        self._places = reader.graph.mask(reader.q)
         self._moving = tuple(zip(self.q, self.v, strict=True))
 
     def heights(self, bodies: Sequence[Body], field: Sequence[Expr]) -> list[int]:
@@ -67,7 +69,7 @@ class Assembly:
         if found is None:
             symbols = graph.symbols(node)
             found = self._rates[node, factor] = [
-                graph.plain_mul((self.reader.derivative(node, s), graph.plain_mul((v, factor))))
+                signed_product(graph, (self.reader.derivative(node, s), graph.plain_mul((v, factor))))
                 for s, v in self._moving
                 if s in symbols
             ]
@@ -109,7 +111,7 @@ class Assembly:
 
     def _collected(self, group: dict[int, list[int]]) -> int:
         return self.graph.plain_add(
-            [self.graph.plain_mul((a, self.sums.of(tuple(terms)))) for a, terms in group.items()]
+            [signed_product(self.graph, (a, self.sums.of(tuple(terms)))) for a, terms in group.items()]
         )
 
     def slopes_of_T(self, momentum: Sequence[int]) -> list[int]:
@@ -159,10 +161,11 @@ class Assembly:
 
         In a chain the weights beyond link i depend on i alone, so w aᵢ serves the whole row.
         """
-        graph, mul = self.graph, self.graph.plain_mul
         channels_of, slopes_in = self._occurrences()
-        weighted: dict[tuple[int, int], int] = {}
-        entries: list[list[list[int]]] = [[[] for _ in range(i + 1)] for i in range(len(self.q))]
+        weights: dict[int, int] = {}
+        entries: list[list[list[tuple[int, int, int]]]] = [
+            [[] for _ in range(i + 1)] for i in range(len(self.q))
+        ]
         for k, slopes in enumerate(slopes_in):
             earlier = (1 << k) - 1
             for x, slope in enumerate(slopes):
@@ -173,12 +176,20 @@ class Assembly:
                     if common & earlier:
                         continue  # the pair was met before, and its weights were added then
                     j, b, _ = other
-                    row = weighted.get((common, a))
-                    if row is None:
-                        row = weighted[common, a] = mul((self._weight(common), a))
-                    product = mul((row, b))
-                    entries[i][j].append(graph.scaled(2, product) if i == j and slope != other else product)
-        return tuple(tuple(map(graph.plain_add, row)) for row in entries)
+                    weight = weights.get(common)
+                    if weight is None:
+                        weight = weights[common] = self._weight(common)
+                    entries[i][j] += [(weight, a, b)] * (2 if i == j and slope != other else 1)
+        return tuple(tuple(map(self._entry, row)) for row in entries)
+
+    def _entry(self, products: list[tuple[int, int, int]]) -> int:
+        """Return Σ w a b, cos² + sin² = 1 used where a and b depend on the same coordinates."""
+        masks, mul = self.graph.masks, self.graph.plain_mul
+        if any(masks[a] & masks[b] & self._places for _, a, b in products):
+            united = without_squares(self.graph, products)
+            if united is not None:
+                return united
+        return self.graph.plain_add([mul((mul((w, a)), b)) for w, a, b in products])
 
     def _occurrences(self) -> tuple[dict[_Slope, int], list[list[_Slope]]]:
         """Return the channels of each slope as bits, and the slopes of each channel by rising i.

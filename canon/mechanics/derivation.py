@@ -15,6 +15,7 @@ import sympy as sp
 
 from canon.expression.graph import Graph
 from canon.expression.shared import shared_to_sympy
+from canon.expression.sums import opposite, signed_product
 from canon.expression.symbol import time, velocity
 from canon.mechanics.assembly import Assembly
 from canon.mechanics.channel import Reader, channels
@@ -133,13 +134,15 @@ def derivation(
     >>> bob = Particle(m, (l*sin(theta), -l*cos(theta)))
     >>> pendulum = derivation([bob], [theta], field=(0, -g))
     >>> pendulum.graph.to_sympy(pendulum.M[0][0])
-    l**2*m*sin(theta)**2 + l**2*m*cos(theta)**2
+    l**2*m
     """
     reader = Reader(Graph(), coordinate_symbols(q), t)
     graph = reader.graph
     assembly = Assembly(reader, list(channels(reader, bodies, field)))
-    along = [graph.plain_mul((c.weight, assembly.excess(c))) for c in assembly.channels]
-    terms = [[graph.negative(F)] for F in assembly.projected(along)]
+    along = [
+        opposite(graph, signed_product(graph, (c.weight, assembly.excess(c)))) for c in assembly.channels
+    ]
+    terms = [[F] for F in assembly.projected(along)]
     for c in assembly.channels:
         for i, term in assembly.not_a_rate(c):
             terms[i].append(term)

@@ -73,7 +73,7 @@ _INVERSES: dict[Any, Callable[[Expr], Expr]] = {
 
 
 class UnstatableError(Exception):
-    """The condition that tells a branch from its neighbour is too long to be stated."""
+    """What tells a branch from its neighbour is too long to be stated, or not to be seen at the witness."""
 
 
 @dataclass
@@ -108,8 +108,8 @@ class Inversion:
 
     def note_sign(self, f: Expr) -> None:
         """Note that f keeps the sign it has at the witness, in the old variables, as simply as possible."""
-        value = self.witness.number(f)
-        f, positive = substitute(f, self.witness.meaning), value is not None and value > 0
+        positive = self._is_positive_at_witness(f)
+        f = substitute(f, self.witness.meaning)
         remaining: list[Expr] = []
         numerator, denominator = sp.fraction(sp.together(f))
         for factor in sp.Mul.make_args(sp.factor_terms(numerator * denominator)):
@@ -122,6 +122,13 @@ class Inversion:
                 remaining.append(factor)
         if remaining:
             self._note(sp.Gt(sp.Mul(*remaining), 0) if positive else sp.Lt(sp.Mul(*remaining), 0))
+
+    def _is_positive_at_witness(self, f: Expr) -> bool:
+        """Tell the sign of f there; a witness where f vanishes lies on both branches and shows none."""
+        ball = self.witness.value(f)
+        if ball is None or ball.real.contains(0) or not ball.imag.contains(0):
+            raise UnstatableError
+        return bool(ball.real > 0)
 
     def note_between(self, low: Expr, f: Expr, high: Expr) -> None:
         """Note that low < f < high, in the old variables."""

@@ -2,7 +2,7 @@
 
 import pytest
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from canon.mechanics.integral import table_integral
@@ -35,7 +35,17 @@ LAYERS = {
 }
 
 
+def test_where_two_branches_meet_none_is_chosen():
+    fold = Inversion(Witness({x: sp.Rational(-1, 2)}, {Y: x**2 + x}))
+    with pytest.raises(UnstatableError):
+        isolate(x**2 + x, Y, x, fold)
+    beside = Inversion(Witness({x: sp.Rational(-2, 3)}, {Y: x**2 + x}))
+    assert isolate(x**2 + x, Y, x, beside).subs(Y, 2) == -2
+    assert beside.conditions == [2 * x + 1 < 0]
+
+
 @settings(max_examples=30, deadline=None)
+@example(["quadratic"], 38)
 @given(st.lists(st.sampled_from(sorted(LAYERS)), min_size=1, max_size=3), st.integers(0, 50))
 def test_an_isolated_unknown_is_right_wherever_its_conditions_hold(layers, seed):
     f = x
