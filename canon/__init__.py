@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from canon.expression.symbol import parameters as parameters
     from canon.expression.symbol import time as time
     from canon.expression.symbol import time_derivative as time_derivative
+    from canon.flow.event import Event as Event
+    from canon.flow.geometry import flow_jacobian as flow_jacobian
+    from canon.flow.geometry import reversal_error as reversal_error
+    from canon.flow.geometry import symplecticity_defect as symplecticity_defect
     from canon.flow.method import DOP853 as DOP853
     from canon.flow.method import RK4 as RK4
     from canon.flow.method import Gauss as Gauss
@@ -90,6 +94,7 @@ __all__ = [
     "Counterexample",
     "Domain",
     "Drift",
+    "Event",
     "Evidence",
     "Gauss",
     "GeneratingFunction",
@@ -121,6 +126,7 @@ __all__ = [
     "equal",
     "equivalent_equations",
     "expect",
+    "flow_jacobian",
     "from_sympy_mechanics",
     "generated_transformation",
     "generating_function",
@@ -142,8 +148,10 @@ __all__ = [
     "poisson_bracket",
     "propagate",
     "read_sheet",
+    "reversal_error",
     "routhian",
     "symplectic_flow",
+    "symplecticity_defect",
     "time",
     "time_derivative",
     "vanishes",
@@ -158,6 +166,8 @@ _ROOMS = {
     "canon.exercise.sheet": ("Claim", "Sheet", "read_sheet"),
     "canon.expression.language": ("parse_expression",),
     "canon.expression.symbol": ("Coordinate", "coordinates", "parameters", "time", "time_derivative"),
+    "canon.flow.event": ("Event",),
+    "canon.flow.geometry": ("flow_jacobian", "reversal_error", "symplecticity_defect"),
     "canon.flow.method": ("DOP853", "Gauss", "RK4", "Splitting", "Taylor"),
     "canon.flow.propagate": ("Trajectory", "propagate"),
     "canon.flow.witness": ("brackets_at_points", "integral_drift", "symplectic_flow"),

@@ -236,7 +236,7 @@ class Trajectory:
         """
         from canon.flow.between import states_at
 
-        task, samples = self._origin
+        task, samples = self.origin
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
         found = states_at(task, samples, times)[task.system.rows]
         found = found[:, :, 0] if task.single else found
@@ -287,7 +287,7 @@ class Trajectory:
         from canon.flow.sampling import sampling
         from canon.kernel.structure import exact
 
-        task, kept = self._origin
+        task, kept = self.origin
         if self.stopped:
             raise ValueError(f"the motion was ended by the event {self.events[-1].event}: it does not go on")
         if until is not None:
@@ -304,7 +304,8 @@ class Trajectory:
             return task.trajectory(report, kept)
 
     @property
-    def _origin(self) -> tuple[Task, Samples]:
+    def origin(self) -> tuple[Task, Samples]:
+        """What was to be done and what came out in full."""
         if self.task is None or self.samples is None:
             raise ValueError("this trajectory does not come from propagate(): its task is not known")
         return self.task, self.samples

@@ -1,0 +1,234 @@
+"""The geometry of what is computed: Jacobians of flows and of discrete maps, symplecticity, reversal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.propagate import propagate
+from canon.flow.request import task_of
+from canon.flow.sampling import Plan, fixed_plan
+from canon.kernel.variational import variational
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import numpy.typing as npt
+    from sympy import Symbol
+
+    from canon.flow.method import Method
+    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.trajectory import Array
+
+__all__ = ["FlowJacobian", "flow_jacobian", "reversal_error", "symplecticity_defect"]
+
+
+@dataclass(frozen=True)
+class FlowJacobian:
+    """The derivative M = ∂(q, p)(t)/∂(q, p)(start) of a motion by its starting state.
+
+    Parameters
+    ----------
+    t
+        Times, shape (times,).
+    y
+        The motion itself, shape (2n, times).
+    M
+        The Jacobian, shape (2n, 2n, times): ``M[i, j]`` is ∂y_i/∂y0_j; the identity at the start.
+    low
+        What M is beyond doubles: it is M + low.
+    """
+
+    t: Array
+    y: Array
+    M: Array
+    low: Array
+
+    @property
+    def final(self) -> Array:
+        """The Jacobian at the last time, shape (2n, 2n)."""
+        return self.M[:, :, -1]
+
+    @property
+    def symplecticity_defect(self) -> Array:
+        """The largest size of an entry of MᵀJM − J at each time, see :func:`symplecticity_defect`."""
+        wide = self.M.astype(np.longdouble) + self.low.astype(np.longdouble)
+        return np.array([symplecticity_defect(wide[:, :, k]) for k in range(len(self.t))])
+
+
+def flow_jacobian(
+    hamiltonian: HamiltonianSystem,
+    y0: Sequence[Any] | npt.NDArray[Any],
+    t_span: tuple[float, float],
+    *,
+    method: Method | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    precision: str | int | None = None,
+    parameters: Mapping[Symbol | str, Any] | None = None,
+    samples: int | None = None,
+    times: npt.ArrayLike | None = None,
+) -> FlowJacobian:
+    """Return the Jacobian of the flow by the variational equations, with the method that carries the motion.
+
+    For methods of fixed steps it is the exact derivative of the discrete map that the compiled steps make, up to
+    round-off, so that a symplectic method's is symplectic to round-off at any step. For Taylor and DOP853 it is
+    the flow's, to their tolerance.
+
+    Parameters
+    ----------
+    hamiltonian, t_span, method, step, tolerance, precision, parameters, samples, times
+        As :func:`canon.propagate` takes them; one sample, at the end, where neither samples nor times are given.
+    y0
+        One starting state (q, p), shape (2n,).
+
+    Raises
+    ------
+    ValueError
+        As ``propagate``; or the method knows no variations, or several states or parameters by orbit are given.
+
+    Examples
+    --------
+    >>> from canon import Hamiltonian, Splitting, coordinates
+    >>> import sympy
+    >>> (x,) = coordinates("x")
+    >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
+    >>> coarse = flow_jacobian(pendulum, [1.0, 0.0], (0, 50), method=Splitting("verlet"), step=0.5)
+    >>> coarse.final.shape, bool(coarse.symplecticity_defect[-1] < 1e-13)
+    ((2, 2), True)
+    """
+    if samples is None and times is None:
+        samples = 1
+    task = task_of(
+        hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
+        parameters=parameters, samples=samples, times=times,
+    )  # fmt: skip
+    if not task.single:
+        raise ValueError(
+            "the Jacobian is made of one orbit at a time: give one state and one set of parameters"
+        )
+    if not isinstance(task.method, Splitting | Gauss | RK4 | Taylor | DOP853) or (
+        getattr(task.method, "parts", None) is not None
+    ):
+        raise ValueError(f"{task.method} carries no variations: use Splitting, Gauss or Taylor")
+    size = len(y0)
+    # Orbits side by side, one variation each; where steps adapt, all variations of one orbit.
+    together = isinstance(task.method, Taylor | DOP853)
+    orbits, columns = (1, size) if together else (size, 1)
+    made = replace(
+        task,
+        system=variational(task.system, columns),
+        states=(_varied(task.states[0], orbits, columns), _varied(task.states[1], orbits, columns, unit=0.0)),
+        single=False,
+    )
+    found = made.trajectory(lambda _: None)
+    y, M = _parted(found.y, size, columns)
+    _, low = _parted(found.carried, size, columns)
+    return FlowJacobian(found.t, y, M, low)
+
+
+def _varied(state: Array, orbits: int, columns: int, unit: float = 1.0) -> Array:
+    """Return starting states of shape (2n (1 + columns), orbits) with unit variations."""
+    n = len(state) // 2
+    units = unit * np.eye(2 * n)
+    shape = (columns, 2, n, orbits)
+    varied = units.T.reshape(columns, 2 * n, 1) if orbits == 1 else units.reshape(1, 2 * n, orbits)
+    varied = varied.reshape(shape).transpose(1, 0, 2, 3).reshape(2, -1, orbits)
+    own = np.broadcast_to(state, (2 * n, orbits)).reshape(2, n, orbits)
+    return np.concatenate([own, varied], axis=1).reshape(-1, orbits)
+
+
+def _parted(y: Array, size: int, columns: int) -> tuple[Array, Array]:
+    """Return motion (2n, times) and Jacobian (2n, 2n, times) from states with variations."""
+    n, (_, times, orbits) = size // 2, y.shape
+    parts = y.reshape(2, 1 + columns, n, times, orbits)
+    variations = parts[:, 1:].transpose(0, 2, 1, 4, 3).reshape(size, size, times)
+    return parts[:, 0, :, :, 0].reshape(size, times), variations
+
+
+def symplecticity_defect(M: npt.ArrayLike) -> float:
+    """Return the largest size of an entry of MᵀJM − J, J = [[0, 1], [−1, 0]]; 0 where it is symplectic.
+
+    Its round-off is some units of the last place of the square of M's largest entries.
+
+    Parameters
+    ----------
+    M
+        A matrix, shape (2n, 2n), rows and columns ordered (q, p).
+
+    Raises
+    ------
+    ValueError
+        The matrix is not of even size and finite.
+
+    Examples
+    --------
+    >>> symplecticity_defect([[1.0, 0.5], [0.0, 1.0]]), symplecticity_defect([[1.0, 0.0], [0.0, 0.75]])
+    (0.0, 0.25)
+    """
+    given = np.asarray(M)
+    if given.ndim != 2 or given.shape[0] != given.shape[1] or given.shape[0] % 2 or not given.size:
+        raise ValueError(f"a matrix of shape {given.shape}: a Jacobian of (q, p) has shape (2n, 2n)")
+    if not np.isfinite(given).all():
+        raise ValueError("the matrix has entries that are not finite")
+    n = len(given) // 2
+    upper, lower = given[:n], given[n:]
+    found = upper.T @ lower - lower.T @ upper
+    found[:n, n:] -= np.eye(n)
+    found[n:, :n] += np.eye(n)
+    return float(abs(found).max())
+
+
+def reversal_error(
+    hamiltonian: HamiltonianSystem,
+    y0: Sequence[Any] | npt.NDArray[Any],
+    t_span: tuple[float, float],
+    *,
+    method: Method | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    precision: str | int | None = None,
+    parameters: Mapping[Symbol | str, Any] | None = None,
+) -> Array:
+    """Go there and back again and return how far from the start the motion arrives, shape of y0.
+
+    A symmetric method arrives to round-off, times what the motion makes of it; others miss by their error.
+
+    Parameters
+    ----------
+    hamiltonian, y0, t_span, method, step, tolerance, precision, parameters
+        As :func:`canon.propagate` takes them.
+
+    Examples
+    --------
+    >>> from canon import Hamiltonian, RK4, Splitting, coordinates
+    >>> import sympy
+    >>> (x,) = coordinates("x")
+    >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
+    >>> far = [
+    ...     abs(reversal_error(pendulum, [1.0, 0.0], (0, 50), method=method, step=0.25)).max()
+    ...     for method in (Splitting("verlet"), RK4())
+    ... ]
+    >>> bool(far[0] < 1e-13), bool(far[1] > 1e-3)
+    (True, True)
+    """
+    there = propagate(
+        hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
+        parameters=parameters, samples=1,
+    )  # fmt: skip
+    task, kept = there.origin
+    plan, (high, low) = task.plan, task.states
+    if plan.h is None:
+        back = Plan(Fraction(float(plan.instants[-1])), plan.instants[::-1].copy(), ends=plan.ends)
+    else:
+        back = fixed_plan(plan.last(-1), -plan.h, plan.stops)
+    returned = replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back).trajectory(
+        lambda _: None
+    )
+    _, end = returned.origin
+    missed = ((end.y[:, -1] - high) + (end.carried[:, -1] - low))[task.system.rows]
+    return missed[:, 0] if task.single else missed
