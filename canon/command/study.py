@@ -86,7 +86,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Do what is asked, print how far the study is, return the exit status."""
     from canon.plot import PlotError
-    from canon.study.comparison import StudyError
+    from canon.study.errors import StudyError
     from canon.study.export import ExportError
 
     actions = {"run": _run, "resume": _resume, "status": _status, "export": _export, "report": _report}
@@ -127,7 +127,7 @@ def _status(arguments: argparse.Namespace) -> int:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from canon.study.comparison import StudyError
+    from canon.study.errors import StudyError
     from canon.study.export import csv_of, write_netcdf, write_parquet
 
     kind, store = FORMATS.get(arguments.output.suffix.lower()), _existing(arguments.store)
@@ -206,7 +206,7 @@ def _draw(results: Sequence[Result], plot: Path) -> None:
 def _executor(arguments: argparse.Namespace) -> Generator[Executor | None]:
     """Start what the cases are run on: worker processes, a cluster's client, or nothing."""
     if arguments.dask:
-        from canon.study.comparison import StudyError
+        from canon.study.errors import StudyError
 
         try:
             from distributed import Client

@@ -209,6 +209,7 @@ def _frame(axes: Axes, drawing: _Drawing) -> None:
 
 def _square(ax: Axes | None) -> Axes:
     axes = new_axes(ax)
-    if ax is None:
-        axes.get_figure(root=True).set_size_inches(5.0, 4.5)
+    figure = axes.get_figure(root=True)
+    if ax is None and figure is not None:
+        figure.set_size_inches(5.0, 4.5)
     return axes

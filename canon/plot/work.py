@@ -133,6 +133,7 @@ def plot_drift_by_step(
             limits = True
             axes.plot(h[below], size[below], "v", markersize=9, markerfacecolor="white", color=_colour(index))
     logarithmic(axes)
+    _plain_ticks(axes)
     axes.set_xlabel("step (units of time)")
     axes.set_ylabel(
         "largest relative energy error |ΔE/E|" if what == "bound" else "drift of ΔE/E per unit of time"
@@ -200,6 +201,15 @@ def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, index: int, name: str) -> No
 def _ring(axes: Axes, x: np.ndarray, y: np.ndarray, marked: np.ndarray, index: int) -> None:
     if marked.any():
         axes.plot(x[marked], y[marked], "o", markersize=11, markerfacecolor="none", color=_colour(index))
+
+
+def _plain_ticks(axes: Axes) -> None:
+    """Write steps as 0.02, 0.05, 0.1: they rarely span more than two powers of ten."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda step, _: f"{step:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _draw_choice(axes: Axes, chosen: Choice, span: float, cost: str) -> None:

@@ -34,6 +34,9 @@ STEPS_A_PART = 2**20
 SAMPLES_A_PART = 64
 """Samples in a part of a run with an adaptive method."""
 
+MOST_PARTS = 128
+"""Parts of a run with an adaptive method: to begin one costs some milliseconds."""
+
 
 @dataclass(frozen=True)
 class Case:
@@ -152,7 +155,8 @@ def key_of(case: Case) -> str:
 def parts_of(case: Case) -> int:
     """Return the number of parts a case is run in; it follows from the case alone.
 
-    At most a million steps of fixed size, or 64 samples of an adaptive method, are in a part.
+    A part has at most a million steps of fixed size, or 64 samples of an adaptive method unless that made over 128
+    parts, each of which costs some milliseconds to begin.
 
     Examples
     --------
@@ -164,7 +168,7 @@ def parts_of(case: Case) -> int:
         return case.parts
     if isinstance(case.method, FixedStep) and case.step is not None:
         return max(1, math.ceil(case.span / case.step / STEPS_A_PART))
-    return max(1, case.samples // SAMPLES_A_PART)
+    return min(MOST_PARTS, max(1, case.samples // SAMPLES_A_PART))
 
 
 def _start_of(system: Formula, name: str | None) -> tuple[float, ...]:

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 from canon.flow.method import FixedStep
 from canon.scene import Scene, SceneError, find
 from canon.study.case import Case, key_of, method_from
-from canon.study.comparison import StudyError
+from canon.study.comparison import SAMPLES_PER_PERIOD
 from canon.study.drift import FEWEST
+from canon.study.errors import StudyError
 from canon.study.formula import Formula, formula_from, formula_of
 
 if TYPE_CHECKING:
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 __all__ = ["Study", "read_study"]
 
 AXES = ("system", "start", "method", "step", "steps_per_period", "tolerance", "precision")
+
+FEWEST_USUAL, MOST_SAMPLES = 4096, 2**15
+"""Samples of a run unless asked for: about 16 a period, within these limits."""
 
 LENGTHS = ("periods", "until", "samples", "parts", "parameters")
 
@@ -121,8 +125,9 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> 
     try:
         systems = [_system(each, own, table.get("parameters", {})) for each in _listed(table["system"])]
         others = [_listed(table.get(name)) for name in AXES[1:]]
-        for system, parameters, *rest in product(systems, _settings(table.get("parameters", {})), *others):
-            yield _case(system, parameters, dict(zip(AXES[1:], rest, strict=True)), table)
+        for system, parameters in product(systems, _settings(table.get("parameters", {}))):
+            for rest in product(*others):
+                yield _case(system, parameters, dict(zip(AXES[1:], rest, strict=True)), table)
     except (SceneError, ValueError, TypeError, KeyError) as error:
         raise StudyError(f"{where}: {error}") from error
 
@@ -173,13 +178,13 @@ def _case(
         system=system,
         method=method,
         span=span,
-        samples=int(table.get("samples", 4096)),
+        samples=int(table["samples"]) if "samples" in table else _usual_samples(span, period),
         start=tuple(map(float, start)) if isinstance(start, list | tuple) else start,
         parameters=parameters,
         step=float(step) if fixed else None,
         tolerance=None if fixed else chosen["tolerance"],
         precision=chosen["precision"] if fixed else None,
-        parts=table.get("parts"),
+        parts=int(table["parts"]) if "parts" in table else None,
     )
     _check(case)
     return case
@@ -192,6 +197,12 @@ def _period(system: str | Formula, parameters: tuple[tuple[str, float], ...]) ->
             raise ValueError(f"{system.name} has no parameter {missing[0]!r}")
         return system.period
     return find(system).with_parameters(**dict(parameters)).period
+
+
+def _usual_samples(span: float, period: float | None) -> int:
+    """Return enough samples to see the oscillation of an error of which the period is known."""
+    wanted = 0.0 if period is None else SAMPLES_PER_PERIOD * span / period
+    return int(min(MOST_SAMPLES, max(FEWEST_USUAL, wanted)))
 
 
 def _known(period: float | None, what: str) -> float:
@@ -210,8 +221,8 @@ def _check(case: Case) -> None:
         raise ValueError(f"a step of {case.step} makes no sense: give a positive, finite one")
     if case.samples < FEWEST:
         raise ValueError(f"{case.samples} samples are too few to judge growth: keep at least {FEWEST}")
-    if case.parts is not None and not (isinstance(case.parts, int) and case.parts >= 1):
-        raise ValueError(f"parts = {case.parts!r}: give a whole number, 1 or more")
+    if case.parts is not None and case.parts < 1:
+        raise ValueError(f"parts = {case.parts}: give a whole number, 1 or more")
     if isinstance(case.system, Formula):
         case.system.check(case.state, "a start")
     elif isinstance(case.start, tuple):

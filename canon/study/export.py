@@ -8,6 +8,8 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from canon.study.result import results_of
 
 if TYPE_CHECKING:
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     import xarray
+    from numpy.typing import NDArray
 
     from canon.study.result import Result
     from canon.study.store import Store
@@ -23,6 +26,10 @@ __all__ = ["ExportError", "csv_of", "dataset_of", "rows_of", "write_netcdf", "wr
 
 TEXTS = ("key", "state", "system", "start", "method", "precision", "verdict", "reason", "failure", "inputs")
 """Columns of text."""
+
+
+INPUTS = ("key", "system", "start", "method", "step", "tolerance", "precision", "span", "samples")
+"""Columns that say which case it is: coordinates of a dataset, to choose and to group by."""
 
 
 class ExportError(ImportError):
@@ -75,7 +82,7 @@ def write_parquet(store: Store, path: Path) -> None:
 
 
 def dataset_of(store: Store) -> xarray.Dataset:
-    """Return a study as an xarray dataset along ``case``, with block means along ``block`` and curves along ``point``.
+    """Return a study as an xarray dataset along ``case``, block means along ``block``, curves along ``point``.
 
     Missing numbers are NaN, as NetCDF has it; ``state`` and ``failure`` say why they are missing.
 
@@ -105,7 +112,8 @@ def dataset_of(store: Store) -> xarray.Dataset:
         for name in ("t", "mean") if group == "means" else ("t", "largest", "median"):
             series = [result.numbers.get(group, {}).get(name, []) for result in results]
             variables[f"{group}_{name}"] = (("case", dimension), _table(series))
-    return xarray.Dataset(variables)
+    inputs = [name for name in variables if name in INPUTS or name.startswith("parameter_")]
+    return xarray.Dataset(variables).set_coords(inputs)
 
 
 def write_netcdf(store: Store, path: Path) -> None:
@@ -163,7 +171,9 @@ def _arrow_type(name: str, pyarrow: Any) -> Any:
     return pyarrow.int64() if name in ("samples", "steps", "evaluations") else pyarrow.float64()
 
 
-def _table(rows: Sequence[Sequence[float]]) -> list[list[float]]:
+def _table(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
     """Return rows of one length, the short ones filled up with NaN."""
-    width = max(map(len, rows), default=0)
-    return [[*row, *[math.nan] * (width - len(row))] for row in rows]
+    found = np.full((len(rows), max(map(len, rows), default=0)), np.nan)
+    for k, row in enumerate(rows):
+        found[k, : len(row)] = row
+    return found

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from canon.study.comparison import StudyError
+from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -183,7 +183,8 @@ def formula_of(
     """
     import sympy as sp
 
-    H = hamiltonian.H.xreplace({x: sp.Rational(*x.as_integer_ratio()) for x in hamiltonian.H.atoms(sp.Float)})
+    exact: dict[Any, Any] = {x: _exact(x) for x in hamiltonian.H.atoms(sp.Float)}
+    H: Any = hamiltonian.H.xreplace(exact)
     if hamiltonian.t in H.free_symbols and str(hamiltonian.t) != "t":
         raise StudyError(f"{name}: in a study the time is called t, not {hamiltonian.t}")
     formula = Formula(
@@ -227,7 +228,15 @@ def hamiltonian_of(formula: Formula) -> Hamiltonian:
     return Hamiltonian(H, q, p)
 
 
-def _by_name(f: Expr) -> Expr:
+def _exact(x: Any) -> Expr:
+    """Return the number that a Float is."""
+    import sympy as sp
+
+    numerator, denominator = x.as_integer_ratio()
+    return sp.Rational(int(numerator), int(denominator))
+
+
+def _by_name(f: Any) -> Any:
     """Return an expression in plain symbols, whatever is assumed of them."""
     import sympy as sp
 

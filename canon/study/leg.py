@@ -19,9 +19,9 @@ import numpy as np
 from canon.flow.method import FixedStep
 from canon.flow.propagate import propagate
 from canon.study.case import parts_of
-from canon.study.comparison import UNIT_ROUND_OFF
 from canon.study.drift import drift
 from canon.study.envelope import envelope_of
+from canon.study.rows import UNIT_ROUND_OFF
 
 if TYPE_CHECKING:
     from canon.flow.trajectory import Trajectory
@@ -87,8 +87,9 @@ class Checkpoint:
     def from_text(text: str) -> Checkpoint:
         """Return the checkpoint that :meth:`to_text` wrote."""
         fields: dict[str, Any] = json.loads(text)
-        lists = {name: tuple(value) for name, value in fields.items() if isinstance(value, list)}
-        return Checkpoint(**{**fields, **lists})
+        for name in ("state", "carried", "t", "change"):
+            fields[name] = tuple(fields[name])
+        return Checkpoint(**fields)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from canon.study.case import Case, key_of
-from canon.study.comparison import StudyError
+from canon.study.errors import StudyError
 from canon.study.leg import Checkpoint, FailedRun, Outcome, advance
 from canon.study.store import Record, Store
 
@@ -184,6 +184,9 @@ def _on(
             done, _ = wait(flying, return_when=FIRST_COMPLETED)
             for future in done:
                 key, case = flying.pop(future)
+                if future.cancelled():
+                    lost.append("the executor gave a case back")
+                    continue
                 if (error := future.exception()) is not None:
                     lost.append(f"{type(error).__name__}: {error}")
                     continue

@@ -43,7 +43,14 @@ def cluster(tmp_path):
         started.append(process)
 
     start(
-        "dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(address_file)
+        "dask_scheduler",
+        "--host",
+        "127.0.0.1",
+        "--port",
+        "0",
+        "--no-dashboard",
+        "--scheduler-file",
+        str(address_file),
     )
     for name in ("one", "two"):
         start(

@@ -33,6 +33,8 @@ from canon.study.run import run_study
 run_study(LONG, sys.argv[1], progress=lambda status: print(status, flush=True), checkpoint_seconds=0.0)
 """
 
+SLOWLY = f"import time\n{PROGRAM}".replace("flush=True)", "flush=True) or time.sleep(0.02)")
+
 
 def outcomes(store):
     return {key: (record.outcome, record.failure) for key, record in store.records().items()}
@@ -59,39 +61,40 @@ def kill_after(program, lines, seconds=0.0):
     return seen == lines and status == -signal.SIGKILL
 
 
-@pytest.mark.parametrize(
-    ("kills", "seed"), [(4, 1), pytest.param(14, 2, marks=pytest.mark.slow)], ids=["four", "fourteen"]
-)
-def test_killed_again_and_again_in_mid_run_it_ends_the_same(tmp_path, uninterrupted, kills, seed):
-    path = tmp_path / "killed.sqlite"
-    draw = random.Random(seed)
+def test_killed_inside_a_run_of_every_method_it_ends_the_same(tmp_path, uninterrupted):
+    store = Store(tmp_path / "killed.sqlite")
+    draw = random.Random(1)
+    methods, kept = set(), {}
+    for finished in range(3):
+        program = begin(store.path, SLOWLY)
+        while finished and f"{finished} finished" not in program.stdout.readline():
+            pass
+        assert kill_after(program, lines=draw.randint(2, 6), seconds=draw.uniform(0.0, 0.03))
+        found = outcomes(store)
+        assert kept.items() <= found.items() <= uninterrupted.items()
+        kept = found
+        ((key, part),) = store.parts_done().items()
+        assert 0 < part < 16
+        methods.add(next(iter(json.loads(store.cases()[key])["method"])))
+    assert methods == {"splitting", "gauss", "taylor"}
+    assert resume(store, checkpoint_seconds=1000.0).pending == 0
+    assert outcomes(store) == uninterrupted
+    assert store.parts_done() == {}
+
+
+@pytest.mark.slow
+def test_killed_at_any_moment_it_ends_the_same(tmp_path, uninterrupted):
+    store = Store(tmp_path / "killed.sqlite")
+    draw = random.Random(2)
     kept, inside = {}, 0
-    for _ in range(kills):
-        assert kill_after(begin(path), lines=96 // kills - 3, seconds=draw.uniform(0.0, 0.01))
-        store = Store(path)
+    for _ in range(24):
+        kill_after(begin(store.path), lines=draw.randint(1, 4), seconds=draw.uniform(0.0, 0.01))
         found, parts = outcomes(store), store.parts_done()
         assert kept.items() <= found.items() <= uninterrupted.items()
-        inside += bool(parts)
         assert all(0 < part < 16 for part in parts.values())
-        kept = found
-    assert inside >= kills - 1  # hardly ever between two runs
-    assert len(kept) < 6
-    assert resume(path, checkpoint_seconds=1000.0).pending == 0
-    assert outcomes(Store(path)) == uninterrupted
-    assert Store(path).parts_done() == {}
-
-
-def test_every_method_was_killed_in_mid_run(tmp_path, uninterrupted):
-    """One kill inside each run, the sixteen parts of one after the other."""
-    store = Store(tmp_path / "each.sqlite")
-    methods = set()
-    for number in range(0, 6, 2):
-        program = begin(store.path)
-        assert kill_after(program, lines=16 * 2 - 8 if number else 24)
-        (key,) = store.parts_done()
-        methods.add(next(iter(json.loads(store.cases()[key])["method"])))
-    assert len(methods) >= 2
-    resume(store)
+        kept, inside = found, inside + bool(parts)
+    assert inside >= 8
+    assert resume(store).pending == 0
     assert outcomes(store) == uninterrupted
 
 

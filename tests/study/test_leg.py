@@ -81,7 +81,13 @@ def test_the_error_is_that_since_the_start_of_the_run():
     while isinstance(found := advance(case, point, seconds=0.0), Checkpoint):
         point = found
     whole = propagate(
-        case.hamiltonian, case.state, (0.0, 15.0), method=RK4(), step=0.02, parameters=case.values, samples=300
+        case.hamiltonian,
+        case.state,
+        (0.0, 15.0),
+        method=RK4(),
+        step=0.02,
+        parameters=case.values,
+        samples=300,
     )
     np.testing.assert_allclose(point.t, whole.t, rtol=1e-15)
     np.testing.assert_allclose(point.change, whole.energy_change, rtol=1e-12, atol=1e-15 * abs(point.energy))

@@ -19,8 +19,8 @@ from canon.study.case import Case, key_of, method_from, method_to
 from canon.study.comparison import StudyError
 from canon.study.definition import Study
 from canon.study.export import rows_of
-from canon.study.run import resume, run_study, status_of
 from canon.study.formula import Formula
+from canon.study.run import resume, run_study, status_of
 from canon.study.store import Store
 
 QUARTIC = Formula("quartic", "p**2/2 + k*q**4/4", ("q",), ("p",), (("k", 2.0),), (("there", (1.0, 0.0)),))
@@ -165,5 +165,3 @@ def test_methods_and_cases_survive_writing(method):
     again = Case.from_dict(json.loads(json.dumps(case.to_dict())))
     assert again == case
     assert key_of(again) == key_of(case)
-
-

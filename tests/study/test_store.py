@@ -168,3 +168,61 @@ def test_a_full_disk_loses_nothing_that_was_finished(tmp_path):
     assert len(again.records()) == int(saved)
     again.save(Record("999", outcome="after making room"))
     assert len(again.pending()) == 999 - int(saved)
+
+
+def test_a_checkpoint_goes_forward_only_and_leaves_with_the_record(store):
+    store.save_checkpoint("k1", 3, "after three")
+    store.save_checkpoint("k1", 2, "after two, from a slower process")
+    assert (store.checkpoint("k1"), store.parts_done()) == ("after three", {"k1": 3})
+    store.save_checkpoint("k1", 5, "after five")
+    assert store.checkpoint("k1") == "after five"
+    assert store.counts() == (0, 0, 4, 1)
+    store.save(Record("k1", outcome="done"))
+    store.save_checkpoint("k1", 6, "from a process that did not see it end")
+    assert (store.checkpoint("k1"), store.parts_done()) == (None, {})
+    assert store.is_finished("k1")
+    assert not store.is_finished("k2")
+    store.save(Record("k2", outcome="", failure="collision"))
+    assert store.counts() == (1, 1, 2, 0)
+
+
+def test_files_of_several_jobs_become_one(tmp_path, store):
+    other = Store(tmp_path / "other.sqlite")
+    other.add_cases({"k0": "inputs 0", "k1": "inputs 1", "new": "inputs of another study"})
+    other.save(Record("k0", outcome="from there", seconds=1.5))
+    other.save(Record("k1", outcome="from there"))
+    store.save(Record("k1", outcome="from here"))
+    store.save_checkpoint("k0", 1, "on the way")
+    store.add_from(other)
+    assert {key: record.outcome for key, record in store.records().items()} == {
+        "k0": "from there",
+        "k1": "from here",
+    }
+    assert store.records()["k0"].seconds == 1.5
+    assert store.pending() == ("k2", "k3", "new")
+    assert store.parts_done() == {}
+    store.add_from(other)
+    assert len(store.cases()) == 5
+
+
+KILLED = """
+import sys
+from canon.study.store import Store
+store = Store(sys.argv[1])
+with store._writing() as connection:
+    connection.execute("UPDATE cases SET inputs = 'half done'")
+    connection.execute("PRAGMA cache_spill = 1")
+    print("writing", flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_killed_inside_a_transaction_nothing_of_it_stays(store):
+    store.save_checkpoint("k1", 1, "kept")
+    code = [sys.executable, "-c", KILLED, str(store.path)]
+    with subprocess.Popen(code, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
+        assert program.stdout.readline() == b"writing\n"
+        program.kill()
+        program.wait(30)
+    assert Store(store.path).cases() == {f"k{i}": f"inputs {i}" for i in range(4)}
+    assert store.checkpoint("k1") == "kept"
