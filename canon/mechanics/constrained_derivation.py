@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.expression.python_source import python_function
+from canon.mechanics.dependence import DependentConstraintsError
 from canon.mechanics.dynamicsymbols import plain
 from canon.mechanics.motion import solved
 
@@ -77,6 +78,8 @@ def constrained(
     ------
     ValueError
         Where a holonomic constraint holds velocities, or another is not affine in them.
+    DependentConstraintsError
+        Where rows depend on one another at generic points, so that their multipliers are not determined.
 
     Examples
     --------
@@ -110,6 +113,7 @@ def constrained(
             )
         rows.append(row)
         rests.extend(graph.substitute([node], at_rest))
+    _check_independent(equations, rows, (*holonomic, *nonholonomic))
     curvatures = tuple(
         graph.add(
             (
@@ -210,6 +214,36 @@ def constrained_motion(
         return values, rate
 
     return Motion(accelerations, projected, residual)
+
+
+def _check_independent(
+    equations: Equations, rows: Sequence[Sequence[int]], constraints: Sequence[Expr]
+) -> None:
+    """Look for dependent rows at a few points; rows of full rank at one of them are independent."""
+    graph, flat = equations.graph, [a for row in rows for a in row]
+    symbols = sorted(graph.all_symbols(flat), key=lambda s: s.name)
+    chance = np.random.default_rng(5)
+    for _ in range(4):
+        point = dict(zip(symbols, chance.uniform(0.3, 1.7, len(symbols)), strict=True))
+        A = np.array(graph.evaluate(flat, point), dtype=np.float64).reshape(len(rows), -1)
+        if not np.isfinite(A).all():
+            continue
+        left, sizes, _ = np.linalg.svd(A)
+        rank = int((sizes > 1e-12 * sizes.max(initial=0.0)).sum())
+        if rank == len(rows):
+            return
+        combination = left[:, -1]
+        dependent = tuple(
+            a + 1 for a, c in enumerate(combination) if abs(c) > 1e-8 * np.abs(combination).max()
+        )
+        named = " and ".join(f"constraint {a} ({constraints[a - 1]} = 0)" for a in dependent)
+        raise DependentConstraintsError(
+            f"{named} {'depend on one another' if len(dependent) > 1 else 'restricts no velocity'}, so that no "
+            "multiplier is determined; leave one of them out",
+            dependent,
+            (),
+            contradictory=None,
+        )
 
 
 _NEAR = 1e-8

@@ -8,6 +8,7 @@ from canon.expression.symbol import coordinates, parameters, time
 from canon.mechanics.body import Particle, PlanarBody
 from canon.mechanics.constrained_derivation import constrained, constrained_motion
 from canon.mechanics.constraint import ConstrainedLagrangian
+from canon.mechanics.dependence import DependentConstraintsError
 from canon.mechanics.derivation import derivation
 from canon.mechanics.force import gravity, lagrangian_of
 
@@ -117,6 +118,27 @@ def test_projection_keeps_the_constraint_at_round_off():
 @pytest.mark.slow
 def test_projection_for_a_million_steps():
     assert run(pendulum(), np.array([0.8, -0.6]), np.array([0.3, 0.4]), 0.05, 10**6, project=True) < 4e-15
+
+
+@pytest.mark.parametrize(
+    ("holonomic", "nonholonomic", "rows"),
+    [
+        ([x**2 + y**2 - l**2, x - 1, 3 * (x**2 + y**2)], [], (1, 3)),
+        ([x - y, x + y, x * y - 1], [], (1, 2, 3)),
+        ([x - y], [x.dot - y.dot], (1, 2)),
+        ([l - 1 + 0 * x], [y.dot], (1,)),
+    ],
+)
+def test_dependent_rows_are_named(holonomic, nonholonomic, rows):
+    with pytest.raises(DependentConstraintsError, match="leave one of them out") as caught:
+        constrained(derivation([Particle(m, (x, y))], (x, y)), holonomic, nonholonomic)
+    assert caught.value.rows == rows
+
+
+def test_independent_rows_are_taken():
+    space = derivation([Particle(m, (x, y))], (x, y))
+    assert len(constrained(space, [x**2 + y**2 - l**2, x - y]).A) == 2
+    assert len(constrained(space, [sp.log(x - 5) - y], [x.dot - 2 * y.dot]).A) == 2
 
 
 @pytest.mark.parametrize(
