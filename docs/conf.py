@@ -52,6 +52,7 @@ intersphinx_mapping = {
 html_theme = "furo"
 html_title = "canon"
 html_static_path = ["_static"]
+html_css_files = ["wide.css"]
 copybutton_prompt_text = r">>> |\.\.\. |\$ "
 copybutton_prompt_is_regexp = True
 

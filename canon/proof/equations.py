@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["equivalent_equations"]
 
+SAME_SOLUTIONS = "the two systems of equations have the same solutions"
+
 WORKING_BITS = 256
 POINTS = 12
 
@@ -99,14 +101,14 @@ def equivalent_equations(
     unknown = [system for system in (a, b) if isinstance(system, str)]
     if isinstance(a, str) or isinstance(b, str):
         verdict = Verdict(Status.UNDECIDED, evidence=tuple(Evidence("affine", text) for text in unknown))
-        return replace(verdict, seconds=time.monotonic() - start)
+        return replace(verdict, question=SAME_SOLUTIONS, seconds=time.monotonic() - start)
     field = is_analytic([entry for system in (a, b) for row in system.rows for entry in row], domain)
     extra = _rows_follow(b, a, system_b, ("second", "first"), domain, deadline, field=field)
     if extra.fails:
-        return replace(extra, seconds=time.monotonic() - start)
+        return replace(extra, question=SAME_SOLUTIONS, seconds=time.monotonic() - start)
     missing = _rows_follow(a, b, system_a, ("first", "second"), domain, deadline, field=field)
     worst = missing if missing.fails or extra.holds else extra
-    return replace(worst, seconds=time.monotonic() - start)
+    return replace(worst, question=SAME_SOLUTIONS, seconds=time.monotonic() - start)
 
 
 def _augmented(

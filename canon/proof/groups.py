@@ -1,8 +1,9 @@
-"""Sums that cancel group by group: terms with the same radicals and functions are looked at together.
+"""Sums that cancel group by group: terms with the same radicals are looked at together.
 
 In the bracket of the angular momentum of N bodies every pair of bodies cancels for itself. Over one tower all
 distances would come to one denominator; a group knows only its own. Zero groups add up to zero, whatever
-the other groups are, so nothing has to be known of how the groups depend on each other.
+the other groups are, so nothing has to be known of how the groups depend on each other. Sines and cosines make no
+groups: they do depend on each other, and seldom cancel apart.
 """
 
 from __future__ import annotations
@@ -26,41 +27,41 @@ MOST_TERMS = 5_000
 
 
 def groups(expr: Expr) -> list[Expr] | None:
-    """Return parts that add up to ``expr``, each with other radicals, functions and denominators.
+    """Return parts that add up to ``expr``, each with other radicals.
 
-    Products are multiplied out only as far as it takes to tell the kernels of their terms apart. None where there
-    is only one group, or where there would be too many terms.
+    Products are multiplied out only as far as it takes to tell the radicals of their terms apart. None where there
+    are fewer than three groups, or where there would be too many terms.
 
     Examples
     --------
     >>> x, y = sp.symbols("x y", positive=True)
-    >>> groups(x*(sp.sqrt(y) + sp.exp(y)) - x*sp.sqrt(y) - x*sp.exp(y))
-    [0, 0]
+    >>> groups(x*(sp.sqrt(y) + sp.sqrt(x + y) + y) - x*sp.sqrt(y) - x*sp.sqrt(x + y))
+    [0, 0, x*y]
     """
     found: dict[frozenset[sp.Basic], list[Expr]] = {}
-    kernels = _Kernels()
+    radicals = _Radicals()
     waiting: list[Expr] = [expr]
     terms = 0
     while waiting:
         term = waiting.pop()
         if isinstance(term, sp.Add):
             waiting.extend(term.args)
-        elif (mixed := _mixed_factor(term, kernels)) is not None:
+        elif (mixed := _mixed_factor(term, radicals)) is not None:
             others = sp.Mul(*(cast("Expr", f) for f in term.args if f is not mixed))
             waiting.extend(sp.Mul(others, part) for part in mixed.args)
         else:
-            found.setdefault(kernels.of(term), []).append(term)
+            found.setdefault(radicals.of(term), []).append(term)
         terms += 1
         if terms + len(waiting) > MOST_TERMS:
             return None
-    return [sp.Add(*members) for members in found.values()] if len(found) > 1 else None
+    return [sp.Add(*members) for members in found.values()] if len(found) > 2 else None
 
 
-def _mixed_factor(term: Expr, kernels: _Kernels) -> sp.Add | None:
-    """Return a sum among the factors whose terms have different kernels."""
+def _mixed_factor(term: Expr, radicals: _Radicals) -> sp.Add | None:
+    """Return a sum among the factors whose terms have different radicals."""
     if isinstance(term, sp.Mul):
         for factor in term.args:
-            if isinstance(factor, sp.Add) and len({kernels.of(a) for a in factor.args}) > 1:
+            if isinstance(factor, sp.Add) and len({radicals.of(a) for a in factor.args}) > 1:
                 return factor
     return None
 
@@ -73,8 +74,8 @@ def _in_one_way(base: Expr) -> Expr:
     return sp.expand(base) if small else base
 
 
-class _Kernels:
-    """The outermost radicals, functions and denominators of expressions, remembered."""
+class _Radicals:
+    """What stands below the outermost roots of expressions, remembered."""
 
     def __init__(self) -> None:
         self._known: dict[sp.Basic, frozenset[sp.Basic]] = {}
@@ -86,14 +87,6 @@ class _Kernels:
         return self._known[expr]
 
     def _fresh(self, part: sp.Basic) -> frozenset[sp.Basic]:
-        if (
-            isinstance(part, sp.Pow)
-            and part.exp.is_Integer
-            and (part.exp.is_positive or not part.base.is_Add)
-        ):
-            return self._known[part.base]
-        if isinstance(part, sp.Pow):
+        if isinstance(part, sp.Pow) and isinstance(part.exp, sp.Rational) and not part.exp.is_Integer:
             return frozenset([_in_one_way(part.base)])
-        if isinstance(part, sp.Add | sp.Mul):
-            return frozenset().union(*(self._known[a] for a in part.args))
-        return frozenset([part]) if part.args else frozenset()
+        return frozenset().union(*(self._known[a] for a in part.args))

@@ -65,9 +65,9 @@ def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: fl
     """
     start = time.monotonic()
     if isinstance(expr, sp.MatrixBase):
-        return _matrix_vanishes(expr, domain, start, budget)
+        return _matrix_vanishes(expr, domain, start, budget).about("the matrix is zero")
     verdict = _decide(_exact(expr), sp.Integer(0), domain, start + budget)
-    return replace(verdict, seconds=time.monotonic() - start)
+    return replace(verdict, question="the expression is zero", seconds=time.monotonic() - start)
 
 
 def equal(
@@ -93,9 +93,9 @@ def equal(
     if isinstance(a, sp.MatrixBase) and isinstance(b, sp.MatrixBase):
         if a.shape != b.shape:
             raise ValueError(f"matrices of shapes {a.shape} and {b.shape} cannot be compared entry by entry")
-        return _matrix_vanishes(a - b, domain, start, budget)
+        return _matrix_vanishes(a - b, domain, start, budget).about("the matrices are equal")
     verdict = _decide(_exact(a), _exact(b), domain, start + budget)
-    return replace(verdict, seconds=time.monotonic() - start)
+    return replace(verdict, question="the expressions are equal", seconds=time.monotonic() - start)
 
 
 def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget: float) -> Verdict:
