@@ -6,15 +6,14 @@ import hashlib
 import json
 import math
 from dataclasses import asdict, dataclass
-from fractions import Fraction
 from functools import lru_cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.method import DOP853, RK4, FixedStep, Gauss, Splitting, Taylor
-from canon.kernel.scheme import SCHEMES
+from canon.flow.method import FixedStep
 from canon.scene import find
 from canon.study.formula import Formula, hamiltonian_of
+from canon.study.written import method_from, method_to
 from canon.version import __version__
 
 if TYPE_CHECKING:
@@ -188,69 +187,3 @@ def _scene_state(
     scene: str, start: str | None, parameters: tuple[tuple[str, float], ...]
 ) -> tuple[float, ...]:
     return tuple(find(scene).with_parameters(**dict(parameters)).state(start).tolist())
-
-
-def method_to(method: Method) -> dict[str, Any]:
-    """Return a method as what JSON and TOML can hold.
-
-    Examples
-    --------
-    >>> method_to(Splitting("verlet")), method_to(Gauss(4)), method_to(Taylor(1e-10))
-    ({'splitting': 'verlet'}, {'gauss': 4}, {'taylor': 1e-10})
-    """
-    match method:
-        case Splitting(scheme=scheme):
-            if scheme.name:
-                return {"splitting": scheme.name}
-            return {"splitting": {"a": [str(x) for x in scheme.a], "b": [str(x) for x in scheme.b]}}
-        case Gauss(stages=stages):
-            return {"gauss": stages}
-        case RK4():
-            return {"rk4": True}
-        case Taylor(tolerance=tolerance):
-            return {"taylor": tolerance if tolerance is not None else True}
-        case DOP853(tolerance=tolerance):
-            return {"dop853": tolerance}
-
-
-def method_from(written: Mapping[str, Any] | str) -> Method:
-    """Return the method of a table with one key, or of a name alone.
-
-    Raises
-    ------
-    ValueError
-        Where there is no such method.
-
-    Examples
-    --------
-    >>> method_from("kahan-li-8"), method_from("rk4"), method_from({"gauss": 6})
-    (Splitting('kahan-li-8'), RK4(), Gauss(stages=6))
-    """
-    if isinstance(written, str):
-        name = written.lower()
-        written = {"splitting": name} if name in SCHEMES else {name: True}
-    if len(written) != 1:
-        raise ValueError(f"a method is a name or a table with one key, not {dict(written)}")
-    ((kind, value),) = written.items()
-    match kind, value:
-        case "splitting", str():
-            return Splitting(value)
-        case "splitting", {"a": a, "b": b}:
-            return Splitting(a=[Fraction(x) for x in a], b=[Fraction(x) for x in b])
-        case "gauss", int() if value is not True:
-            return Gauss(value)
-        case "rk4", True:
-            return RK4()
-        case "taylor", True:
-            return Taylor()
-        case "taylor", float():
-            return Taylor(value)
-        case "dop853", True:
-            return DOP853()
-        case "dop853", float():
-            return DOP853(value)
-        case _:
-            raise ValueError(
-                f"no method is written {kind} = {value!r}; there are {', '.join(SCHEMES)}, rk4, taylor, dop853, "
-                "{ gauss = stages }, { taylor = tolerance }, { dop853 = tolerance }, { splitting = { a, b } }"
-            )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from canon import DOP853, RK4, Gauss, Splitting, Taylor, propagate
+from canon.flow.solvable import WisdomHolman
 from canon.study.case import Case, parts_of
 from canon.study.formula import Formula
 from canon.study.leg import Checkpoint, FailedRun, Outcome, advance, started
@@ -25,6 +26,7 @@ CASES = [
     replace(KEPLER, method=Taylor(), step=None),
     replace(KEPLER, method=Taylor(), step=None, tolerance=1e-10),
     replace(KEPLER, method=DOP853(), step=None),
+    Case("outer-solar-system", WisdomHolman(corrector=7), span=40000.0, step=100.0, samples=300, parts=5),
     Case("double-pendulum", Taylor(), span=40.0, samples=300, parts=5),
 ]
 

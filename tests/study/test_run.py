@@ -14,6 +14,7 @@ import pytest
 
 from canon import DOP853, RK4, Splitting, Taylor
 from canon.flow.method import Gauss
+from canon.flow.solvable import SABA, SBAB, WisdomHolman
 from canon.study import run
 from canon.study.case import Case, key_of, method_from, method_to
 from canon.study.comparison import StudyError
@@ -156,11 +157,18 @@ def test_a_file_begun_with_other_versions_is_not_resumed(tmp_path, monkeypatch):
         Taylor(),
         Taylor(1e-9),
         DOP853(),
+        DOP853(1e-9),
+        WisdomHolman(),
+        WisdomHolman(corrector=7),
+        SABA(4),
+        SABA("10-6-4"),
+        SBAB(3),
     ],
 )
 def test_methods_and_cases_survive_writing(method):
     written = json.loads(json.dumps(method_to(method)))
     assert method_from(written) == method
+    assert len({key_of(Case("kepler", m, span=1.0)) for m in (method, Splitting("suzuki-4"))}) == 2
     case = Case("kepler", method, span=0.1 + 0.2, start=(0.4, 0.0, 0.0, 12.1), parameters=(("mu", 39.0),))
     again = Case.from_dict(json.loads(json.dumps(case.to_dict())))
     assert again == case
