@@ -38,10 +38,10 @@ Written by `python docs/scenes/make.py`; every number below was measured by it. 
 `canon scene NAME` shows one, `--run` repeats the measurements, `--plot` and `--animate` draw it.
 
 A scene carries parameters with units and real values, named starts, how it moves, and what is known of it. Runs are
-{periods:g} periods long (fewer where the scene's horizon is nearer), with heyoka's Taylor method at the tolerance of round-off
-on (q, p), from every start. *Drift* is the largest relative change met; where an integral is nearly zero it is relative to
-its largest term. Driven and damped scenes hold their energy against the work done. *Proof* is the symbolic verdict on
-dI/dt = 0 by the equations of motion.
+{periods:g} periods long (fewer where the scene's horizon is nearer), with heyoka's Taylor method at the tolerance of
+round-off on (q, p), from every start. *Drift* is the largest relative change met; where an integral is nearly zero it
+is relative to its largest term. Driven and damped scenes hold their energy against the work done. *Proof* is the
+symbolic verdict on dI/dt = 0 by the equations of motion.
 
 | scene | known motions met | integrals | largest drift | |
 |---|---|---|---|---|
