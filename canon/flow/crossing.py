@@ -48,7 +48,7 @@ class Guard:
         self.system, self.steps, self.events = system, steps, events
         self.forward = 1 if steps.h > 0 else -1
         self.wide = wide_number(steps.loop.number)
-        self.bits = steps.loop.number.mantissa + 8
+        self.bits = steps.loop.number.mantissa + 4
         self.met: list[Crossing] = []
         self.sides: list[int] = []
 
@@ -175,19 +175,48 @@ class Guard:
         if side * g >= 0:
             if not (side * came < 0 < side * goes):
                 return Fraction(2)
-            last = _root(lambda part: (-ahead(part)[1], 0.0), place, last, self.bits // 2)
-            if ahead(last)[0] >= 0:
+            dip = _dip(ahead, (place, side * came), (last, side * goes), self.bits // 2)
+            if dip is None:
                 return Fraction(2)
+            last = dip
         return _root(ahead, place, last, self.bits)
+
+
+def _dip(
+    f: Callable[[Fraction], tuple[float, float]],
+    falling: tuple[Fraction, float],
+    rising: tuple[Fraction, float],
+    bits: int,
+) -> Fraction | None:
+    """Return a place where f, which falls at one place and rises at a later one, is negative, or None.
+
+    Its least value is approached by false positions of the slope (Illinois) until f is negative or the place known.
+    """
+    (low, down), (high, up) = falling, rising
+    for _ in range(_TRIES):
+        part = down / (down - up) if down != up else 0.5
+        x = low + (high - low) * Fraction(round(min(max(part, 0.01), 0.99) * 2**20), 2**20)
+        value, slope = f(x)
+        if value < 0:
+            return x
+        if slope == 0 or high - low <= Fraction(1, 2**bits):
+            return None
+        if slope < 0:
+            low, down, up = x, slope, up / 2
+        else:
+            high, up, down = x, slope, down / 2
+        if value + min(slope, -abs(slope)) * float(high - low) > 0:  # too far from zero to reach it
+            return None
+    return None
 
 
 def _root(f: Callable[[Fraction], tuple[float, float]], low: Fraction, high: Fraction, bits: int) -> Fraction:
     """Return where f, positive at ``low``, becomes negative before ``high``: Newton's method kept in a bracket.
 
-    f returns its value and its slope; where the slope is 0 the bracket is halved.
+    f returns its value and its slope.
     """
-    smallest = Fraction(1, 2**bits)
-    x = (low + high) / 2
+    smallest, near = Fraction(1, 2**bits), Fraction(1, 2 ** (bits // 2))
+    x, moved = (low + high) / 2, high - low
     for _ in range(_TRIES):
         value, slope = f(x)
         if value == 0:
@@ -197,7 +226,9 @@ def _root(f: Callable[[Fraction], tuple[float, float]], low: Fraction, high: Fra
         if not low <= new <= high:
             new = (low + high) / 2
         new = Fraction(round(new * 2**bits), 2**bits)
-        if abs(new - x) <= smallest or high - low <= smallest:
+        before, moved = moved, abs(new - x)
+        # Near the end steps shrink to those that round-off makes.
+        if moved <= 2 * smallest or high - low <= smallest or before / 4 <= moved <= near:
             return min(max(new, low), high)
         x = new
     return x

@@ -225,11 +225,12 @@ class _Orbit:
 
     def _towards(self, integrator: Any, times: list[Any], *, dense: bool) -> tuple[int, list[Any], Any]:
         """Return steps taken, the states at the times reached, and the outcome."""
+        most = {"max_delta_t": abs(self.span)} if self.meeting.events else {}
         if not dense:
             grid = np.array([integrator.time, *times])
-            outcome, _, _, steps, _, found = integrator.propagate_grid(grid)
+            outcome, _, _, steps, _, found = integrator.propagate_grid(grid, **most)
             return steps, list(found[1:]), outcome
-        outcome, _, _, steps, piece, _ = integrator.propagate_until(times[-1], c_output=True)
+        outcome, _, _, steps, piece, _ = integrator.propagate_until(times[-1], c_output=True, **most)
         if piece is None:
             return steps, [], outcome
         self.pieces.append(piece)

@@ -1,0 +1,250 @@
+"""Events: noticed, located, acted upon, and never where there are none."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from canon.flow.event import Event
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.propagate import NonFiniteStateError, propagate
+from tests.flow.systems import (
+    DOUBLE_PENDULUM,
+    HENON_HEILES,
+    HENON_HEILES_START,
+    PENDULUM,
+    System,
+    theta,
+    x,
+    y,
+)
+
+px, py = x.momentum, y.momentum
+FALL = System(px**2 / 2 + x, (x,), (px,))
+"""x(t) = x0 + p0 t − t²/2, which every method of order 2 follows exactly."""
+
+DRAG = System(sp.sqrt(1 + px**2) + x, (x,), (px,))
+VERLET, KL8 = Splitting("verlet"), Splitting("kahan-li-8")
+EVERY = [(VERLET, {"step": 0.01}), (Gauss(3), {"step": 0.01}), (RK4(), {"step": 0.01}), (Taylor(), {})]
+IDS = ["verlet", "gauss", "rk4", "taylor"]
+
+
+def times(motion):
+    return [met.t for met in motion.events]
+
+
+@pytest.mark.parametrize(("method", "how"), EVERY, ids=IDS)
+@pytest.mark.parametrize("forward", [1, -1])
+def test_a_stop_ends_the_motion_at_the_event(method, how, forward):
+    motion = propagate(
+        FALL, [0.5, 0.0], (0, 6 * forward), method=method, samples=10, events=[Event(x, -1, "stop")], **how
+    )
+    assert motion.stopped
+    assert times(motion) == [pytest.approx(forward, abs=1e-15)]
+    assert motion.t[-1] == motion.events[0].t
+    np.testing.assert_allclose(motion.final, [0, -forward], atol=1e-15)
+    np.testing.assert_allclose(motion.t, [0, 0.6 * forward, forward], rtol=1e-14)
+    assert motion.events[0].rising is False
+    assert abs(motion.energy_error).max() < 3e-16
+    with pytest.raises(ValueError, match="does not go on"):
+        motion.resume(7 * forward)
+
+
+@pytest.mark.parametrize(("method", "how"), EVERY, ids=IDS)
+@pytest.mark.parametrize("action", ["bounce", {px: -px}, {px: -px, x: sp.Integer(0)}], ids=str)
+def test_a_bounce_keeps_the_energy_and_its_times(method, how, action):
+    motion = propagate(
+        FALL, [0.5, 0.0], (0, 100), method=method, samples=100, events=[Event(x, -1, action)], **how
+    )
+    np.testing.assert_allclose(times(motion), np.arange(1, 100, 2), rtol=1e-14)
+    # A position set to 0 forgets up to a rounding of the time.
+    assert abs(motion.energy_error).max() < (2e-14 if isinstance(action, dict) and x in action else 2e-15)
+    assert motion.y[0].min() > -1e-14
+    np.testing.assert_allclose(motion.events[3].after, -motion.events[3].y, atol=1e-13)
+
+
+def test_a_bounce_in_every_precision_is_as_good_as_the_precision():
+    floor = {"single": 1e-6, "double": 1e-14, "compensated": 1e-16, "extended": 1e-17, "double-double": 1e-30}
+    for precision, bound in floor.items():
+        motion = propagate(
+            FALL,
+            [0.5, 0.0],
+            (0, 6),
+            method=VERLET,
+            step=0.01,
+            precision=precision,
+            events=[Event(x, -1, "bounce")],
+        )
+        assert len(motion.events) == 3
+        assert abs(motion.energy_error).max() < bound
+
+
+def test_taylor_refuses_to_change_states_it_would_round():
+    with pytest.raises(ValueError, match="'double' and 'extended' only"):
+        propagate(FALL, [0.5, 0.0], (0, 6), precision="quad", events=[Event(x, -1, "bounce")])
+
+
+@pytest.mark.slow
+def test_taylor_meets_events_in_higher_precisions():
+    extended = propagate(FALL, [0.5, 0.0], (0, 6), precision="extended", events=[Event(x, -1, "bounce")])
+    assert len(extended.events) == 3
+    assert abs(extended.energy_error).max() < 1e-18
+    quad = propagate(FALL, [0.5, 0.0], (0, 6), precision="quad", events=[Event(x, -1, "stop")])
+    assert times(quad) == [1.0]
+
+
+def test_a_circular_billiard_keeps_energy_and_angular_momentum():
+    free = System(px**2 / 2 + py**2 / 4, (x, y), (px, py))
+    # In the metric of the masses 1 and 2 the wall is a circle in (x, √2 y).
+    wall = Event(1 - x**2 - 2 * y**2, -1, "bounce", "wall")
+    L = {"L": x * py - 2 * y * px}
+    for method, how in ((VERLET, {"step": 0.37}), (Taylor(), {})):
+        motion = propagate(
+            free,
+            [0.1, 0.2, 0.7, 1.1],
+            (0, 200),
+            method=method,
+            samples=50,
+            events=[wall],
+            observables=L,
+            **how,
+        )
+        assert len(motion.events) > 50
+        assert abs(motion.energy_error).max() < 1e-13
+        assert abs(motion.changes["L"]).max() < 1e-13
+        assert (motion.y[0] ** 2 + 2 * motion.y[1] ** 2).max() < 1 + 1e-12
+
+
+@pytest.mark.parametrize(
+    ("method", "how"), [(KL8, {"step": 0.1}), (Gauss(4), {"step": 0.2})], ids=["kl8", "gauss"]
+)
+def test_recording_changes_no_bit_and_agrees_with_taylor(method, how):
+    arguments = {"y0": HENON_HEILES_START, "t_span": (0, 200), "samples": 40}
+    section = [Event(x, 1), Event(py, name="turning")]
+    seen = propagate(HENON_HEILES, method=method, events=section, **arguments, **how)
+    blind = propagate(HENON_HEILES, method=method, **arguments, **how)
+    np.testing.assert_array_equal(seen.y, blind.y)
+    true = propagate(HENON_HEILES, events=section, **arguments)
+    assert [met.event for met in seen.events] == [met.event for met in true.events]
+    assert len(true.events) > 80
+    np.testing.assert_allclose(times(seen), times(true), atol=2e-6)
+    for met in seen.events:
+        assert abs(met.y[0] if met.event.direction else met.y[3]) < 1e-15
+        assert met.rising or not met.event.direction
+    energies = [
+        float(HENON_HEILES.H.subs(dict(zip((x, y, px, py), met.y, strict=True)))) for met in seen.events
+    ]
+    # A state at an event is the method's own: its energy errs as little as at the steps.
+    assert max(abs(np.array(energies) / energies[0] - 1)) < 20 * abs(seen.energy_error).max() + 1e-14
+
+
+def test_the_located_time_converges_with_the_order_of_the_method():
+    def first(step):
+        return (
+            propagate(PENDULUM, [1.0, 0.0], (0, 2), method=VERLET, step=step, events=[Event(theta)])
+            .events[0]
+            .t
+        )
+
+    true = propagate(PENDULUM, [1.0, 0.0], (0, 2), events=[Event(theta)]).events[0].t
+    errors = [abs(first(step) - true) for step in (0.04, 0.02, 0.01)]
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.1)
+    assert errors[1] / errors[2] == pytest.approx(4, rel=0.1)
+
+
+def test_several_crossings_in_one_step_are_met_in_their_order():
+    events = [Event(x, name="x"), Event(px, name="p"), Event(x + sp.Rational(1, 100), name="lower")]
+    motion = propagate(FALL, [-0.125, 0.51], (0, 3), method=VERLET, step=3.0, samples=1, events=events)
+
+    def root(level):
+        return 0.51 + np.array([-1, 1]) * np.sqrt(0.51**2 - 2 * (0.125 + level))
+
+    expected = sorted([*root(0), *root(-0.01), 0.51])
+    np.testing.assert_allclose(times(motion), expected, rtol=1e-13)
+    assert [met.event.name for met in motion.events] == ["lower", "x", "p", "x", "lower"]
+    assert [met.rising for met in motion.events] == [True, True, False, False, False]
+
+
+@pytest.mark.parametrize(("method", "how"), [(VERLET, {"step": 0.3}), (VERLET, {"step": 3.0})])
+def test_touching_without_crossing_is_no_event(method, how):
+    touching = propagate(FALL, [-0.125, 0.5], (0, 3), method=method, samples=1, events=[Event(x)], **how)
+    assert touching.events == ()
+    through = propagate(
+        FALL, [-0.125 + 1e-9, 0.5], (0, 3), method=method, samples=1, events=[Event(x)], **how
+    )
+    np.testing.assert_allclose(times(through), 0.5 + np.array([-1, 1]) * np.sqrt(2e-9), rtol=1e-9)
+
+
+@pytest.mark.parametrize(("method", "how"), EVERY, ids=IDS)
+def test_a_start_at_zero_is_no_event_but_what_follows_is(method, how):
+    up = propagate(FALL, [0.0, 0.5], (0, 3), method=method, samples=1, events=[Event(x)], **how)
+    assert times(up) == [pytest.approx(1, abs=1e-15)]
+    down = propagate(
+        FALL, [0.0, -0.5], (0, 3), method=method, samples=1, events=[Event(x, -1, "stop")], **how
+    )
+    assert times(down) == []
+    assert not down.stopped
+
+
+@pytest.mark.parametrize(("method", "how"), EVERY, ids=IDS)
+def test_events_that_pile_up_are_an_error_with_time_and_state(method, how):
+    with pytest.raises(NonFiniteStateError, match="pile up") as caught:
+        propagate(FALL, [0.5, 0.0], (0, 9), method=method, events=[Event(x, -1, {px: -px / 2})], **how)
+    assert caught.value.time == pytest.approx(3, abs=1e-5)
+    np.testing.assert_allclose(caught.value.state, [0, 0], atol=1e-5)
+
+
+def test_an_event_that_leaves_its_domain_is_an_error():
+    with pytest.raises(NonFiniteStateError, match="domain"):
+        propagate(FALL, [0.5, 0.0], (0, 9), method=VERLET, step=0.01, events=[Event(sp.log(x + 2))])
+
+
+def test_a_driven_systems_events_read_the_clock():
+    from canon.expression.symbol import time
+
+    wall = Event(x - sp.sin(time) / 10, -1, "bounce")
+    for method, how in ((VERLET, {"step": 0.01}), (Taylor(), {})):
+        motion = propagate(FALL, [0.5, 0.0], (0, 10), method=method, events=[wall], **how)
+        for met in motion.events:
+            assert met.y[0] == pytest.approx(np.sin(met.t) / 10, abs=1e-14)
+            # Reflected in the frame of the wall.
+            v = np.cos(met.t) / 10
+            assert met.after[1] - v == pytest.approx(v - met.y[1], rel=1e-12)
+        assert len(motion.events) > 3
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "message"),
+    [
+        ({"events": [Event(sp.Symbol("w") * x)]}, KeyError, "holds w"),
+        ({"events": [Event(sp.Integer(1))]}, ValueError, "does not depend"),
+        ({"events": [Event(px, 0, "bounce")]}, ValueError, "no wall"),
+        ({"events": [Event(x, 0, {y: y})]}, ValueError, "changes y"),
+        ({"events": [Event(x)], "y0": [[0.5, 0.6], [0.0, 0.0]]}, ValueError, "one by one"),
+        ({"events": [Event(x)], "cadence": 1}, ValueError, "cadence"),
+        ({"events": [Event(x)], "method": DOP853(), "step": None}, ValueError, "does not meet"),
+    ],
+)
+def test_events_that_make_no_sense_are_refused(change, error, message):
+    right = {"y0": [0.5, 0.0], "t_span": (0, 1), "method": VERLET, "step": 0.1}
+    with pytest.raises(error, match=message):
+        propagate(FALL, **{**right, **change})
+
+
+def test_a_bounce_asks_for_a_quadratic_kinetic_energy():
+    with pytest.raises(ValueError, match="not quadratic"):
+        propagate(DRAG, [0.5, 0.0], (0, 1), method=VERLET, step=0.1, events=[Event(x, -1, "bounce")])
+    moved = propagate(DRAG, [0.5, 0.0], (0, 3), method=KL8, step=0.01, events=[Event(x, -1, {px: -px})])
+    assert len(moved.events) == 1
+    assert abs(moved.energy_error).max() < 1e-14
+    theta_wall = Event(DOUBLE_PENDULUM.q[0], 0, "bounce")
+    swung = propagate(
+        DOUBLE_PENDULUM, [1.0, 0.4, 0.1, -0.2], (0, 20), method=Gauss(6), step=0.05, events=[theta_wall]
+    )
+    assert len(swung.events) > 5
+    assert abs(swung.energy_error).max() < 1e-11
+
+
+@pytest.mark.parametrize(("direction", "action"), [(2, "record"), (0, "jump")])
+def test_words_that_are_no_direction_or_action(direction, action):
+    with pytest.raises(ValueError, match=r"direction=|action="):
+        Event(x, direction, action)
