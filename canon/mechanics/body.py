@@ -259,13 +259,13 @@ def kinetic_form(T: Expr, q: Sequence[Symbol]) -> KineticForm:
     [0, m*r**2]])
     """
     q = coordinate_symbols(q)
-    T, v = plain(T, q), [velocity(s) for s in q]
+    energy, v = plain(T, q), [velocity(s) for s in q]
     at_rest = dict.fromkeys(v, sp.S.Zero)
-    slopes = [T.diff(w) for w in v]
+    slopes = [energy.diff(w) for w in v]
     A = sp.ImmutableDenseMatrix([[slope.diff(w) for w in v] for slope in slopes])
     if A.has(*v):
         raise ValueError("T is not quadratic in the velocities; it cannot be the kinetic energy of bodies")
-    return KineticForm(A, tuple(exchanged(s, at_rest) for s in slopes), exchanged(T, at_rest), q)
+    return KineticForm(A, tuple(exchanged(s, at_rest) for s in slopes), exchanged(energy, at_rest), q)
 
 
 def is_scleronomic(

@@ -107,7 +107,7 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
         clock: Any = g.args[0]
         clocks[clock] = t
         expression = without_dynamicsymbols(expression, {g: s}, clock)
-    rates = {rate(s).name: rate(s) for s in q for rate in (velocity, acceleration)}
+    rates: dict[str, Symbol] = {rate(s).name: rate(s) for s in q for rate in (velocity, acceleration)}
     rates[t.name] = t
     exact = {s: rates[s.name] for s in expression.atoms(Symbol) if s.name in rates}
     return exchanged(expression, {**clocks, **exact})

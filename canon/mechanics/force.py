@@ -176,8 +176,8 @@ def damper(
 def rayleigh_forces(F: Expr, q: Sequence[Symbol]) -> tuple[Expr, ...]:
     """Return Q = −∂F/∂q̇ of Rayleigh's dissipation function F(q, q̇, t)."""
     q = coordinate_symbols(q)
-    F = plain(F, q)
-    return tuple(-F.diff(velocity(s)) for s in q)
+    power = plain(F, q)
+    return tuple(-power.diff(velocity(s)) for s in q)
 
 
 def charge_term(

@@ -38,7 +38,7 @@ def constant_value(f: Expr, variables: Sequence[Symbol], t: Symbol, domain: Doma
     moving = f.free_symbols & {*variables, t}
     if not moving:
         return f
-    free = {u: sp.Dummy(real=True) for u in _arbitrary(f, moving)}
+    free = {u: sp.Dummy(real=True) for u in _arbitrary(f, {*variables, t})}
     plain = exchanged(f, free)
     tried: set[Expr] = set()
     for place in _PLACES:

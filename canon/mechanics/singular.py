@@ -125,13 +125,18 @@ def singularity(
     motion = tuple(_simplest(_along(n, lagrangian.bias), domain) for n in null)
     if lagrangian.mass_matrix.has(*lagrangian.velocities):
         primary, H = _by_elimination(lagrangian, symbols, reduced.rank, domain)
-    else:
-        at_rest = dict.fromkeys(lagrangian.velocities, sp.S.Zero)
-        shifts = [s - exchanged(b, at_rest) for s, b in zip(symbols, lagrangian.momenta, strict=True)]
-        primary = tuple(_along(n, shifts) for n in null)
-        R = _partial(lagrangian, symbols, reduced.pivots, domain)
-        H = None if R is None else exchanged(R, at_rest)
-    return Singularity(reduced.rank, null, primary, motion, lagrangian.q, H)
+        return Singularity(reduced.rank, null, primary, motion, lagrangian.q, H)
+    at_rest = dict.fromkeys(lagrangian.velocities, sp.S.Zero)
+    shifts = [s - exchanged(b, at_rest) for s, b in zip(symbols, lagrangian.momenta, strict=True)]
+    R = _partial(lagrangian, symbols, reduced.pivots, domain)
+    return Singularity(
+        reduced.rank,
+        null,
+        tuple(_along(n, shifts) for n in null),
+        motion,
+        lagrangian.q,
+        None if R is None else exchanged(R, at_rest),
+    )
 
 
 def _by_elimination(

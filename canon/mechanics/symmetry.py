@@ -115,9 +115,9 @@ def noether_charge(
     >>> noether_charge(Lagrangian((x.dot**2 + y.dot**2)/2, [x, y]), [-y, x])
     x*y_dot - x_dot*y
     """
-    xi, tau, K = _displacements(lagrangian, xi, tau, K)
-    terms = (p * a for p, a in zip(lagrangian.momenta, xi, strict=True))
-    return sp.Add(*terms, -tau * lagrangian.jacobi_energy, -K)
+    moves, delay, gain = _displacements(lagrangian, xi, tau, K)
+    terms = (p * a for p, a in zip(lagrangian.momenta, moves, strict=True))
+    return sp.Add(*terms, -delay * lagrangian.jacobi_energy, -gain)
 
 
 def is_symmetry(
@@ -138,12 +138,12 @@ def is_symmetry(
     'HOLDS'
     """
     L, q, t = lagrangian.L, lagrangian.q, lagrangian.t
-    xi, tau, K = _displacements(lagrangian, xi, tau, K)
-    tau_dot = time_derivative(tau, q, t)
-    change = [tau * L.diff(t), tau_dot * L, -time_derivative(K, q, t)]
-    for s, a in zip(q, xi, strict=True):
+    moves, delay, gain = _displacements(lagrangian, xi, tau, K)
+    delay_dot = time_derivative(delay, q, t)
+    change = [delay * L.diff(t), delay_dot * L, -time_derivative(gain, q, t)]
+    for s, a in zip(q, moves, strict=True):
         v = velocity(s)
-        change += [a * L.diff(s), (time_derivative(a, q, t) - v * tau_dot) * L.diff(v)]
+        change += [a * L.diff(s), (time_derivative(a, q, t) - v * delay_dot) * L.diff(v)]
     return all_vanish(
         [("the change of L dt is dK", sp.Add(*change))], "this is a symmetry of the action", domain
     )
@@ -244,5 +244,5 @@ def _displacements(
 ) -> tuple[tuple[Expr, ...], Expr, Expr]:
     if len(xi) != len(lagrangian.q):
         raise ValueError(f"{len(xi)} displacements for {len(lagrangian.q)} coordinates; give one each")
-    *changes, tau, K = plain_all((*xi, tau, K), lagrangian.q, lagrangian.t)
-    return tuple(changes), tau, K
+    *moves, delay, gain = plain_all((*xi, tau, K), lagrangian.q, lagrangian.t)
+    return tuple(moves), delay, gain

@@ -55,6 +55,9 @@ def from_sympy_mechanics(method: KanesMethod) -> QuasiMotion: ...
 def from_sympy_mechanics(method: Any) -> ConstrainedLagrangian | QuasiMotion:
     """Return a LagrangesMethod as a Lagrangian with its constraints, a KanesMethod as motion in its speeds.
 
+    SymPy's LagrangesMethod writes the reactions − Σ λ a, canon + Σ λ a: where SymPy's multiplier is λ, ``multipliers``
+    of what is returned is −λ. The accelerations and the reactions themselves are the same.
+
     Parameters
     ----------
     method
