@@ -36,6 +36,8 @@ MAX_BYTES = 10_000_000
 MAX_TOML_BYTES = 2_000_000
 """TOML is written by people, and its parser takes longer than JSON's."""
 MAX_CLAIMS = 10_000
+MAX_REASON = 2_000
+"""Characters of what is told against a claim; only a stranger's name in it can make it longer."""
 MIN_BUDGET = Decimal("0.01")
 _FOR_ALL = ("implicit_multiplication",)
 """Keys that may stand beside the claims and are meant for each of them."""
@@ -78,7 +80,8 @@ class ClaimError:
         """What is wrong inside the claim, without saying which claim it is."""
         places = (f"key {self.key}" if self.key else "", f"column {self.column}" if self.column else "")
         where = ", ".join(place for place in places if place)
-        reason = f"{where}: {self.reason}" if where else self.reason
+        told = self.reason if len(self.reason) <= MAX_REASON else f"{self.reason[:MAX_REASON]}…"
+        reason = f"{where}: {told}" if where else told
         return f"{reason}\n{self.caret}" if self.caret else reason
 
     def __str__(self) -> str:

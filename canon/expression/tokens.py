@@ -14,6 +14,8 @@ __all__ = ["GREEK", "LanguageError", "Token", "tokens"]
 MAX_CHARACTERS = 50_000
 MAX_TOKENS = 20_000
 MAX_DIGITS = 1_000
+MAX_REASON = 300
+"""Characters of a reason that are told; only a name in it can make it longer."""
 
 
 class LanguageError(ValueError):
@@ -40,8 +42,9 @@ class LanguageError(ValueError):
 
     @property
     def message(self) -> str:
-        """Reason and remedy on one line."""
-        return f"{self.reason}; {self.remedy}" if self.remedy else self.reason
+        """Reason and remedy on one line, long names in them cut."""
+        reason = self.reason if len(self.reason) <= MAX_REASON else f"{self.reason[:MAX_REASON]}…"
+        return f"{reason}; {self.remedy}" if self.remedy else reason
 
     def caret(self) -> str:
         """Return the text around the fault with a caret under the column."""

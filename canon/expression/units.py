@@ -80,7 +80,7 @@ def _units(text: str, scope: Scope) -> Iterator[Unit]:
         elif found := _BRACKET.match(text, at):
             if not _INSIDE.fullmatch(found.group(1)):
                 reason = f"{found.group(1)[:40]!r} is not a unit that can be passed over"
-                raise LanguageError(text, found.start(1), reason, _REMEDY)
+                raise LanguageError(text, found.start(1) + 1, reason, _REMEDY)
             yield Unit(found.group(1).strip(), at, found.end())
         elif not scope.implicit and (bare := _BARE.match(text, at)) and not _declares(bare.group(), scope):
             yield Unit(bare.group().strip(), at, bare.end())
