@@ -103,3 +103,10 @@ class Arithmetic:
         for left, right in zip(a[1:], b[1:], strict=True):
             total = self.fma(left, right, total)
         return total
+
+    def polynomial(self, x: str, coefficients: Sequence[Fraction]) -> str:
+        """Write Σ c_k xᵏ by Horner's rule."""
+        total = self.number(coefficients[-1])
+        for coefficient in reversed(coefficients[:-1]):
+            total = self.fma(total, x, self.number(coefficient))
+        return total

@@ -90,28 +90,30 @@ class _Lanes:
                 total = self.pair.algebra("add", total, term) if total else term
         return total or self.pair.constant(Fraction(0))
 
-    def read(self, y: str, e: str, index: int) -> str:
+    def read(self, y: str, e: str, index: str | int) -> str:
         """Return a component of the state outside, y + e."""
         low = self.w.load(e, index) if self.compensated else self.w.constant(Fraction(0))
         return self.joined(self.w.load(y, index), low)
 
-    def write(self, value: str, y: str, e: str, index: int) -> None:
+    def write(self, value: str, y: str, e: str, index: str | int) -> None:
         """Store a component of a state."""
         high, low = self.parts(value)
         self.w.store(high, y, index)
         if self.compensated:
             self.w.store(low, e, index)
 
-    def body(self, array: str, carried: str, axis: int, lane: int) -> str:
+    def body(self, array: str, carried: str, axis: str, lane: int) -> str:
         """Return one body's component of the working state."""
-        index = axis * self.lanes + lane
-        return self.read(array, carried, index)
+        return self.read(array, carried, self._index(axis, lane))
 
-    def set_body(self, value: str, array: str, carried: str, axis: int, body: int) -> None:
+    def set_body(self, value: str, array: str, carried: str, axis: str, body: int) -> None:
         """Store one body's component, for the last body into the lanes left over too."""
         lanes = [body] if body + 1 < self.count_of_bodies else range(body, self.lanes)
         for lane in lanes:
-            self.write(value, array, carried, axis * self.lanes + lane)
+            self.write(value, array, carried, self._index(axis, lane))
+
+    def _index(self, axis: str, lane: int) -> str:
+        return self.w.let(f"add i64 {self.w.let(f'mul i64 {axis}, {self.lanes}')}, {lane}")
 
 
 class CentresInLanes(_Lanes):
@@ -141,15 +143,15 @@ class CentresInLanes(_Lanes):
                 known = axis < len(places)
                 place = self.read(y, e, places[axis]) if known else none
                 momentum = self.read(y, e, self.degrees + places[axis]) if known else none
-                self.set_body(place, self.x, self.ex, axis, body)
-                self.set_body(self.combined([1 / mass], [momentum]), self.u, self.eu, axis, body)
+                self.set_body(place, self.x, self.ex, str(axis), body)
+                self.set_body(self.combined([1 / mass], [momentum]), self.u, self.eu, str(axis), body)
 
     def leave(self, y: str, e: str) -> None:
         """Write q and p."""
         for body, (places, mass) in enumerate(zip(self.part.bodies, self.part.masses, strict=True)):
             for axis, place in enumerate(places):
-                self.write(self.body(self.x, self.ex, axis, body), y, e, place)
-                velocity = self.body(self.u, self.eu, axis, body)
+                self.write(self.body(self.x, self.ex, str(axis), body), y, e, place)
+                velocity = self.body(self.u, self.eu, str(axis), body)
                 self.write(self.combined([mass], [velocity]), y, e, self.degrees + place)
 
     def count(self, steps: str) -> None:
@@ -205,9 +207,9 @@ class PlanetsInLanes(_Lanes):
         """Write Jacobi's places and velocities, and those of the centre of mass."""
         bodies = range(len(self.m))
         self.w.store(self.w.constant(Fraction(0)), self.steps, 0)
-        for axis in range(self.axes):
-            places = [self.read(y, e, self.part.bodies[j][axis]) for j in bodies]
-            momenta = [self.read(y, e, self.degrees + self.part.bodies[j][axis]) for j in bodies]
+        with self.w.loop(0, self.axes) as axis:
+            places = [self.read(y, e, self._place(j, axis)) for j in bodies]
+            momenta = [self.read(y, e, self._momentum(j, axis)) for j in bodies]
             velocities = [self.combined([1 / m], [p]) for m, p in zip(self.m, momenta, strict=True)]
             for values, array, carried, centre in (
                 (places, self.x, self.ex, self.centre[:2]),
@@ -215,10 +217,17 @@ class PlanetsInLanes(_Lanes):
             ):
                 for i in bodies[1:]:
                     before = [-m / self.total[i - 1] for m in self.m[:i]]
-                    self.set_body(self.combined([*before, Fraction(1)], values[: i + 1]), array, carried, axis, i - 1)
+                    value = self.combined([*before, Fraction(1)], values[: i + 1])
+                    self.set_body(value, array, carried, axis, i - 1)
                 mean = self.parts(self.combined([m / self.total[-1] for m in self.m], values))
                 for part, where in zip(mean, centre, strict=True):
                     self.w.store(part, where, axis)
+
+    def _place(self, body: int, axis: str) -> str:
+        return self.w.entry(self.part.bodies[body], axis)
+
+    def _momentum(self, body: int, axis: str) -> str:
+        return self.w.let(f"add i64 {self._place(body, axis)}, {self.degrees}")
 
     def leave(self, y: str, e: str) -> None:
         """Write q and p of all bodies."""
@@ -226,7 +235,7 @@ class PlanetsInLanes(_Lanes):
         elapsed = self.joined(
             self.w.algebra("mul", self.w.load(self.steps, 0), self.w.load("%c", 1)), self.w.constant(Fraction(0))
         )
-        for axis in range(self.axes):
+        with self.w.loop(0, self.axes) as axis:
             place, velocity = (
                 self.joined(self.w.load(high, axis), self.w.load(low, axis))
                 for high, low in (self.centre[:2], self.centre[2:])
@@ -238,9 +247,9 @@ class PlanetsInLanes(_Lanes):
                 own = [self.total[i - 1] / self.total[i]] if i else []
                 after = [-self.m[j] / self.total[j] for j in bodies[i + 1 :]]
                 weights = [Fraction(1), *[Fraction(0)] * (max(i, 1) - 1), *own, *after]
-                self.write(self.combined(weights, places), y, e, self.part.bodies[i][axis])
+                self.write(self.combined(weights, places), y, e, self._place(i, axis))
                 speed = self.combined(weights, velocities)
-                self.write(self.combined([self.m[i]], [speed]), y, e, self.degrees + self.part.bodies[i][axis])
+                self.write(self.combined([self.m[i]], [speed]), y, e, self._momentum(i, axis))
 
     def count(self, steps: str) -> None:
         """Count steps, for the centre of mass."""
