@@ -53,6 +53,8 @@ def _at(steps: PartialSteps, task: Task, samples: Samples, filled: Any, t: Fract
     forward, stops = task.plan.forward, task.plan.stops
     k = max(int(np.searchsorted(forward * samples.t, forward * float(t), side="right")) - 1, 0)
     place = max((t - steps.t0) / steps.h, Fraction(stops[k]))
+    if float(steps.time(round(place), Fraction(0))) == float(t):
+        place = Fraction(round(place))
     n = int(place)
     state = State(samples.y[:, k, filled], samples.carried[:, k, filled])
     if n > stops[k]:
