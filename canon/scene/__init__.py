@@ -15,10 +15,13 @@ True
 from __future__ import annotations
 
 from canon.scene import (
+    bead,
     bodies,
     charge,
     driven,
+    first_kind,
     henon_heiles,
+    incline,
     kepler,
     lattice,
     nonholonomic,
@@ -47,6 +50,9 @@ SCENES: tuple[Scene, ...] = (
     *top.SCENES,
     *rotating.SCENES,
     *nonholonomic.SCENES,
+    *first_kind.SCENES,
+    *incline.SCENES,
+    *bead.SCENES,
     *driven.SCENES,
     *charge.SCENES,
 )

@@ -25,7 +25,7 @@ from canon.kernel.taylor import heyoka_expressions
 from canon.mechanics.constrained_derivation import constrained, constrained_motion
 from canon.mechanics.derivation import derivation_of_lagrangian
 from canon.mechanics.factorisation import solved_on_graph
-from canon.scene.parts import SceneError, Start
+from canon.scene.parts import SceneError, Start, multiplier
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -74,13 +74,14 @@ class Equation:
     multipliers: tuple[int, ...] = ()
 
     def node(self, f: Expr, what: str) -> int:
-        """Return the node of a function of q, q̇, p, t and the parameters."""
+        """Return the node of a function of q, q̇, p, t, the parameters and the multipliers λ."""
         graph = self.field.graph
         general = graph.from_sympy(sp.sympify(f, strict=True))
+        given = {multiplier(i): node for i, node in enumerate(self.multipliers, 1)} | dict(self.rates)
         known = {
-            graph.symbol(s): self.rates[s] if s in self.rates else graph.number(self.field.numbers[s.name])
+            graph.symbol(s): given[s] if s in given else graph.number(self.field.numbers[s.name])
             for s in graph.symbols(general)
-            if s in self.rates or s.name in self.field.numbers
+            if s in given or s.name in self.field.numbers
         }
         found = graph.substitute([general], known)[0]
         unknown = graph.symbols(found) - {*self.field.x, self.field.t}

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
-    from sympy import Expr
+    from sympy import Expr, Symbol
 
     Build = Callable[[SimpleNamespace], Expr]
 
-__all__ = ["Condition", "Integral", "Parameter", "SceneError", "Solution", "Start", "near"]
+__all__ = ["Condition", "Integral", "Parameter", "SceneError", "Solution", "Start", "multiplier", "near"]
 
 
 class SceneError(ValueError):
@@ -162,6 +162,13 @@ class Solution:
     samples: int = 200
     source: str = ""
     event: Build | None = None
+
+
+def multiplier(number: int = 1) -> Symbol:
+    """Return the symbol of a constraint's multiplier, for quantities and events; holonomic constraints come first."""
+    from canon.expression.symbol import parameters
+
+    return parameters(f"lambda{number}")[0]
 
 
 def near(name: str, known: Iterable[str]) -> str:
