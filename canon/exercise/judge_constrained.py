@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.reading import Reading
 
-__all__ = ["multiplier_holonomic", "nonholonomic"]
+__all__ = ["is_one_of", "multiplier_holonomic", "nonholonomic"]
 
 MOST_OPERATIONS = 150
 """Size of an answer that is still shown."""
@@ -72,6 +72,7 @@ def _on_every_motion(
     jets = _jets((*system, *manifold, *claims), t)
     functions = {symbol: function for function, symbol in jets.items()}
     system, claims, manifold = ([replaced(e, jets) for e in given] for given in (system, claims, manifold))
+    open_ = {i: claim for i, claim in enumerate(claims) if not is_one_of(claim, system)} or {0: sp.S.Zero}
     branches = on_manifold(manifold, reading.domain, keep=(t, *unknowns), prefer=lagrangian.velocities)
     for branch in branches:
         here = [substitute(equation, branch.values) for equation in system]
@@ -80,15 +81,27 @@ def _on_every_motion(
         except (
             SingularMatrixError
         ):  # dependent constraints or massless coordinates: ask for linear consequences
-            seen = tuple(substitute(claim, branch.values) for claim in claims)
+            seen = tuple(substitute(claim, branch.values) for claim in open_.values())
             yield SameEquations((*here, *seen), tuple(here), unknowns, branch.domain)
             continue
         through = {**branch.values, **solution}
         parts = tuple(
             Part(f"claim {i + 1}", claim, through=through, key=f"claim[{i}]", written=functions)
-            for i, claim in enumerate(claims)
+            for i, claim in open_.items()
         )
         yield Same(parts, branch.domain, partial(_shown, solution if len(branches) == 1 else {}))
+
+
+def is_one_of(claim: Expr, system: Sequence[Expr]) -> bool:
+    """Whether a claim is an equation of a system as it stands, or its negative: nothing is to be solved then.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y")
+    >>> is_one_of(y - x * (1 + y), [x + y, x + x * y - y])
+    True
+    """
+    return any(sp.expand(claim - sign * equation) == 0 for equation in system for sign in (1, -1))
 
 
 def _shown(solution: Mapping[Symbol, Expr]) -> tuple[str, ...] | None:

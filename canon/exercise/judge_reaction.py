@@ -14,6 +14,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.affine import solved
 from canon.exercise.implicit_point import refuted_at_a_point
+from canon.exercise.judge_constrained import is_one_of
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.manifold import Branch, on_manifold
 from canon.exercise.question import Deadline, Part, Question, Same, Stated, decide
@@ -51,6 +52,9 @@ def reaction(reading: Reading) -> Iterator[Question]:
     constraints = reading.equations("constraints")
     if len(multipliers) != len(constraints):
         reading.fault("multipliers", f"{len(multipliers)} multipliers for {len(constraints)} constraints")
+    if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
+        yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
+        return
     for motion in _motions(reading, constraints, multipliers):
         parts: list[Part] = []
         if reading.has("values"):
@@ -88,22 +92,39 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
         yield Stated(verdict, lambda force=force: f"the reaction {shown_short(sp.factor_terms(force))} = 0")
 
 
+def _force_is_the_rest(reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]) -> bool:
+    """Whether the claim only says that Σ λ a is d/dt ∂L/∂q̇ − ∂L/∂q − Q, which needs no solution, for any L."""
+    directions, system, _ = _system(reading, constraints, multipliers)
+    forces = directions.T * sp.Matrix(multipliers)
+    claimed = reading.expressions("force", like="q")
+    return all(is_one_of(f - forces[i], system) for i, f in enumerate(claimed))
+
+
+def _system(
+    reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]
+) -> tuple[sp.Matrix, list[Expr], list[Expr]]:
+    """Return the directions of the reactions, the equations for q̈ and λ, and what vanishes in allowed velocities."""
+    q, t = reading.symbols("q"), reading.time
+    v = tuple(velocity(x) for x in q)
+    if any(g.diff(u).has(*v) for g in constraints for u in v):
+        reading.fault("constraints", "every constraint should be affine in the velocities")
+    held = [f if f.has(*v) else time_derivative(f, q, t) for f in constraints]
+    directions = sp.Matrix([[g.diff(u) for u in v] for g in held])
+    forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
+    lagrangian = Lagrangian(reading.expression("L"), q, t, forces)
+    reactions = directions.T * sp.Matrix(multipliers)
+    system = [e - r for e, r in zip(lagrangian.equations, reactions, strict=True)]
+    return directions, system + [time_derivative(g, q, t) for g in held], held
+
+
 def _motions(
     reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]
 ) -> Iterator[_Motion]:
     q, t = reading.symbols("q"), reading.time
     v, a = tuple(velocity(x) for x in q), tuple(acceleration(x) for x in q)
-    if any(g.diff(u).has(*v) for g in constraints for u in v):
-        reading.fault("constraints", "every constraint should be affine in the velocities")
+    directions, system, held = _system(reading, constraints, multipliers)
     positions = [f for f in constraints if not f.has(*v)]
-    held = [time_derivative(f, q, t) if f in positions else f for f in constraints]
-    directions = sp.Matrix([[g.diff(u) for u in v] for g in held])
     integrals = reading.equations("integrals") if reading.has("integrals") else ()
-    forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
-    lagrangian = Lagrangian(reading.expression("L"), q, t, forces)
-    reactions = directions.T * sp.Matrix(multipliers)
-    system = [e - r for e, r in zip(lagrangian.equations, reactions, strict=True)]
-    system += [time_derivative(g, q, t) for g in held]
     for branch in _with_integrals(on_manifold((*positions, *held), reading.domain, (t,), v), integrals, v, t):
         here = [substitute(e, branch.values) for e in system]
         motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions)

@@ -61,12 +61,36 @@ def printed(claim: dict[str, Any]) -> str:
         names = [f"{name}_dot" for name in (*claim["q"], *claim["p"])]
         rates = zip(names, (*claim["q_dot"], *claim["p_dot"]), strict=True)
         return "; ".join(code(f"{name} = {rate}") for name, rate in rates)
+    if kind in SHOWN:
+        return SHOWN[kind](claim)
     answer = next(claim[key] for key in PRINTED if key in claim)
     if isinstance(answer, dict):
         return "; ".join(code(f"{name} = {value}") for name, value in answer.items())
     if isinstance(answer, list):
         return "; ".join(code(item if isinstance(item, str) else bracket(item)) for item in answer)
     return code(answer)
+
+
+def listed(items: Any) -> str:
+    """Return one expression or several as code."""
+    return "; ".join(code(item) for item in (items if isinstance(items, list) else [items]))
+
+
+SHOWN = {
+    "kinetic-energy": lambda claim: code(f"T = {claim['T']}"),
+    "generalized-force": lambda claim: "; ".join(
+        code(f"Q_{x} = {Q}") for x, Q in zip(claim["q"], claim["Q"], strict=True)
+    ),
+    "constraint-class": lambda claim: f"{listed(claim['constraints'])}: {', '.join(claim['class'])}",
+    "degrees-of-freedom": lambda claim: f"{listed(claim['constraints'])}: {claim['dof']}",
+    "reaction": lambda claim: "forces of constraint " + listed(claim["force"]),
+    "first-order": lambda claim: listed(claim["claim"]),
+    "invariance": lambda claim: listed(claim["Q"] if "Q" in claim else f"F{claim['type']} = {claim['F']}"),
+    "positive-real": lambda claim: f"{code(claim['H'])}: {', '.join(claim['is'])}",
+    "variation": lambda claim: f"boundary {code(claim['boundary'])}; integrand {code(claim['integrand'])}",
+    "differential": lambda claim: code(f"d({claim['f']}) = {claim['claim']}"),
+}
+"""How the answer of a kind is shown whose answer is more than the expressions under one key."""
 
 
 def bracket(pair: dict[str, str]) -> str:
