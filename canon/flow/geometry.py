@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FlowJacobian", "flow_jacobian", "reversal_error", "symplecticity_defect"]
 
+_UNIT = 2**200
+"""Jacobians are multiplied in whole numbers of 2⁻²⁰⁰, so that a defect is theirs and not the product's."""
+
 
 @dataclass(frozen=True)
 class FlowJacobian:
@@ -56,8 +59,12 @@ class FlowJacobian:
     @property
     def symplecticity_defect(self) -> Array:
         """The largest size of an entry of MᵀJM − J at each time, see :func:`symplecticity_defect`."""
-        wide = self.M.astype(np.longdouble) + self.low.astype(np.longdouble)
-        return np.array([symplecticity_defect(wide[:, :, k]) for k in range(len(self.t))])
+        pairs = zip(self.M.ravel().tolist(), self.low.ravel().tolist(), strict=True)
+        whole = [round((Fraction(high) + Fraction(low)) * _UNIT) for high, low in pairs]
+        exact = np.array(whole, dtype=object).reshape(self.M.shape)
+        return np.array(
+            [float(Fraction(_defect(exact[:, :, k], _UNIT**2), _UNIT**2)) for k in range(len(self.t))]
+        )
 
 
 def flow_jacobian(
@@ -175,12 +182,18 @@ def symplecticity_defect(M: npt.ArrayLike) -> float:
         raise ValueError(f"a matrix of shape {given.shape}: a Jacobian of (q, p) has shape (2n, 2n)")
     if not np.isfinite(given).all():
         raise ValueError("the matrix has entries that are not finite")
-    n = len(given) // 2
-    upper, lower = given[:n], given[n:]
+    return float(_defect(given, 1))
+
+
+def _defect(M: npt.NDArray[Any], one: int) -> Any:
+    """Return the largest size of an entry of MᵀJM − J for a matrix whose entries are given in parts of √one."""
+    n = len(M) // 2
+    upper, lower = M[:n], M[n:]
     found = upper.T @ lower - lower.T @ upper
-    found[:n, n:] -= np.eye(n)
-    found[n:, :n] += np.eye(n)
-    return float(abs(found).max())
+    unit = np.array([[one * (i == j) for j in range(n)] for i in range(n)], dtype=M.dtype)
+    found[:n, n:] -= unit
+    found[n:, :n] += unit
+    return abs(found).max()
 
 
 def reversal_error(
