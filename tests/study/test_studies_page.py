@@ -1,0 +1,57 @@
+"""The page about studies: its files can be read, its program runs, its commands parse."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import shlex
+from pathlib import Path
+
+import pytest
+
+from canon import cli
+from canon.study.definition import read_study
+
+PAGE = (Path(__file__).parents[2] / "docs" / "howto" / "studies.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    found = re.findall(rf"^( *)```{language}\n(.*?)^ *```", PAGE, re.MULTILINE | re.DOTALL)
+    return [re.sub(rf"^{indent}", "", text, flags=re.MULTILINE) for indent, text in found]
+
+
+def test_the_study_can_be_read(tmp_path):
+    (text,) = blocks("toml")
+    file = tmp_path / "drifts.toml"
+    file.write_text(text)
+    assert len(read_study(file).cases) == 2 * (4 * 3 + 1) + 2 * 2 * (2 + 1)
+
+
+def test_the_program_runs_and_the_others_are_python(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    first, *others = blocks("python")
+    assert len(others) == 4
+    program = tmp_path / "program.py"
+    program.write_text(first)
+    runpy.run_path(str(program))
+    assert capsys.readouterr().out == "16 cases: 16 finished, 0 failed, 0 pending\n"
+    assert (tmp_path / "quartic.png").exists()
+    for text in others:
+        compile(text, "studies.md", "exec")
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        line.strip()
+        for text in blocks("sh")
+        for line in text.splitlines()
+        if line.strip().startswith("canon ")
+    ],
+)
+def test_its_commands_are_canons(command):
+    for variable, value in (("$SLURM_ARRAY_TASK_ID", "3"), ("$SLURM_CPUS_PER_TASK", "8")):
+        command = command.replace(variable, value)
+    _, *words = shlex.split(command)
+    arguments = cli._parser(words).parse_args(words)
+    assert arguments.action in ("run", "resume", "status", "report", "export")
