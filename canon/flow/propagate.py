@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.job import NonFiniteStateError
+from canon.flow.method import TimeTransformed
 from canon.flow.progress import reporting
 from canon.flow.request import HamiltonianSystem, numbers_of, system_of, task_of
 from canon.flow.trajectory import Interrupted, Trajectory
@@ -53,7 +54,8 @@ def propagate(
     t_span
         The first and the last time; the last may be the earlier one.
     method
-        ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where not given.
+        ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where not given. By exactly solvable parts:
+        ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that vary: ``TimeTransformed(...)``.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
         span; ``Trajectory.step`` has it.
@@ -122,6 +124,17 @@ def propagate(
     >>> motion.steps, bool(abs(motion.energy_error).max() < 1e-8)
     (10000, True)
     """
+    if isinstance(method, TimeTransformed):
+        others = (tolerance, times, observables, cadence, events, dense)
+        if any(other is not None and other is not False and other != () for other in others):
+            raise ValueError(
+                f"{method} takes step, precision, parameters and samples; no times, observables, cadence, events or dense"
+            )
+        from canon.flow.fictitious import transformed_motion
+
+        return transformed_motion(
+            hamiltonian, y0, t_span, method, step=step, precision=precision, parameters=parameters, samples=samples
+        )  # fmt: skip
     task = task_of(
         hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,
