@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from canon.expression.pythagoras import without_squares
 from canon.expression.symbol import velocity
 from canon.expression.translation import NotModelledError
 from canon.mechanics.body import PlanarBody, RigidBody
@@ -161,6 +162,14 @@ def _turning(reader: Reader, body: RigidBody) -> Iterator[Channel]:
     for moment, w in weighed:
         if moment == 0:
             continue
-        pairs = tuple((i, reader.node(w.diff(rate))) for i, rate in enumerate(v) if w.diff(rate) != 0)
-        rest = exchanged(w, at_rest)
-        yield Channel(reader.node(moment), pairs, None if rest == 0 else reader.node(rest), is_rate=False)
+        slopes = ((i, _united(reader, w.diff(rate))) for i, rate in enumerate(v))
+        pairs = tuple((i, a) for i, a in slopes if a != reader.graph.zero)
+        rest = _united(reader, exchanged(w, at_rest))
+        yield Channel(reader.node(moment), pairs, None if rest == reader.graph.zero else rest, is_rate=False)
+
+
+def _united(reader: Reader, f: Expr) -> int:
+    """Return the node of a sum of products, with cos² + sin² = 1 used."""
+    products = [[reader.node(factor) for factor in sp.Mul.make_args(term)] for term in sp.Add.make_args(f)]
+    united = without_squares(reader.graph, products)
+    return reader.node(f) if united is None else united
