@@ -127,6 +127,20 @@ def test_several_sheets_and_standard_input(tmp_path):
     assert [json.loads(line)["id"] for line in done.stdout.splitlines()] == ["yes", "no"]
 
 
+def test_one_sheet_of_many_that_cannot_be_read_costs_the_others_nothing(tmp_path):
+    broken = tmp_path / "broken.json"
+    broken.write_text('{"claims": [', "utf-8")
+    done = run("check", "--json", str(broken), str(tmp_path / "none.toml"), write(tmp_path, TRUE))
+    told = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [t["status"] for t in told] == ["invalid", "invalid", "holds"]
+    assert "not valid JSON" in told[0]["known"]
+    assert told[0]["file"] == str(broken)
+    assert done.returncode == 2
+    assert done.stderr.count("canon check: ") == 2
+    assert "Traceback" not in done.stderr
+    assert run("check", "--only", "yes", str(broken), write(tmp_path, TRUE)).returncode == 2
+
+
 def test_equal_claims_are_judged_once_and_several_at_a_time(tmp_path):
     class_ = [{**(TRUE if i % 3 else FALSE), "id": f"student {i}"} for i in range(200)]
     done = run("check", "--json", "--jobs", "2", write(tmp_path, *class_))

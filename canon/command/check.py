@@ -10,9 +10,11 @@ if TYPE_CHECKING:
     import argparse
 
     from canon.exercise.report import Judgement, Report
-    from canon.exercise.sheet import Claim, Sheet
+    from canon.exercise.sheet import Claim, Sheet, SheetError
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
+
+_UNREADABLE = "unreadable sheet"
 
 DESCRIPTION = """\
 Judge each claim of one or more sheets. HOLDS is only said of what was proved, FAILS only of what was certainly
@@ -101,12 +103,16 @@ def run(arguments: argparse.Namespace) -> int:
     from canon.exercise.report import Report, printable
     from canon.exercise.sheet import SheetError
 
-    try:
-        sheets = [_read(name) for name in arguments.sheets]
-        chosen = [(sheet, _chosen(sheet, arguments)) for sheet in sheets]
-    except SheetError as error:
-        print(f"canon check: {error}", file=sys.stderr)
-        return 2
+    sheets: list[Sheet] = []
+    for name in arguments.sheets:
+        try:
+            sheets.append(_read(name))
+        except SheetError as error:
+            print(printable(f"canon check: {error}"), file=sys.stderr)
+            if len(arguments.sheets) == 1:
+                return 2
+            sheets.append(_unreadable(name, error))
+    chosen = [(sheet, _chosen(sheet, arguments)) for sheet in sheets]
     wanted = set(arguments.only or ())
     unknown = wanted - {claim.id for _, claims in chosen for claim in claims}
     if unknown:
@@ -168,10 +174,19 @@ def _read(name: str) -> Sheet:
     return sheet_from(data, file="standard input")
 
 
+def _unreadable(name: str, error: SheetError) -> Sheet:
+    """Return a sheet in place of one of many that can't be read, so that the others are judged and it is told of."""
+    from canon.exercise.sheet import Claim, ClaimError, Sheet
+
+    claim = Claim(name, _UNREADABLE, errors=(ClaimError(name, "", str(error)),), file=name)
+    return Sheet("", (claim,), name)
+
+
 def _chosen(sheet: Sheet, arguments: argparse.Namespace) -> list[Claim]:
     from dataclasses import replace
 
-    claims = [claim for claim in sheet.claims if not arguments.only or claim.id in arguments.only]
+    wanted = arguments.only
+    claims = [c for c in sheet.claims if not wanted or c.id in wanted or c.kind == _UNREADABLE]
     if arguments.budget is not None:
         claims = [replace(claim, budget=arguments.budget) for claim in claims]
     if arguments.implicit_multiplication:

@@ -96,9 +96,13 @@ def _body(report: Report) -> Element:
         _put(counts, "span", f"{number} {_VERDICTS[status]}", status)
     seconds = sum(judgement.seconds for judgement in report)
     _put(counts, "span", f"{seconds:.1f} s")
+    many = len({judgement.file for judgement in report}) > 1
     claims = report.claims if len(report.claims) == len(report) else (None,) * len(report)
     for judgement, claim in zip(report, claims, strict=True):
-        main.append(_card(judgement, claim))
+        card = _card(judgement, claim)
+        if many and judgement.file:
+            _put(card[1], "span", judgement.file)
+        main.append(card)
     return main
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.exercise.question import Regular, Same, SameEquations
+from canon.exercise.question import Differ, Regular, Same, SameEquations
 from canon.proof.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -72,6 +72,8 @@ def _derived(question: Question) -> Iterator[Step]:
             for i, equation in enumerate(right[:MOST_PARTS], 1):
                 yield f"equation {i} as canon derives it", f"{text} = 0" if (text := shown(equation)) else ""
             yield from _with(question.through)
+        case Differ(part):
+            yield f"{part.name} is compared with", shown(part.right)
         case Regular(matrix, name):
             yield f"{name} must be regular", shown(matrix[0, 0]) if matrix.shape == (1, 1) else ""
         case _:

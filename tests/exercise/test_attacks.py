@@ -249,6 +249,13 @@ TRUE = ("conditions", "cases", "a box from 0 to 10**300", "a singular body")
 """What is right all the same."""
 
 
+@pytest.fixture(scope="module")
+def worker():
+    with Worker() as worker:
+        assert worker.judge(claim_from(GOOD)).status == "holds"
+        yield worker
+
+
 def attack(name, budget):
     keys = {key: value for key, value in {**GOOD, **ATTACKS[name]}.items() if value is not None}
     if "kind" in ATTACKS[name]:
@@ -290,10 +297,8 @@ def test_attacks_are_answered_in_their_budget_and_the_next_claim_is_judged(tmp_p
 @pytest.mark.parametrize(
     "name", ["code", "look-alike letters", "10**5 terms", "LaTeX braces", "tower", "one long name"]
 )
-def test_some_attacks_are_invalid_at_once(name):
-    with Worker() as worker:
-        worker.judge(claim_from(GOOD))
-        told, seconds = answered(worker, name, 5.0)
+def test_some_attacks_are_invalid_at_once(worker, name):
+    told, seconds = answered(worker, name, 5.0)
     assert told.status == "invalid"
     assert "column" in told.known
     assert seconds < 2.0
