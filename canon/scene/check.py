@@ -130,15 +130,16 @@ def integrals_along(motion: Motion) -> tuple[Check, ...]:
     """Return how well energy, integrals and constraints are kept along a motion."""
     scene, equation = motion.scene, motion.equation
     about = f"{motion.start.name}, {motion.t[-1] / scene.period:g} periods"
-    driven = equation.work != equation.field.graph.zero
-    name = "energy less the work done" if driven else "energy"
-    found = [_kept(motion, name, equation.energy, scene.energy_bound, about, scene.energy_why)]
+    name = "energy" if equation.work == equation.field.graph.zero else "energy less the work done"
+    energy = Integral(name, lambda s: s.t, scene.energy_bound, scene.energy_why)
+    found = [_kept(motion, energy, equation.energy, about, equation.work)]
     for integral in scene.integrals:
         node = equation.node(integral.build(scene.symbols), integral.name)
-        found.append(_kept(motion, integral.name, node, integral.bound, about, integral.why))
+        found.append(_kept(motion, integral, node, about))
     if equation.residuals:
         largest = float(np.abs(motion.values(equation.residuals)).max())
-        found.append(Check("constraints", largest, 1e-12, "in their own units", about))
+        bound = max(1e-12, scene.energy_bound)
+        found.append(Check("constraints", largest, bound, "in their own units", about))
     return tuple(found)
 
 
@@ -174,16 +175,16 @@ def _met(scene: Scene, solution: Solution, about: str) -> Check:
     )
 
 
-def _kept(motion: Motion, name: str, node: int, bound: float, about: str, why: str) -> Check:
-    """Return how much a quantity less the work changes along a motion, relative to itself or its terms."""
-    graph, equation = motion.equation.field.graph, motion.equation
+def _kept(motion: Motion, integral: Integral, node: int, about: str, work: int | None = None) -> Check:
+    """Return how much a quantity, less the work, changes along a motion, relative to itself or its terms."""
+    graph = motion.equation.field.graph
     kind, operands, _ = graph.nodes[node]
     parts = operands if kind == "add" else (node,)
-    values: NDArray[Any] = motion.values([node, equation.work, *parts])
-    work = values[1] if name.startswith("energy less") else 0.0
-    change = float(np.abs(values[0] - values[0][0] - work).max())
+    values: NDArray[Any] = motion.values([node, graph.zero if work is None else work, *parts])
+    change = float(np.abs(values[0] - values[0][0] - values[1]).max())
     first, terms = abs(float(values[0][0])), float(np.median(np.abs(values[2:]).max(axis=0)))
     size, of = (first, "relative") if first > terms / 10 else (terms, "of its largest term")
     if size == 0.0:
         size, of = 1.0, "in its own units"
-    return Check(name, change / size, bound, of, about, why if change > 1e-13 * size else "")
+    why = integral.why if change > 1e-13 * size else ""
+    return Check(integral.name, change / size, integral.bound, of, about, why)

@@ -1,11 +1,12 @@
-"""Bodies that cannot slip: Chaplygin's sleigh and the rolling disc."""
+"""Bodies that cannot slip: Chaplygin's sleigh, the rolling disc and the unicycle."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
-from canon.scene.pendulum import GRAVITY
+from canon.scene.parts import multiplier
+from canon.scene.pendulum import GRAVITY, TURNS
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
@@ -244,5 +245,58 @@ DISC = Scene(
     energy_why="the spin angle grows to 10⁴ rad and is rounded to ever fewer digits",
 )
 
-SCENES = (SLEIGH, DISC)
+_CIRCLE, _TURN = 1.5, 0.5
+
+
+def _unicycle_place(value: Mapping[str, float], t: Array) -> tuple[Array, Array]:
+    """Return x = (u/ω) sin ωt, y = (u/ω)(1 − cos ωt): constant speed u, constant turning ω."""
+    import numpy as np
+
+    del value
+    return _CIRCLE / _TURN * np.sin(_TURN * t), _CIRCLE / _TURN * (1.0 - np.cos(_TURN * t))
+
+
+def _unicycle_picture(s: SimpleNamespace) -> Picture:
+    from sympy import cos, sin
+
+    along = (cos(s.theta) / 4, sin(s.theta) / 4)
+    return Picture(
+        masses=((s.x, s.y),), bars=(((s.x - along[0], s.y - along[1]), (s.x + along[0], s.y + along[1])),)
+    )
+
+
+UNICYCLE = Scene(
+    name="unicycle",
+    title="Unicycle: it rolls where it is headed, ẏ cos θ = ẋ sin θ, and reaches every place",
+    coordinates="x y theta",
+    parameters=(
+        Parameter("m", 80.0, "kg", "mass with its rider"),
+        Parameter("I", 2.0, "kg m²", "moment of inertia about the vertical"),
+    ),
+    starts=(Start("circle", "rolling and turning, no torque", q=(0.0, 0.0, 0.0), v=(_CIRCLE, 0.0, _TURN)),),
+    time_scale=lambda _value: 2.0 * math.pi / _TURN,
+    time_unit="s",
+    source="Neimark & Fufaev, Dynamics of Nonholonomic Systems; not integrable: 3 coordinates, 2 velocities",
+    L_of=lambda s: s.m * (s.x.dot**2 + s.y.dot**2) / 2 + s.I * s.theta.dot**2 / 2,
+    nonholonomic_of=_across,
+    integrals=(
+        Integral("angular momentum about the vertical", lambda s: s.I * s.theta.dot),
+        Integral("speed", _forwards, 1e-10, TURNS),
+    ),
+    energy_bound=1e-10,
+    energy_why=TURNS,
+    solutions=(
+        Solution("x on the circle", "circle", lambda s: s.x, lambda v, t: _unicycle_place(v, t)[0]),
+        Solution("y on the circle", "circle", lambda s: s.y, lambda v, t: _unicycle_place(v, t)[1]),
+        Solution(
+            "multiplier: the centripetal force m u ω",
+            "circle",
+            lambda _s: multiplier(),
+            lambda v, _t: v["m"] * _CIRCLE * _TURN,
+        ),
+    ),
+    picture_of=_unicycle_picture,
+)
+
+SCENES = (SLEIGH, DISC, UNICYCLE)
 """The nonholonomic bodies."""
