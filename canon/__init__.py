@@ -34,8 +34,12 @@ if TYPE_CHECKING:
     from canon.flow.method import Gauss as Gauss
     from canon.flow.method import Splitting as Splitting
     from canon.flow.method import Taylor as Taylor
+    from canon.flow.method import TimeTransformed as TimeTransformed
     from canon.flow.propagate import Trajectory as Trajectory
     from canon.flow.propagate import propagate as propagate
+    from canon.flow.solvable import SABA as SABA
+    from canon.flow.solvable import SBAB as SBAB
+    from canon.flow.solvable import WisdomHolman as WisdomHolman
     from canon.flow.witness import brackets_at_points as brackets_at_points
     from canon.flow.witness import integral_drift as integral_drift
     from canon.flow.witness import symplectic_flow as symplectic_flow
@@ -86,6 +90,8 @@ if TYPE_CHECKING:
 __all__ = [
     "DOP853",
     "RK4",
+    "SABA",
+    "SBAB",
     "CanonicalTransformation",
     "Choice",
     "Claim",
@@ -111,10 +117,12 @@ __all__ = [
     "Splitting",
     "Status",
     "Taylor",
+    "TimeTransformed",
     "Trajectory",
     "Undecided",
     "VectorField",
     "Verdict",
+    "WisdomHolman",
     "__version__",
     "bilinear_covariant",
     "brackets_at_points",
@@ -168,8 +176,9 @@ _ROOMS = {
     "canon.expression.symbol": ("Coordinate", "coordinates", "parameters", "time", "time_derivative"),
     "canon.flow.event": ("Event",),
     "canon.flow.geometry": ("flow_jacobian", "reversal_error", "symplecticity_defect"),
-    "canon.flow.method": ("DOP853", "Gauss", "RK4", "Splitting", "Taylor"),
+    "canon.flow.method": ("DOP853", "Gauss", "RK4", "Splitting", "Taylor", "TimeTransformed"),
     "canon.flow.propagate": ("Trajectory", "propagate"),
+    "canon.flow.solvable": ("SABA", "SBAB", "WisdomHolman"),
     "canon.flow.witness": ("brackets_at_points", "integral_drift", "symplectic_flow"),
     "canon.mechanics.appell": ("GibbsAppell",),
     "canon.mechanics.bilinear": ("bilinear_covariant",),
