@@ -14,10 +14,12 @@ if TYPE_CHECKING:
     from canon.exercise.checking import check as check
     from canon.exercise.expect import expect as expect
     from canon.exercise.judge import judge as judge
+    from canon.exercise.reading import InvalidClaim as InvalidClaim
     from canon.exercise.report import Judgement as Judgement
     from canon.exercise.report import Report as Report
     from canon.exercise.sheet import Claim as Claim
     from canon.exercise.sheet import Sheet as Sheet
+    from canon.exercise.sheet import SheetError as SheetError
     from canon.exercise.sheet import read_sheet as read_sheet
     from canon.expression.language import parse_expression as parse_expression
     from canon.expression.symbol import Coordinate as Coordinate
@@ -107,6 +109,7 @@ __all__ = [
     "GibbsAppell",
     "Hamiltonian",
     "ImplicitTransformation",
+    "InvalidClaim",
     "Judgement",
     "Lagrangian",
     "Particle",
@@ -114,6 +117,7 @@ __all__ = [
     "Report",
     "RigidBody",
     "Sheet",
+    "SheetError",
     "Splitting",
     "Status",
     "Taylor",
@@ -170,8 +174,9 @@ _ROOMS = {
     "canon.exercise.checking": ("check",),
     "canon.exercise.expect": ("expect",),
     "canon.exercise.judge": ("judge",),
+    "canon.exercise.reading": ("InvalidClaim",),
     "canon.exercise.report": ("Judgement", "Report"),
-    "canon.exercise.sheet": ("Claim", "Sheet", "read_sheet"),
+    "canon.exercise.sheet": ("Claim", "Sheet", "SheetError", "read_sheet"),
     "canon.expression.language": ("parse_expression",),
     "canon.expression.symbol": ("Coordinate", "coordinates", "parameters", "time", "time_derivative"),
     "canon.flow.event": ("Event",),

@@ -56,7 +56,7 @@ def expect(kind: str, /, *, budget: float = DEFAULT_BUDGET, **keys: Any) -> None
         ...
     AssertionError: in equation 1 cos(theta) should be sin(theta)
     """
-    __tracebackhide__ = True  # pytest and IPython show the cell that asks, not this one
+    __tracebackhide__ = True  # pytest shows the test that asks, not this line
     names = keys.get("q", [])
     q = [name for name in (names if isinstance(names, list | tuple) else [names]) if isinstance(name, str)]
     said = {key: _written(value, q) for key, value in keys.items()}
