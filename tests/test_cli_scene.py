@@ -83,7 +83,16 @@ def test_a_failed_check_is_an_exit_status(capsys, monkeypatch):
 def test_pictures_are_written(capsys, tmp_path):
     picture, film = tmp_path / "a.png", tmp_path / "a.gif"
     status, text, _ = out(
-        capsys, "spring-pendulum", "--periods", "0.2", "--plot", str(picture), "--animate", str(film)
+        capsys,
+        "spring-pendulum",
+        "--periods",
+        "0.2",
+        "--plot",
+        str(picture),
+        "--animate",
+        str(film),
+        "--seconds",
+        "1",
     )
     assert status == 0
     assert picture.read_bytes()[:4] == b"\x89PNG"

@@ -58,6 +58,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--plot", metavar="FILE", help="write a sketch (.png, .pdf, .svg)")
     parser.add_argument("--animate", metavar="FILE", help="write an animation (.gif, .mp4)")
+    parser.add_argument(
+        "--seconds", metavar="S", type=float, default=6.0, help="how long the animation is (6)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -153,5 +156,5 @@ def _draw(scene: Scene, arguments: argparse.Namespace) -> None:
             figure.savefig(arguments.plot, dpi=150)
         print(f"picture: {arguments.plot}")
     if arguments.animate:
-        animate_scene(motion, arguments.animate)
+        animate_scene(motion, arguments.animate, seconds=arguments.seconds)
         print(f"animation: {arguments.animate}")
