@@ -85,7 +85,8 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     """Return an expression with canon's symbols for dynamicsymbols of these coordinates, their rates and the time.
 
     A function of one symbol whose name is that of a coordinate is that coordinate. Symbols named as rates
-    (``theta_dot``) become the rates, a symbol named as the time becomes the time.
+    (``theta_dot``) become the rates, and a symbol without assumptions named as the time, which ``dynamicsymbols._t``
+    is, becomes the time.
 
     Examples
     --------
@@ -108,6 +109,5 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
         clocks[clock] = t
         expression = without_dynamicsymbols(expression, {g: s}, clock)
     rates: dict[str, Symbol] = {rate(s).name: rate(s) for s in q for rate in (velocity, acceleration)}
-    rates[t.name] = t
     exact = {s: rates[s.name] for s in expression.atoms(Symbol) if s.name in rates}
-    return exchanged(expression, {**clocks, **exact})
+    return exchanged(expression, {Symbol(t.name): t, **clocks, **exact})
