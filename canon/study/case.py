@@ -10,7 +10,7 @@ from functools import lru_cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.method import FixedStep
+from canon.flow.method import FixedStep, TimeTransformed
 from canon.scene import find
 from canon.study.formula import Formula, hamiltonian_of
 from canon.study.written import method_from, method_to
@@ -30,7 +30,7 @@ LIBRARIES = ("heyoka", "llvmlite", "numpy", "scipy", "sympy")
 STEPS_A_PART = 2**20
 """Steps of fixed size in a part of a run: a fraction of a second for small systems, minutes for huge ones."""
 
-SAMPLES_A_PART = 64
+SAMPLES_A_PART = 128
 """Samples in a part of a run with an adaptive method."""
 
 MOST_PARTS = 128
@@ -154,15 +154,17 @@ def key_of(case: Case) -> str:
 def parts_of(case: Case) -> int:
     """Return the number of parts a case is run in; it follows from the case alone.
 
-    A part has at most a million steps of fixed size, or 64 samples of an adaptive method unless that made over 128
-    parts, each of which costs some milliseconds to begin.
+    A part has at most a million steps of fixed size, or 128 samples of an adaptive method unless that made over 128
+    parts, each of which costs some milliseconds to begin. A time-transformed method's run is one part.
 
     Examples
     --------
     >>> from canon import RK4, Taylor
     >>> parts_of(Case("kepler", RK4(), span=1e6, step=0.01)), parts_of(Case("kepler", Taylor(), span=1e6))
-    (96, 64)
+    (96, 32)
     """
+    if isinstance(case.method, TimeTransformed):
+        return 1  # the size of its steps follows from the state at the start of the whole run
     if case.parts is not None:
         return case.parts
     if isinstance(case.method, FixedStep) and case.step is not None:

@@ -8,7 +8,7 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.method import FixedStep
+from canon.flow.method import FixedStep, TimeTransformed
 from canon.scene import Scene, SceneError, find
 from canon.study.case import Case, key_of, method_from
 from canon.study.comparison import SAMPLES_PER_PERIOD
@@ -164,13 +164,13 @@ def _case(
     table: Mapping[str, Any],
 ) -> Case:
     method = method_from(chosen["method"]) if isinstance(chosen["method"], str | dict) else chosen["method"]
-    fixed = isinstance(method, FixedStep)
+    fixed = isinstance(method, FixedStep | TimeTransformed)
     period = _period(system, parameters)
     step = chosen["step"]
     if chosen["steps_per_period"] is not None:
         step = _known(period, "steps_per_period") / float(chosen["steps_per_period"])
     if fixed and step is None:
-        raise ValueError(f"{method} takes fixed steps: give step or steps_per_period")
+        raise ValueError(f"{method} needs a size of steps: give step or steps_per_period")
     until = table.get("until")
     span = float(until) if until is not None else float(table["periods"]) * _known(period, "periods")
     start = chosen["start"]

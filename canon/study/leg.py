@@ -185,7 +185,7 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
         span, step = _whole_steps(case, point.part, end)
     else:
         ends = np.linspace(0.0, case.span, end + 1)
-        span, step = (Fraction(ends[point.part]), Fraction(ends[point.part + 1])), None
+        span, step = (Fraction(ends[point.part]), Fraction(ends[point.part + 1])), case.step
     found = propagate(
         case.hamiltonian,
         np.array(state, dtype=object),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.solvable import SABA, SBAB, SolvableSplitting, WisdomHolman
 from canon.kernel.perturbed import ABA
 from canon.kernel.scheme import SCHEMES
@@ -35,6 +35,8 @@ def method_to(method: Method) -> dict[str, Any]:
     ({'splitting': 'verlet'}, {'gauss': 4}, {'taylor': 1e-10})
     """
     match method:
+        case Splitting(parts=(_, _)):
+            raise ValueError(f"{method}: a study takes the parts T(p) and V(q) of H, none of your own")
         case Splitting(scheme=scheme):
             if scheme.name:
                 return {"splitting": scheme.name}
@@ -43,6 +45,10 @@ def method_to(method: Method) -> dict[str, Any]:
             if parts is not None or not scheme.name:
                 raise ValueError(f"{method}: a study takes parts that are found from the structure of H")
             return {"solvable": scheme.name, "corrector": corrector}
+        case TimeTransformed(method=inner, g=g):
+            if g is not None:
+                raise ValueError(f"{method} with g: a study takes the splittings, which need none")
+            return {"time_transformed": method_to(inner)}
         case Gauss(stages=stages):
             return {"gauss": stages}
         case RK4():
@@ -84,6 +90,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return Splitting(a=[Fraction(x) for x in a], b=[Fraction(x) for x in b])
         case {"solvable": str() as name, **rest} if set(rest) <= {"corrector"} and _is_solvable(name):
             return _solvable(name, rest.get("corrector", 0))
+        case {"time_transformed": str() | dict() as inner, **rest} if not rest:
+            return _time_transformed(method_from(inner))
         case {"gauss": int() as stages, **rest} if not rest and stages is not True:
             return Gauss(stages)
         case {"rk4": True, **rest} if not rest:
@@ -101,8 +109,17 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             raise ValueError(
                 f"no method is written {known}; there are {', '.join(SCHEMES)}, rk4, taylor, dop853, "
                 "wisdom-holman, saba-1 … saba-8, sbab-1 … sbab-8, { gauss = stages }, { taylor = tolerance }, "
-                "{ dop853 = tolerance }, { solvable = name, corrector = order }, { splitting = { a, b } }"
+                "{ dop853 = tolerance }, { time_transformed = splitting }, { splitting = { a, b } }, "
+                "{ solvable = name, corrector = order }"
             )
+
+
+def _time_transformed(inner: Method) -> TimeTransformed:
+    if not isinstance(inner, Splitting):
+        raise ValueError(
+            f"{inner} in transformed time: a study takes the splittings, which need no function g"
+        )
+    return TimeTransformed(inner)
 
 
 def _is_solvable(name: str) -> bool:

@@ -44,7 +44,7 @@ def test_a_study_from_a_file(tmp_path):
             "study 1: there is no scene 'keplr'; did you mean kepler",
         ),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk5'\nstep=1\nperiods=1", "no method is written rk5"),
-        ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nperiods=1", "RK4 takes fixed steps: give step"),
+        ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nperiods=1", "RK4 needs a size of steps: give step"),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nstep=1", "duration as periods or as until"),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nsteps=1\nperiods=1", "unknown key 'steps'"),
         ("[[study]]\nsystem = 'kepler'\nperiods=1", "'method' is missing"),

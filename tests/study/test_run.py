@@ -11,9 +11,10 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
+from sympy import Symbol
 
 from canon import DOP853, RK4, Splitting, Taylor
-from canon.flow.method import Gauss
+from canon.flow.method import Gauss, TimeTransformed
 from canon.flow.solvable import SABA, SBAB, WisdomHolman
 from canon.study import run
 from canon.study.case import Case, key_of, method_from, method_to
@@ -163,6 +164,7 @@ def test_a_file_begun_with_other_versions_is_not_resumed(tmp_path, monkeypatch):
         SABA(4),
         SABA("10-6-4"),
         SBAB(3),
+        TimeTransformed(Splitting("verlet")),
     ],
 )
 def test_methods_and_cases_survive_writing(method):
@@ -173,3 +175,18 @@ def test_methods_and_cases_survive_writing(method):
     again = Case.from_dict(json.loads(json.dumps(case.to_dict())))
     assert again == case
     assert key_of(again) == key_of(case)
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        Splitting("verlet", parts=(Symbol("p") ** 2, Symbol("q") ** 2)),
+        WisdomHolman(parts=(Symbol("p") ** 2, Symbol("q") ** 2)),
+        TimeTransformed(Gauss(4), g=Symbol("q")),
+    ],
+)
+def test_methods_that_are_no_text_are_refused(method):
+    with pytest.raises(ValueError, match="a study takes"):
+        method_to(method)
+    with pytest.raises(StudyError, match="a study takes"):
+        Study.of(system="kepler", method=method, step=0.1, until=10.0)
