@@ -144,6 +144,7 @@ def _solved(w: Writer, v: Writer, orbit: _Orbit, guess: str) -> tuple[str, str, 
     v.store(guess, anomaly, 0)
     v.store(c.zero, low, 0)
     v.store(v.infinity(), high, 0)
+    v.store(v.nan(), doubt, 0)
     with w.loop(0, _ITERATIONS) as turn:
         with w.loop(0, w.let(f"zext i1 {w.let(f'icmp eq i64 {turn}, {_PATIENCE // 2}')} to i64")):
             v.store(v.intrinsic("minnum", _bound(c, v, orbit), v.load(high, 0)), high, 0)
@@ -169,8 +170,12 @@ def _solved(w: Writer, v: Writer, orbit: _Orbit, guess: str) -> tuple[str, str, 
         step = v.select(last, step, v.select(closed, c.zero, step))
         v.store(floor, low, 0)
         v.store(ceiling, high, 0)
-        _store_at(c, v, (anomaly, second, third), x, step, (g0, g1, g2, g3), orbit.beta)
-        found = c.either(last, closed)
+        # A body that has its root keeps it while others go on: no lane depends on another.
+        settled = v.equal(v.load(doubt, 0), c.zero)
+        new = _moved_on(c, x, step, (g0, g1, g2, g3), orbit.beta)
+        for value, where in zip(new, (anomaly, second, third), strict=True):
+            v.store(v.select(settled, v.load(where, 0), value), where, 0)
+        found = c.either(settled, c.either(last, closed))
         v.store(v.select(found, c.zero, v.nan()), doubt, 0)
         w.leave_if(c.all(found))
         halve = w.let(f"and i1 {w.let(f'icmp sge i64 {turn}, {_PATIENCE}')}, {w.let(f'trunc i64 {turn} to i1')}")
@@ -179,7 +184,8 @@ def _solved(w: Writer, v: Writer, orbit: _Orbit, guess: str) -> tuple[str, str, 
         open_end = v.let(f"fcmp oeq {v.number.name} {ceiling}, {v.infinity()}")
         middle = v.select(open_end, c.add(x, x), c.mul(c.number(Fraction(1, 2)), c.add(floor, ceiling)))
         safe = v.select(inside, candidate, middle)
-        v.store(v.let(f"select i1 {halve}, {v.number.name} {middle}, {v.number.name} {safe}"), anomaly, 0)
+        following = v.let(f"select i1 {halve}, {v.number.name} {middle}, {v.number.name} {safe}")
+        v.store(v.select(found, candidate, following), anomaly, 0)
     # Without a root, as where the state is not finite, the motion is not either.
     return c.add(v.load(anomaly, 0), v.load(doubt, 0)), v.load(second, 0), v.load(third, 0)
 
@@ -208,17 +214,15 @@ def _bound(c: Arithmetic, v: Writer, orbit: _Orbit) -> str:
     return v.select(bound, either, slender)
 
 
-def _store_at(
-    c: Arithmetic, v: Writer, where: Sequence[str], x: str, step: str, g: Sequence[str], beta: str
-) -> None:
-    """Store X + a, G₂(X + a) and G₃(X + a), by their Taylor series in the small a."""
+def _moved_on(c: Arithmetic, x: str, step: str, g: Sequence[str], beta: str) -> tuple[str, str, str]:
+    """Return X + a, G₂(X + a) and G₃(X + a), by their Taylor series in the small a."""
     g0, g1, g2, g3 = g
     half, third, fourth = (c.mul(step, c.number(Fraction(1, k))) for k in (2, 3, 4))
     curve = c.fma(c.neg(c.mul(third, beta)), c.fma(fourth, g0, g1), g0)
     rise = c.fma(c.neg(c.mul(fourth, beta)), g1, g0)
-    v.store(c.add(x, step), where[0], 0)
-    v.store(c.fma(step, c.fma(half, curve, g1), g2), where[1], 0)
-    v.store(c.fma(step, c.fma(half, c.fma(third, rise, g1), g2), g3), where[2], 0)
+    second = c.fma(step, c.fma(half, curve, g1), g2)
+    third_one = c.fma(step, c.fma(half, c.fma(third, rise, g1), g2), g3)
+    return c.add(x, step), second, third_one
 
 
 def _stumpff(w: Writer, v: Writer, beta: str, x: str) -> tuple[str, str]:
@@ -228,14 +232,15 @@ def _stumpff(w: Writer, v: Writer, beta: str, x: str) -> tuple[str, str]:
     """
     c = Arithmetic(v)
     square = c.mul(x, x)
-    argument, second, third, count = v.array(1), v.array(1), v.array(1), w.array(1)
+    argument, second, third, count = (v.array(1) for _ in range(4))
     v.store(c.mul(beta, square), argument, 0)
-    w.store(w.constant(Fraction(0)), count, 0)
+    v.store(c.zero, count, 0)
     with w.loop(0, _QUARTERINGS):
         z = v.load(argument, 0)
-        w.leave_if(c.all(c.at_most(c.abs(z), c.number(_REACH))))
-        v.store(c.mul(z, c.number(Fraction(1, 4))), argument, 0)
-        w.store(w.algebra("add", w.load(count, 0), w.constant(Fraction(1))), count, 0)
+        small = c.at_most(c.abs(z), c.number(_REACH))
+        w.leave_if(c.all(small))
+        v.store(v.select(small, z, c.mul(z, c.number(Fraction(1, 4)))), argument, 0)
+        v.store(c.add(v.load(count, 0), v.select(small, c.zero, c.one)), count, 0)
     z = v.load(argument, 0)
     z2 = c.mul(z, z)
     for first, where in ((2, second), (3, third)):
@@ -245,10 +250,18 @@ def _stumpff(w: Writer, v: Writer, beta: str, x: str) -> tuple[str, str]:
             for start in (0, 1)
         )
         v.store(c.fma(odd, z, even), where, 0)
-    with w.loop(0, w.let(f"fptosi double {w.load(count, 0)} to i64")):
+    with w.loop(0, _QUARTERINGS):
+        left = v.load(count, 0)
+        done = v.equal(left, c.zero)
+        w.leave_if(c.all(done))
         z, c2, c3 = v.load(argument, 0), v.load(second, 0), v.load(third, 0)
         c0, c1 = c.fma(c.neg(z), c2, c.one), c.fma(c.neg(z), c3, c.one)
-        v.store(c.mul(c.number(Fraction(1, 2)), c.mul(c1, c1)), second, 0)
-        v.store(c.mul(c.number(Fraction(1, 4)), c.fma(c0, c3, c2)), third, 0)
-        v.store(c.mul(z, c.number(Fraction(4))), argument, 0)
+        new = (
+            (second, c2, c.mul(c.number(Fraction(1, 2)), c.mul(c1, c1))),
+            (third, c3, c.mul(c.number(Fraction(1, 4)), c.fma(c0, c3, c2))),
+            (argument, z, c.mul(z, c.number(Fraction(4)))),
+            (count, left, c.sub(left, c.one)),
+        )
+        for where, old, quadrupled in new:
+            v.store(v.select(done, old, quadrupled), where, 0)
     return c.mul(square, v.load(second, 0)), c.mul(c.mul(square, x), v.load(third, 0))
