@@ -85,9 +85,13 @@ if TYPE_CHECKING:
     from canon.study.choose import Choice as Choice
     from canon.study.choose import choose as choose
     from canon.study.comparison import drift_study as drift_study
+    from canon.study.definition import Study as Study
+    from canon.study.definition import read_study as read_study
     from canon.study.drift import Drift as Drift
     from canon.study.drift import drift as drift
     from canon.study.precision import work_precision as work_precision
+    from canon.study.result import results_of as results_of
+    from canon.study.run import run_study as run_study
 
 __all__ = [
     "DOP853",
@@ -120,6 +124,7 @@ __all__ = [
     "SheetError",
     "Splitting",
     "Status",
+    "Study",
     "Taylor",
     "TimeTransformed",
     "Trajectory",
@@ -160,8 +165,11 @@ __all__ = [
     "poisson_bracket",
     "propagate",
     "read_sheet",
+    "read_study",
+    "results_of",
     "reversal_error",
     "routhian",
+    "run_study",
     "symplectic_flow",
     "symplecticity_defect",
     "time",
@@ -209,8 +217,11 @@ _ROOMS = {
     "canon.proof.verdict": ("Counterexample", "Evidence", "Status", "Undecided", "Verdict"),
     "canon.study.choose": ("Choice", "choose"),
     "canon.study.comparison": ("drift_study",),
+    "canon.study.definition": ("Study", "read_study"),
     "canon.study.drift": ("Drift", "drift"),
     "canon.study.precision": ("work_precision",),
+    "canon.study.result": ("results_of",),
+    "canon.study.run": ("run_study",),
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names}
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from canon.study.case import Case, parts_of
+from canon.study.store import Store
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from canon.study.store import Store
 
 __all__ = ["Result", "State", "results_of"]
 
@@ -72,21 +72,20 @@ class Result:
         return ", ".join(part for part in (str(case.method), step, tolerance, case.precision) if part)
 
 
-def results_of(store: Store) -> list[Result]:
+def results_of(store: Store | str | Path) -> list[Result]:
     """Return every case of a file and what became of it, in the order they were added.
 
     Examples
     --------
     >>> import tempfile
-    >>> from canon.study.definition import Study
-    >>> from canon.study.run import run_study
-    >>> from canon.study.store import Store
+    >>> from canon import Study, run_study
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     store = Store(f"{folder}/study.sqlite")
-    ...     _ = run_study(Study.of(system="henon-heiles", method="verlet", step=0.1, until=200.0), store)
-    ...     [(result.state.value, result.setting, result.numbers["verdict"]) for result in results_of(store)]
+    ...     file = f"{folder}/study.sqlite"
+    ...     _ = run_study(Study.of(system="henon-heiles", method="verlet", step=0.1, until=200.0), file)
+    ...     [(result.state.value, result.setting, result.numbers["verdict"]) for result in results_of(file)]
     [('finished', 'verlet, h = 0.1', 'bounded')]
     """
+    store = store if isinstance(store, Store) else Store(Path(store))
     records, parts = store.records(), store.parts_done()
     found: list[Result] = []
     for key, inputs in store.cases().items():
