@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.question import Differ, Regular, Same, SameEquations
+from canon.expression.symbol import velocity
 from canon.proof.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -15,7 +16,8 @@ if TYPE_CHECKING:
     from sympy import Basic, Symbol
 
     from canon.exercise.judge import Finding
-    from canon.exercise.question import Question
+    from canon.exercise.question import Part, Question
+    from canon.exercise.reading import Reading
 
 __all__ = ["Step", "shown", "steps"]
 
@@ -46,13 +48,32 @@ def steps(finding: Finding) -> tuple[Step, ...]:
     {f, g} of pair 1 should be 2*x
     so it holds, decided by: exact
     """
-    found: list[Step] = []
+    found = list(_slopes(finding.reading))
     for question, verdict in finding.asked:
         found += _derived(question)
         found.append((_answer(question, verdict), ""))
         if len(found) > MOST_STEPS:
             break
     return tuple(found[:MOST_STEPS])
+
+
+def _slopes(reading: Reading) -> Iterator[Step]:
+    """Yield the derivatives of L or H that the equations of motion are made of."""
+    if not all(reading.has(key) for key in ("q", "L")) and not all(
+        reading.has(key) for key in ("q", "p", "H")
+    ):
+        return
+    if not reading.is_names("q"):
+        return
+    name = "L" if reading.has("L") else "H"
+    f, q = reading.expression(name), reading.symbols("q")
+    if not shown(f) or len(q) > MOST_PARTS // 2:
+        return
+    first = [velocity(x) for x in q] if name == "L" else reading.symbols("p")
+    for pair in zip(first, q, strict=False):
+        for symbol in pair:
+            if text := shown(f.diff(symbol)):
+                yield "", f"Derivative({name}, {symbol}) = {text}"
 
 
 def _derived(question: Question) -> Iterator[Step]:
@@ -63,9 +84,7 @@ def _derived(question: Question) -> Iterator[Step]:
                 if part.through != known:
                     known = part.through
                     yield from _with(known)
-                if not part.key:  # what is compared follows from the answer, so it is shown too
-                    yield f"{part.name} comes out as", shown(part.claimed)
-                yield f"{part.name} should be", shown(part.right)
+                yield from _compared(part)
             if len(parts) > MOST_PARTS:
                 yield f"and {len(parts) - MOST_PARTS} more of the same sort", ""
         case SameEquations(_, right):
@@ -78,6 +97,17 @@ def _derived(question: Question) -> Iterator[Step]:
             yield f"{name} must be regular", shown(matrix[0, 0]) if matrix.shape == (1, 1) else ""
         case _:
             return
+
+
+def _compared(part: Part) -> Iterator[Step]:
+    """Yield what a component should be, and what it is where that follows from the answer."""
+    if part.key:
+        yield f"{part.name} should be", shown(part.right)
+    elif part.right == 0:
+        yield f"{part.name}: what must vanish is", shown(part.claimed)
+    else:
+        yield f"{part.name} comes out as", shown(part.claimed)
+        yield f"{part.name} should be", shown(part.right)
 
 
 def _with(through: Mapping[Symbol, Basic]) -> Iterator[Step]:

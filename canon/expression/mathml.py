@@ -280,6 +280,8 @@ def _derivative(function: Node, variables: Sequence[Node]) -> Element:
         below.append(_leaf("mo", sign))
         set_variable = _in_brackets(variable, Sum, Product, Negative, Comparison)
         below.append(set_variable if order is None else _over("msup", set_variable, mathml(order)))
+    if isinstance(function, Name):
+        return _over("mfrac", _row(above, mathml(function)), below)
     return _row(_over("mfrac", above, below), _in_brackets(function, Sum, Negative, Product, Comparison))
 
 

@@ -111,6 +111,20 @@ def test_the_page_shows_formulas_feedback_and_steps(tour):
     assert {"math", "mfrac", "msup", "mover", "details"} <= page.tags
 
 
+def test_the_steps_are_those_of_a_derivation(tour):
+    pendulum = dict(tour.judgements[0].steps[i][::-1] for i in range(len(tour.judgements[0].steps)))
+    assert tour.judgements[0].steps[:2] == (
+        ("", "Derivative(L, theta_dot) = l**2*m*theta_dot"),
+        ("", "Derivative(L, theta) = -g*l*m*sin(theta)"),
+    )
+    assert pendulum["g*l*m*sin(theta) + l**2*m*theta_ddot = 0"] == "equation 1 as canon derives it"
+    assert tour.judgements[0].steps[-1] == ("so it holds, decided by: exact", "")
+    for judgement in tour:
+        assert judgement.steps[-1][0].startswith(f"so it {judgement.status}, decided by: ")
+        for _, shown in judgement.steps:
+            assert not shown or formula(shown, Scope()) is not None, shown
+
+
 def test_nothing_is_fetched(tour):
     html = tour.to_html()
     for word in ("http:", "https:", "src=", "href=", "url(", "@import", "<script", "<link"):
