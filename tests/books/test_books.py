@@ -1,0 +1,25 @@
+"""Formulas of four textbooks by section, each verdict as the reader of the book expects it; wrong twins fail."""
+
+from pathlib import Path
+
+import pytest
+
+from canon import judge, read_sheet
+
+SHEETS = sorted((Path(__file__).parents[2] / "examples" / "sheets" / "books").glob("*.toml"))
+CLAIMS = [
+    pytest.param(claim, id=f"{path.stem}-{claim.id}") for path in SHEETS for claim in read_sheet(path).claims
+]
+
+
+def test_the_books_are_there():
+    assert [path.stem for path in SHEETS] == [
+        "goldstein", "hairer_lubich_wanner", "landau_lifshitz", "sussman_wisdom",
+    ]  # fmt: skip
+    assert len(CLAIMS) >= 77
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_the_verdict_is_the_books(claim):
+    assert claim.keys["source"], "every claim names its section"
+    assert judge(claim).status.value == claim.expect
