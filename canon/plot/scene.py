@@ -106,6 +106,8 @@ def animate_scene(motion: Motion, file: str | Path, *, seconds: float = 6.0, rat
         return drawn
 
     figure: Any = axes.get_figure(root=True)
+    show(0)
+    figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laying out every frame anew takes most of the time
     made = animation.FuncAnimation(figure, show, frames=frames.tolist(), interval=1000.0 / rate)
     made.save(str(file), writer=names[ending], fps=rate, dpi=80)

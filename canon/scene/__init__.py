@@ -25,6 +25,7 @@ from canon.scene import (
     incline,
     kepler,
     lattice,
+    manipulator,
     nonholonomic,
     orbit,
     oscillator,
@@ -57,6 +58,7 @@ SCENES: tuple[Scene, ...] = (
     *incline.SCENES,
     *bead.SCENES,
     *control.SCENES,
+    *manipulator.SCENES,
     *driven.SCENES,
     *charge.SCENES,
 )

@@ -1,15 +1,16 @@
-"""A charged particle: in a uniform field, in crossed fields, and in the field of the Earth's dipole."""
+"""A charged particle in given fields: crossed ones, a Penning trap, the dipole of the Earth."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.parts import Condition
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from types import SimpleNamespace
 
     import numpy as np
@@ -24,10 +25,35 @@ _CHARGE = Parameter("e", 1.602176634e-19, "C", "charge", sign="real")
 _ELECTRON = Parameter("m", 9.1093837e-31, "kg", "mass of the electron")
 
 
-def _crossed(s: SimpleNamespace) -> Expr:
-    """Return L with A = (0, B x, 0) and φ = −E x."""
-    kinetic = s.m * (s.x.dot**2 + s.y.dot**2 + s.z.dot**2) / 2
-    return kinetic + s.e * s.B * s.x * s.y.dot + s.e * s.E * s.x
+def in_fields(potentials: Callable[[SimpleNamespace], Sequence[Expr]]) -> Callable[[SimpleNamespace], Expr]:
+    """Return L = m v²/2 + A ẋ + B ẏ + C ż − V as a function of a scene's symbols.
+
+    Parameters
+    ----------
+    potentials
+        A, B, C and V as functions of the symbols x, y, z and t; the charge is part of them.
+
+    Examples
+    --------
+    The force that general A, B, C, V make along x:
+
+    >>> from types import SimpleNamespace
+    >>> from canon import Lagrangian, coordinates, parameters
+    >>> from sympy import Function
+    >>> q = coordinates("x y z")
+    >>> (m,) = parameters("m", positive=True)
+    >>> s = SimpleNamespace(m=m, **{x.name: x for x in q})
+    >>> L = in_fields(lambda s: [Function(name)(*q) for name in "ABCV"])(s)
+    >>> Lagrangian(L, q).equations[0].coeff(q[1].dot)
+    Derivative(A(x, y, z), y) - Derivative(B(x, y, z), x)
+    """
+
+    def lagrangian(s: SimpleNamespace) -> Expr:
+        A, B, C, V = potentials(s)
+        kinetic = s.m * (s.x.dot**2 + s.y.dot**2 + s.z.dot**2) / 2
+        return kinetic + A * s.x.dot + B * s.y.dot + C * s.z.dot - V
+
+    return lagrangian
 
 
 def _gyration(value: Mapping[str, float]) -> float:
@@ -67,7 +93,7 @@ CROSSED = Scene(
     time_scale=_gyration,
     time_unit="s",
     source="Jackson, Classical Electrodynamics (3rd ed.), § 12.3",
-    L_of=_crossed,
+    L_of=in_fields(lambda s: [0 * s.e, s.e * s.B * s.x, 0 * s.e, -s.e * s.E * s.x]),
     integrals=(
         Integral("canonical momentum p_y", lambda s: s.y.momentum),
         Integral("momentum p_z", lambda s: s.z.momentum),
@@ -160,5 +186,78 @@ STORMER = Scene(
     shown=150.0,
 )
 
-SCENES = (CROSSED, STORMER)
+_SIZE = {"m": 9.1093837e-31, "e": 1.602176634e-19, "B": 0.5, "U": 10.0, "d": 3.5e-3}
+
+
+def _trap(s: SimpleNamespace) -> list[Expr]:
+    """Return A, B, C of a uniform field along z, and V = e U (z² − (x² + y²)/2)/(2 d²)."""
+    bowl = s.z**2 - (s.x**2 + s.y**2) / 2
+    return [-s.e * s.B * s.y / 2, s.e * s.B * s.x / 2, 0 * s.e, s.e * s.U * bowl / (2 * s.d**2)]
+
+
+def _rates(value: Mapping[str, float]) -> tuple[float, float, float]:
+    """Return ω_z, ω₊ and ω₋: ω_z² = e U/(m d²), ω± = ω_c/2 ± √(ω_c²/4 − ω_z²/2)."""
+    axial = math.sqrt(value["e"] * value["U"] / (value["m"] * value["d"] ** 2))
+    half = value["e"] * value["B"] / (2.0 * value["m"])
+    split = math.sqrt(half**2 - axial**2 / 2.0)
+    return axial, half + split, half - split
+
+
+_AXIAL, _RADIAL = 1e-4, 2e-4
+
+
+def _axial(value: Mapping[str, float], t: Array) -> Array:
+    import numpy as np
+
+    return _AXIAL * np.cos(_rates(value)[0] * t)
+
+
+def _radial(value: Mapping[str, float], t: Array) -> Array:
+    """Return x of x + iy = a (ω₊ e^(−iω₋t) − ω₋ e^(−iω₊t))/(ω₊ − ω₋), from rest at x = a."""
+    import numpy as np
+
+    _, fast, slow = _rates(value)
+    return _RADIAL * (fast * np.cos(slow * t) - slow * np.cos(fast * t)) / (fast - slow)
+
+
+PENNING = Scene(
+    name="penning-trap",
+    title="Penning trap: a charge held by a uniform magnetic field and an electric quadrupole",
+    coordinates="x y z",
+    parameters=(
+        Parameter("m", _SIZE["m"], "kg", "mass of the electron"),
+        Parameter("e", _SIZE["e"], "C", "charge, positive: a positron"),
+        Parameter("B", _SIZE["B"], "T", "magnetic field along z"),
+        Parameter("U", _SIZE["U"], "V", "voltage of the trap"),
+        Parameter("d", _SIZE["d"], "m", "size of the trap"),
+    ),
+    conditions=(
+        Condition(
+            "the magnetic field holds the charge only where (e B/m)² > 2 e U/(m d²)",
+            lambda v: v["e"] * v["B"] ** 2 / v["m"] > 2.0 * v["U"] / v["d"] ** 2,
+        ),
+    ),
+    starts=(Start("rest", "let go at rest, aside and above", q=(_RADIAL, 0.0, _AXIAL), v=(0.0, 0.0, 0.0)),),
+    time_scale=lambda value: 2.0 * math.pi / _rates(value)[0],
+    time_unit="s",
+    source="Brown & Gabrielse, Rev. Mod. Phys. 58, 233 (1986), doi:10.1103/RevModPhys.58.233",
+    L_of=in_fields(_trap),
+    integrals=(
+        Integral("canonical angular momentum", lambda s: s.x * s.y.momentum - s.y * s.x.momentum),
+        Integral(
+            "energy of the axial oscillation",
+            lambda s: s.z.momentum**2 / (2 * s.m) + s.e * s.U * s.z**2 / (2 * s.d**2),
+        ),
+    ),
+    solutions=(
+        Solution("z: axial oscillation", "rest", lambda s: s.z, _axial),
+        Solution("x: magnetron and cyclotron motion", "rest", lambda s: s.x, _radial, bound=1e-10),
+    ),
+    energy_bound=1e-8,
+    energy_why="m v is the small difference of p and e A, its energy a ten-thousandth of their terms",
+    shown=30.0,
+    picture_of=lambda s: Picture(masses=((s.x, s.y, s.z),)),
+)
+
+SCENES = (CROSSED, PENNING, STORMER)
 """The charged particles."""
