@@ -11,7 +11,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbol import momentum, time, velocity
 from canon.mechanics.bracket import poisson_bracket
-from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_places
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_all, plain_places
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.legendre import LegendreError, eliminate_velocities, legendre_residual
 from canon.mechanics.linear import is_regular
@@ -93,6 +93,7 @@ class Hamiltonian:
         >>> Hamiltonian(p**2/2 + q**2/2, q, p).rate(q*p)
         p**2 - q**2
         """
+        u = plain(u, (*self.q, *self.p), self.t)
         return poisson_bracket(u, self.H, self.q, self.p) + u.diff(self.t)
 
     def has_equations(
@@ -100,7 +101,7 @@ class Hamiltonian:
     ) -> Verdict:
         """Tell whether q̇ = ``q_dot`` and ṗ = ``p_dot`` are Hamilton's equations of H."""
         domain = domain or Domain()
-        claimed = (*q_dot, *p_dot)
+        claimed = plain_all((*q_dot, *p_dot), (*self.q, *self.p), self.t)
         if len(claimed) != 2 * len(self.q):
             raise ValueError(f"{len(claimed)} rates given for {2 * len(self.q)} canonical variables")
         return all_hold(
@@ -204,7 +205,7 @@ def legendre(
             "the system has forces without a potential; Hamilton's equations of H alone would miss them. "
             "Put what has a potential into L, or stay with Lagrange's equations"
         )
-    momenta = tuple(p) if p is not None else tuple(momentum(q) for q in lagrangian.q)
+    momenta = coordinate_symbols(p) if p is not None else tuple(momentum(q) for q in lagrangian.q)
     if len(momenta) != len(lagrangian.q):
         raise ValueError(f"{len(momenta)} momenta for {len(lagrangian.q)} coordinates; each needs one")
     H = eliminate_velocities(
@@ -248,6 +249,8 @@ def is_hamiltonian_of(
 
     def verdicts() -> Iterator[Verdict]:
         yield has_hamiltonian(lagrangian, domain)
-        yield vanishes(legendre_residual(lagrangian, H, p), domain)
+        momenta = coordinate_symbols(p)
+        energy = plain(H, (*lagrangian.q, *momenta), lagrangian.t)
+        yield vanishes(legendre_residual(lagrangian, energy, momenta), domain)
 
     return all_hold(verdicts(), question)

@@ -33,7 +33,7 @@ from canon.mechanics.force import (
     rayleigh_forces,
 )
 from canon.mechanics.frobenius import integrals, is_integrable, positional_freedom
-from canon.mechanics.hamiltonian import Hamiltonian
+from canon.mechanics.hamiltonian import Hamiltonian, is_hamiltonian_of, legendre
 from canon.mechanics.ignorable import adapted, is_ignorable
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.newton_euler import Load, NewtonEuler
@@ -41,6 +41,7 @@ from canon.mechanics.quasi_velocity import Kinematics, independent_velocities, m
 from canon.mechanics.routh import routhian
 from canon.mechanics.singular import singularity
 from canon.mechanics.symmetry import is_constant_of_motion, is_gauge_equivalent, is_symmetry, noether_charge
+from canon.proof.verdict import Status
 
 m, l, g, k, c, e, B, a = parameters("m l g k c e B a", positive=True)
 TAU = dynamicsymbols._t
@@ -89,6 +90,10 @@ def blade(n):
 
 def bob(n):
     return Particle(m, (l * sp.sin(n.theta) + a * sp.cos(n.t), -l * sp.cos(n.theta)))
+
+
+def oscillator(n):
+    return Hamiltonian((n.momentum(n.x) ** 2 + n.x**2) / 2, [n.x], [n.momentum(n.x)])
 
 
 def top(n):
@@ -200,6 +205,17 @@ DOORS = {
     "gauge": lambda n: (
         is_gauge_equivalent(plane(n), Lagrangian(plane(n).L, plane(n).q), F=n.x * n.y * 0).status
     ),
+    "legendre": lambda n: legendre(plane(n), [n.momentum(n.x), n.momentum(n.y)]),
+    "is hamiltonian of": lambda n: (
+        is_hamiltonian_of(
+            Lagrangian(n.dot(n.x) ** 2 / 2 - n.x**2, [n.x]),
+            n.momentum(n.x) ** 2 / 2 + n.x**2,
+            [n.momentum(n.x)],
+        ).status
+    ),
+    "rates in phase space": lambda n: oscillator(n).rate(n.x * n.momentum(n.x) + n.t),
+    "hamilton's equations": lambda n: oscillator(n).has_equations([n.momentum(n.x)], [-n.x]).status,
+    "motion": lambda n: oscillator(n).is_solution({n.x: sp.sin(n.t), n.momentum(n.x): sp.cos(n.t)}).status,
     "hamiltonian": lambda n: (
         Hamiltonian(n.momentum(n.x) ** 2 / 2 + n.x**2 * sp.cos(n.t), [n.x], [n.momentum(n.x)]).vector_field
     ),
@@ -210,6 +226,8 @@ DOORS = {
 def test_functions_of_time_are_taken_at_the_door(door):
     with_functions, with_symbols = DOORS[door](Names(functions=True)), DOORS[door](Names(functions=False))
     assert with_functions == with_symbols
+    verdicts = with_functions if isinstance(with_functions, tuple) else (with_functions,)
+    assert Status.UNDECIDED not in [v for v in verdicts if isinstance(v, Status)]
 
 
 def test_another_function_of_time_is_not_a_coordinate():
