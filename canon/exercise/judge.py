@@ -23,7 +23,7 @@ from canon.exercise import (
     judge_variation,
 )
 from canon.exercise.manifold import EmptyDomainError
-from canon.exercise.question import Deadline, Question, decide
+from canon.exercise.question import Deadline, Question, Stated, decide
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.sheet import Claim, ClaimError
 from canon.mechanics.linear import SingularMatrixError
@@ -137,9 +137,13 @@ def examine(claim: Claim) -> Finding:
     answered: list[Verdict] = []
     asked: list[tuple[Question, Verdict]] = []
     turned: Question | None = None
+    named = ""
     try:
         for question in JUDGES[claim.kind](reading):
             verdict = decide(question, deadline)
+            named = (
+                verdict.question if isinstance(question, Stated) and verdict.holds and not answered else ""
+            )
             answered.append(verdict)
             asked.append((question, verdict))
             if verdict.fails:
@@ -149,8 +153,10 @@ def examine(claim: Claim) -> Finding:
         answered.append(Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),)))
     except (SingularMatrixError, EmptyDomainError) as error:
         raise InvalidClaim(ClaimError(claim.id, "", str(error), file=claim.file)) from error
+    if not answered:
+        raise InvalidClaim(ClaimError(claim.id, "", "nothing is claimed", file=claim.file))
     seconds = claim.budget - (deadline.left if deadline.left > 0.05 else 0.0)
-    verdict = replace(all_hold(answered), seconds=seconds)
+    verdict = replace(all_hold(answered, named), seconds=seconds)
     verdict = verdict if verdict.question else verdict.about(_title(claim))
     held = len(answered) - 1 if turned is not None else 0
     return Finding(reading, verdict, turned, held, tuple(asked))

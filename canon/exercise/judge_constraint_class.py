@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["constraint_class", "degrees_of_freedom"]
 
 _PAIRS = (("holonomic", "nonholonomic"), ("scleronomic", "rheonomic"), ("bilateral", "unilateral"))
-_RELATION = re.compile(r"(<=|>=|<|>|=)")
+_RELATION = re.compile(r"(<=|>=|<|>|=|≤|≥|\\leq?\b|\\geq?\b)")
 
 
 @dataclass(frozen=True)
@@ -123,16 +123,30 @@ class _Constraints:
             "free of the time", [g.diff(self.t) for g in (*self.positions, *self.rates)]
         )
         moving = [h for h in self.inequalities if h.has(self.t)]
+        if verdict.holds and (self.positions or self.velocities):
+            self._check_regular()
         if not verdict.holds or not moving:
             return verdict
         sides = [
             decide(Same((Part("∂/∂t", h.diff(self.t), through=b.values),), b.domain), self.deadline)
             for h in moving
-            for b in on_manifold([h], self.domain, keep=(self.t,))
+            for b in on_manifold([*self.positions, h], self.domain, keep=(self.t,))
         ]
         if any(side.fails for side in sides):
             return next(side for side in sides if side.fails)
         raise Undecided("whether the inequality depends on the time was not decided")
+
+    def _check_regular(self) -> None:
+        """Refuse constraints such as (x − t)² = 0, whose derivatives vanish where they hold."""
+        v = [velocity(x) for x in self.q]
+        for functions, variables in ((self.positions, self.q), (self.velocities, v)):
+            slopes = sp.Matrix([[f.diff(x) for x in variables] for f in functions])
+            for branch in self.branches if functions else ():
+                here = slopes.applyfunc(lambda f, b=branch: substitute(f, b.values))
+                if eliminate(here, domain=branch.domain).rank < eliminate(slopes, domain=self.domain).rank:
+                    raise Undecided(
+                        "the derivatives of the constraints vanish or become dependent where they hold"
+                    )
 
     def all_vanish(self, name: str, expressions: Sequence[Expr]) -> Verdict:
         """Tell whether expressions vanish wherever the constraints hold."""
@@ -146,28 +160,24 @@ class _Constraints:
         )
         return all_hold(verdicts, name)
 
-    @cached_property
-    def freedom(self) -> dict[str, int]:
-        """The number of independent virtual displacements, and of positions that can be reached."""
+    def freedom(self, counting: str) -> int:
+        """Return the number of independent virtual displacements, or of positions that can be reached."""
         if not self.affine.holds:
             raise Undecided("degrees of freedom are counted for constraints affine in the velocities")
-        n = len(self.q)
         if not self.rates:
-            return {"velocities": n, "positions": n}
-        velocities = n - self.rank([row[:-1] for row in self.forms.forms])
-        return {"velocities": velocities, "positions": n - self._restrictions()}
+            return len(self.q)
+        if counting == "velocities":
+            return len(self.q) - self.rank([row[:-1] for row in self.forms.forms])
+        return len(self.q) - self._restrictions()
 
     def _restrictions(self) -> int:
         whole = self.rank(self.forms.forms)
         if self.integrable.holds:
             return whole
-        if self.integrable.undecided:
-            raise Undecided("whether the constraints are integrable was not decided")
-        if self.positions:
-            values = [v for _, row in self.forms.curvatures for v in row if v != 0]
-            kept = (self.all_vanish("curvature", [v]) for v in values)
-            if any(not verdict.fails for verdict in kept):
-                raise Undecided("some constraints are integrable only where others hold")
+        if self.integrable.undecided or self.positions:
+            raise Undecided(
+                "which combinations of the constraints are integrable was not decided; eliminate positions"
+            )
         return len(self.forms.holonomic_part.forms)
 
 
@@ -208,23 +218,21 @@ def degrees_of_freedom(reading: Reading) -> Iterator[Question]:
     claimed = reading.expression("dof")
     if not isinstance(claimed, sp.Integer):
         reading.fault("dof", "should be a whole number")
-    freedom = constraints.freedom
-    if int(claimed) == freedom[counting]:
+    right = constraints.freedom(counting)
+    if int(claimed) == right:
         yield Verdict(Status.HOLDS, "degrees of freedom", "exact")
         return
-    n, m = len(constraints.q), len(constraints.q) - freedom[counting]
-    what = (
-        "independent constraint" if counting == "velocities" else "independent restriction of the positions"
-    )
-    why = f"{n} coordinates less {m} {what}{'s' * (m != 1)} leave {freedom[counting]}, not {claimed}"
-    other = next(key for key in freedom if key != counting)
-    if freedom[other] == int(claimed):
-        names = {
-            "velocities": "independent virtual displacements",
-            "positions": "positions that can be reached",
-        }
-        why += f"; {claimed} is the number of {names[other]}"
-    yield Stated(fails("degrees of freedom", why), lambda: sp.Integer(freedom[counting]))
+    n, m = len(constraints.q), len(constraints.q) - right
+    what = f"constraint{'s' * (m != 1)}" + (" on positions" if counting == "positions" else "")
+    why = f"{n} coordinates less {m} independent {what} leave {right}, not {claimed}"
+    names = {"velocities": "independent virtual displacements", "positions": "positions that can be reached"}
+    other = next(key for key in names if key != counting)
+    try:
+        if constraints.freedom(other) == int(claimed):
+            why += f"; {claimed} is the number of {names[other]}"
+    except Undecided:  # then the feedback says less
+        pass
+    yield Stated(fails("degrees of freedom", why), lambda: sp.Integer(right))
 
 
 def _constraints(reading: Reading) -> _Constraints:
@@ -234,8 +242,9 @@ def _constraints(reading: Reading) -> _Constraints:
     equations: list[Expr] = []
     inequalities: list[Expr] = []
     for i, text in enumerate(texts):
-        pieces = _RELATION.split(str(text))
-        sides = reading.inside(f"constraints[{i}]", pieces[::2])
+        latex = str(text).strip().startswith("$")
+        pieces = _RELATION.split(str(text).strip().strip("$") if latex else str(text))
+        sides = reading.inside(f"constraints[{i}]", [f"${p}$" if latex else p for p in pieces[::2]])
         relations = pieces[1::2]
         if len(sides) == 1:
             equations.append(sides[0])

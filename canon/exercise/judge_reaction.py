@@ -16,7 +16,7 @@ from canon.exercise.affine import solved
 from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.judge_constrained import is_one_of
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.manifold import Branch, on_manifold
+from canon.exercise.manifold import Branch, EmptyDomainError, on_manifold
 from canon.exercise.question import Deadline, Part, Question, Same, Stated, decide
 from canon.exercise.tree import symbols_of
 from canon.expression.symbol import acceleration, time_derivative, velocity
@@ -62,15 +62,15 @@ def reaction(reading: Reading) -> Iterator[Question]:
             for name, value in reading.table("values").items():
                 if name not in names:
                     reading.fault(f"values.{name}", "is not among the multipliers")
+                if value.has(*multipliers):
+                    reading.fault(f"values.{name}", "should be in coordinates, velocities and time only")
                 right = motion.solution[names[name]]
-                parts.append(Part(name, value, right, _rates(motion, q, value), f"values.{name}"))
+                parts.append(Part(name, value, right, _rates(motion, value), f"values.{name}"))
         if reading.has("force"):
             forces = motion.directions.T * sp.Matrix(multipliers)
             for i, (x, value) in enumerate(zip(q, reading.expressions("force", like="q"), strict=True)):
                 name = f"the force of constraint on {x}"
-                parts.append(
-                    Part(name, value, motion.seen(forces[i]), _rates(motion, q, value), f"force[{i}]")
-                )
+                parts.append(Part(name, value, motion.seen(forces[i]), _rates(motion, value), f"force[{i}]"))
         yield Same(tuple(parts), motion.branch.domain, lambda parts=parts: _answer(parts))
 
 
@@ -163,10 +163,9 @@ def _check_constant(reading: Reading, integrals: Sequence[Expr], motion: _Motion
             raise Undecided(f"whether integrals[{i}] is constant along the motion was not decided")
 
 
-def _rates(motion: _Motion, q: Sequence[Symbol], value: Expr) -> dict[Symbol, Expr]:
+def _rates(motion: _Motion, value: Expr) -> dict[Symbol, Expr]:
     """Return what is put into a claimed value: the manifold, and accelerations where it holds any."""
-    a = [acceleration(x) for x in q]
-    known = {s: motion.solution[s] for s in a if value.has(s)}
+    known = {s: f for s, f in motion.solution.items() if value.has(s)}
     return {**motion.branch.values, **known}
 
 
@@ -198,6 +197,8 @@ def _follows(
         verdict = all_hold(
             decide(Same((Part("the reaction", wanted, through=b.values),), b.domain), deadline) for b in parts
         )
+    except EmptyDomainError:  # it vanishes nowhere
+        return Verdict(Status.HOLDS, certificate="structure")
     except Undecided as reason:
         verdict = Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
         for x in symbols_of(given):

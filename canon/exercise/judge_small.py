@@ -36,6 +36,8 @@ _KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside, sp.atan2
 def first_order(reading: Reading) -> Iterator[Question]:
     """Both sides have the same expansion in the small quantities, up to the order that is claimed."""
     exact, claimed = reading.expressions("exact"), reading.expressions("claim")
+    if not exact:
+        reading.fault("exact", "at least one expression is needed")
     if len(exact) != len(claimed):
         reading.fault("claim", f"{len(claimed)} expressions for the {len(exact)} under exact")
     order = int(reading.claim.keys.get("order", 1))

@@ -169,6 +169,8 @@ def _initial_rates(reading: Reading, q: Sequence[Symbol], rates: Mapping[Symbol,
 def _general(reading: Reading, values: Sequence[Expr], domain: Domain) -> Iterator[Question]:
     """As many constants as the state has variables, and the state depends regularly on them."""
     constants = reading.symbols("constants")
+    if reading.has("equations"):
+        values = _of_the_order(reading, values)
     if len(constants) != len(values):
         why = f"the general solution has {len(values)} constants, not {len(constants)}"
         yield fails("the number of constants", why)
@@ -179,3 +181,12 @@ def _general(reading: Reading, values: Sequence[Expr], domain: Domain) -> Iterat
         domain,
         "the constants are not independent: the solution is not general",
     )
+
+
+def _of_the_order(reading: Reading, values: Sequence[Expr]) -> Sequence[Expr]:
+    """Return the part of the state that given equations leave free: positions only, where they are of first order."""
+    q, equations = reading.symbols("q"), reading.equations("equations")
+    second = [x for x in q if any(e.has(acceleration(x)) for e in equations)]
+    if len(equations) != len(q) or second not in ([], list(q)):
+        raise Undecided("how many constants the general solution of these equations has was not decided")
+    return values if second else values[: len(q)]
