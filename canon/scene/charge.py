@@ -255,7 +255,7 @@ PENNING = Scene(
     ),
     energy_bound=1e-8,
     energy_why="m v is the small difference of p and e A, its energy a ten-thousandth of their terms",
-    shown=30.0,
+    shown=240.0,
     picture_of=lambda s: Picture(masses=((s.x, s.y, s.z),)),
 )
 
