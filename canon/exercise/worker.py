@@ -1,7 +1,7 @@
 """Claims judged in a process of its own, which is killed when a claim's budget is spent.
 
 Parent and worker exchange JSON lines over pipes. The worker answers each claim with its verdict first and with
-the feedback afterwards, so that a feedback that takes too long costs no verdict. A worker has at most 4 GB
+the feedback afterwards, so that a feedback that takes too long costs no verdict. A worker has at most 2 GB
 of memory (where the system can limit it) and no way to pass anything but text back. It is killed together with
 the process in which it lets proofs run, so that nothing goes on computing what nobody waits for.
 """
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Worker"]
 
-MEMORY = 4 * 1024**3
+MEMORY = 2 * 1024**3
 START = 60.0
 """Seconds that a worker may take to start, on a slow or busy machine."""
 GRACE = 0.7

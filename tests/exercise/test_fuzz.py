@@ -1,5 +1,6 @@
 """Claims with slips of the pen, thousands of them: every one gets a verdict or an error that names its place."""
 
+import json
 import random
 from dataclasses import replace
 from pathlib import Path
@@ -9,11 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.judging import judgements
 from canon.exercise.sheet import SheetError, read_sheet, sheet_from
 from canon.exercise.worker import Worker
 from canon.expression.language import LanguageError, Scope, parse_expression
 
 SHEETS = sorted((Path(__file__).parents[1] / "data" / "claims").glob("*.json"))
+WRITTEN = [json.dumps(claim) for path in SHEETS for claim in json.loads(path.read_text("utf-8"))["claims"]]
 CLAIMS = [claim for path in SHEETS for claim in read_sheet(path).claims]
 PIECES = (
     "x", "0", "1/0", "-1", "**2", "+", "q", "t", "sin(", "sqrt(-1)", "I", "**(1/2)", "*0", "'", "_dot", "Abs(", ")",
@@ -68,6 +71,69 @@ def test_slips_are_judged_or_named(numbers):
     outcomes = [outcome(slipped_claim(number)) for number in numbers]
     assert outcomes.count("undecided") <= 2
     assert {"holds", "fails", "invalid"} <= set(outcomes)
+
+
+VALUES = (
+    None, True, False, 0, 1, -1, 10**30, 0.5, "", "x", "q", "t", "0", "1/0", "x = y", "x < 1", "True", "I", "$x$", "$",
+    "p_dot", [], [[]], ["x"], ["x", "x"], ["x", 1], [1, 2], {}, {"x": "x"}, {"x": [0, 1]}, {"Q": ["x"], "P": ["p"]}, [{}],
+    [{"f": "x", "g": "x", "value": "x"}], [{"m": "1", "r": ["x"]}], [{"I": "1", "angle": "x"}],
+    {"V": ["x"]}, {"f": ["t"]},
+    "holds", ["q", "p"], ["p", "q"], "gauge", "L-pq", ["0"], ["0", "0"], "Piecewise((x, x > 0), (0, True))", "Abs(x)",
+)  # fmt: skip
+KEYS = (
+    "domain",
+    "functions",
+    "parameters",
+    "box",
+    "t",
+    "valence",
+    "F",
+    "claim",
+    "q",
+    "p",
+    "L",
+    "H",
+    "restrict",
+    "Q",
+    "P",
+)
+
+
+def confused_claim(number):
+    """A real claim in which one or two keys hold something of another sort, or are missing, or stand besides."""
+    chance = random.Random(number)
+    keys = json.loads(chance.choice(WRITTEN))
+    for _ in range(chance.randrange(1, 3)):
+        key, way = chance.choice(sorted(keys)), chance.random()
+        value = keys[key]
+        if way < 0.5:
+            keys[key] = chance.choice(VALUES)
+        elif way < 0.6:
+            del keys[key]
+        elif way < 0.75:
+            keys[chance.choice(KEYS)] = chance.choice(VALUES)
+        elif isinstance(value, list) and value:
+            value[chance.randrange(len(value))] = chance.choice(VALUES)
+        elif isinstance(value, dict) and value:
+            value[chance.choice(sorted(value))] = chance.choice(VALUES)
+    (claim,) = sheet_from(json.dumps({"claims": [{**keys, "budget": 2}]}).encode()).claims
+    return claim
+
+
+def told_of_all(numbers):
+    """Judge confused claims as the worker does; whatever is raised is a fault of canon."""
+    return [told for number in numbers for told, last in judgements(confused_claim(number)) if last]
+
+
+def test_confused_claims_are_judged_or_named():
+    told = told_of_all(range(90))
+    assert {"holds", "fails", "invalid"} <= {judgement.status for judgement in told}
+    assert all(judgement.known for judgement in told if judgement.status in ("invalid", "undecided"))
+
+
+@pytest.mark.slow
+def test_two_thousand_confused_claims():
+    assert len(told_of_all(range(1000, 3500))) == 2500
 
 
 @pytest.mark.slow
