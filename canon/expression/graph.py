@@ -15,9 +15,9 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from canon.expression import differentiation, evaluation, translation
+from canon.expression import algebra, differentiation, evaluation, translation
 from canon.expression.arithmetic import FLOAT64
-from canon.expression.elementary import AT_ZERO, SLOPES, folded_power
+from canon.expression.elementary import AT_ZERO, SLOPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -27,9 +27,6 @@ if TYPE_CHECKING:
     from canon.expression.arithmetic import Arithmetic
 
 __all__ = ["Graph", "Node"]
-
-_FLATTENED = 8
-"""Sums and products longer than this stay one shared node when they are part of a longer one."""
 
 
 class Node(NamedTuple):
@@ -78,7 +75,8 @@ class Graph:
         self.masks.append(mask)
         return len(self.nodes) - 1
 
-    def _node(self, kind: str, operands: tuple[int, ...]) -> int:
+    def operation(self, kind: str, operands: tuple[int, ...]) -> int:
+        """Return the node of an operation as it stands: operands sorted where order does not matter, a number first."""
         number = self._number_of.get((kind, operands))
         if number is None:
             mask = 0
@@ -128,49 +126,15 @@ class Graph:
 
     def add(self, terms: Iterable[int]) -> int:
         """Return the sum of nodes, equal terms merged."""
-        constant, coefficients = 0, dict[int, Fraction | int]()
-        for term in self._flat("add", terms):
-            factor, rest = self._factored(term)
-            if rest is None:
-                constant += factor
-            else:
-                coefficients[rest] = coefficients.get(rest, 0) + factor
-        operands = sorted(
-            rest if factor == 1 else self.scaled(factor, rest)
-            for rest, factor in coefficients.items()
-            if factor
-        )
-        if constant:
-            operands.insert(0, self.number(constant))
-        if len(operands) < 2:
-            return operands[0] if operands else self.number(0)
-        return self._node("add", tuple(operands))
+        return algebra.add(self, terms)
 
     def mul(self, factors: Iterable[int]) -> int:
         """Return the product of nodes, powers of equal bases merged."""
-        constant, exponents = 1, dict[int, Fraction | int]()
-        for factor in self._flat("mul", factors):
-            node = self.nodes[factor]
-            if node.kind == "number":
-                constant *= node.value
-                continue
-            base, exponent = self._powered(factor)
-            exponents[base] = exponents.get(base, 0) + exponent
-        operands: list[int] = []
-        for base, exponent in exponents.items():
-            power = base if exponent == 1 else self.pow(base, self.number(exponent))
-            if self.nodes[power].kind == "number":
-                constant *= self.nodes[power].value
-            else:
-                operands.append(power)
-        if not constant:
-            return self.number(0)
-        return self._product(constant, tuple(sorted(operands)))
+        return algebra.mul(self, factors)
 
-    def _product(self, constant: Fraction | int, operands: tuple[int, ...]) -> int:
-        if constant != 1 or not operands:
-            operands = (self.number(constant), *operands)
-        return operands[0] if len(operands) == 1 else self._node("mul", operands)
+    def pow(self, base: int, exponent: int) -> int:
+        """Return base**exponent, the principal value."""
+        return algebra.power(self, base, exponent)
 
     def plain_add(self, terms: Iterable[int]) -> int:
         """Return a sum whose terms stay as they are: only zeros disappear, nothing is merged or flattened."""
@@ -186,16 +150,12 @@ class Graph:
     def _plain(self, kind: str, operands: list[int], neutral: int) -> int:
         if len(operands) > 1:
             operands.sort()
-            return self._node(kind, tuple(operands))
+            return self.operation(kind, tuple(operands))
         return operands[0] if operands else neutral
 
     def scaled(self, factor: Fraction | int, node: int) -> int:
         """Return factor · node without looking at anything but node's own numerical factor."""
-        own, rest = self._factored(node)
-        if rest is None or not factor:
-            return self.number(factor * own)
-        operands = self.nodes[rest].operands if self.nodes[rest].kind == "mul" else (rest,)
-        return self._product(factor * own, operands)
+        return algebra.scaled(self, factor, node)
 
     def negative(self, node: int) -> int:
         """Return −node."""
@@ -206,32 +166,12 @@ class Graph:
 
     def apart(self, node: int) -> int:
         """Return c·x with x as one factor, which other multiples of x then share."""
-        factor, rest = self._factored(node)
+        factor, rest = algebra.factored(self, node)
         return node if rest is None or factor == 1 else self.multiple(factor, rest)
 
     def multiple(self, factor: Fraction | int, node: int) -> int:
         """Return factor · node with the node as it is."""
-        return self._node("mul", (self.number(factor), node))
-
-    def pow(self, base: int, exponent: int) -> int:
-        """Return base**exponent, the principal value."""
-        if self.nodes[exponent].kind != "number":
-            return self._node("pow", (base, exponent))
-        power: Fraction = self.nodes[exponent].value
-        if power in (0, 1):
-            return base if power else self.number(1)
-        node = self.nodes[base]
-        if node.kind == "number":
-            folded = folded_power(node.value, power)
-            return self._node("pow", (base, exponent)) if folded is None else self.number(folded)
-        if power.denominator == 1:
-            inner, own = self._powered(base)
-            if own != 1:
-                return self.pow(inner, self.number(own * power))
-            factor, rest = self._factored(base)
-            if factor != 1 and rest is not None:
-                return self.mul([self.pow(self.number(factor), exponent), self.pow(rest, exponent)])
-        return self._node("pow", (base, exponent))
+        return self.operation("mul", (self.number(factor), node))
 
     def power(self, base: int, exponent: Fraction | int) -> int:
         """Return base**exponent for an exact exponent."""
@@ -245,32 +185,7 @@ class Graph:
             )
         if len(operands) == 1 and operands[0] == self.zero and name in AT_ZERO:
             return self.number(AT_ZERO[name])
-        return self._node(name, operands)
-
-    def _flat(self, kind: str, operands: Iterable[int]) -> list[int]:
-        flat: list[int] = []
-        for operand in operands:
-            node = self.nodes[operand]
-            flat.extend(
-                node.operands if node.kind == kind and len(node.operands) <= _FLATTENED else (operand,)
-            )
-        return flat
-
-    def _factored(self, node: int) -> tuple[Fraction | int, int | None]:
-        """Split c·x into its number c and the rest x (None where the node is a number)."""
-        kind, operands, value = self.nodes[node]
-        if kind == "number":
-            return value, None
-        if kind == "mul" and self.nodes[operands[0]].kind == "number":
-            return self.nodes[operands[0]].value, self._product(1, operands[1:])
-        return 1, node
-
-    def _powered(self, node: int) -> tuple[int, Fraction | int]:
-        """Split x**c into x and the exact number c (1 for what is no such power)."""
-        kind, operands, _ = self.nodes[node]
-        if kind == "pow" and self.nodes[operands[1]].kind == "number":
-            return operands[0], self.nodes[operands[1]].value
-        return node, 1
+        return self.operation(name, operands)
 
     # SymPy ---------------------------------------------------------------------------------------
 
