@@ -45,7 +45,7 @@ class LinearMotion:
         self.words = 2 * self.size
         self.state = w.array(self.words)
         self.carried = w.at(self.state, self.size) if compensated else ""
-        self.moved, self.rest = w.array(self.size), w.array(self.size)
+        self.moved, self.rest, self.slip = (w.array(self.size) for _ in range(3))
 
     def enter(self, y: str, e: str) -> None:
         """Write the working state: y and e themselves."""
@@ -86,12 +86,50 @@ class LinearMotion:
             number = w.load(self.state, j)
             carried = w.load(self.carried, j) if self.compensated else zero
             with w.loop(0, n) as i:
-                w.store(w.multiply_add(w.load(main, i), number, w.load(self.moved, i)), self.moved, i)
                 rest = w.multiply_add(w.load(small, i), number, w.load(self.rest, i))
-                w.store(w.multiply_add(w.load(main, i), carried, rest), self.rest, i)
+                if self.compensated:
+                    self._add_exactly(w.load(main, i), number, i)
+                    rest = w.algebra("add", rest, w.load(self.slip, i))
+                    rest = w.multiply_add(w.load(main, i), carried, rest)
+                else:
+                    w.store(w.multiply_add(w.load(main, i), number, w.load(self.moved, i)), self.moved, i)
+                w.store(rest, self.rest, i)
         with w.loop(0, n) as i:
-            total = w.algebra("add", w.load(self.moved, i), w.load(self.rest, i))
-            increase(w, self.state, self.carried, i, w.constant(Fraction(1)), total)
+            if self.compensated:
+                self._take(i)
+            else:
+                total = w.algebra("add", w.load(self.moved, i), w.load(self.rest, i))
+                increase(w, self.state, "", i, w.constant(Fraction(1)), total)
+
+    def _add_exactly(self, a: str, b: str, i: str) -> None:
+        """Write moved_i + a b, and what rounding takes from product and sum into slip_i."""
+        w = self.w
+        product = w.algebra("mul", a, b)
+        total, lost = _sum(w, w.load(self.moved, i), product)
+        w.store(total, self.moved, i)
+        slip = w.multiply_add(a, b, w.negative(product))
+        w.store(w.algebra("add", slip, lost), self.slip, i)
+
+    def _take(self, i: str) -> None:
+        """Write y_i + e_i + moved_i + rest_i as a sum of two doubles.
+
+        Rounding moved + rest to one double would be enough for random errors, but these, functions of a state that
+        returns, add up to a drift of a quarter of a unit in each step.
+        """
+        w = self.w
+        total, lost = _sum(w, w.load(self.state, i), w.load(self.moved, i))
+        small = w.algebra("add", w.load(self.carried, i), w.algebra("add", w.load(self.rest, i), lost))
+        new, carried = _sum(w, total, small)
+        w.store(new, self.state, i)
+        w.store(carried, self.carried, i)
+
+
+def _sum(w: Writer, a: str, b: str) -> tuple[str, str]:
+    """Return a + b and what its rounding takes (D. E. Knuth's two-sum)."""
+    total = w.algebra("add", a, b)
+    back = w.algebra("sub", total, a)
+    lost = w.algebra("add", w.algebra("sub", a, w.algebra("sub", total, back)), w.algebra("sub", b, back))
+    return total, lost
 
 
 def flow_matrices(part: Quadratic, times: Sequence[Fraction]) -> list[Fraction]:
