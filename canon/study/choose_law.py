@@ -90,16 +90,18 @@ def _widening(pilot: Pilot, ratio: float) -> float:
 def _position(pilot: Pilot, span: float) -> float:
     """Return the position error: a sum of powers of time with positive coefficients, fitted to its envelope."""
     t, envelope = pilot.t / pilot.span, np.maximum.accumulate(pilot.largest)
-    if envelope[-1] <= 0.0:
-        return 0.0
-    half, whole = envelope[t.size // 2 - 1], envelope[-1]
+    quarter, half, whole = envelope[t.size // 4], envelope[t.size // 2 - 1], envelope[-1]
+    if quarter <= 0.0:
+        return float(whole * (span / pilot.span) ** 2)
     if whole > 2.0**CHAOTIC * half and whole > 1e-14:
         return math.inf
+    symplectic = is_symplectic(pilot.setting.method)
     if whole > SATURATED:
-        return math.inf if is_symplectic(pilot.setting.method) is False else float(whole * span / pilot.span)
-    powers = np.array([0.5, 1.0] if is_symplectic(pilot.setting.method) else [0.5, 1.0, 2.0])
+        return float(whole * span / pilot.span) if symplectic else math.inf
+    powers = np.array([0.5, 1.0] if symplectic else [0.5, 1.0, 2.0])
     design = t[:, None] ** powers
-    weights, _ = nnls(design / envelope[:, None], np.ones(t.size))
+    late = t.size // 4
+    weights, _ = nnls(design[late:] / envelope[late:, None], np.ones(t.size - late))
     fitted = float(weights @ (span / pilot.span) ** powers)
-    excess = float((envelope / (design @ weights))[t.size // 2 :].max()) if weights.any() else 1.0
+    excess = float((envelope[late:] / (design[late:] @ weights)).max())
     return max(fitted * max(1.0, excess), float(whole))

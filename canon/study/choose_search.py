@@ -140,7 +140,9 @@ def searched(
     """
     if not isinstance(method, FixedStep):
         return _by_tolerance(question, method, precision, duration, accuracy, cheapest)
-    first = _first_step(method, natural, accuracy, duration)
+    # An integral may be kept exactly whatever the step: begin with a large one.
+    error = accuracy if question.integral is None else 1.0
+    first = _first_step(method, natural, error, duration)
     setting = Setting(method, step=first, precision=precision)
     good: _Try | None = None
     bad: _Try | None = None

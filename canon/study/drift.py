@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.study.block import WIDTH, Blocks, block_means
-from canon.study.growth import Exponent, Slope, Walk, power_of_time, power_of_wandering, slope_of, walk_of
+from canon.study.growth import (
+    Exponent,
+    Slope,
+    Walk,
+    power_of_time,
+    power_of_wandering,
+    return_of,
+    slope_of,
+    walk_of,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -30,6 +39,15 @@ FEWEST = 256
 
 WALK_EVIDENCE = 5.4
 """Evidence for a walk that series without one reach once in a hundred."""
+
+RETURNS = 5.5
+"""Evidence for a return to the mean that a random walk reaches once in a hundred."""
+
+PERHAPS_RETURNS = 2.8
+"""Evidence that it reaches in one of twenty."""
+
+LONGEST_MEMORY = 0.125
+"""Share of the run above which a memory is too long to tell a return from a walk."""
 
 BLOW_UP = 30.0
 """Ratio of the last window to the median one (root mean square) that only growth faster than t⁴ reaches."""
@@ -185,6 +203,7 @@ def drift(
         verdict, exponent, reason = _secular(blocks, slope, breath, drifts, widens)
     elif walk.size:
         verdict, exponent, reason = _wandering(times, values, blocks, walk, roundoff)
+        walk = Walk(walk.evidence, 0.0) if verdict is Growth.BOUNDED else walk
     else:
         verdict, exponent, reason = _bounded(blocks)
     return Drift(
@@ -287,9 +306,15 @@ def _wandering(
     if times.size >= 16 * FINE_WINDOWS:
         means = block_means(times, values, FINE_WINDOWS).mean
     exponent = power_of_wandering(means, beside_scatter=True)
+    back = return_of(means)
+    if back.evidence > RETURNS and back.memory < LONGEST_MEMORY * means.size:
+        memory = back.memory * blocks.duration * (WINDOWS + WIDTH) / (means.size + WIDTH)
+        return Growth.BOUNDED, exponent, f"the mean wanders, but returns within a time of about {memory:.2g}"
     found = f"the mean wanders by {walk.size:.2g} over the run"
     if roundoff is not None and walk.size > BEYOND_ROUND_OFF * roundoff:
         found += f", far beyond the {roundoff:.2g} of round-off"
+    elif back.evidence > PERHAPS_RETURNS:
+        found += ", and perhaps returns"
     elif exponent.low <= 0.5 <= exponent.high:
         return Growth.ROUND_OFF, exponent, f"{found}, as a random walk does"
     else:

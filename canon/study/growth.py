@@ -19,14 +19,14 @@ from scipy.optimize import root_scalar
 from scipy.special import stdtr
 
 from canon.study.block import PLACES, WIDTH, bump, window_starts
-from canon.study.noise import Family, Fit, fit, fractional, local_level, wandering
+from canon.study.noise import Family, Fit, fit, fractional, local_level, returning, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
 
-__all__ = ["Exponent", "Slope", "Walk", "power_of_time", "power_of_wandering", "slope_of", "walk_of"]
+__all__ = ["Exponent", "Return", "Slope", "Walk", "power_of_time", "power_of_wandering", "return_of", "slope_of", "walk_of"]
 
 PURE_WALK_WEIGHT = 0.5
 """Prior weight of "nothing but walk"; the other half is spread evenly over the logarithm of the ratio."""
@@ -57,6 +57,14 @@ class Walk:
 
     evidence: float
     size: float
+
+
+@dataclass(frozen=True)
+class Return:
+    """Twice the log-likelihood ratio for a return of the level to its mean, and the memory in blocks."""
+
+    evidence: float
+    memory: float
 
 
 @dataclass(frozen=True)
@@ -120,6 +128,20 @@ def walk_of(means: Array) -> Walk:
     evidence = 2.0 * float(found.log_likelihood[best] - found.log_likelihood[0])
     share = 1.0 if np.isinf(family.ratio[best]) else family.ratio[best]
     return Walk(evidence, float(np.sqrt(found.scale[best] * share * (means.size + WIDTH))))
+
+
+def return_of(means: Array) -> Return:
+    """Return the evidence that the level of block means comes back to its mean instead of walking away.
+
+    Restricted likelihood ratio of a walk with a memory (Ornstein & Uhlenbeck's process) against the random
+    walk, both beside scatter and a slope.
+    """
+    family = returning(means.size)
+    found = _fit(means, family)
+    walks = np.isinf(family.exponent)
+    best = int(np.where(walks, -np.inf, found.log_likelihood).argmax())
+    evidence = 2.0 * float(found.log_likelihood[best] - found.log_likelihood[walks].max())
+    return Return(evidence, float(family.exponent[best]))
 
 
 def power_of_wandering(means: Array, beside_scatter: bool) -> Exponent:

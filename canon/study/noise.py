@@ -18,6 +18,8 @@ import numpy as np
 from canon.study.block import PLACES, WIDTH, bump, window_starts
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
@@ -28,6 +30,7 @@ __all__ = [
     "fit",
     "fractional",
     "local_level",
+    "returning",
     "scatter_covariance",
     "walk_covariance",
     "wandering",
@@ -41,7 +44,7 @@ class Family:
     Parameters
     ----------
     exponent
-        Exponent H of the wandering part of each member, shape (members,).
+        Exponent H of the wandering part of each member, shape (members,); of a returning one its memory.
     ratio
         Its variance per block over that of the scatter about the level; ``inf`` without scatter.
     whitener
@@ -127,8 +130,24 @@ def wandering(windows: int) -> Family:
     return _family(np.repeat(exponents, ratios.size), np.tile(ratios, exponents.size), windows)
 
 
-def _family(exponents: Array, ratios: Array, windows: int) -> Family:
-    walks = {float(h): walk_covariance(float(h), windows) for h in np.unique(exponents)}
+@lru_cache(maxsize=16)
+def returning(windows: int) -> Family:
+    """Return scatter about a level that walks but returns, with memories from one block to the whole run (and none).
+
+    A grid of memories in blocks (slow index; the last one, ``inf``, is the random walk) and ratios.
+    """
+    memories = np.concatenate([np.geomspace(1.0, windows + WIDTH, 15), [np.inf]])
+    ratios = np.concatenate([np.geomspace(1.0 / windows**2, 10.0, 9), [np.inf]])
+    return _family(np.repeat(memories, ratios.size), np.tile(ratios, memories.size), windows, returning_covariance)
+
+
+def _family(
+    exponents: Array,
+    ratios: Array,
+    windows: int,
+    covariance: Callable[[float, int], Array] = lambda h, windows: walk_covariance(h, windows),
+) -> Family:
+    walks = {float(h): covariance(float(h), windows) for h in np.unique(exponents)}
     scatter = scatter_covariance(windows)
     members = [
         walks[float(h)] if np.isinf(ratio) else scatter + ratio * walks[float(h)]
@@ -164,6 +183,19 @@ def walk_covariance(exponent: float, windows: int) -> Array:
     kernel = np.diff(_primitive(edges, exponent)) * PLACES
     mean = -0.5 * np.convolve(kernel, _autocorrelation(), mode="valid")
     return _of_increments(mean, windows)
+
+
+def returning_covariance(memory: float, windows: int) -> Array:
+    """Return the covariance of the increments of window means of a walk that returns (Ornstein & Uhlenbeck's).
+
+    Its covariance ½ m e^(−lag/m), m the memory in blocks, tends to that of the walk of unit variance per block.
+    """
+    if np.isinf(memory):
+        return walk_covariance(0.5, windows)
+    reach = PLACES * (windows + WIDTH)
+    lags = np.abs(np.arange(-WIDTH * PLACES, reach) + 1.0) / PLACES
+    kernel = 0.5 * memory * np.exp(-lags / memory)
+    return _of_increments(np.convolve(kernel, _autocorrelation(), mode="valid"), windows)
 
 
 def _of_increments(covariance_by_lag: Array, windows: int) -> Array:
