@@ -22,6 +22,7 @@ BENCHMARKS = {
     "canonical": "Canonical maps and generating functions",
     "derivation": "Equations of motion, beside SymPy's LagrangesMethod",
     "kernels": "Compiled loops, beside a C program",
+    "scale_out": "Studies on two processes",
     "drift_calibration": "The drift statistics on series of known growth",
 }
 HEAD = """\

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from matplotlib.patches import Rectangle
 
+import canon
 from canon import RK4, Gauss, Splitting, Taylor, propagate
 from canon.flow.event import Event
 from canon.plot import (
@@ -200,11 +201,12 @@ def test_a_section_is_drawn_over_its_reference():
 
 
 def test_the_report_holds_everything_and_needs_nothing(results):
-    page = study_report(results, "a <study> & more", {"canon": "1.0"})
+    page = study_report(results, "a <study> & more")
     assert "<h1>a &lt;study&gt; &amp; more</h1>" in page
     assert page.count("<tr class=") == len(results)
     assert "does not split into drifts and kicks" in page
     assert "50 % done" in page
+    assert f"8 cases computed with canon {canon.__version__}, heyoka" in page
     images = re.findall(r'src="data:image/svg\+xml;base64,([^"]+)"', page)
     assert len(images) == page.count("<img") == 6
     for image in images:

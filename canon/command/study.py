@@ -144,10 +144,9 @@ def _export(arguments: argparse.Namespace) -> int:
 
 def _report(arguments: argparse.Namespace) -> int:
     from canon.plot.report import study_report
-    from canon.study.case import versions
     from canon.study.result import results_of
 
-    page = study_report(results_of(_existing(arguments.store)), arguments.store.stem, versions())
+    page = study_report(results_of(_existing(arguments.store)), arguments.store.stem)
     arguments.output.write_text(page, encoding="utf-8")
     print(f"report: {arguments.output}")
     return 0
@@ -235,14 +234,15 @@ def _progress() -> Generator[Callable[[Status], None] | None]:
     if not sys.stderr.isatty():
         yield None
         return
-    with tqdm(unit="case", leave=False) as bar:
+    form = "{percentage:3.0f}% {bar} {n:.2f} of {total_fmt} cases, {remaining} left {postfix}"
+    with tqdm(total=0, leave=False, bar_format=form) as bar:
 
         def show(status: Status) -> None:
-            if bar.total is None:
-                bar.initial = status.finished + status.failed - 1
-                bar.reset(total=status.total)
-            bar.set_postfix_str(f"{status.failed} failed" if status.failed else "")
-            bar.update(status.finished + status.failed - bar.n)
+            done = status.finished + status.failed + status.partly
+            if not bar.total:  # what was finished before says nothing of the time that is left
+                bar.total, bar.initial, bar.n = status.total, done, done
+            bar.set_postfix_str(f"({status.failed} failed)" if status.failed else "")
+            bar.update(done - bar.n)
 
         yield show
 

@@ -14,7 +14,7 @@ from canon.plot.work import plot_drift_by_step
 from canon.study.result import State
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from matplotlib.axes import Axes
 
@@ -53,7 +53,7 @@ COLUMNS = ("motion", "method", "verdict", "max |ΔE/E|", "drift per unit of time
            "seconds")  # fmt: skip
 
 
-def study_report(results: Sequence[Result], title: str, versions: Mapping[str, str] | None = None) -> str:
+def study_report(results: Sequence[Result], title: str) -> str:
     """Return a page that shows a study: all cases as a picture and a table, and the errors of each motion.
 
     Parameters
@@ -62,8 +62,6 @@ def study_report(results: Sequence[Result], title: str, versions: Mapping[str, s
         What :func:`canon.study.result.results_of` returned.
     title
         Heading of the page.
-    versions
-        Versions of canon and its libraries to name.
 
     Raises
     ------
@@ -81,7 +79,7 @@ def study_report(results: Sequence[Result], title: str, versions: Mapping[str, s
             f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
             f"<title>{heading}</title><style>{STYLE}</style></head><body>",
             f"<h1>{heading}</h1>",
-            *_summary(results, versions or {}),
+            *_summary(results),
             *_motions(results),
             "<h2>All cases</h2>",
             *_table(results),
@@ -90,17 +88,19 @@ def study_report(results: Sequence[Result], title: str, versions: Mapping[str, s
     )
 
 
-def _summary(results: Sequence[Result], versions: Mapping[str, str]) -> Iterator[str]:
+def _summary(results: Sequence[Result]) -> Iterator[str]:
     axes = plot_study_heatmap(results)
     yield _figure(axes, f"every case of the study as a cell: {axes.get_title(loc='left')}")
+    for versions in dict.fromkeys(tuple(result.versions.items()) for result in results if result.versions):
+        count = sum(tuple(result.versions.items()) == versions for result in results)
+        named = ", ".join(f"{name} {number}" for name, number in versions)
+        yield f"<p>{count} cases computed with {escape(named)}.</p>"
     failed = [result for result in results if result.state is State.FAILED]
     if failed:
         yield "<h2>What failed, and why</h2><ul>"
         for result in failed:
             yield f"<li>{escape(result.motion)}, {escape(result.setting)}: {escape(result.failure)}</li>"
         yield "</ul>"
-    if versions:
-        yield f"<p>{escape(', '.join(f'{name} {number}' for name, number in versions.items()))}</p>"
 
 
 def _motions(results: Sequence[Result]) -> Iterator[str]:

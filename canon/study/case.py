@@ -112,10 +112,14 @@ class Case:
             "parameters": dict(self.parameters),
         }
 
+    def to_text(self) -> str:
+        """Return the case as JSON, with the present versions of what computes it."""
+        return json.dumps({**self.to_dict(), "versions": versions()}, ensure_ascii=False)
+
     @staticmethod
     def from_dict(fields: Mapping[str, Any]) -> Case:
         """Return the case that :meth:`to_dict` wrote."""
-        given: dict[str, Any] = dict(fields)
+        given: dict[str, Any] = {name: value for name, value in fields.items() if name != "versions"}
         start, system = given.pop("start"), given.pop("system")
         return Case(
             system=system if isinstance(system, str) else Formula.from_dict(system),

@@ -39,8 +39,9 @@ class ExportError(ImportError):
 def rows_of(store: Store) -> list[dict[str, Any]]:
     """Return one flat row a case, pending and failed ones included; None where there is no number.
 
-    Columns are the inputs (``inputs`` has them all as JSON, a column ``parameter NAME`` each changed parameter), the
-    numbers of :class:`canon.study.drift.Drift`, the cost, ``final`` (the last state) and ``failure``.
+    Columns are the inputs (a column ``parameter NAME`` each changed parameter), the numbers of
+    :class:`canon.study.drift.Drift`, the cost, ``final`` (the last state), ``failure``, and all inputs with the
+    versions as JSON in ``inputs``.
     """
     return [_row(result) for result in results_of(store)]
 
@@ -145,7 +146,7 @@ def _row(result: Result) -> dict[str, Any]:
         "seconds": result.seconds,
         "done": result.done,
         "failure": result.failure,
-        "inputs": json.dumps(case.to_dict(), ensure_ascii=False),
+        "inputs": json.dumps({**case.to_dict(), "versions": dict(result.versions)}, ensure_ascii=False),
     }
 
 

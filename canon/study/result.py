@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from canon.study.case import Case, parts_of
@@ -45,6 +46,8 @@ class Result:
         Processor time; None while it is pending.
     done
         Fraction of the run that is done.
+    versions
+        Versions of canon and the libraries that computed it, or are to.
     """
 
     key: str
@@ -54,6 +57,7 @@ class Result:
     failure: str = ""
     seconds: float | None = None
     done: float = 1.0
+    versions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def motion(self) -> str:
@@ -89,13 +93,14 @@ def results_of(store: Store | str | Path) -> list[Result]:
     records, parts = store.records(), store.parts_done()
     found: list[Result] = []
     for key, inputs in store.cases().items():
-        case, record = Case.from_dict(json.loads(inputs)), records.get(key)
+        written, record = json.loads(inputs), records.get(key)
+        case, by = Case.from_dict(written), MappingProxyType(written.get("versions", {}))
         if record is None:
             done = parts.get(key, 0) / parts_of(case)
-            found.append(Result(key, case, State.PENDING, {}, done=done))
+            found.append(Result(key, case, State.PENDING, {}, done=done, versions=by))
         elif record.failure:
-            found.append(Result(key, case, State.FAILED, {}, record.failure, record.seconds))
+            found.append(Result(key, case, State.FAILED, {}, record.failure, record.seconds, versions=by))
         else:
             numbers = json.loads(record.outcome)
-            found.append(Result(key, case, State.FINISHED, numbers, "", record.seconds))
+            found.append(Result(key, case, State.FINISHED, numbers, "", record.seconds, versions=by))
     return found

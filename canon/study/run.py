@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from canon.study.case import Case, key_of
+from canon.study.case import Case, key_of, parts_of, versions
 from canon.study.errors import StudyError
 from canon.study.leg import Checkpoint, FailedRun, Outcome, advance
 from canon.study.store import Record, Store
@@ -29,12 +29,16 @@ CHECKPOINT_SECONDS = 30.0
 
 @dataclass(frozen=True)
 class Status:
-    """How far a study is; ``begun`` of the pending cases have a checkpoint."""
+    """How far a study is; ``begun`` of the pending cases have a checkpoint, ``partly`` cases' worth is done of them.
+
+    ``partly`` is known while a study runs, to whoever runs it.
+    """
 
     finished: int
     failed: int
     pending: int
     begun: int = 0
+    partly: float = 0.0
 
     @property
     def total(self) -> int:
@@ -83,7 +87,7 @@ def run_study(
     """
     kept = store if isinstance(store, Store) else Store(Path(store))
     keyed = {key_of(case): case for case in study.cases}
-    kept.add_cases({key: json.dumps(case.to_dict()) for key, case in keyed.items()})
+    kept.add_cases({key: case.to_text() for key, case in keyed.items()})
     _run(keyed, kept, executor, progress, checkpoint_seconds)
     return status_of(kept)
 
@@ -100,8 +104,12 @@ def resume(
     written = {key: Case.from_dict(json.loads(cases[key])) for key in kept.pending()}
     for key, case in written.items():
         if key_of(case) != key:
+            then = json.loads(cases[key]).get("versions", {})
+            other = ", ".join(
+                f"{name} {number}" for name, number in then.items() if number != versions().get(name)
+            )
             raise StudyError(
-                f"{kept.path} was begun with other versions of canon or its libraries; resume with those, "
+                f"{kept.path} was begun with other versions ({other or 'not known'}); resume with those, "
                 "or run the study again to have all cases with the present ones"
             )
     _run(written, kept, executor, progress, checkpoint_seconds)
@@ -134,13 +142,16 @@ def _run(
     if not seconds >= 0.0:
         raise StudyError(f"checkpoint_seconds = {seconds}: give a time, 0 or more")
     pending = _not_finished(cases, store)
+    done: dict[str, float] = {}
     for key, found in _here(pending, seconds) if executor is None else _on(executor, pending, seconds):
         if isinstance(found, Record):
             store.save(found)
+            done.pop(key, None)
         else:
             store.save_checkpoint(key, found.part, found.to_text())
+            done[key] = found.part / parts_of(cases[key])
         if progress is not None:
-            progress(status_of(store))
+            progress(replace(status_of(store), partly=sum(done.values())))
 
 
 def _not_finished(cases: Mapping[str, Case], store: Store) -> Iterator[tuple[str, Case, Checkpoint | None]]:

@@ -98,6 +98,14 @@ def test_killed_at_any_moment_it_ends_the_same(tmp_path, uninterrupted):
     assert outcomes(store) == uninterrupted
 
 
+def test_progress_tells_how_much_of_a_run_is_done(tmp_path):
+    seen = []
+    study = Study(LONG.cases[:2])
+    run_study(study, tmp_path / "seen.sqlite", progress=seen.append, checkpoint_seconds=0.0)
+    assert [status.finished + status.partly for status in seen] == [k / 16 for k in range(1, 33)]
+    assert [status.begun for status in seen] == ([1] * 15 + [0]) * 2
+
+
 def test_two_processes_on_one_study(tmp_path, uninterrupted):
     path = tmp_path / "shared.sqlite"
     both = [begin(path) for _ in range(2)]

@@ -102,11 +102,13 @@ def test_threads_give_the_same(tmp_path, uninterrupted):
 
 
 def test_failures_are_rows_with_reasons(tmp_path):
-    study = Study.of(system="double-pendulum", method=["verlet", "rk4"], step=0.02, periods=20.0, samples=300)
+    methods = ["verlet", "rk4", "wisdom-holman", {"splitting": {"a": ["1/2", "1/2"], "b": [1]}}]
+    study = Study.of(system="double-pendulum", method=methods, step=0.02, periods=20.0, samples=300)
     store = Store(tmp_path / "failures.sqlite")
     status = run_study(study, store)
-    assert (status.finished, status.failed, status.pending) == (1, 1, 0)
-    failed, finished = rows_of(store)
+    assert (status.finished, status.failed, status.pending) == (1, 3, 0)
+    failed, finished, *others = rows_of(store)
+    assert all(row["failure"] and "bound" not in row for row in others)
     assert failed["state"] == "failed"
     assert "does not split" in failed["failure"]
     assert "bound" not in failed
@@ -143,8 +145,8 @@ def test_a_file_begun_with_other_versions_is_not_resumed(tmp_path, monkeypatch):
     case = SHORT.cases[0]
     with monkeypatch.context() as patch:
         patch.setattr("canon.study.case.versions", lambda: {"canon": "0.0"})
-        store.add_cases({key_of(case): json.dumps(case.to_dict())})
-    with pytest.raises(StudyError, match="begun with other versions"):
+        store.add_cases({key_of(case): case.to_text()})
+    with pytest.raises(StudyError, match=r"begun with other versions \(canon 0\.0\)"):
         resume(store)
 
 
