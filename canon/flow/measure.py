@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -17,9 +18,12 @@ if TYPE_CHECKING:
     from canon.kernel.machine import MachineType
     from canon.kernel.structure import Equations
 
-__all__ = ["measured", "values_in"]
+__all__ = ["AccuracyWarning", "measured", "values_in", "warn_of_jumps"]
 
 Array = npt.NDArray[np.float64]
+
+_IMPLAUSIBLE = 0.5
+"""An energy that changes by more than this part of the size of H's terms at the start is no small error."""
 
 _WIDE = bool(np.finfo(np.longdouble).nmant >= 63)
 
@@ -60,6 +64,52 @@ def values_in(
     ]
     high = exactly.astype(np.float64)
     return np.stack([high, (exactly - high).astype(np.float64)], axis=-1)
+
+
+class AccuracyWarning(UserWarning):
+    """The computed motion is certainly not the system's."""
+
+
+def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
+    """Warn where the energy of an autonomous system changed as by a step over a singularity.
+
+    Steps of one size may pass a collision from one side to the other without ever meeting an infinity. The
+    energy does not survive it: where it has changed by half the size of H's terms at the start, the motion
+    after that is not the system's.
+
+    Parameters
+    ----------
+    system
+        The equations.
+    samples
+        The motion.
+    change
+        H − H(start), shape (times, orbits).
+
+    Warns
+    -----
+    AccuracyWarning
+        With the interval of time in which that was first seen.
+    """
+    node = system.graph.nodes[system.hamiltonian]
+    terms = node.operands if node.kind == "add" else (system.hamiltonian,)
+    values = dict(zip(system.inputs, (*samples.y[:, 0], np.float64(samples.t[0])), strict=True))
+    sizes = [abs(np.broadcast_to(v, change.shape[1:])) for v in system.graph.evaluate(terms, values)]
+    wrong = np.abs(change) > _IMPLAUSIBLE * np.sum(sizes, axis=0)
+    wrong[:, np.sum(sizes, axis=0) == 0] = (
+        False  # started at rest where H is 0: there is nothing to compare with
+    )
+    if not wrong.any():
+        return
+    first, orbit = (int(k[0]) for k in np.nonzero(wrong))
+    which = f" of orbit {orbit}" if change.shape[1] > 1 else ""
+    warnings.warn(
+        f"the energy{which} changes by {change[first, orbit]:.3g} up to t = {samples.t[first]:.9g} (t = "
+        f"{samples.t[first - 1]:.9g} before that): a step jumped over a collision or is far too large; what follows is "
+        "not the system's motion. Take a smaller step, Taylor(), or stop before with an Event",
+        AccuracyWarning,
+        stacklevel=4,
+    )
 
 
 def _rounded(values: npt.NDArray[Any]) -> Array:

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 __all__ = ["taylor_motion"]
 
+_MANY_STEPS, _CREEPING = 50_000, 1e-10
+"""Where so many steps pass less than this part of what is left, they shrink towards a singularity."""
+
 _SMALL_PART = 2.0**-30
 """What part of a step is passed without events after one that changed the state."""
 
@@ -172,6 +175,7 @@ class _Orbit:
     free: Any
     span: Any
     pieces: list[Any] = field(default_factory=list[Any])
+    safe: tuple[Any, Any] = (None, None)
 
     def advance(self, grid: Any, *, dense: bool) -> _Slice:
         """Go from the first time of a grid to its last and return the states at all but the first."""
@@ -225,12 +229,28 @@ class _Orbit:
 
     def _towards(self, integrator: Any, times: list[Any], *, dense: bool) -> tuple[int, list[Any], Any]:
         """Return steps taken, the states at the times reached, and the outcome."""
-        most = {"max_delta_t": abs(self.span)} if self.meeting.events else {}
+        from heyoka import taylor_outcome
+
+        steps, rows = 0, list[Any]()
+        while True:
+            self.safe = (integrator.state.copy(), integrator.dtime)
+            before, left = integrator.time, times[len(rows) :]
+            taken, found, outcome = self._some_steps(integrator, left, dense=dense)
+            steps += taken
+            rows += found
+            passed, ahead = abs(integrator.time - before), abs(times[-1] - integrator.time)
+            if outcome != taylor_outcome.step_limit or not passed > ahead * _CREEPING:
+                return steps, rows, outcome
+
+    def _some_steps(self, integrator: Any, times: list[Any], *, dense: bool) -> tuple[int, list[Any], Any]:
+        limits = {"max_steps": _MANY_STEPS}
+        if self.meeting.events:
+            limits["max_delta_t"] = abs(self.span)
         if not dense:
             grid = np.array([integrator.time, *times])
-            outcome, _, _, steps, _, found = integrator.propagate_grid(grid, **most)
+            outcome, _, _, steps, _, found = integrator.propagate_grid(grid, **limits)
             return steps, list(found[1:]), outcome
-        outcome, _, _, steps, piece, _ = integrator.propagate_until(times[-1], c_output=True, **most)
+        outcome, _, _, steps, piece, _ = integrator.propagate_until(times[-1], c_output=True, **limits)
         if piece is None:
             return steps, [], outcome
         self.pieces.append(piece)
@@ -238,13 +258,21 @@ class _Orbit:
         return steps, [np.array(piece(t)) for t in times if first <= t <= last], outcome
 
     def lost(self, outcome: object, rows: Sequence[int]) -> NonFiniteStateError:
-        """Return the error that says where the motion ended."""
-        t, state = float(self.integrator.time), self.integrator.state.astype(np.float64)[list(rows)]
+        """Return the error that says where the motion ended: its last finite step is looked for again."""
+        own = self.integrator
+        own.state[:], own.dtime = self.safe
+        t, state = own.time, own.state.copy()
+        for _ in range(_MANY_STEPS):
+            own.step(self.span)
+            if not np.isfinite(own.state.astype(np.float64)).all() or own.time == t:
+                break
+            t, state = own.time, own.state.copy()
+        y = state.astype(np.float64)[list(rows)]
         return NonFiniteStateError(
-            f"the motion can't be continued after {described(t, state)} ({outcome}): a collision or the edge of "
+            f"the motion can't be continued after {described(float(t), y)} ({outcome}): a collision or the edge of "
             "H's domain; stop earlier",
-            t,
-            state,
+            float(t),
+            y,
         )
 
 

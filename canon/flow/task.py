@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from canon.flow.adaptive import dop853_motion
 from canon.flow.event import Event, prepared
 from canon.flow.fixed import compiled_loop, fixed_steps, watch_for
-from canon.flow.measure import measured
+from canon.flow.measure import measured, warn_of_jumps
 from canon.flow.method import DOP853, FixedStep, Method, Taylor
 from canon.flow.precision import fixed_precision
 from canon.flow.series import taylor_motion
@@ -106,6 +106,9 @@ class Task:
         (energy, change), *rest = measured(self.system, self.nodes, found, self.precision_name)
         rows, names = self.system.rows, ("energy", *self.names)
         all_rows = len(rows) == len(found.y)
+        changed = any(met.after is not None for met in found.crossings)
+        if self.system.autonomous and not changed:
+            warn_of_jumps(self.system, kept, change.reshape(len(change), -1))
         return Trajectory(
             t=found.t,
             y=found.y if all_rows else found.y[rows],

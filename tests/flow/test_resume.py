@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from canon.flow.event import Event
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method import DOP853, RK4, Gauss, Splitting
 from canon.flow.propagate import Interrupted, propagate
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
