@@ -107,6 +107,7 @@ HOOP = Scene(
     name="bead-hoop",
     title="Bead on a hoop that turns about its vertical diameter: it rests aside where w² > g/a",
     coordinates="phi",
+    angles="phi",
     parameters=(
         Parameter("m", 0.05, "kg", "mass of the bead"),
         Parameter("a", _HOOP["a"], "m", "radius of the hoop"),

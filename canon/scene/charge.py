@@ -154,6 +154,7 @@ STORMER = Scene(
     name="stormer",
     title="Störmer's problem: a proton of 10 MeV caught in the field of the Earth's dipole",
     coordinates="rho phi z",
+    angles="phi",
     parameters=(
         Parameter("m", 1.67262192e-27, "kg", "mass of the proton"),
         _CHARGE,
@@ -181,8 +182,6 @@ STORMER = Scene(
     L_of=_dipole,
     integrals=(Integral("canonical angular momentum p_phi", lambda s: s.phi.momentum),),
     picture_of=_dipole_picture,
-    energy_bound=1e-11,
-    energy_why="p_phi is a small difference of large terms",
     shown=150.0,
 )
 

@@ -91,7 +91,7 @@ DUFFING = Scene(
     source="Guckenheimer & Holmes, Nonlinear Oscillations, Dynamical Systems, and Bifurcations, § 2.2",
     L_of=lambda s: s.x.dot**2 / 2 + s.x**2 / 2 - s.x**4 / 4,
     forces_of=_driven_forces,
-    energy_bound=1e-11,
+    energy_bound=1e-12,
     energy_why="the work is a sum over the whole run, hundreds of times the energy",
 )
 
@@ -117,6 +117,7 @@ FORCED = Scene(
     name="forced-pendulum",
     title="Forced pendulum: a damped pendulum under a periodic torque, chaotic",
     coordinates="theta",
+    angles="theta",
     parameters=(
         Parameter("m", 1.0, "kg", "mass of the bob"),
         Parameter("l", 1.0, "m", "length"),
@@ -132,7 +133,7 @@ FORCED = Scene(
     L_of=_pendulum,
     forces_of=_torque,
     picture_of=_pendulum_picture,
-    energy_bound=1e-10,
+    energy_bound=1e-12,
     energy_why="the work is a sum over the whole run, thousands of times the energy",
 )
 
@@ -169,6 +170,7 @@ PARAMETRIC = Scene(
     name="parametric-pendulum",
     title="Kapitza's pendulum: its pivot shakes so fast that it stands upside down",
     coordinates="theta",
+    angles="theta",
     parameters=(
         Parameter("m", 0.1, "kg", "mass of the bob"),
         Parameter("l", 0.2, "m", "length"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from canon.scene.pendulum import GRAVITY, TURNS, below
+from canon.scene.pendulum import CHAOS, GRAVITY, below
 from canon.scene.picture import Picture
 from canon.scene.scene import Integral, Parameter, Scene, Start
 
@@ -58,6 +58,7 @@ MANIPULATOR = Scene(
     name="two-link-manipulator",
     title="Manipulator with two links: q1 from the downward vertical, q2 from the first link, a motor at each joint",
     coordinates="q1 q2",
+    angles="q1 q2",
     parameters=(
         Parameter("m1", 4.0, "kg", "mass of the first link"),
         Parameter("m2", 2.5, "kg", "mass of the second link"),
@@ -85,15 +86,15 @@ MANIPULATOR = Scene(
         Integral(
             "energy less the work M1 q1 + M2 q2",
             lambda s: _kinetic(s) + _height(s) - s.M1 * s.q1 - s.M2 * s.q2,
-            1e-10,
-            TURNS,
+            1e-12,
+            CHAOS,
         ),
     ),
     picture_of=_picture,
     horizon=10.0,
     shown=3.0,
-    energy_bound=1e-10,
-    energy_why=TURNS,
+    energy_bound=1e-12,
+    energy_why=CHAOS,
 )
 
 SCENES = (MANIPULATOR,)

@@ -20,7 +20,7 @@ from canon.expression.arithmetic import LONGDOUBLE
 from canon.expression.graph import Graph
 from canon.expression.symbol import momentum, velocity
 from canon.flow.stepping import NonFiniteStateError
-from canon.flow.variation import Field, carried, exact_numbers
+from canon.flow.variation import Field, exact_numbers
 from canon.kernel.taylor import heyoka_expressions
 from canon.mechanics.constrained_derivation import constrained, constrained_motion
 from canon.mechanics.derivation import derivation_of_lagrangian
@@ -42,6 +42,12 @@ __all__ = ["Equation", "Motion", "equation_of", "first_zero", "run", "start_stat
 
 _PULL = 12.0
 """How many times in a period a deviation from the constraints falls by a factor e."""
+
+_COMPACT_FROM = 60
+"""Equations with more operations are compiled in heyoka's compact mode."""
+
+_TURN_HIGH, _TURN_LOW = 6.28125, 1.9353071795864769e-03
+"""2π in two parts, the first with so few digits that a multiple of it is exact."""
 
 _WORK = sp.Dummy("W")
 
@@ -103,7 +109,10 @@ class Motion:
     t
         Sample times, shape (times,).
     x
-        States (q, p), with W last where the energy is not conserved; shape (variables, times).
+        States (q, p), with W last where the energy is not conserved; shape (variables, times). Angles are within
+        half a turn of 0.
+    turns
+        How many whole turns the variables have made besides, shape (variables, times).
     steps
         Steps of the integrator.
     """
@@ -113,18 +122,21 @@ class Motion:
     equation: Equation
     t: Array
     x: Array
+    turns: Array
     steps: int
 
     @property
     def q(self) -> Array:
-        """Coordinates, shape (n, times)."""
-        return self.x[: len(self.scene.q)]
+        """Coordinates, shape (n, times), angles with all their turns."""
+        n = len(self.scene.q)
+        return self.x[:n] + 2.0 * np.pi * self.turns[:n]
 
     def values(self, nodes: Sequence[int]) -> NDArray[Any]:
         """Return the values of nodes along the motion, evaluated in long double, shape (nodes, times)."""
         field = self.equation.field
-        wide = dict(zip((*field.x, field.t), (*self.x, self.t), strict=True))
-        found = field.graph.evaluate(nodes, {s: x.astype(np.longdouble) for s, x in wide.items()}, LONGDOUBLE)
+        turn = 2 * LONGDOUBLE.named("pi")
+        wide = (*(self.x.astype(np.longdouble) + turn * self.turns), self.t.astype(np.longdouble))
+        found = field.graph.evaluate(nodes, dict(zip((*field.x, field.t), wide, strict=True)), LONGDOUBLE)
         return np.array([np.broadcast_to(np.asarray(f, np.longdouble), self.t.shape) for f in found])
 
     def observed(self, f: Expr) -> Array:
@@ -179,11 +191,44 @@ def run(
         raise SceneError(f"periods={periods}: a motion takes some time")
     chosen = start if isinstance(start, Start) else scene.start(start)
     equation = equation_of(scene)
-    span = (0.0, periods * scene.period)
-    rows, steps = carried(
-        equation.field, equation.field.heyoka_pairs(), start_state(scene, chosen, equation), span, samples
-    )
-    return Motion(scene, chosen, equation, np.linspace(*span, samples + 1), rows.T, steps)
+    times = np.linspace(0.0, periods * scene.period, samples + 1)
+    y0 = start_state(scene, chosen, equation)
+    angles = [s.name in scene.angles.split() for s in scene.q]
+    x, turns, steps = _carried(equation.field, y0, times, np.flatnonzero(angles))
+    return Motion(scene, chosen, equation, times, x, turns, steps)
+
+
+def _carried(field: Field, y0: Array, times: Array, angles: NDArray[np.intp]) -> tuple[Array, Array, int]:
+    """Return states and turns at the times, and the steps taken; angles are turned back as they grow.
+
+    An angle that went on growing would be rounded to ever fewer digits, and heyoka's steps with it, as their error is
+    relative to the largest variable.
+    """
+    import heyoka as hy
+
+    large = len(field.graph.reachable(field.rates)) > _COMPACT_FROM
+    integrator = hy.taylor_adaptive(field.heyoka_pairs(), y0, compact_mode=large)
+    turns = np.zeros(len(field.x))
+    rows, whole, steps = [y0], [turns.copy()], 0
+    slices = len(times) - 1 if angles.size else 1
+    for part in np.array_split(np.arange(1, len(times)), slices):
+        outcome, _, _, taken, _, found = integrator.propagate_grid(times[part[0] - 1 : part[-1] + 1])
+        if outcome != hy.taylor_outcome.time_limit or not np.isfinite(found).all():
+            raise NonFiniteStateError(
+                f"the motion can't be continued after t = {integrator.time:.9g} ({outcome}): a collision or the edge "
+                "of the equations' domain; take fewer periods",
+                float(integrator.time),
+                np.array(integrator.state),
+            )
+        steps += int(taken)
+        state = integrator.state
+        back = np.round(state[angles] / (2.0 * np.pi))
+        state[angles] = (state[angles] - back * _TURN_HIGH) - back * _TURN_LOW
+        rows += [*found[1:-1], state.copy()]
+        whole += [turns.copy()] * (len(part) - 1)
+        turns[angles] += back
+        whole.append(turns.copy())
+    return np.array(rows).T, np.array(whole).T, steps
 
 
 def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Motion:
@@ -221,7 +266,8 @@ def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Moti
             np.array(integrator.state),
         )
     t = np.array([0.0, float(integrator.time)])
-    return Motion(scene, chosen, equation, t, np.array([y0, integrator.state]).T, int(steps))
+    x = np.array([y0, integrator.state]).T
+    return Motion(scene, chosen, equation, t, x, np.zeros_like(x), int(steps))
 
 
 def start_state(scene: Scene, start: Start, equation: Equation) -> Array:

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from canon.scene.parts import multiplier
-from canon.scene.pendulum import GRAVITY, TURNS
+from canon.scene.pendulum import GRAVITY
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
@@ -88,6 +88,7 @@ SLEIGH = Scene(
     name="chaplygin-sleigh",
     title="Chaplygin's sleigh: a body on a blade that does not slip sideways",
     coordinates="x y theta",
+    angles="theta",
     parameters=(
         Parameter("m", 20.0, "kg", "mass"),
         Parameter("I", 1.5, "kg m²", "moment of inertia about the centre of mass"),
@@ -218,6 +219,7 @@ DISC = Scene(
     name="rolling-disc",
     title="Rolling disc: a thin disc on a horizontal plane, tilted by π/2 − θ, without slipping",
     coordinates="x y theta phi psi",
+    angles="theta phi psi",
     parameters=(
         Parameter("m", 0.2, "kg", "mass"),
         Parameter("R", _DISC["R"], "m", "radius"),
@@ -241,8 +243,6 @@ DISC = Scene(
         Solution("upright and straight: x", "straight", lambda s: s.x, lambda v, t: 12.0 * v["R"] * t),
     ),
     picture_of=_disc_picture,
-    energy_bound=1e-12,
-    energy_why="the spin angle grows to 10⁴ rad and is rounded to ever fewer digits",
 )
 
 _CIRCLE, _TURN = 1.5, 0.5
@@ -269,6 +269,7 @@ UNICYCLE = Scene(
     name="unicycle",
     title="Unicycle: it rolls where it is headed, ẏ cos θ = ẋ sin θ, and reaches every place",
     coordinates="x y theta",
+    angles="theta",
     parameters=(
         Parameter("m", 80.0, "kg", "mass with its rider"),
         Parameter("I", 2.0, "kg m²", "moment of inertia about the vertical"),
@@ -281,10 +282,8 @@ UNICYCLE = Scene(
     nonholonomic_of=_across,
     integrals=(
         Integral("angular momentum about the vertical", lambda s: s.I * s.theta.dot),
-        Integral("speed", _forwards, 1e-10, TURNS),
+        Integral("speed", _forwards),
     ),
-    energy_bound=1e-10,
-    energy_why=TURNS,
     solutions=(
         Solution("x on the circle", "circle", lambda s: s.x, lambda v, t: _unicycle_place(v, t)[0]),
         Solution("y on the circle", "circle", lambda s: s.y, lambda v, t: _unicycle_place(v, t)[1]),

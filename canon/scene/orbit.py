@@ -76,8 +76,6 @@ PROJECTILE = Scene(
     picture_of=lambda s: Picture(masses=((s.x, s.y),), ground=(((-5.0, 0.0), (95.0, 0.0)),)),
 )
 
-_GROWS = "an angle that goes on growing is rounded to ever fewer digits, and with it the step control"
-
 _MU = Parameter("mu", SUN, "au³/a²", "gravitational parameter G(M + m)")
 _CIRCULAR = math.sqrt(SUN)
 _NEAR = 0.4
@@ -113,6 +111,7 @@ POLAR = Scene(
     name="orbit-polar",
     title="A planet about the Sun in polar coordinates",
     coordinates="r phi",
+    angles="phi",
     parameters=(_MU,),
     starts=(
         Start("circular", "on a circle of 1 au", q=(1.0, 0.0), v=(0.0, _CIRCULAR)),
@@ -136,8 +135,6 @@ POLAR = Scene(
         ),
     ),
     picture_of=lambda s: Picture(masses=(_polar_place(s),), ground=_focus(2)),
-    energy_bound=1e-12,
-    energy_why=_GROWS,
 )
 
 
@@ -169,6 +166,7 @@ CYLINDRICAL = Scene(
     name="orbit-cylindrical",
     title="A planet about the Sun in cylindrical coordinates, its orbit tilted",
     coordinates="rho phi z",
+    angles="phi",
     parameters=(_MU,),
     starts=(
         Start(
@@ -236,6 +234,7 @@ SPHERICAL = Scene(
     name="orbit-spherical",
     title="A planet about the Sun in spherical coordinates, its orbit tilted",
     coordinates="r theta phi",
+    angles="theta phi",
     parameters=(_MU,),
     starts=(
         Start(
@@ -259,7 +258,7 @@ SPHERICAL = Scene(
     V_of=lambda s: -s.mu / s.r,
     integrals=(
         Integral("angular momentum about z", lambda s: s.phi.momentum),
-        Integral("angular momentum squared", _square, 1e-12, _GROWS),
+        Integral("angular momentum squared", _square),
     ),
     solutions=(
         Solution(
@@ -270,8 +269,6 @@ SPHERICAL = Scene(
         ),
     ),
     picture_of=lambda s: Picture(masses=(_spherical_place(s),), ground=_focus(3)),
-    energy_bound=1e-12,
-    energy_why=_GROWS,
 )
 
 
@@ -306,6 +303,7 @@ HOLE = Scene(
     name="table-hole",
     title="Two masses on a string through a hole in a table: one slides on it, the other hangs",
     coordinates="r theta",
+    angles="theta",
     parameters=(
         Parameter("m1", _TABLE["m1"], "kg", "mass on the table"),
         Parameter("m2", _TABLE["m2"], "kg", "mass that hangs"),
@@ -335,8 +333,6 @@ HOLE = Scene(
         Solution("rate on the circle", "circle", lambda s: s.theta, lambda v, t: _circling(v) * t),
     ),
     picture_of=_table_picture,
-    energy_bound=1e-12,
-    energy_why=_GROWS,
 )
 
 SCENES = (PROJECTILE, POLAR, CYLINDRICAL, SPHERICAL, HOLE)

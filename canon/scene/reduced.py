@@ -62,6 +62,7 @@ def reduced(scene: Scene, start: str | None = None) -> Scene:
         name=f"{scene.name}-reduced",
         title=f"{scene.title}; {found.note}",
         coordinates=" ".join(scene.q[i].name for i in kept),
+        angles=" ".join(scene.q[i].name for i in kept if scene.q[i].name in scene.angles.split()),
         parameters=(*scene.parameters, *constant),
         starts=(
             Start(

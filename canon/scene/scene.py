@@ -77,6 +77,8 @@ class Scene:
         For how many periods a run makes sense in doubles.
     shown
         How many periods its picture shows.
+    angles
+        Names of the coordinates that may be turned back by whole turns without changing the motion.
 
     Examples
     --------
@@ -111,6 +113,7 @@ class Scene:
     energy_why: str = ""
     horizon: float = 1000.0
     shown: float = 5.0
+    angles: str = ""
 
     def __post_init__(self) -> None:
         for condition in self.conditions:

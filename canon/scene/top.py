@@ -111,6 +111,7 @@ LAGRANGE = Scene(
     name="lagrange-top",
     title="Lagrange's top: a symmetric top that spins about a fixed point",
     coordinates="theta phi psi",
+    angles="phi psi",
     parameters=(
         Parameter("m", _TOP["m"], "kg", "mass"),
         Parameter("l", _TOP["l"], "m", "distance of the centre of mass from the fixed point"),
@@ -220,6 +221,7 @@ KOVALEVSKAYA = Scene(
     name="kovalevskaya-top",
     title="Kovalevskaya's top: A = B = 2 C, the centre of mass in the equator; integrable",
     coordinates="theta phi psi",
+    angles="phi psi",
     parameters=(
         Parameter("m", 0.2, "kg", "mass"),
         Parameter("l", 0.03, "m", "distance of the centre of mass from the fixed point"),
@@ -244,9 +246,9 @@ KOVALEVSKAYA = Scene(
     V_of=_kovalevskaya_height,
     integrals=(
         Integral("angular momentum about the vertical", lambda s: s.phi.momentum),
-        Integral("Kovalevskaya's integral", _kovalevskaya_integral, 1e-11, _POLES),
+        Integral("Kovalevskaya's integral", _kovalevskaya_integral, 1e-12, _POLES),
     ),
-    energy_bound=1e-11,
+    energy_bound=1e-12,
     energy_why=_POLES,
     picture_of=_kovalevskaya_picture,
 )

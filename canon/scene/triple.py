@@ -6,7 +6,7 @@ import math
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
-from canon.scene.pendulum import GRAVITY, TURNS, below
+from canon.scene.pendulum import CHAOS, GRAVITY, below
 from canon.scene.picture import Picture
 from canon.scene.scene import Parameter, Scene, Start
 
@@ -72,6 +72,7 @@ TRIPLE = Scene(
     name="triple-pendulum",
     title="Triple pendulum: three point masses on massless rods in a plane",
     coordinates="theta1 theta2 theta3",
+    angles="theta1 theta2 theta3",
     parameters=(
         Parameter("m1", 0.5, "kg", "upper mass"),
         Parameter("m2", 0.3, "kg", "middle mass"),
@@ -92,8 +93,8 @@ TRIPLE = Scene(
     bodies_of=_bodies,
     V_of=_height,
     picture_of=_picture,
-    energy_bound=1e-10,
-    energy_why=TURNS,
+    energy_bound=1e-12,
+    energy_why=CHAOS,
 )
 
 SCENES = (TRIPLE,)

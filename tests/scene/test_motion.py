@@ -17,7 +17,7 @@ from canon.mechanics.derivation import derivation, derivation_of_lagrangian
 from canon.mechanics.motion import acceleration_function
 from canon.scene import SCENES, Integral, SceneError, Solution, find, names
 from canon.scene.check import Check, check, conserved, integrals_along, solutions_met
-from canon.scene.motion import equation_of, first_zero, run
+from canon.scene.motion import equation_of, first_zero, run, start_state
 
 EACH = pytest.mark.parametrize("name", names())
 FAST = 5.0
@@ -203,3 +203,30 @@ def test_refused_questions():
 
     with pytest.raises(SceneError, match="holds w, which the scene lacks"):
         equation_of(scene).node(Symbol("w"), "the claim")
+
+
+@pytest.mark.parametrize("name", [scene.name for scene in SCENES if scene.angles])
+def test_angles_may_be_turned_back(name):
+    """The rates of change are the same a whole turn further."""
+    scene = find(name)
+    equation = equation_of(scene)
+    field = equation.field
+    at = dict(zip(field.x, start_state(scene, scene.starts[-1], equation) + 0.01, strict=True)) | {
+        field.t: 0.3
+    }
+    rates = field.graph.evaluate(field.rates, at)
+    assert set(scene.angles.split()) <= set(scene.coordinates.split())
+    for s in scene.q:
+        if s.name in scene.angles.split():
+            further = field.graph.evaluate(field.rates, {**at, s: at[s] + 2.0 * np.pi})
+            np.testing.assert_allclose(further, rates, rtol=1e-9, atol=1e-9 * np.abs(rates).max())
+
+
+def test_angles_that_are_turned_back_keep_their_digits():
+    scene = find("simple-pendulum")
+    kept, lost = (run(each, "rotating", 300.0, 307) for each in (scene, replace(scene, angles="")))
+    assert kept.turns[0, -1] == round(kept.q[0, -1] / (2.0 * np.pi)) > 100
+    assert np.abs(kept.x[0]).max() < 10.0
+    np.testing.assert_allclose(kept.q, lost.q, rtol=1e-9)
+    assert integrals_along(kept)[0].error < 1e-13
+    assert integrals_along(lost)[0].error > 1e-12
