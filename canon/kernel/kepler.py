@@ -23,6 +23,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.kernel.arithmetic import Arithmetic
+from canon.kernel.machine import double_pair
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -242,14 +243,8 @@ def _stumpff(w: Writer, v: Writer, beta: str, x: str) -> tuple[str, str]:
         v.store(v.select(small, z, c.mul(z, c.number(Fraction(1, 4)))), argument, 0)
         v.store(c.add(v.load(count, 0), v.select(small, c.zero, c.one)), count, 0)
     z = v.load(argument, 0)
-    z2 = c.mul(z, z)
     for first, where in ((2, second), (3, third)):
-        # Even and odd powers apart: two short chains instead of a long one.
-        even, odd = (
-            c.polynomial(z2, [Fraction((-1) ** k, math.factorial(2 * k + first)) for k in range(start, _TERMS, 2)])
-            for start in (0, 1)
-        )
-        v.store(c.fma(odd, z, even), where, 0)
+        v.store(_stumpff_series(c, z, first), where, 0)
     with w.loop(0, _QUARTERINGS):
         left = v.load(count, 0)
         done = v.equal(left, c.zero)
@@ -265,3 +260,15 @@ def _stumpff(w: Writer, v: Writer, beta: str, x: str) -> tuple[str, str]:
         for where, old, quadrupled in new:
             v.store(v.select(done, old, quadrupled), where, 0)
     return c.mul(square, v.load(second, 0)), c.mul(c.mul(square, x), v.load(third, 0))
+
+
+def _stumpff_series(c: Arithmetic, z: str, first: int) -> str:
+    """Write c_first(z) = Σ (−z)ᵏ/(2k + first)!, even and odd powers apart: two short chains instead of a long one.
+
+    What doubles lack of the first coefficients goes in too: always the same, it would make the energy drift.
+    """
+    exact = [Fraction((-1) ** k, math.factorial(2 * k + first)) for k in range(_TERMS)]
+    lacking = [double_pair(value)[1] for value in exact[:3]]
+    z2 = c.mul(z, z)
+    even = c.fma(c.polynomial(z2, exact[2::2]), z2, c.polynomial(z, [Fraction(value) for value in lacking]))
+    return c.add(c.number(exact[0]), c.fma(c.polynomial(z2, exact[1::2]), z, even))
