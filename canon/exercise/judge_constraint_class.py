@@ -95,7 +95,7 @@ class _Constraints:
             raise Undecided(
                 "constraints that are not affine in the velocities are decided only one at a time"
             )
-        (g,) = self.velocities
+        [g] = list(self.velocities)
         v = [velocity(x) for x in self.q]
         bends = tuple(Part("the curvature of the set of velocities", c) for c in _second_form(g, v))
         parts = [(replace(bend, through=b.values), b.domain) for bend in bends for b in self.branches]

@@ -127,7 +127,7 @@ def _of_work(reading: Reading) -> Iterator[list[Expr]]:
     q = reading.symbols("q")
     deltas = [Symbol(f"delta_{x}", real=True) for x in q]
     work = reading.with_names({s.name: s for s in deltas}).expression("work")
-    slopes = [work.diff(d) for d in deltas]
+    slopes: list[Expr] = [work.diff(d) for d in deltas]
     at_rest = exchanged(work, dict.fromkeys(deltas, sp.S.Zero))
     if any(s.has(*deltas) for s in slopes) or at_rest != 0:
         reading.fault("work", "a virtual work is linear in " + ", ".join(map(str, deltas)))
@@ -140,9 +140,10 @@ def _of_power(reading: Reading) -> Iterator[list[Expr]]:
         return
     q, power = reading.symbols("q"), reading.expression("power")
     velocities = [velocity(x) for x in q]
-    slopes = [sp.expand(power).diff(v) for v in velocities]
+    spread = cast("Expr", sp.expand(power))
+    slopes: list[Expr] = [spread.diff(v) for v in velocities]
     if not any(s.has(*velocities) for s in slopes):
-        yield slopes
+        yield [*slopes]
     elif len(q) == 1:
         yield [sp.cancel(power / velocities[0])]
     else:

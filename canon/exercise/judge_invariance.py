@@ -56,7 +56,7 @@ def invariance(reading: Reading) -> Iterator[Question]:
     Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
     if subject == "phase-volume":
         M = sp.Matrix([[f.diff(z) for z in (*q, *p)] for f in (*Q, *P)])
-        part = Part("the square of the determinant", M.det(method="berkowitz") ** 2, sp.S.One)
+        part = Part("the square of the determinant", cast("Expr", M.det(method="berkowitz")) ** 2, sp.S.One)
         yield Same((part,), reading.domain, _no_answer, is_instead)
     elif subject == "poisson-brackets":
         yield Same(canonical_parts(Q, P, q, p), reading.domain, _no_answer, is_instead)

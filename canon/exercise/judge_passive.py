@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Rational, Symbol
@@ -21,7 +21,7 @@ from canon.proof.generic import proved_sign
 from canon.proof.verdict import Counterexample, Status, Undecided, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
     from canon.exercise.reading import Reading
     from canon.proof.domain import Domain
@@ -72,8 +72,8 @@ def is_positive_real_at(above: sp.Poly, below: sp.Poly) -> _Fault | None:
     above, below = (sp.Poly(sp.quo(f, common), s, domain="QQ") for f in (above, below))
     real = _real_part(above, below)
     for w in _between_roots(real):
-        if real.eval(w) < 0:
-            value = real.eval(w) / _modulus_squared(below, w)
+        if _at(real, w).is_negative:
+            value = _at(real, w) / _at(_real_part(below, below), w)
             return _Fault("Re H(jω) < 0 for some ω", f"j*sqrt({w})", str(sp.N(value, 15)))
     if not _is_hurwitz(above + below):
         why = (
@@ -139,32 +139,36 @@ def _real_part(above: sp.Poly, below: sp.Poly) -> sp.Poly:
     return sp.Poly(sp.expand(a * c + w * b * d), w)
 
 
-def _modulus_squared(f: sp.Poly, w: Rational) -> Expr:
-    real = _real_part(f, f)
-    return real.eval(w)
+def _at(f: sp.Poly, w: Expr) -> Expr:
+    return cast("Expr", f.eval(w))
 
 
-def _between_roots(f: sp.Poly) -> list[Rational]:
+def _coefficients(f: sp.Poly) -> list[Expr]:
+    """Return the coefficients, that of the highest power first."""
+    return cast("list[Expr]", f.all_coeffs())
+
+
+def _between_roots(f: sp.Poly) -> list[Expr]:
     """Return a rational point in each interval of w ≥ 0 on which f keeps its sign, and 0."""
     if f.is_zero or f.degree() == 0:
         return [sp.S.Zero]
-    roots = [ends for ends, _ in f.sqf_part().intervals(inf=0)] if f.degree() else []
-    points = [sp.S.Zero]
-    edges = [sp.Rational(end) for ends in roots for end in ends]
+    roots = cast("list[tuple[tuple[Expr, Expr], int]]", f.sqf_part().intervals(inf=0))
+    points: list[Expr] = [sp.S.Zero]
+    edges = [end for ends, _ in roots for end in ends]
     for left, right in pairwise(edges):
         points.append((left + right) / 2)
     points += edges
     points.append((edges[-1] if edges else sp.S.Zero) + 1)
-    return sorted(set(points))
+    return sorted(set(points), key=Rational)
 
 
 def _is_hurwitz(f: sp.Poly) -> bool:
     """Tell whether all zeros have Re s < 0, by Routh's array; a zero in its first column says no."""
     if f.is_zero:
         return False
-    top, next_ = f.all_coeffs()[::2], f.all_coeffs()[1::2]
-    sign = sp.sign(f.LC())
-    for _ in range(f.degree()):
+    top, next_ = _coefficients(f)[::2], _coefficients(f)[1::2]
+    sign = sp.sign(top[0])
+    for _ in range(int(f.degree())):
         if not next_ or next_[0] == 0 or sp.sign(next_[0]) != sign:
             return False
         padded = [*next_, *[sp.S.Zero] * (len(top) - len(next_))]
@@ -182,34 +186,38 @@ def _always(above: sp.Poly, below: sp.Poly, domain: Domain) -> bool:
 
 
 def _never(above: sp.Poly, below: sp.Poly, domain: Domain) -> bool:
-    """Prove Re H(jω) < 0 at ω → 0, at ω → ∞, or at the top of a parabola, for all values of the parameters."""
+    """Prove Re H(jω) < 0 at ω → 0 or at ω → ∞, for all values of the parameters."""
     real = _real_part(above, below)
     if real.is_zero:
         return False
-    coefficients = real.all_coeffs()
-    signs = [proved_sign(c, domain) for c in coefficients]
-    return signs[0] == "-" or (signs[-1] == "-" and real.eval(0) != 0)
+    signs = [proved_sign(c, domain) for c in _coefficients(real)]
+    return "-" in (signs[0], signs[-1])
 
 
 def _hurwitz_for_all(f: sp.Poly, domain: Domain) -> bool:
-    coefficients: Sequence[Expr] = f.all_coeffs()
+    coefficients = _coefficients(f)
     if proved_sign(coefficients[0], domain) == "-":
         coefficients = [-c for c in coefficients]
     if any(proved_sign(c, domain) != "+" for c in coefficients):
         return False
-    n = f.degree()
-    H = sp.Matrix(n, n, lambda i, j: coefficients[2 * j - i + 1] if 0 <= 2 * j - i + 1 <= n else sp.S.Zero)
-    minors = (H[:k, :k].det(method="berkowitz") for k in range(2, n))
-    return all(proved_sign(sp.expand(minor), domain) == "+" for minor in minors)
+    n = len(coefficients) - 1
+
+    def minor(k: int) -> Expr:
+        """Return the determinant of Hurwitz of order k."""
+        places = [[2 * j - i + 1 for j in range(k)] for i in range(k)]
+        rows = [[coefficients[m] if 0 <= m <= n else sp.S.Zero for m in row] for row in places]
+        return cast("Expr", sp.expand(sp.Matrix(rows).det(method="berkowitz")))
+
+    return all(proved_sign(minor(k), domain) == "+" for k in range(2, n))
 
 
 def _nonnegative(f: sp.Poly, domain: Domain) -> bool:
     """Prove f(w) ≥ 0 for w ≥ 0."""
-    signs = {proved_sign(c, domain) for c in f.all_coeffs() if c != 0}
+    signs = {proved_sign(c, domain) for c in _coefficients(f) if c != 0}
     if signs <= {"+", "0+"}:
         return True
     if f.degree() == 2:
-        a, b, c = f.all_coeffs()
+        a, b, c = _coefficients(f)
         inside = proved_sign(sp.expand(4 * a * c - b**2), domain) in ("+", "0+")
         return inside and proved_sign(a, domain) in ("+", "0+") and proved_sign(c, domain) in ("+", "0+")
     return proved_sign(f.as_expr(), domain) in ("+", "0+")

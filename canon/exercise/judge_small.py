@@ -13,6 +13,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.question import Deadline, Part, Question, Same, SameEquations, Stated, decide
+from canon.exercise.tree import arguments
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import substitute
@@ -185,9 +186,9 @@ def _check_analytic(f: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> No
         elif isinstance(part, sp.Pow) and part.exp.is_negative:
             bad = vanishes(substitute(part.base, place), domain, budget=0.5).holds
         elif isinstance(part, sp.log):
-            bad = proved_sign(substitute(part.args[0], place), domain) != "+"
+            bad = proved_sign(substitute(arguments(part)[0], place), domain) != "+"
         elif isinstance(part, sp.asin | sp.acos | sp.atanh | sp.acosh | sp.acot | sp.acoth):
-            bad = substitute(part.args[0], place) != 0 or isinstance(part, sp.acosh | sp.acot)
+            bad = substitute(arguments(part)[0], place) != 0 or isinstance(part, sp.acosh | sp.acot)
         if bad:
             raise Undecided(f"{part} is not certainly analytic there, so it has no expansion that is proved")
 

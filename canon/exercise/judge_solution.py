@@ -68,7 +68,7 @@ def _of_rates(reading: Reading) -> Iterator[Question]:
     for x, value in rates.items():
         if value.has(*v, *(acceleration(y) for y in q)):
             reading.fault(f"rates.{x}", "should depend on coordinates, time, parameters and constants only")
-    motion = {velocity(x): r for x, r in rates.items()}
+    motion: dict[Symbol, Expr] = {velocity(x): r for x, r in rates.items()}
     motion |= {acceleration(x): substitute(time_derivative(r, q, t), motion) for x, r in rates.items()}
     domain = transported(reading.domain, motion)
     parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
@@ -130,7 +130,7 @@ def _initial(reading: Reading, motion: Mapping[Symbol, Expr], t: Symbol) -> Iter
     parts: list[Part] = []
     for name, wanted in reading.table("initial").items():
         symbol = reading.scope.symbol(name)
-        if symbol not in known:
+        if symbol is None or symbol not in known:
             reading.fault(f"initial.{name}", f"should be one of {', '.join(map(str, known))}")
         there = substitute(known[symbol], {t: start})
         if there.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
