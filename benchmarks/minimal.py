@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING
 
 from canon.kernel.program import program
 from canon.scene import SCENES, find
-from canon.scene.motion import equation_of, run
+from canon.scene.equation import equation_of
+from canon.scene.motion import run
 from canon.scene.reduced import reduced
 
 if TYPE_CHECKING:

@@ -17,7 +17,8 @@ from canon.mechanics.derivation import derivation, derivation_of_lagrangian
 from canon.mechanics.motion import acceleration_function
 from canon.scene import SCENES, Integral, SceneError, Solution, find, names
 from canon.scene.check import Check, check, conserved, integrals_along, solutions_met
-from canon.scene.motion import equation_of, first_zero, run, start_state
+from canon.scene.equation import equation_of
+from canon.scene.motion import first_zero, run, start_state
 
 EACH = pytest.mark.parametrize("name", names())
 FAST = 5.0

@@ -14,7 +14,8 @@ from canon.expression.symbol import time
 from canon.proof.vanish import equal, vanishes
 from canon.scene import SCENES, Condition, Parameter, SceneError, Start, find, names
 from canon.scene.check import conserved
-from canon.scene.motion import equation_of, start_state
+from canon.scene.equation import equation_of
+from canon.scene.motion import start_state
 
 LONG_PROOFS = {"outer-solar-system", "toda-6"}
 
