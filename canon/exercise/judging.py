@@ -45,7 +45,7 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
     if left <= 0.1:
         yield judgement, True
         return
-    judgement = replace(judgement, corrected=corrected(finding)[:MAX_SHOWN])
+    judgement = replace(judgement, corrected=_cut(corrected(finding)))
     yield judgement, False  # before the diagnosis is looked for, which can be cut off
     yield replace(judgement, feedback=feedback(finding, left) or judgement.feedback), True
 
@@ -79,4 +79,8 @@ def _short(residual: sp.Basic | sp.MatrixBase | None) -> str:
         and sum(1 for _ in zip(sp.preorder_traversal(residual), range(5000), strict=False)) >= 5000
     ):
         return "(too long to be shown)"
-    return str(residual)[:MAX_SHOWN]
+    return _cut(str(residual))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]} …"

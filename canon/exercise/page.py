@@ -201,9 +201,19 @@ def _reasons(card: Element, judgement: Judgement, scope: Scope) -> None:
         if judgement.corrected:
             right = _put(card, "div", "right would be: ", "corrected")
             for part in judgement.corrected.split("; "):
-                _put(right, "div").append(_formula(part, scope))
+                _equated(_put(right, "div"), part, scope)
     elif judgement.status != "holds":
         _put(card, "pre", judgement.known[:MAX_SHOWN], "feedback")
+
+
+def _equated(line: Element, text: str, scope: Scope) -> None:
+    """Put a formula, or one that words stand before: ``{f, g} of pair 1 = x``."""
+    words, sign, rest = text.partition(" = ")
+    shown = formula(text, scope)
+    if shown is None and sign and (after := formula(rest, scope)) is not None:
+        _text(line, f"{words} = ")
+        shown = after
+    line.append(shown if shown is not None else _formula(text, scope))
 
 
 def _counterexample(card: Element, judgement: Judgement, scope: Scope) -> None:

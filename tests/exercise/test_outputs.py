@@ -108,6 +108,7 @@ def test_the_page_shows_formulas_feedback_and_steps(tour):
         "8 holds",
     ):
         assert word in text
+    assert "right would be: {f, g} of pair 1 = " in text
     assert {"math", "mfrac", "msup", "mover", "details"} <= page.tags
 
 
