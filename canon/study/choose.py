@@ -48,6 +48,8 @@ class Choice:
         The choice; where nothing keeps the accuracy, the candidate with the least error.
     candidates
         All that were considered, those that keep the accuracy first, the cheapest first.
+    question
+        What was asked, the way pilots take it.
     """
 
     title: str
@@ -56,7 +58,7 @@ class Choice:
     observable: str
     chosen: Candidate
     candidates: tuple[Candidate, ...]
-    _question: Question = field(repr=False, compare=False)
+    question: Question = field(repr=False, compare=False)
 
     @property
     def reached(self) -> bool:
@@ -93,9 +95,7 @@ class Choice:
         """Largest error expected over the span."""
         return self.chosen.predicted_error
 
-    def run(
-        self, *, samples: int = 1000, progress: Callable[[float], None] | None = None
-    ) -> Trajectory:
+    def run(self, *, samples: int = 1000, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Return the motion over the whole span with the method chosen.
 
         Raises
@@ -104,8 +104,10 @@ class Choice:
             Where no method is expected to keep the accuracy.
         """
         if not self.reached:
-            raise StudyError(f"nothing keeps {self.accuracy:.1g}; the least error is {self.predicted_error:.1g}")
-        asked = self._question
+            raise StudyError(
+                f"nothing keeps {self.accuracy:.1g}; the least error is {self.predicted_error:.1g}"
+            )
+        asked = self.question
         return propagate(
             asked.hamiltonian,
             asked.y0,
@@ -178,7 +180,9 @@ def choose(
     if not (math.isfinite(span) and span > 0.0):
         raise StudyError(f"a span of {span} makes no sense: give a positive, finite duration")
     if not 0.0 < accuracy < 0.1:
-        raise StudyError(f"an accuracy of {accuracy} makes no sense: give a number between 0 and 0.1, such as 1e-8")
+        raise StudyError(
+            f"an accuracy of {accuracy} makes no sense: give a number between 0 and 0.1, such as 1e-8"
+        )
     question, title = _question(system, y0, span, observable, integral, parameters)
     considered = tuple(methods) if methods is not None else candidate_methods(question)
     if not considered:
@@ -231,6 +235,8 @@ def _in_higher_precision(
             ladder = ("extended", "double-double")
         else:
             continue
+        if question.observable == "position":  # beyond these no reference is better
+            ladder = ladder[:1]
         for precision in ladder:
             each = searched(question, method, precision, duration / 8.0, natural, accuracy, math.inf)
             found.append(each)
@@ -250,7 +256,9 @@ def _question(
     given = {str(name): value for name, value in (parameters or {}).items()}
     if not isinstance(system, Scene):
         if y0 is None or isinstance(y0, str):
-            raise StudyError("a Hamiltonian has no starts of its own: give the initial state (q, p) as numbers")
+            raise StudyError(
+                "a Hamiltonian has no starts of its own: give the initial state (q, p) as numbers"
+            )
         if integral is None and observable not in ("energy", "position"):
             raise StudyError(f"observable={observable!r}: give the function of (q, p) as integral=")
         state = np.asarray(y0, dtype=np.float64)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.measure import AccuracyWarning
 from canon.flow.method import DOP853, FixedStep, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
 from canon.study.errors import StudyError
@@ -39,8 +41,8 @@ WATCHED = 200_000
 BEFORE_LOST = 0.1
 """Relative energy error from which a run no longer shows the motion that was asked for."""
 
-REFERENCE = Taylor(1e-19)
-"""Method of the reference for positions, in 64 bits; 113 bits where the platform has no such numbers."""
+REFERENCE, FINE_REFERENCE = Taylor(1e-19), Taylor(1e-28)
+"""Methods of the references for positions."""
 
 TIMED_SECONDS = 0.004
 """Processor time over which a step is timed."""
@@ -89,34 +91,43 @@ class Question:
     span: float
     observable: str = "energy"
     integral: Expr | None = None
-    _known: dict[float, Array] = field(default_factory=dict[float, "Array"], repr=False, compare=False)
+    _known: dict[tuple[float, bool], tuple[Array, Array]] = field(
+        default_factory=dict[tuple[float, bool], "tuple[Array, Array]"], repr=False, compare=False
+    )
 
     def run(self, setting: Setting, duration: float, samples: int, cadence: int | None = None) -> Trajectory:
         """Return a run of that duration from the start."""
-        return propagate(
-            self.hamiltonian,
-            self.y0,
-            (0.0, duration),
-            method=setting.method,
-            step=setting.step,
-            tolerance=setting.tolerance,
-            precision=setting.precision,
-            parameters=self.values,
-            samples=samples,
-            cadence=cadence,
-            observables=None if self.integral is None else {self.observable: self.integral},
-        )
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", AccuracyWarning)  # its energy error is looked at here
+            return propagate(
+                self.hamiltonian,
+                self.y0,
+                (0.0, duration),
+                method=setting.method,
+                step=setting.step,
+                tolerance=setting.tolerance,
+                precision=setting.precision,
+                parameters=self.values,
+                samples=samples,
+                cadence=cadence,
+                observables=None if self.integral is None else {self.observable: self.integral},
+            )
 
-    def positions(self, duration: float) -> Array:
-        """Return the coordinates of the reference at PLACES + 1 even times, shape (n, times)."""
-        if duration not in self._known:
-            setting = Setting(REFERENCE, precision="extended")
+    def positions(self, duration: float, precision: str) -> tuple[Array, Array]:
+        """Return the reference's coordinates at PLACES + 1 even times as sums of doubles, each (n, times).
+
+        The reference of runs in doubles has 64 bits, or 113 where the platform has no such numbers; that of
+        runs in more digits has 113.
+        """
+        plain = precision in ("single", "double", "compensated")
+        if (duration, plain) not in self._known:
+            setting = Setting(REFERENCE if plain else FINE_REFERENCE, precision="extended" if plain else "quad")
             try:
                 found = self.run(setting, duration, PLACES)
             except ValueError:
                 found = self.run(replace(setting, precision="quad"), duration, PLACES)
-            self._known[duration] = found.q + found.carried[: len(found.q)]
-        return self._known[duration]
+            self._known[duration, plain] = found.q, found.carried[: len(found.q)]
+        return self._known[duration, plain]
 
 
 @dataclass(frozen=True)
@@ -167,13 +178,13 @@ def is_symplectic(method: Method) -> bool:
     return isinstance(method, Splitting | Gauss)
 
 
-def pilot(question: Question, setting: Setting, duration: float) -> Pilot:
+def pilot(question: Question, setting: Setting, duration: float, windows: int = WINDOWS) -> Pilot:
     """Run a setting for a while and keep what its error did; a run that fails is a pilot with the reason."""
     try:
         if question.observable == "position":
             return _against_reference(question, setting, duration)
         if isinstance(setting.method, FixedStep):
-            return _watched(question, setting, duration)
+            return _watched(question, setting, duration, windows)
         return _sampled(question, setting, duration)
     except (NonFiniteStateError, ArithmeticError, ValueError) as failed:
         return Pilot(setting, duration, failure=str(failed))
@@ -190,11 +201,11 @@ def seconds_per_time(question: Question, setting: Setting, duration: float) -> f
     return min(found.cpu_seconds, *again) / trial
 
 
-def _watched(question: Question, setting: Setting, duration: float) -> Pilot:
+def _watched(question: Question, setting: Setting, duration: float, windows: int) -> Pilot:
     """Follow the error inside the loop: nothing is missed between samples."""
     steps = math.ceil(duration / setting.knob)
     cadence = max(1, steps // WATCHED)
-    windows = min(WINDOWS, steps // (2 * cadence))
+    windows = max(1, min(windows, steps // (2 * cadence)))
     found = question.run(setting, duration, windows, cadence)
     seen = found.statistics[question.observable]
     unit = _unit(found, question)
@@ -232,9 +243,9 @@ def _against_reference(question: Question, setting: Setting, duration: float) ->
     if isinstance(setting.method, FixedStep):
         steps = PLACES * max(1, round(duration / setting.knob / PLACES))
         setting = replace(setting, step=duration / steps)
-    true = question.positions(duration)
+    true, rest = question.positions(duration, setting.precision)
     found = question.run(setting, duration, PLACES)
-    off = (found.q - true) + found.carried[: len(found.q)]
+    off = (found.q - true) + (found.carried[: len(found.q)] - rest)
     size = float(np.linalg.norm(true, axis=0).max())
     away = np.linalg.norm(off, axis=0)[1:] / size
     return Pilot(

@@ -350,6 +350,8 @@ def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: 
     if question.span <= duration:
         return chosen
     longer = min(question.span, CONFIRMING * duration * dop853_share(chosen.method))
+    if chosen.step is not None:
+        longer = min(longer, LONGEST_PILOT * chosen.step)
     setting, resonant = chosen.setting, False
     tried = _tried(question, setting, longer)
     share = 1.0 if setting.step is not None or longer >= question.span else ADAPTIVE_MARGIN

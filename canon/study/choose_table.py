@@ -14,6 +14,10 @@ if TYPE_CHECKING:
 __all__ = ["choice_table", "duration_in_words"]
 
 
+MEANINGLESS = 0.1
+"""Relative position error from which the position is lost."""
+
+
 def choice_table(choice: Choice) -> str:
     """Return a choice as an answer in words, and the table of the candidates.
 
@@ -35,8 +39,10 @@ def _answer(choice: Choice) -> str:
     best = choice.chosen
     cost = duration_in_words(best.predicted_cost)
     if not choice.reached:
+        if best.predicted_error > MEANINGLESS and choice.observable == "position":
+            return "no method can promise it: neighbouring motions part too fast"
         if math.isinf(best.predicted_error):
-            return "no method can promise any accuracy; neighbouring motions part exponentially"
+            return "no method can follow the motion so long"
         return f"no method keeps it; the best reaches {best.predicted_error:.1e} in {cost}: {_named(best)}"
     return f"{_named(best)} in {best.precision} precision, error {best.predicted_error:.1e}, {cost}"
 
@@ -48,7 +54,9 @@ def _named(candidate: Candidate) -> str:
 
 
 def _name(candidate: Candidate) -> str:
-    return str(candidate.method).partition("(")[0] if candidate.tolerance is not None else str(candidate.method)
+    return (
+        str(candidate.method).partition("(")[0] if candidate.tolerance is not None else str(candidate.method)
+    )
 
 
 def _knob(candidate: Candidate) -> str:

@@ -26,7 +26,17 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = ["Exponent", "Return", "Slope", "Walk", "power_of_time", "power_of_wandering", "return_of", "slope_of", "walk_of"]
+__all__ = [
+    "Exponent",
+    "Return",
+    "Slope",
+    "Walk",
+    "power_of_time",
+    "power_of_wandering",
+    "return_of",
+    "slope_of",
+    "walk_of",
+]
 
 PURE_WALK_WEIGHT = 0.5
 """Prior weight of "nothing but walk"; the other half is spread evenly over the logarithm of the ratio."""

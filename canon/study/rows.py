@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.measure import AccuracyWarning
 from canon.flow.method import FixedStep
 from canon.flow.propagate import NonFiniteStateError, propagate
 from canon.study.drift import Growth, drift
@@ -110,20 +112,23 @@ class Run:
         cadence: int | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Trajectory:
-        return propagate(
-            self.hamiltonian,
-            self.y0,
-            (0.0, duration),
-            method=self.method,
-            step=self.step,
-            tolerance=self.tolerance,
-            precision=self.precision,
-            parameters=self.parameters,
-            samples=samples,
-            cadence=cadence,
-            observables={each.name: each.expression for each in observables if each.expression is not None},
-            progress=progress,
-        )
+        """Return a run of that duration."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
+            return propagate(
+                self.hamiltonian,
+                self.y0,
+                (0.0, duration),
+                method=self.method,
+                step=self.step,
+                tolerance=self.tolerance,
+                precision=self.precision,
+                parameters=self.parameters,
+                samples=samples,
+                cadence=cadence,
+                observables={each.name: each.expression for each in observables if each.expression is not None},
+                progress=progress,
+            )
 
 
 def drift_row(

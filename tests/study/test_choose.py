@@ -1,0 +1,183 @@
+"""Choices are kept when they are run; laws of growth on series of known growth; what can't be is said."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates
+from canon.scene import find
+from canon.study.choose_law import expected_error
+from canon.study.choose_pilot import Pilot, Setting, pilot
+from canon.study.choose_search import tolerance_at
+from canon.study.errors import StudyError
+from tests.study import series
+
+VERLET = Setting(Splitting("verlet"), step=0.1)
+RUNGE_KUTTA = Setting(RK4(), step=0.1)
+
+
+def made(setting, error):
+    return Pilot(setting, series.SPAN, t=series.TIMES, mean=error, largest=np.abs(error), energy=1e-6)
+
+
+def test_what_oscillates_stays_within_its_bound():
+    error = 1e-6 * series.oscillation(np.random.default_rng(1))
+    bound = np.abs(error).max()
+    assert expected_error(made(VERLET, error), 1e3 * series.SPAN, "energy") == pytest.approx(bound, rel=0.3)
+
+
+def test_what_drifts_grows_with_the_span():
+    error = 1e-8 * series.oscillation(np.random.default_rng(2)) - 1e-6 * series.SHARE
+    for setting in (VERLET, RUNGE_KUTTA):
+        found = expected_error(made(setting, error), 1e3 * series.SPAN, "energy")
+        assert found == pytest.approx(1e-3, rel=0.05)
+
+
+def test_a_walk_grows_with_the_root_of_the_span():
+    """Twice its root-mean-square end, which 95 % of walks stay below."""
+    found = [
+        expected_error(made(VERLET, 1e-13 * series.walk(random)), 1e4 * series.SPAN, "energy")
+        for random in map(np.random.default_rng, range(20))
+    ]
+    assert np.median(found) == pytest.approx(2e-11, rel=0.25)
+
+
+@pytest.mark.parametrize(
+    ("setting", "power"), [(VERLET, 1.0), (RUNGE_KUTTA, 2.0), (Setting(Taylor(), tolerance=1e-9), 2.0)]
+)
+def test_positions_go_wrong_by_their_law(setting, power):
+    error = 1e-9 * series.SHARE**power
+    found = expected_error(made(setting, error), 100.0 * series.SPAN, "position")
+    assert found == pytest.approx(1e-9 * 100.0**power, rel=0.2)
+
+
+def test_positions_that_part_exponentially_can_not_be_promised():
+    error = 1e-12 * np.exp(15.0 * series.SHARE)
+    assert expected_error(made(VERLET, error), 10.0 * series.SPAN, "position") == math.inf
+
+
+CASES = [
+    ("henon-heiles", None, 3000.0, 1e-7, "energy", None),
+    ("kepler", "e=0.6", 500.0, 1e-5, "Runge–Lenz vector, x", [Splitting("kahan-li-8"), Splitting("srkn-6b")]),
+    ("spring-pendulum", None, 500.0, 1e-9, "energy", [Gauss(4), Gauss(6), Taylor()]),
+    ("harmonic-oscillator", None, 2000.0, 1e-5, "position", [Splitting("blanes-moan-4"), RK4()]),
+]
+
+
+@pytest.mark.parametrize(("name", "start", "periods", "accuracy", "observable", "methods"), CASES)
+def test_a_choice_is_kept_when_it_is_run(name, start, periods, accuracy, observable, methods):
+    scene = find(name)
+    choice = choose(scene, start, periods * scene.period, accuracy, observable, methods=methods)
+    assert choice.reached
+    whole = pilot(choice.question, choice.chosen.setting, choice.span)
+    assert whole.bound <= accuracy
+    assert choice.predicted_error / 5.0 < whole.bound
+    assert choice.chosen.evaluations == pytest.approx(whole.evaluations, rel=0.05)
+    if choice.step is not None:
+        coarse = choice.chosen.setting.turned(2.5 * choice.step)
+        assert pilot(choice.question, coarse, choice.span).bound > accuracy
+
+
+def test_the_choice_is_the_cheapest_candidate_that_keeps_the_accuracy():
+    scene = find("toda")
+    choice = choose(scene, None, 1e3 * scene.period, 1e-6)
+    able = [each for each in choice.candidates if each.keeps]
+    assert choice.predicted_cost == min(each.predicted_cost for each in able)
+    assert len({str(each.method) for each in choice.candidates}) > 10
+
+
+def test_steps_follow_the_order_of_the_method():
+    """Bounded errors ∝ h²: an accuracy a hundred times finer takes a tenth of the step."""
+    scene = find("henon-heiles")
+    steps = [
+        choose(scene, None, 2e3 * scene.period, accuracy, methods=[Splitting("verlet")]).step
+        for accuracy in (1e-3, 1e-5)
+    ]
+    assert steps[0] / steps[1] == pytest.approx(10.0, rel=0.15)
+
+
+def test_steps_of_runge_kutta_follow_the_span():
+    """Its energy is lost in proportion to h⁵ t: 32 times the span takes half the step."""
+    scene = find("henon-heiles")
+    steps = [
+        choose(scene, None, periods * scene.period, 1e-5, methods=[RK4()]).step
+        for periods in (500.0, 16000.0)
+    ]
+    assert steps[0] / steps[1] == pytest.approx(2.0, rel=0.15)
+
+
+def test_what_no_method_keeps_is_said():
+    scene = find("henon-heiles")
+    choice = choose(
+        scene, "chaotic", 3e3 * scene.period, 1e-6, "position", methods=[Splitting("kahan-li-8"), Taylor()]
+    )
+    assert not choice.reached
+    assert "no method can promise" in str(choice)
+    with pytest.raises(StudyError, match="nothing keeps 1e-06"):
+        choice.run()
+
+
+def test_the_best_that_can_be_reached_is_told():
+    scene = find("kepler")
+    choice = choose(scene, None, 300.0 * scene.period, 1e-6, methods=[RK4()])
+    finest = choose(scene, None, 300.0 * scene.period, 1e-17, methods=[RK4()])
+    assert choice.reached
+    assert not finest.reached
+    assert "no method keeps it; the best reaches" in str(finest)
+
+
+def test_more_digits_are_taken_where_doubles_do_not_suffice():
+    scene = find("henon-heiles")
+    choice = choose(scene, None, 50.0 * scene.period, 1e-17, methods=[Splitting("kahan-li-8"), Taylor()])
+    assert choice.reached
+    assert choice.precision in ("extended", "quad", "double-double")
+
+
+def test_a_choice_runs():
+    scene = find("simple-pendulum")
+    choice = choose(scene, "small", 300.0 * scene.period, 1e-6)
+    motion = choice.run(samples=500)
+    assert motion.t[-1] == pytest.approx(300.0 * scene.period)
+    assert np.abs(motion.energy_error).max() <= 1e-6
+    assert str(choice).splitlines()[1].startswith("energy to 1e-06 over t = ")
+
+
+def test_a_hamiltonian_of_ones_own_with_an_integral():
+    x, y = coordinates("x y")
+    H = (x.momentum**2 + y.momentum**2 + x**2 + y**2) / 2 + (x**2 + y**2) ** 2 / 8
+    motion = Hamiltonian(H, [x, y], [x.momentum, y.momentum])
+    spin = x * y.momentum - y * x.momentum
+    choice = choose(motion, [1.0, 0.0, 0.0, 0.5], 2000.0, 1e-9, "spin", integral=spin)
+    assert choice.reached
+    assert pilot(choice.question, choice.chosen.setting, 2000.0).bound <= 1e-9
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"span": 0.0}, "positive, finite duration"),
+        ({"accuracy": 0.0}, "between 0 and 0.1"),
+        ({"accuracy": math.nan}, "between 0 and 0.1"),
+        ({"observable": "spin"}, "has no constant 'spin'"),
+        ({"methods": []}, "name at least one"),
+    ],
+)
+def test_requests_that_make_no_sense(options, told):
+    request = {"span": 100.0, "accuracy": 1e-6, **options}
+    with pytest.raises(StudyError, match=told):
+        choose(find("kepler"), None, **request)
+
+
+def test_a_motion_that_can_not_be_followed():
+    (x,) = coordinates("x")
+    falling = Hamiltonian(x.momentum**2 / 2 - 1 / x, [x], [x.momentum])
+    with pytest.raises(StudyError, match="the motion can't be followed"):
+        choose(falling, [1.0, 0.0], 10.0, 1e-6)
+
+
+@pytest.mark.parametrize("rung", range(3, 19))
+def test_rungs_of_tolerance_are_orders(rung):
+    assert Taylor(tolerance_at(rung)).order == rung + 1
