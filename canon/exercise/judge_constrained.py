@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.reading import Reading
+    from canon.proof.domain import Domain
 
 __all__ = ["is_one_of", "multiplier_holonomic", "nonholonomic"]
 
@@ -69,7 +70,7 @@ def _on_every_motion(
     system = [equation - reaction for equation, reaction in zip(lagrangian.equations, reactions, strict=True)]
     system += [time_derivative(g, q, t) for g in held]
     claims = reading.equations("claim")
-    jets = _jets((*system, *manifold, *claims), t)
+    jets = _jets((*system, *manifold, *claims), t, reading.domain)
     functions = {symbol: function for function, symbol in jets.items()}
     system, claims, manifold = ([replaced(e, jets) for e in given] for given in (system, claims, manifold))
     open_ = {i: claim for i, claim in enumerate(claims) if not is_one_of(claim, system)} or {0: sp.S.Zero}
@@ -114,17 +115,22 @@ def _shown(solution: Mapping[Symbol, Expr]) -> tuple[str, ...] | None:
     )
 
 
-def _jets(expressions: Sequence[Expr], t: Symbol) -> dict[Expr, Symbol]:
-    """Return a symbol for each arbitrary function of the time and each of its derivatives.
+def _jets(expressions: Sequence[Expr], t: Symbol, domain: Domain) -> dict[Expr, Symbol]:
+    """Return a symbol for each arbitrary function and each of its derivatives.
 
-    At one instant they are independent of one another, and nothing is differentiated any more.
+    At one point they are independent of one another, and nothing is differentiated any more. Functions of more than
+    the time are left alone where they occur with different arguments, or in a condition.
     """
+    atoms = set[Expr]().union(*(e.atoms(AppliedUndef, sp.Derivative) for e in expressions))
+    places = {atom.expr if isinstance(atom, sp.Derivative) else atom for atom in atoms}
+    named = [str(place.func) for place in places]
+    conditioned = any(condition.atoms(AppliedUndef) for condition in domain.conditions)
     jets: dict[Expr, Symbol] = {}
-    for atom in sorted(
-        set[Expr]().union(*(e.atoms(AppliedUndef, sp.Derivative) for e in expressions)), key=str
-    ):
+    for atom in sorted(atoms, key=str):
         function = atom.expr if isinstance(atom, sp.Derivative) else atom
-        if isinstance(function, AppliedUndef) and function.args == (t,):
+        plain = all(isinstance(argument, Symbol) for argument in function.args)
+        alone = named.count(str(function.func)) == 1 and not conditioned
+        if isinstance(function, AppliedUndef) and (function.args == (t,) or (plain and alone)):
             positive = {"positive": True} if atom == function and function.is_positive else {}
             jets[atom] = Symbol(str(atom), real=True, **positive)
     return jets
