@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.fixed import compiled_loop, steps_between
-from canon.flow.method import DOP853, Taylor
+from canon.flow.method import FixedStep, Taylor
 from canon.flow.partial import State
 from canon.flow.precision import fixed_precision
 
@@ -35,8 +35,8 @@ def states_at(task: Task, samples: Samples, times: Array) -> Array:
         if not samples.dense:
             raise ValueError("the motion was not kept as a function of time: propagate(…, dense=True)")
         return np.stack([orbit(times) for orbit in samples.dense], axis=2)
-    if isinstance(task.method, DOP853):
-        raise ValueError("DOP853 is not kept as a function of time: name the times, propagate(…, times=…)")
+    if not isinstance(task.method, FixedStep):
+        raise ValueError(f"{task.method} is not kept as a function of time: name the times, propagate(…, times=…)")
     if any(met.after is not None for met in samples.crossings):
         raise ValueError(
             "events changed the state on the way, which steps from a sample do not know: propagate(…, times=…)"

@@ -89,6 +89,8 @@ def task_of(
     _check_start(system, given[0], start)
     if isinstance(method, FixedStep):
         plan = planned(wanted, step, method)
+    elif not isinstance(method, Taylor | DOP853):
+        raise ValueError(f"{method} is for propagate() alone; use Splitting, Gauss or Taylor")
     else:
         _check_adaptive(method, step, cadence, precision)
         plan = adaptive_plan(wanted)

@@ -86,6 +86,7 @@ class Task:
             )
         if isinstance(self.method, DOP853):
             return dop853_motion(self.system, states[0], self.plan, self.method, progress, so_far)
+        assert isinstance(self.method, Taylor)
         precision, dense = self.precision or "double", self.dense
         return taylor_motion(
             self.system, states, self.plan, self.method, precision, progress, so_far, events, dense=dense

@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.kernel.pair import pair_functions
+from canon.kernel.pair_function import PAIR_FUNCTIONS, call_pair_function
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -322,8 +323,11 @@ class Writer:
         if operation == "sqrt":
             return self._of_pairs("sqrt", *x) if self.number.pair else self.intrinsic("sqrt", *x)
         if self.number.pair:
+            if operation in PAIR_FUNCTIONS:
+                return call_pair_function(self, operation, x)
             raise ValueError(
-                f"there is no {operation} in double-double; use precision='extended', or Taylor()"
+                f"there is no {operation} in double-double; use precision='extended', or Taylor() with "
+                "precision='quad'"
             )
         if operation == "Abs":
             return self.intrinsic("fabs", *x)

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+import sympy as sp
 
 from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.precision import ADAPTIVE, FIXED
@@ -17,6 +18,7 @@ from tests.flow.systems import (
     HENON_HEILES_START,
     KEPLER,
     PENDULUM,
+    System,
     kepler_start,
 )
 from tests.flow.test_geometry import exact_step
@@ -112,9 +114,31 @@ def test_precisions_that_a_method_does_not_have(method, precision, message):
         propagate(KEPLER, kepler_start(0.2), (0, 1), method=method, precision=precision, **fixed)
 
 
-def test_double_double_says_that_it_has_no_sine():
-    with pytest.raises(ValueError, match="no sin in double-double"):
-        propagate(PENDULUM, [1.0, 0.0], (0, 1), method=SS10, step=0.1, precision="double-double")
+def test_a_pendulum_in_double_double_is_heyokas_in_quadruple():
+    motion = propagate(
+        PENDULUM, [1.0, 0.0], (0, 3), method=SS10, step=1 / 64, precision="double-double", samples=3
+    )
+    assert 0 < abs(motion.energy_error).max() < 1e-24
+    finer = propagate(
+        PENDULUM, [1.0, 0.0], (0, 3), method=SS10, step=1 / 128, precision="double-double", samples=3
+    )
+    # Of order 10 far below what doubles show: the sines are right there too.
+    ratio = abs(motion.energy_error).max() / abs(finer.energy_error).max()
+    assert ratio == pytest.approx(2**10, rel=0.2)
+
+
+def test_double_double_says_what_it_has_not():
+    hyperbolic = System(PENDULUM.H + sp.asinh(PENDULUM.q[0]), PENDULUM.q, PENDULUM.p)
+    with pytest.raises(ValueError, match=r"no asinh in double-double.*'quad'"):
+        propagate(
+            hyperbolic,
+            [1.0, 0.0],
+            (0, 1),
+            method=Splitting("verlet"),
+            step=0.1,
+            precision="double-double",
+            cadence=1,
+        )
 
 
 def starts(base, orbits):
