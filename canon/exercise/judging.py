@@ -47,7 +47,7 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
         return
     judgement = replace(judgement, corrected=_cut(corrected(finding)))
     yield judgement, False  # before the diagnosis is looked for, which can be cut off
-    yield replace(judgement, feedback=feedback(finding, left) or judgement.feedback), True
+    yield replace(judgement, feedback=_cut(feedback(finding, left)) or judgement.feedback), True
 
 
 def _told(claim: Claim, verdict: Verdict) -> Judgement:
@@ -63,8 +63,8 @@ def _told(claim: Claim, verdict: Verdict) -> Judgement:
         question=verdict.question,
         counterexample=point,
         residual=_short(verdict.residual) if verdict.fails or verdict.undecided else "",
-        feedback=verdict.feedback,
-        known=known,
+        feedback=_cut(verdict.feedback),
+        known=_cut(known),
         title=str(claim.keys.get("title", "")),
         expect=claim.expect,
     )

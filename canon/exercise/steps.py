@@ -27,6 +27,7 @@ MOST_STEPS = 40
 MOST_PARTS = 8
 MOST_NODES = 400
 """Largest expression that is shown; a longer one is read by nobody."""
+MOST_CHARACTERS = 2_000
 _ANSWERS = {"holds": "it holds", "fails": "it fails", "undecided": "it was not decided"}
 
 
@@ -126,4 +127,5 @@ def _answer(question: Question, verdict: Verdict) -> str:
 def shown(f: Basic) -> str:
     """Return an expression as text, nothing where it is longer than anyone reads."""
     nodes = sum(1 for _ in zip(sp.preorder_traversal(f), range(MOST_NODES), strict=False))
-    return str(f) if nodes < MOST_NODES else ""
+    text = str(f) if nodes < MOST_NODES else ""
+    return text if len(text) <= MOST_CHARACTERS else ""

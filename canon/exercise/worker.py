@@ -200,6 +200,7 @@ def _serve() -> None:
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     sys.stdout = sys.stderr
     _limit_memory()
+    sys.set_int_max_str_digits(0)  # what follows from long numbers is longer; here its time is limited anyway
     from canon.exercise.judging import judgements
 
     answers.write("ready\n")

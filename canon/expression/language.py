@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 __all__ = ["LanguageError", "Scope", "parse_condition", "parse_equation", "parse_expression", "syntax_of"]
 
 MAX_EXPONENT = 1_000
-MAX_BITS = 40_000
+MAX_BITS = 14_000
+"""Longest number that is built: Python writes integers of up to 4300 digits."""
 
 
 def parse_expression(text: str, scope: Scope) -> Expr:

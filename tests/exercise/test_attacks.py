@@ -204,6 +204,11 @@ ATTACKS = {
     "roots of large numbers": {"lhs": f"sqrt({'7' * 990})*sqrt({'3' * 990}) + {'9' * 990}**(1/3)"},
     "factors of large numbers": {"lhs": f"({10**900 + 7})**(1/2)"},
     "hundred digits below": {"lhs": "+".join(f"x/{10**99 + i}" for i in range(300))},
+    "numbers longer than Python writes": {"lhs": "10**999*10**999*10**999*10**999*x**2"},
+    "a bracket of long numbers": {"kind": "poisson-bracket", "q": ["q"], "p": ["p"], "pairs": [
+        {"f": "(q + 1)**2*10**999*10**999*10**999*10**999", "g": "p**2*10**999*10**999*10**999", "value": "1"}]},
+    "motion with long numbers": {"kind": "euler-lagrange", "q": ["x"], "claim": ["x_ddot*10**999*10**999 + x"],
+        "L": "x_dot**2*10**999*10**999*10**999/2 - x**2*7**999*7**999*7**999*7**999/2"},
     "power of a long sum": {"lhs": "(" + "+".join(f"x**{i}" for i in range(200)) + ")**500"},
     "products of sums": {"lhs": "*".join(f"(x + {i})" for i in range(900))},
     "10**5 terms": {"lhs": "+".join(["x"] * 100_000)},
@@ -288,6 +293,7 @@ def test_attacks_are_answered_in_their_budget_and_the_next_claim_is_judged(tmp_p
             assert seconds < budget + 1 + 1.8, name  # and the feedback, which costs no verdict
             for text in (told.known, told.feedback, *told.lines()):
                 assert "Traceback" not in text
+                assert "broke off" not in text, name
                 assert "Error" not in text, (name, text)
             assert len(json.dumps(told.to_dict())) < 20_000, name
             assert worker.judge(claim_from(GOOD)).status == "holds", name
