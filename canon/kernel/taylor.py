@@ -34,6 +34,10 @@ _COMPACT_FROM = 300
 """Graphs with more nodes are compiled in heyoka's compact mode, which keeps compile times short."""
 
 
+_LARGEST_PRODUCT = 64
+"""Natural powers up to this one are written as products."""
+
+
 def heyoka_number(precision: str | int) -> Callable[[Fraction], Any]:
     """Return what turns exact numbers into heyoka's numbers of a precision.
 
@@ -99,8 +103,13 @@ def heyoka_expressions(
             done[each] = hy.prod(x)
         elif kind == "pow":
             exponent = graph.nodes[operands[1]]
-            half = exponent.kind == "number" and exponent.value == Fraction(1, 2)
-            done[each] = hy.sqrt(x[0]) if half else x[0] ** x[1]
+            value = exponent.value if exponent.kind == "number" else None
+            if value == Fraction(1, 2):
+                done[each] = hy.sqrt(x[0])
+            elif value is not None and value.denominator == 1 and 2 < value <= _LARGEST_PRODUCT:
+                done[each] = _product_of_squares(x[0], int(value))
+            else:
+                done[each] = x[0] ** x[1]
         elif kind in _SAME_NAME:
             done[each] = getattr(hy, kind)(*x)
         elif kind == "Abs":
@@ -119,6 +128,18 @@ def heyoka_functions(
     import heyoka as hy
 
     return heyoka_expressions(system.graph, nodes, {**_variables(system), system.t: hy.time}, number)
+
+
+def _product_of_squares(x: Any, power: int) -> Any:
+    """Return xⁿ as products: heyoka's Taylor series of x ** 3 and higher powers divide by x, and are lost at x = 0."""
+    result, square = None, x
+    while True:
+        if power & 1:
+            result = square if result is None else result * square
+        power >>= 1
+        if not power:
+            return result
+        square = square * square
 
 
 def heyoka_equations(system: Equations, number: Callable[[Fraction], Any] = float) -> list[tuple[Any, Any]]:

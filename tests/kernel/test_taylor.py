@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from canon import Gauss, Hamiltonian, propagate
 from canon.kernel.structure import equations
 from canon.kernel.taylor import heyoka_equations, heyoka_expressions
 from tests.flow.systems import DOUBLE_PENDULUM, DRIVEN, HENON_HEILES, KEPLER, PENDULUM, System, x
@@ -58,3 +59,13 @@ def test_a_jump_is_refused():
     jump = System(x.momentum**2 / 2 + sp.Abs(x), (x,), (x.momentum,))
     with pytest.raises(ValueError, match="sign"):
         heyoka_equations(equations(jump.H, jump.q, jump.p, jump.t, {}))
+
+
+@pytest.mark.parametrize("power", [3, 4, 5, 6, 9])
+def test_a_motion_starts_where_a_power_vanishes(power):
+    """heyoka's series of x ** 3 divides by x; from x = 0 the motion is that of another method all the same."""
+    q, p = sp.symbols("q p", real=True)
+    hamiltonian = Hamiltonian(p**2 / 2 + q**2 / 2 + q**power / power, q, p)
+    motion = propagate(hamiltonian, [0.0, 0.5], (0.0, 3.0), samples=1)
+    other = propagate(hamiltonian, [0.0, 0.5], (0.0, 3.0), method=Gauss(6), step=0.01, samples=1)
+    np.testing.assert_allclose(motion.final, other.final, atol=1e-13)
