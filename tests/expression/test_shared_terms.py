@@ -87,7 +87,9 @@ def test_multiples_share_what_they_multiply():
     assert graph.nodes[apart].operands == (graph.number(-3), graph.from_sympy(a * sp.sin(x)))
     assert graph.apart(graph.from_sympy(a * sp.sin(x))) == graph.from_sympy(a * sp.sin(x))
     assert graph.multiple(Fraction(1, 2), apart) != graph.from_sympy(-3 * a * sp.sin(x) / 2)
-    assert value(graph, graph.multiple(Fraction(1, 2), apart)) == pytest.approx(value(graph, f) / 2, rel=1e-15)
+    assert value(graph, graph.multiple(Fraction(1, 2), apart)) == pytest.approx(
+        value(graph, f) / 2, rel=1e-15
+    )
 
 
 def test_masks_tell_what_nodes_depend_on():
