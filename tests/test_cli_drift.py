@@ -55,6 +55,34 @@ def test_gauss_methods_take_any_hamiltonian(capsys):
     assert "Gauss(4) failed" not in printed
 
 
+def test_observables_by_name(capsys):
+    arguments = ["drift", "kepler", "--periods", "100", "--method", "verlet", "--json"]
+    assert main([*arguments, "--observable", "energy", "--observable", "angular momentum"]) == 0
+    energy, momentum = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (energy["observable"], momentum["observable"]) == ("energy", "angular momentum")
+    assert momentum["bound"] < 1e-13 < energy["bound"]
+
+
+def test_several_orbits(capsys):
+    assert drift("--method", "rk4", "--orbits", "3") == 0
+    assert "orbits: 3 secular" in capsys.readouterr().out
+    assert drift("--method", "rk4", "--orbits", "3", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["orbits"] == ["secular"] * 3
+
+
+def test_a_duration_in_units_of_time_and_more_digits(capsys):
+    arguments = ["drift", "henon-heiles", "--until", "100", "--method", "taylor", "--precision", "extended"]
+    assert main([*arguments, "--json"]) == 0
+    line = json.loads(capsys.readouterr().out)
+    assert line["span"] == 100.0
+    assert line["precision"] == "extended"
+
+
+def test_progress_is_silent_when_piped(capsys):
+    assert drift("--method", "verlet") == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_scenes_are_listed(capsys):
     assert main(["drift", "list"]) == 0
     printed = capsys.readouterr().out
@@ -72,6 +100,9 @@ def test_scenes_are_listed(capsys):
         (["drift", "simple-pendulum", "--set", "l=nan"], "--set l=nan"),
         (["drift", "simple-pendulum", "--set", "l=-1"], "must be positive"),
         (["drift", "simple-pendulum", "--set", "size=1"], "has no parameter 'size'"),
+        (["drift", "kepler", "--observable", "spin"], "there is no observable 'spin'"),
+        (["drift", "henon-heiles", "--observable", "momenta"], "no momentum is constant"),
+        (["drift", "henon-heiles", "--orbits", "0"], "run at least one"),
         (["drift", "henon-heiles", "--step", "-0.1"], "positive"),
         (["drift", "henon-heiles", "--periods", "0"], "positive"),
         (["drift", "henon-heiles", "--periods", "nan"], "positive"),

@@ -97,7 +97,7 @@ class Question:
 
     def run(self, setting: Setting, duration: float, samples: int, cadence: int | None = None) -> Trajectory:
         """Return a run of that duration from the start."""
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
             warnings.simplefilter("ignore", AccuracyWarning)  # its energy error is looked at here
             return propagate(
                 self.hamiltonian,

@@ -113,7 +113,7 @@ class Run:
         progress: Callable[[float], None] | None = None,
     ) -> Trajectory:
         """Return a run of that duration."""
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
             warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
             return propagate(
                 self.hamiltonian,

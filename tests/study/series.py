@@ -56,6 +56,14 @@ def short_memory(random: Random) -> Array:
     return np.convolve(random.normal(size=SAMPLES + 400), weight, mode="valid")[: SAMPLES + 1]
 
 
+def remembering(random: Random, share: float) -> Array:
+    """Noise with a memory of that share of the run, of variance about one."""
+    memory = share * SAMPLES
+    weight = np.exp(-np.arange(int(15.0 * memory)) / memory)
+    drawn = random.normal(size=SAMPLES + weight.size)
+    return np.convolve(drawn, weight, mode="valid") * np.sqrt(2.0 / memory)
+
+
 BOUNDED: dict[str, Callable[[Random], Array]] = {
     "one line": lambda random: 1e-6 * oscillation(random, lines=1),
     "five lines": lambda random: 1e-6 * oscillation(random, lines=5),

@@ -41,6 +41,22 @@ def test_walks_are_called_round_off(name):
     assert 0.7e-13 < np.sqrt(np.mean(np.square(sizes))) < 1.4e-13
 
 
+@pytest.mark.parametrize(("share", "most"), [(1.0 / 100.0, 3), (1.0 / 41.0, 7)])
+def test_bounded_noise_with_a_memory_is_not_called_round_off(share, most):
+    """It comes back to its mean; a walk with increments of the same size does not."""
+    found = verdicts(judged(lambda random: 1e-8 * series.remembering(random, share), 200, seed=19))
+    assert found[Growth.ROUND_OFF] + found[Growth.SECULAR] <= most
+    assert found[Growth.BOUNDED] >= 170
+
+
+def test_the_reason_names_the_memory():
+    found = drift(TIMES, 1e-8 * series.remembering(np.random.default_rng(2), 1.0 / 50.0))
+    assert found.verdict is Growth.BOUNDED
+    assert "returns within a time of about" in found.reason
+    assert 8.0 < float(found.reason.split()[-1]) < 50.0
+    assert found.walk == 0.0
+
+
 @pytest.mark.parametrize("name", series.SECULAR)
 def test_drifts_are_called_secular(name):
     exponent, make = series.SECULAR[name]

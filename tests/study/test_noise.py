@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from canon.study.block import PLACES, WIDTH, block_means, bump, window_starts
-from canon.study.growth import power_of_time, power_of_wandering, slope_of, walk_of
-from canon.study.noise import scatter_covariance, walk_covariance
+from canon.study.growth import power_of_time, power_of_wandering, return_of, slope_of, walk_of
+from canon.study.noise import returning_covariance, scatter_covariance, walk_covariance
 
 WINDOWS = 32
 Array = NDArray[np.float64]
@@ -37,6 +37,25 @@ def test_scatter_covariance_is_that_of_white_noise():
     of_means = weight @ weight.T
     expected = np.diff(np.diff(of_means / of_means[0, 0], axis=0), axis=1)
     np.testing.assert_allclose(scatter_covariance(12), expected, atol=1e-3)
+
+
+@pytest.mark.parametrize("memory", [2.0, 10.0])
+def test_returning_covariance_is_that_of_ornstein_and_uhlenbecks_process(memory):
+    times, weight = weights_on_a_path(12, 60)
+    motion = 0.5 * memory * np.exp(-np.abs(times[:, None] - times) / memory)
+    expected = np.diff(np.diff(weight @ motion @ weight.T, axis=0), axis=1)
+    np.testing.assert_allclose(returning_covariance(memory, 12), expected, atol=3e-3 * expected.max())
+
+
+def test_a_long_memory_is_a_walk():
+    walk = walk_covariance(0.5, 12)
+    np.testing.assert_allclose(returning_covariance(1e5, 12), walk, atol=2e-2 * walk.max())
+
+
+def test_walks_seem_to_return_once_in_a_hundred():
+    number = 1000
+    alarms = sum(return_of(means).evidence > 5.5 for means in draws(np.inf, number, seed=10, windows=128))
+    assert alarms <= at_most(0.01, number)
 
 
 def draws(ratio: float, number: int, seed: int, windows: int = WINDOWS) -> Array:

@@ -81,7 +81,6 @@ def test_symplectic_methods_keep_the_bilinear_covariant_and_runge_kutta_does_not
     symplectic, runge_kutta = (row.drift for row in study.rows)
     assert symplectic.bound < 1e-10
     assert runge_kutta.bound > 1e-6
-    assert runge_kutta.verdict in (Growth.SECULAR, Growth.DIVERGED)
 
 
 def test_the_variation_is_the_difference_of_nearby_orbits():
