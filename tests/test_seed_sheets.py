@@ -599,6 +599,9 @@ def test_canon_says_the_frozen_verdict_of_a_slow_claim(claim_id):
 
 SLIPS = ((" + ", " - "), (" - ", " + "), ("sin(", "cos("), ("cos(", "sin("), ("**2", "**3"), ("/2", "/3"))
 ANSWERS = ("claim", "R", "H", "S", "I", "F", "L2", "q_dot", "p_dot", "lhs", "Q", "P")
+ANSWERS += ("boundary", "integrand", "force", "T")
+UNSLIPPED = ("constraint-class", "degrees-of-freedom", "invariance", "positive-real")
+"""Kinds whose answer is a word or a number, or where the second route can only confirm."""
 
 
 def twin(claim, chance):
@@ -616,7 +619,9 @@ def twin(claim, chance):
 @pytest.mark.parametrize(
     "claim_id",
     sorted(
-        i for i, claim in CLAIMS.items() if i not in SLOW and "pairs" not in claim and "solution" not in claim
+        i
+        for i, claim in CLAIMS.items()
+        if i not in SLOW and not {"pairs", "solution"} & set(claim) and claim["kind"] not in UNSLIPPED
     ),
 )
 def test_canon_and_the_second_route_agree_on_a_slip(claim_id):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -17,14 +17,16 @@ from canon.exercise.tree import replaced
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.substitution import substitute
+from canon.proof.domain import Domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from canon.exercise.reading import Reading
-    from canon.proof.domain import Domain
+    from sympy.logic.boolalg import Boolean
 
-__all__ = ["is_one_of", "multiplier_holonomic", "nonholonomic"]
+    from canon.exercise.reading import Reading
+
+__all__ = ["is_one_of", "jets_of", "multiplier_holonomic", "nonholonomic", "with_jets"]
 
 MOST_OPERATIONS = 150
 """Size of an answer that is still shown."""
@@ -70,11 +72,12 @@ def _on_every_motion(
     system = [equation - reaction for equation, reaction in zip(lagrangian.equations, reactions, strict=True)]
     system += [time_derivative(g, q, t) for g in held]
     claims = reading.equations("claim")
-    jets = _jets((*system, *manifold, *claims), t, reading.domain)
+    jets = jets_of((*system, *manifold, *claims), t, reading.domain)
     functions = {symbol: function for function, symbol in jets.items()}
     system, claims, manifold = ([replaced(e, jets) for e in given] for given in (system, claims, manifold))
     open_ = {i: claim for i, claim in enumerate(claims) if not is_one_of(claim, system)} or {0: sp.S.Zero}
-    branches = on_manifold(manifold, reading.domain, keep=(t, *unknowns), prefer=lagrangian.velocities)
+    domain = with_jets(reading.domain, jets)
+    branches = on_manifold(manifold, domain, keep=(t, *unknowns), prefer=lagrangian.velocities)
     for branch in branches:
         here = [substitute(equation, branch.values) for equation in system]
         try:
@@ -115,21 +118,34 @@ def _shown(solution: Mapping[Symbol, Expr]) -> tuple[str, ...] | None:
     )
 
 
-def _jets(expressions: Sequence[Expr], t: Symbol, domain: Domain) -> dict[Expr, Symbol]:
+def with_jets(domain: Domain, jets: Mapping[Expr, Symbol]) -> Domain:
+    """Return a domain with the symbols that stand for functions and derivatives in its conditions."""
+    return Domain(tuple(cast("Boolean", c.xreplace(dict(jets))) for c in domain.conditions), domain.box)
+
+
+def jets_of(expressions: Sequence[Expr], t: Symbol, domain: Domain) -> dict[Expr, Symbol]:
     """Return a symbol for each arbitrary function and each of its derivatives.
 
     At one point they are independent of one another, and nothing is differentiated any more. Functions of more than
-    the time are left alone where they occur with different arguments, or in a condition.
+    the time are left alone where they occur with different arguments.
+
+    Examples
+    --------
+    >>> from sympy import Function, symbols
+    >>> x, t = symbols("x t", real=True)
+    >>> V = Function("V")(x)
+    >>> jets_of([V + V.diff(x)], t, Domain())
+    {Derivative(V(x), x): Derivative(V(x), x), V(x): V(x)}
     """
-    atoms = set[Expr]().union(*(e.atoms(AppliedUndef, sp.Derivative) for e in expressions))
+    everything = (*expressions, *domain.conditions)
+    atoms = set[Expr]().union(*(e.atoms(AppliedUndef, sp.Derivative) for e in everything))
     places = {atom.expr if isinstance(atom, sp.Derivative) else atom for atom in atoms}
     named = [str(place.func) for place in places]
-    conditioned = any(condition.atoms(AppliedUndef) for condition in domain.conditions)
     jets: dict[Expr, Symbol] = {}
     for atom in sorted(atoms, key=str):
         function = atom.expr if isinstance(atom, sp.Derivative) else atom
         plain = all(isinstance(argument, Symbol) for argument in function.args)
-        alone = named.count(str(function.func)) == 1 and not conditioned
+        alone = named.count(str(function.func)) == 1
         if isinstance(function, AppliedUndef) and (function.args == (t,) or (plain and alone)):
             positive = {"positive": True} if atom == function and function.is_positive else {}
             jets[atom] = Symbol(str(atom), real=True, **positive)

@@ -14,11 +14,11 @@ from sympy import Expr, Symbol
 
 from canon.exercise.affine import solved
 from canon.exercise.implicit_point import refuted_at_a_point
-from canon.exercise.judge_constrained import is_one_of
+from canon.exercise.judge_constrained import is_one_of, jets_of, with_jets
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.manifold import Branch, EmptyDomainError, on_manifold
 from canon.exercise.question import Deadline, Part, Question, Same, Stated, decide
-from canon.exercise.tree import symbols_of
+from canon.exercise.tree import replaced, symbols_of
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import substitute
@@ -35,15 +35,26 @@ __all__ = ["leaving_condition", "reaction"]
 
 @dataclass(frozen=True)
 class _Motion:
-    """One branch of the constraint manifold, accelerations and multipliers on it, and the directions of reactions."""
+    """One branch of the constraint manifold, accelerations and multipliers on it, and the directions of reactions.
+
+    ``jets`` are the symbols that stand for arbitrary functions and their derivatives.
+    """
 
     branch: Branch
     solution: Mapping[Symbol, Expr]
     directions: sp.Matrix
+    jets: Mapping[Expr, Symbol]
 
     def seen(self, f: Expr) -> Expr:
         """Return an expression on the motion."""
-        return substitute(f, {**self.branch.values, **self.solution})
+        return substitute(replaced(f, self.jets), {**self.branch.values, **self.solution})
+
+    def part(self, name: str, claimed: Expr, right: Expr, key: str) -> Part:
+        """Return a claimed value beside the right one; what the claim may hold of the motion is put in."""
+        value = replaced(claimed, self.jets)
+        known = {s: f for s, f in self.solution.items() if value.has(s)}
+        written = {symbol: function for function, symbol in self.jets.items()}
+        return Part(name, value, right, {**self.branch.values, **known}, key, written)
 
 
 def reaction(reading: Reading) -> Iterator[Question]:
@@ -55,22 +66,23 @@ def reaction(reading: Reading) -> Iterator[Question]:
     if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
         yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
         return
-    for motion in _motions(reading, constraints, multipliers):
+    values = reading.table("values") if reading.has("values") else {}
+    claimed = reading.expressions("force", like="q") if reading.has("force") else ()
+    for motion in _motions(reading, constraints, multipliers, (*values.values(), *claimed)):
         parts: list[Part] = []
-        if reading.has("values"):
+        if values:
             names = {s.name: s for s in multipliers}
-            for name, value in reading.table("values").items():
+            for name, value in values.items():
                 if name not in names:
                     reading.fault(f"values.{name}", "is not among the multipliers")
                 if value.has(*multipliers):
                     reading.fault(f"values.{name}", "should be in coordinates, velocities and time only")
-                right = motion.solution[names[name]]
-                parts.append(Part(name, value, right, _rates(motion, value), f"values.{name}"))
-        if reading.has("force"):
+                parts.append(motion.part(name, value, motion.solution[names[name]], f"values.{name}"))
+        if claimed:
             forces = motion.directions.T * sp.Matrix(multipliers)
-            for i, (x, value) in enumerate(zip(q, reading.expressions("force", like="q"), strict=True)):
+            for i, (x, value) in enumerate(zip(q, claimed, strict=True)):
                 name = f"the force of constraint on {x}"
-                parts.append(Part(name, value, motion.seen(forces[i]), _rates(motion, value), f"force[{i}]"))
+                parts.append(motion.part(name, value, motion.seen(forces[i]), f"force[{i}]"))
         yield Same(tuple(parts), motion.branch.domain, lambda parts=parts: _answer(parts))
 
 
@@ -83,7 +95,7 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
     multipliers = tuple(sp.Dummy(f"lam{i}", real=True) for i in range(1 + len(others)))
     (leaves,) = reading.equations("leaves")
     deadline = Deadline.after(0.8 * reading.claim.budget)
-    for motion in _motions(reading, (contact, *others), multipliers):
+    for motion in _motions(reading, (contact, *others), multipliers, (leaves,)):
         force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
         claimed = motion.seen(leaves)
         if claimed == 0:
@@ -118,17 +130,23 @@ def _system(
 
 
 def _motions(
-    reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]
+    reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol], claims: Sequence[Expr]
 ) -> Iterator[_Motion]:
     q, t = reading.symbols("q"), reading.time
     v, a = tuple(velocity(x) for x in q), tuple(acceleration(x) for x in q)
     directions, system, held = _system(reading, constraints, multipliers)
     positions = [f for f in constraints if not f.has(*v)]
     integrals = reading.equations("integrals") if reading.has("integrals") else ()
-    for branch in _with_integrals(on_manifold((*positions, *held), reading.domain, (t,), v), integrals, v, t):
-        here = [substitute(e, branch.values) for e in system]
-        motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions)
-        _check_constant(reading, integrals, motion)
+    rates = [time_derivative(f, q, t) for f in integrals]
+    held_at = (*positions, *held)
+    jets = jets_of((*system, *held_at, *integrals, *rates, *claims), t, reading.domain)
+    held_at, integrals = (tuple(replaced(f, jets) for f in some) for some in (held_at, integrals))
+    directions = directions.applyfunc(lambda f: replaced(f, jets))
+    domain = with_jets(reading.domain, jets)
+    for branch in _with_integrals(on_manifold(held_at, domain, (t,), v), integrals, v, t):
+        here = [substitute(replaced(e, jets), branch.values) for e in system]
+        motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions, jets)
+        _check_constant(reading, rates, motion)
         yield motion
 
 
@@ -148,25 +166,17 @@ def _with_integrals(
             yield Branch({**values, **part.values}, part.domain)
 
 
-def _check_constant(reading: Reading, integrals: Sequence[Expr], motion: _Motion) -> None:
+def _check_constant(reading: Reading, rates: Sequence[Expr], motion: _Motion) -> None:
     """Refuse "integrals" that a motion does not keep: no whole motion would be meant."""
-    for i, f in enumerate(integrals):
-        rate = motion.seen(time_derivative(f, reading.symbols("q"), reading.time))
-        kept = decide(
-            Same((Part("rate", rate),), motion.branch.domain), Deadline.after(reading.claim.budget / 4)
-        )
+    for i, rate in enumerate(rates):
+        part = Part("rate", motion.seen(rate))
+        kept = decide(Same((part,), motion.branch.domain), Deadline.after(reading.claim.budget / 4))
         if kept.fails:
             reading.fault(
                 f"integrals[{i}]", "is not constant along the motion, so no whole motion satisfies it"
             )
         if kept.undecided:
             raise Undecided(f"whether integrals[{i}] is constant along the motion was not decided")
-
-
-def _rates(motion: _Motion, value: Expr) -> dict[Symbol, Expr]:
-    """Return what is put into a claimed value: the manifold, and accelerations where it holds any."""
-    known = {s: f for s, f in motion.solution.items() if value.has(s)}
-    return {**motion.branch.values, **known}
 
 
 def _answer(parts: Sequence[Part]) -> tuple[str, ...]:

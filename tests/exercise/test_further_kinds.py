@@ -233,3 +233,45 @@ def test_a_verdict_to_first_order_says_so():
     said = verdict("first-order", exact=["sin(x)"], claim=["x"], small=["x"], parameters={"x": "real"})
     assert said.question == "right to first order in x"
     assert said.certificate == "exact to first order in x"
+
+
+# --- arbitrary functions ------------------------------------------------------------------------------
+
+ANY = {
+    "q": ["x", "y"],
+    "L": "L(x, y, x_dot, y_dot, t)",
+    "functions": {"L": ["x", "y", "x_dot", "y_dot", "t"], "a": ["x", "y"], "b": ["x", "y"]},
+    "constraints": ["a(x, y)*x_dot + b(x, y)*y_dot"],
+    "multipliers": ["lam"],
+}
+
+
+def left_side(v, x):
+    """Return d/dt ∂L/∂v − ∂L/∂x of an arbitrary Lagrangian as text."""
+    slopes = (("x_dot", "x_ddot"), ("y_dot", "y_ddot"), ("x", "x_dot"), ("y", "y_dot"))
+    terms = [f"Derivative({ANY['L']}, {v}, {s})*{rate}" for s, rate in slopes]
+    return " + ".join(terms) + f" + Derivative({ANY['L']}, {v}, t) - Derivative({ANY['L']}, {x})"
+
+
+def test_the_rule_of_multipliers_for_every_lagrangian_and_its_wrong_twins():
+    right = f"{left_side('y_dot', 'y')} - lam*b(x, y)"
+    assert verdict("nonholonomic", **ANY, claim=[right]).holds
+    for old, new in (
+        ("- lam*b", "+ lam*b"),
+        ("lam*b", "lam*a"),
+        ("*x_dot +", "*x_dot*2 +"),
+        (", t) - ", ", t)*0 - "),
+    ):
+        assert verdict("nonholonomic", **ANY, claim=[right.replace(old, new)]).fails, (old, new)
+
+
+def test_a_condition_on_a_function_is_kept():
+    keys = {
+        "q": ["x", "y"], "L": "m*(x_dot**2 + y_dot**2)/2", "parameters": {"m": "positive"},
+        "functions": {"f": ["t"], "h": ["x"]}, "constraints": ["y - x"], "multipliers": ["lam"],
+        "domain": ["f(t) > 0", "h(x) > 0"],
+    }  # fmt: skip
+    assert verdict("reaction", **keys, values={"lam": "Abs(f(t)) - f(t) + Abs(h(x)) - h(x)"}).holds
+    assert verdict("reaction", **keys, values={"lam": "Abs(f(t)) + f(t)"}).fails
+    assert verdict("multiplier-holonomic", **keys, claim=["lam + Abs(f(t)) - f(t)"]).holds
+    assert verdict("multiplier-holonomic", **keys, claim=["lam + Abs(f(t)) + f(t)"]).fails
