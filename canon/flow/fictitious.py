@@ -69,7 +69,9 @@ def transformed_motion(
     n = len(hamiltonian.q)
     state = [exact(x, "a component of y0") for x in np.asarray(y0).tolist()]
     if len(state) != 2 * n:
-        raise ValueError(f"y0 has {len(state)} components; {n} coordinates and {n} momenta make a state (q, p)")
+        raise ValueError(
+            f"y0 has {len(state)} components; {n} coordinates and {n} momenta make a state (q, p)"
+        )
     start, end = (exact(t, "t_span") for t in t_span)
     if start == end:
         raise ValueError(f"t_span = {t_span} has no length")
@@ -103,7 +105,8 @@ def _at_start(
     system: Equations, larger: Extended, state: Sequence[Fraction], t: Fraction
 ) -> tuple[Fraction, Fraction]:
     """Return H and dt/ds at the start, to 100 digits."""
-    rate = system.node(larger.rate.xreplace({larger.q[-1]: system.t}), "dt/ds")
+    in_time: Any = larger.rate.xreplace({larger.q[-1]: system.t})
+    rate = system.node(in_time, "dt/ds")
     graph = system.graph
     point = {graph.symbol(s): graph.number(x) for s, x in zip(system.inputs, (*state, t), strict=True)}
     found = [exact_value(graph, node) for node in graph.substitute([system.hamiltonian, rate], point)]
@@ -140,7 +143,9 @@ class _Way:
             while len(self.rows) > 2 * self.wanted:
                 self.rows, stride = self.rows[::2], 2 * stride
 
-    def _moved(self, state: Sequence[Fraction], stops: Sequence[int], part: Fraction = Fraction(1)) -> Samples:
+    def _moved(
+        self, state: Sequence[Fraction], stops: Sequence[int], part: Fraction = Fraction(1)
+    ) -> Samples:
         piece = self.advance(state, stops, part)
         self.cpu_seconds += piece.cpu_seconds
         self.compile_seconds = piece.compile_seconds
@@ -151,7 +156,8 @@ class _Way:
         times = self.sign * piece.y[self.n, :, 0]
         if not (np.diff(times) > 0).all():
             raise ArithmeticError(
-                f"the time stops or turns back after t = {piece.y[self.n, 0, 0]:.9g}: dt/ds is to be positive along the motion"
+                f"the time stops or turns back after t = {piece.y[self.n, 0, 0]:.9g}: "
+                "dt/ds is to be positive along the motion"
             )
         return int(np.flatnonzero(times <= self.sign * float(self.end))[-1])
 
@@ -182,7 +188,9 @@ class _Way:
     def _keep(self, piece: Samples, which: Sequence[int]) -> None:
         self.rows += [(piece.y[:, k, 0], piece.carried[:, k, 0]) for k in which]
 
-    def trajectory(self, system: Equations, method: TimeTransformed, step: float, precision: str) -> Trajectory:
+    def trajectory(
+        self, system: Equations, method: TimeTransformed, step: float, precision: str
+    ) -> Trajectory:
         """Return the motion in t."""
         states = [i for i in range(2 * self.n + 2) if i not in (self.n, 2 * self.n + 1)]
         high, low = (np.array([row[part] for row in self.rows]).T for part in (0, 1))

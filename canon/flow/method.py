@@ -32,13 +32,15 @@ class Splitting:
     ----------
     name
         One of ``verlet``, ``forest-ruth``, ``suzuki-4``, ``mclachlan-4``, ``blanes-moan-4``,
-        ``blanes-moan-6``, ``kahan-li-6``, ``kahan-li-8``, ``sofroniou-spaletta-10``; or ``srkn-6a``, ``srkn-6b`` where T is
+        ``blanes-moan-6``, ``kahan-li-6``, ``kahan-li-8``, ``sofroniou-spaletta-10``; or ``srkn-6a``,
+        ``srkn-6b`` where T is
         quadratic in p.
     a, b
         Coefficients of your own instead: drift a₁h, kick b₁h, drift a₂h …; as many drifts as kicks, or one
         more.
     parts
-        H₀ and H₁ with H = H₀ + H₁, in place of T and V: the flow of H₀, which is quadratic in (q, p) or Kepler's motion,
+        H₀ and H₁ with H = H₀ + H₁, in place of T and V: the flow of H₀, which is quadratic in (q, p) or
+        Kepler's motion,
         takes the drifts' place, kicks by H₁, a function of q, the kicks'. See also :func:`canon.flow.solvable.SABA`.
 
     Raises
@@ -255,7 +257,8 @@ class TimeTransformed:
         A splitting, with the logarithmic Hamiltonian of Mikkola and Tanikawa and of Preto and Tremaine, for H = T(p) +
         V(q, t) with V < 0 along the motion: dt/ds = −1/V. Or a Gauss method with a function g.
     g
-        dt/ds as a function of (q, p), positive along the motion, for Poincaré's K = g(H − E₀), which takes a Gauss method;
+        dt/ds as a function of (q, p), positive along the motion, for Poincaré's K = g(H − E₀), which takes a
+        Gauss method;
         a constant factor in it is of no account.
 
     Raises
@@ -265,7 +268,8 @@ class TimeTransformed:
 
     Notes
     -----
-    ``step`` is the size in t of the first step. The samples' times are as the method gives them, evenly spaced in steps;
+    ``step`` is the size in t of the first step. The samples' times are as the method gives them, evenly spaced
+    in steps;
     the last step ends where the span does. One orbit at a time.
 
     Examples
@@ -287,9 +291,13 @@ class TimeTransformed:
 
     def __post_init__(self) -> None:
         if isinstance(self.method, Splitting) and (self.g is not None or self.method.parts is not None):
-            raise ValueError("g(q, p)(H − E0) does not split: give a Gauss method with g, or a splitting without g and parts")
+            raise ValueError(
+                "g(q, p)(H − E0) does not split: give a Gauss method with g, or a splitting without g and parts"
+            )
         if isinstance(self.method, Gauss) and self.g is None:
-            raise ValueError("say how long a step is to be where: TimeTransformed(Gauss(6), g=…), such as g = r near a centre")
+            raise ValueError(
+                "say how long a step is to be where: TimeTransformed(Gauss(6), g=…), such as g = r near a centre"
+            )
 
     def __str__(self) -> str:
         return f"{self.method}, time-transformed"

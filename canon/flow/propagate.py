@@ -54,7 +54,8 @@ def propagate(
     t_span
         The first and the last time; the last may be the earlier one.
     method
-        ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where not given. By exactly solvable parts:
+        ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
+        not given. By exactly solvable parts:
         ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that vary: ``TimeTransformed(...)``.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
@@ -64,8 +65,8 @@ def propagate(
     precision
         Fixed steps: ``"single"``, ``"double"``, ``"compensated"`` (the default: doubles, what rounding takes
         from the state being carried along so that little is lost), ``"extended"`` (64 bits, x86 only),
-        ``"double-double"`` (106 bits; H of sums, products, quotients and square roots); Gauss methods have
-        the second and third. Taylor: ``"double"``, ``"extended"``, ``"quad"`` or a number of decimal digits.
+        ``"double-double"`` (106 bits; all functions but the inverse hyperbolic ones); Gauss methods have
+        all but the first and the fourth. Taylor: ``"double"``, ``"extended"``, ``"quad"`` or a number of decimal digits.
     parameters
         A number for every parameter of H, by symbol or name; or, where it differs from orbit to orbit, an array
         of shape (orbits,).
@@ -128,7 +129,8 @@ def propagate(
         others = (tolerance, times, observables, cadence, events, dense)
         if any(other is not None and other is not False and other != () for other in others):
             raise ValueError(
-                f"{method} takes step, precision, parameters and samples; no times, observables, cadence, events or dense"
+                f"{method} takes step, precision, parameters and samples, not times, observables, cadence, "
+                "events or dense"
             )
         from canon.flow.fictitious import transformed_motion
 

@@ -67,7 +67,7 @@ class SolvableSplitting:
         return self.scheme.citation
 
 
-def WisdomHolman(*, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:  # noqa: N802
+def WisdomHolman(*, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:
     """Return Wisdom and Holman's method: Kepler's motion of every planet, kicks by the planets' attractions.
 
     For planets about a star the coordinates are Jacobi's, the bodies in the order of the Hamiltonian's coordinates
@@ -103,7 +103,7 @@ def WisdomHolman(*, corrector: int = 0, parts: Parts = None) -> SolvableSplittin
     return SolvableSplitting(wisdom_holman(), corrector, parts)
 
 
-def SABA(stages: int | str, *, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:  # noqa: N802
+def SABA(stages: int | str, *, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:
     """Return Laskar and Robutel's method SABA_n, or one of Blanes and others that kills ε² τ² too.
 
     Parameters
@@ -133,7 +133,7 @@ def SABA(stages: int | str, *, corrector: int = 0, parts: Parts = None) -> Solva
     return SolvableSplitting(saba(stages), corrector, parts)
 
 
-def SBAB(stages: int, *, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:  # noqa: N802
+def SBAB(stages: int, *, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:
     """Return Laskar and Robutel's method SBAB_n: n kicks in a step, the first and last half ones of two steps.
 
     Parameters
@@ -163,7 +163,8 @@ def loop_of(system: Equations, method: SolvableSplitting, precision: Precision) 
     """
     if precision.name not in ("double", "compensated"):
         raise ValueError(
-            f"precision={precision.name!r}: splittings by solvable parts have 'double' and 'compensated'; Taylor() has more"
+            f"precision={precision.name!r}: splittings by solvable parts have 'double' and 'compensated'; "
+            "Taylor() has more"
         )
     if not system.autonomous:
         raise UnsolvableError(

@@ -1,15 +1,17 @@
 """Time transformations: symplectic methods with steps that vary along the orbit, for close encounters.
 
-A step is taken in a fictitious time s with dt/ds = g. The extended Hamiltonian of (q, t; p, p_t), p_t = −H at the start,
-makes that a Hamiltonian motion again, so that symplectic methods stay symplectic: Poincaré's K = g(q, p)(H + p_t), which does
-not split and takes Gauss methods; or, where H = T(p) + V(q, t) with V < 0, the logarithmic K = log(T + p_t) − log(−V) with g =
-1/(T + p_t), which is −1/V along the motion and splits. On Kepler's problem the drifts and kicks of the latter give the true orbit,
-up to round-off, with an error in time only.
+A step is taken in a fictitious time s with dt/ds = g. The extended Hamiltonian of (q, t; p, p_t), p_t = −H at
+the start, makes that a Hamiltonian motion again, so that symplectic methods stay symplectic: Poincaré's K =
+g(q, p)(H + p_t), which does not split and takes Gauss methods; or, where H = T(p) + V(q, t) with V < 0, the
+logarithmic K = log(T + p_t) − log(−V) with g = 1/(T + p_t), which is −1/V along the motion and splits. On
+Kepler's problem the drifts and kicks of the latter give the true orbit, up to round-off, with an error in time
+only.
 
-Sources: S. Mikkola, K. Tanikawa, Explicit symplectic algorithms for time-transformed Hamiltonians, Celest. Mech. Dyn. Astron. 74
-(1999) 287–295, doi:10.1023/A:1008368322547; M. Preto, S. Tremaine, A class of symplectic integrators with adaptive time step for
-separable Hamiltonian systems, Astron. J. 118 (1999) 2532–2541, doi:10.1086/301102; E. Hairer, C. Lubich, G. Wanner, Geometric
-Numerical Integration (2nd ed., Springer 2006), § VIII.2.
+Sources: S. Mikkola, K. Tanikawa, Explicit symplectic algorithms for time-transformed Hamiltonians, Celest.
+Mech. Dyn. Astron. 74 (1999) 287–295, doi:10.1023/A:1008368322547; M. Preto, S. Tremaine, A class of symplectic
+integrators with adaptive time step for separable Hamiltonian systems, Astron. J. 118 (1999) 2532–2541,
+doi:10.1086/301102; E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2nd ed., Springer 2006), §
+VIII.2.
 """
 
 from __future__ import annotations
@@ -68,10 +70,10 @@ def extended(hamiltonian: HamiltonianSystem, method: TimeTransformed) -> Extende
     taken = {symbol.name for symbol in (*hamiltonian.q, *hamiltonian.p)}
     if taken & {"t", "p_t"}:
         t, p_t = sp.Dummy("t", real=True), sp.Dummy("p_t", real=True)
-    energy = hamiltonian.H.xreplace({hamiltonian.t: t})
+    energy: Any = hamiltonian.H.xreplace({hamiltonian.t: t})
     q, p = (*hamiltonian.q, t), (*hamiltonian.p, p_t)
     if method.g is not None:
-        g = sp.sympify(method.g, strict=True).xreplace({hamiltonian.t: t})
+        g: Any = sp.sympify(method.g, strict=True).xreplace({hamiltonian.t: t})
         return Extended(g * (energy + p_t), q, p, s, g)
     kinetic, potential = _split(energy, hamiltonian, t)
     return Extended(sp.log(kinetic + p_t) - sp.log(-potential), q, p, s, -1 / potential)

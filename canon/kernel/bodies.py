@@ -38,7 +38,9 @@ def _lanes(bodies: int) -> int:
 class _Lanes:
     """The working state of some bodies: places and velocities by axis, each a vector over bodies, and round-off."""
 
-    def __init__(self, w: Writer, mu: Sequence[Fraction], axes: int, extra: int, *, compensated: bool) -> None:
+    def __init__(
+        self, w: Writer, mu: Sequence[Fraction], axes: int, extra: int, *, compensated: bool
+    ) -> None:
         self.w, self.count_of_bodies, self.axes, self.compensated = w, len(mu), axes, compensated
         self.lanes = _lanes(len(mu))
         self.v = w.side_by_side(self.lanes)
@@ -233,7 +235,8 @@ class PlanetsInLanes(_Lanes):
         """Write q and p of all bodies."""
         bodies = range(len(self.m))
         elapsed = self.joined(
-            self.w.algebra("mul", self.w.load(self.steps, 0), self.w.load("%c", 1)), self.w.constant(Fraction(0))
+            self.w.algebra("mul", self.w.load(self.steps, 0), self.w.load("%c", 1)),
+            self.w.constant(Fraction(0)),
         )
         with self.w.loop(0, self.axes) as axis:
             place, velocity = (
@@ -272,9 +275,7 @@ class PlanetsInLanes(_Lanes):
         near = c.mul(central, self._inverse_cube(place, c.zero))
         force = [c.mul(near, value) for value in place]
         self._add_pairs(place, force)
-        back = [
-            [spread[j - 1][i - 1] / self.reduced[i - 1] for j in planets] for i in planets
-        ]
+        back = [[spread[j - 1][i - 1] / self.reduced[i - 1] for j in planets] for i in planets]
         own = c.mul(self.mu, self._inverse_cube(x, c.zero))
         factor = v.splat(time)
         for axis in range(self.axes):

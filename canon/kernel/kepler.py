@@ -158,7 +158,9 @@ def _solved(w: Writer, v: Writer, orbit: _Orbit, guess: str) -> tuple[str, str, 
         newton = c.neg(c.mul(miss, per))
         bend = c.mul(c.mul(c.fma(orbit.eta, g0, c.mul(orbit.zeta, g1)), per), newton)
         square = c.mul(newton, newton)
-        twist = c.mul(c.fma(orbit.zeta, g0, c.neg(c.mul(c.mul(orbit.beta, orbit.eta), g1))), c.mul(per, square))
+        twist = c.mul(
+            c.fma(orbit.zeta, g0, c.neg(c.mul(c.mul(orbit.beta, orbit.eta), g1))), c.mul(per, square)
+        )
         curl = c.mul(orbit.beta, square)
         step = c.mul(newton, _reversion(c, bend, twist, curl))
         largest = c.greater(c.greater(c.mul(bend, bend), c.abs(twist)), c.abs(curl))
@@ -179,7 +181,9 @@ def _solved(w: Writer, v: Writer, orbit: _Orbit, guess: str) -> tuple[str, str, 
         found = c.either(settled, c.either(last, closed))
         v.store(v.select(found, c.zero, v.nan()), doubt, 0)
         w.leave_if(c.all(found))
-        halve = w.let(f"and i1 {w.let(f'icmp sge i64 {turn}, {_PATIENCE}')}, {w.let(f'trunc i64 {turn} to i1')}")
+        halve = w.let(
+            f"and i1 {w.let(f'icmp sge i64 {turn}, {_PATIENCE}')}, {w.let(f'trunc i64 {turn} to i1')}"
+        )
         candidate = v.load(anomaly, 0)
         inside = c.both(v.less(floor, candidate), v.less(candidate, ceiling))
         open_end = v.let(f"fcmp oeq {v.number.name} {ceiling}, {v.infinity()}")

@@ -1,13 +1,14 @@
 """Linear motion: the flow of a quadratic Hamiltonian is multiplication by exp(tL).
 
-What is added to a state is (exp(tL) − 1) y. The matrix is known to 60 digits, as balls that hold it; each entry enters as
+What is added to a state is (exp(tL) − 1) y. The matrix is known to 60 digits, as balls that hold it; each entry
+enters as
 a sum of two doubles, for an entry rounded to one would be off in the same direction in every step.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from canon.kernel.loop import increase
 from canon.kernel.machine import double_pair
@@ -152,7 +153,9 @@ def _matrix(part: Quadratic, time: Fraction) -> list[Fraction]:
 
     n = len(part.field)
     with ctx.workprec(_BITS):
-        scaled = [[arb(fmpq((x * time).numerator, (x * time).denominator)) for x in row] for row in part.field]
+        scaled = [
+            [arb(fmpq((x * time).numerator, (x * time).denominator)) for x in row] for row in part.field
+        ]
         found = arb_mat(scaled).exp()
         high, low = list[Fraction](), list[Fraction]()
         for j in range(n):
@@ -164,7 +167,7 @@ def _matrix(part: Quadratic, time: Fraction) -> list[Fraction]:
     return high + low
 
 
-def _exact(ball) -> Fraction:
+def _exact(ball: Any) -> Fraction:
     mantissa, exponent = ball.mid().man_exp()
     radius_mantissa, radius_exponent = ball.rad().man_exp()
     radius = Fraction(int(radius_mantissa)) * Fraction(2) ** int(radius_exponent)

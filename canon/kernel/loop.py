@@ -29,7 +29,15 @@ if TYPE_CHECKING:
     from canon.kernel.program import Program
     from canon.kernel.structure import Equations
 
-__all__ = ["METHOD", "PARAMETERS", "SIGNATURE", "Loop", "field_function", "runge_kutta_loop", "splitting_loop"]
+__all__ = [
+    "METHOD",
+    "PARAMETERS",
+    "SIGNATURE",
+    "Loop",
+    "field_function",
+    "runge_kutta_loop",
+    "splitting_loop",
+]
 
 _POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
 SIGNATURE = (_POINTER, _POINTER, _POINTER, _INTEGER, _INTEGER, _INTEGER)

@@ -12,6 +12,7 @@ Fields Inst. Commun. 10 (1996) 217–244.
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from dataclasses import dataclass
 from fractions import Fraction
@@ -54,7 +55,7 @@ def saba(stages: int) -> Scheme:
     """
     tableau = gauss_tableau(_stages(stages, "SABA"))
     nodes = [Fraction(0), *tableau.c, Fraction(1)]
-    a = [right - left for left, right in zip(nodes, nodes[1:], strict=False)]
+    a = [right - left for left, right in itertools.pairwise(nodes)]
     b = list(tableau.b)
     return Scheme(f"saba-{stages}", 2, _symmetric(a), _symmetric(b), _LASKAR_ROBUTEL)
 
@@ -69,7 +70,7 @@ def sbab(stages: int) -> Scheme:
     [0.5, 0.5]
     """
     nodes = _lobatto_nodes(_stages(stages, "SBAB"))
-    a = [Fraction(0), *(right - left for left, right in zip(nodes, nodes[1:], strict=False)), Fraction(0)]
+    a = [Fraction(0), *(right - left for left, right in itertools.pairwise(nodes)), Fraction(0)]
     moments = [Fraction(1, k + 1) for k in range(stages + 1)]
     b = _solve([[node**k for node in nodes] for k in range(stages + 1)], moments)
     return Scheme(f"sbab-{stages}", 2, _symmetric(a), _symmetric(b), _LASKAR_ROBUTEL)
@@ -82,8 +83,9 @@ def _stages(stages: int, family: str) -> int:
 
 
 _BLANES = (
-    "S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, New families of symplectic splitting methods for "
-    "numerical integration in dynamical astronomy, Appl. Numer. Math. 68 (2013) 58–72, doi:10.1016/j.apnum.2013.01.003"
+    "S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, New families of symplectic splitting "
+    "methods for numerical integration in dynamical astronomy, "
+    "Appl. Numer. Math. 68 (2013) 58–72, doi:10.1016/j.apnum.2013.01.003"
 )
 
 ABA = {
@@ -121,7 +123,8 @@ ABA = {
         odd="a",
     ),
 }
-"""Schemes that take ε² τ² away too, named by their orders in ε, ε² and ε³; the digits beyond those published by Newton's
+"""Schemes that take ε² τ² away too, named by their orders in ε, ε² and ε³; the digits beyond those published by
+Newton's
 method on the order conditions."""
 
 _DIGITS = 60
@@ -131,7 +134,7 @@ def _symmetric(values: Sequence[Fraction]) -> tuple[Fraction, ...]:
     """Round to 60 digits, the same from both ends and with the sum 1."""
     half = [Fraction(round(x * 10**_DIGITS), 10**_DIGITS) for x in values[: len(values) // 2]]
     if len(values) % 2:
-        return (*half, 1 - 2 * sum(half), *reversed(half))
+        return (*half, 1 - 2 * sum(half, Fraction(0)), *reversed(half))
     half[-1] = Fraction(1, 2) - sum(half[:-1])
     return (*half, *reversed(half))
 
@@ -145,7 +148,9 @@ def _lobatto_nodes(stages: int) -> list[Fraction]:
     context.dps = 80
     x = sp.Symbol("x")
     coefficients = sp.Poly(sp.diff(sp.legendre(stages, x), x), x).all_coeffs()
-    zeros = context.polyroots([context.mpf(c.p) / c.q for c in coefficients], maxsteps=200) if stages > 1 else []
+    zeros = (
+        context.polyroots([context.mpf(c.p) / c.q for c in coefficients], maxsteps=200) if stages > 1 else []
+    )
     inner = sorted((1 + context.re(zero)) / 2 for zero in zeros)
     scale = context.mpf(10) ** 75
     return [Fraction(0), *(Fraction(int(context.nint(c * scale)), 10**75) for c in inner), Fraction(1)]

@@ -130,7 +130,10 @@ def _check_sum(system: Equations, zero: int, one: int) -> None:
 
     digits = multiprecision(40)
     for shift in range(1, 4):
-        point = {s: digits.number(Fraction(7 * i + 11 * shift, 13 + i * shift)) for i, s in enumerate(system.inputs, 1)}
+        point = {
+            s: digits.number(Fraction(7 * i + 11 * shift, 13 + i * shift))
+            for i, s in enumerate(system.inputs, 1)
+        }
         whole, a, b = system.graph.evaluate([system.hamiltonian, zero, one], point, digits)
         if not abs(whole - a - b) <= abs(whole) * 1e-30 + (abs(a) + abs(b)) * 1e-30:
             raise UnsolvableError(
@@ -155,7 +158,9 @@ def _remainder(system: Equations, part: Expr) -> Equations:
             f"{', '.join(sorted(str(p) for p in rest.free_symbols & set(system.p)))}; name other parts"
         )
     if rest.has(system.t):
-        raise UnsolvableError("H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')")
+        raise UnsolvableError(
+            "H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')"
+        )
     return equations(rest, system.q, system.p, system.t, {})
 
 
@@ -181,8 +186,12 @@ def _quadratic_terms(system: Equations) -> list[Any]:
 def _quadratic(system: Equations, part: Any) -> Quadratic:
     variables = (*system.q, *system.p)
     polynomial = sp.Poly(part, *variables)
-    if any(sum(powers) != 2 for powers in polynomial.monoms()) or not all(c.is_number for c in polynomial.coeffs()):
-        raise UnsolvableError(f"H₀ = {part} is a polynomial, but not of second degree in (q, p) with constant coefficients")
+    if any(sum(powers) != 2 for powers in polynomial.monoms()) or not all(
+        c.is_number for c in polynomial.coeffs()
+    ):
+        raise UnsolvableError(
+            f"H₀ = {part} is a polynomial, but not of second degree in (q, p) with constant coefficients"
+        )
     n, size = len(system.q), len(variables)
     hessian = [[Fraction(0)] * size for _ in range(size)]
     for powers, coefficient in polynomial.terms():
@@ -213,12 +222,16 @@ def _centres(system: Equations, part: Any) -> Centres:
     bodies, attractions = [], []
     for _, axes, strength in read.centres:
         if strength <= 0:
-            raise UnsolvableError(f"the centre at {axes} repels (−k/r with k = {float(strength):g}): k is to be positive")
+            raise UnsolvableError(
+                f"the centre at {axes} repels (−k/r with k = {float(strength):g}): k is to be positive"
+            )
         bodies.append(tuple(system.q.index(x) for x in axes))
         attractions.append(strength)
     covered = [i for body in bodies for i in body]
     if sorted(covered) != list(range(len(system.q))):
-        raise UnsolvableError("H₀ has to move every coordinate about one centre: some q are without, or in two of them")
+        raise UnsolvableError(
+            "H₀ has to move every coordinate about one centre: some q are without, or in two of them"
+        )
     masses = [read.mass_of(body) for body in bodies]
     return Centres(tuple(bodies), tuple(masses), tuple(attractions), _remainder(system, part))
 
@@ -249,7 +262,9 @@ class _Terms:
 
     def _read_attraction(self, term: Any) -> bool:
         coefficient, power = term.as_coeff_Mul()
-        if not (power.is_Pow and power.exp == sp.Rational(-1, 2) and power.base.is_polynomial(*self.system.q)):
+        if not (
+            power.is_Pow and power.exp == sp.Rational(-1, 2) and power.base.is_polynomial(*self.system.q)
+        ):
             return False
         form = sp.Poly(power.base, *self.system.q)
         squares = _squares(form)
@@ -277,7 +292,8 @@ class _Terms:
     def planets(self) -> Planets:
         if self.others or self.centres:
             raise UnsolvableError(
-                f"beside kinetic energies and attractions of pairs H holds {self._stray()}; name two parts, parts=(H0, H1)"
+                f"beside kinetic energies and attractions of pairs H holds {self._stray()}; "
+                "name two parts, parts=(H0, H1)"
             )
         bodies = sorted({body for axes, _ in self.pairs for body in _two_bodies(axes, self.system)})
         if sorted(i for body in bodies for i in body) != list(range(len(self.system.q))):
@@ -287,11 +303,14 @@ class _Terms:
         strength = {frozenset(_two_bodies(axes, self.system)): k for axes, k in self.pairs}
         places = [bodies[i] for i in order]
         table = tuple(
-            tuple(strength.get(frozenset((a, b)), Fraction(0)) if a != b else Fraction(0) for b in places) for a in places
+            tuple(strength.get(frozenset((a, b)), Fraction(0)) if a != b else Fraction(0) for b in places)
+            for a in places
         )
         for i, row in enumerate(table[1:], start=1):
             if sum(row[:i]) <= 0:
-                raise UnsolvableError(f"body {i} is not attracted by the star and the bodies before it: no Kepler motion")
+                raise UnsolvableError(
+                    f"body {i} is not attracted by the star and the bodies before it: no Kepler motion"
+                )
         return Planets(tuple(places), tuple(masses[i] for i in order), table)
 
     def _stray(self) -> str:
@@ -325,7 +344,9 @@ def _squares(form: Any) -> list[tuple[Any, Any]] | None:
     return found + [(form.gens[i], None) for i in seen if i not in paired]
 
 
-def _two_bodies(axes: Sequence[tuple[Any, Any]], system: Equations) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def _two_bodies(
+    axes: Sequence[tuple[Any, Any]], system: Equations
+) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return the two bodies of a distance: of each axis the earlier coordinate belongs to the first."""
     places = [sorted((system.q.index(a), system.q.index(b))) for a, b in axes]
     return tuple(sorted(a for a, _ in places)), tuple(sorted(b for _, b in places))

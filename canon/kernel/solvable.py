@@ -19,7 +19,7 @@ from canon.kernel.bodies import CentresInLanes, PlanetsInLanes
 from canon.kernel.linear import LinearMotion, flow_matrices
 from canon.kernel.loop import METHOD, PARAMETERS, SIGNATURE, Loop, compiled_function
 from canon.kernel.machine import DOUBLE
-from canon.kernel.planets import Centres, Planets, Quadratic
+from canon.kernel.planets import Centres, Planets
 from canon.kernel.writer import Writer
 
 if TYPE_CHECKING:

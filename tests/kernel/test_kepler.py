@@ -109,7 +109,11 @@ def test_many_periods_in_one_step_return():
 
 
 def test_a_radial_fall_and_a_start_at_rest():
-    for x, v, t in (([1.0, 0.0], [0.0, 0.0], 1.0), ([2.0, 0.0], [1.0, 0.0], 50.0), ([0.5, 0.0], [-0.1, 0.0], 0.2)):
+    for x, v, t in (
+        ([1.0, 0.0], [0.0, 0.0], 1.0),
+        ([2.0, 0.0], [1.0, 0.0], 50.0),
+        ([0.5, 0.0], [-0.1, 0.0], 0.2),
+    ):
         found, true = increments(x, v, 1.0, t), true_increments(x, v, 1.0, t)
         assert max(abs(float(a - b)) for a, b in zip(found, true, strict=True)) < 1e-12
 

@@ -82,15 +82,21 @@ def test_blanes_schemes_have_the_orders_in_their_names(name):
 def test_a_wrong_30th_digit_is_noticed():
     scheme = ABA["8-6-4"]
     b = (scheme.b[0] + Fraction(1, 10**30), *scheme.b[1:])
-    assert max(d for key, d in defects_by_power(scheme.a, b, 4).items() if key[1] == 1) > mpmath.mpf(10) ** -33
+    assert (
+        max(d for key, d in defects_by_power(scheme.a, b, 4).items() if key[1] == 1) > mpmath.mpf(10) ** -33
+    )
 
 
 def test_correctors_have_the_published_coefficients():
     # Wisdom, Holman & Touma 1996, with the digits of Rein & Tamayo 2015.
     third = corrector(wisdom_holman(), 3)
-    assert [float(b) for b in third.b] == pytest.approx([-0.024900596027799867, 0.024900596027799867], rel=1e-15)
+    assert [float(b) for b in third.b] == pytest.approx(
+        [-0.024900596027799867, 0.024900596027799867], rel=1e-15
+    )
     fifth = corrector(wisdom_holman(), 5)
-    assert [float(b) for b in fifth.b[:2]] == pytest.approx([0.0083001986759332891, -0.041500993379666445], rel=1e-15)
+    assert [float(b) for b in fifth.b[:2]] == pytest.approx(
+        [0.0083001986759332891, -0.041500993379666445], rel=1e-15
+    )
     assert float(fifth.a[1]) == pytest.approx((7 / 40) ** 0.5, rel=1e-16)
 
 
@@ -109,7 +115,14 @@ def test_correctors_cancel_the_series_they_are_made_for(scheme, order):
 
 def test_the_generator_of_wisdom_and_holmans_map_is_the_series_of_x_over_sinh():
     # (x/2)/sinh(x/2) = 1 − x²/24 + 7x⁴/5760 − 31x⁶/967680 + …
-    assert _generator(wisdom_holman(), 5) == [0, Fraction(-1, 24), 0, Fraction(7, 5760), 0, Fraction(-31, 967680)]
+    assert _generator(wisdom_holman(), 5) == [
+        0,
+        Fraction(-1, 24),
+        0,
+        Fraction(7, 5760),
+        0,
+        Fraction(-31, 967680),
+    ]
 
 
 @pytest.mark.parametrize("order", [1, 2, 4, 19])
