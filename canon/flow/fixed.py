@@ -25,7 +25,7 @@ from canon.flow.watchful import run_with_events
 from canon.kernel.gauss import gauss_coefficients, gauss_loop
 from canon.kernel.llvm import simd_bytes
 from canon.kernel.loop import Loop, runge_kutta_loop, splitting_loop
-from canon.kernel.machine import DOUBLE, MachineType
+from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, MachineType
 from canon.kernel.watch import watching_function, wide_number
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
     ------
     ValueError
         A splitting is asked of a Hamiltonian that does not split; a Nyström method of one whose kinetic energy
-        is not quadratic; or a Gauss method in other numbers than doubles.
+        is not quadratic; or a Gauss method in other numbers than doubles and double-double.
     """
     if isinstance(method, Splitting) and method.parts is not None:
         method = SolvableSplitting(method.scheme, parts=method.parts)
@@ -71,11 +71,11 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
         return solvable_loop_of(system, method, precision)
     number = _with_lanes(precision.number, system) if orbits > 1 else precision.number
     if isinstance(method, Gauss):
-        if precision.number != DOUBLE:
+        if precision.number not in (DOUBLE, DOUBLE_DOUBLE):
             raise ValueError(
-                f"precision={precision.name!r}: Gauss methods have 'double' and 'compensated'; Taylor() has more"
+                f"precision={precision.name!r}: Gauss methods have 'double', 'compensated' and 'double-double'"
             )
-        return _kept_gauss(system, method.stages, compensated=precision.compensated)
+        return _kept_gauss(system, method.stages, precision.number, compensated=precision.compensated)
     if isinstance(method, RK4):
         return _kept_runge_kutta(system, number, compensated=precision.compensated)
     if not system.separable:
@@ -116,8 +116,8 @@ def _kept_runge_kutta(system: Equations, number: MachineType, *, compensated: bo
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_gauss(system: Equations, stages: int, *, compensated: bool) -> Loop:
-    return gauss_loop(system, stages, compensated=compensated)
+def _kept_gauss(system: Equations, stages: int, number: MachineType, *, compensated: bool) -> Loop:
+    return gauss_loop(system, stages, compensated=compensated, number=number)
 
 
 def planned(wanted: Sampling, step: float | None, method: FixedStep) -> Plan:
@@ -135,7 +135,7 @@ def planned(wanted: Sampling, step: float | None, method: FixedStep) -> Plan:
 def steps_between(loop: Loop, method: FixedStep, plan: Plan) -> PartialSteps:
     """Return what takes steps of any length between those of a run."""
     assert plan.h is not None
-    coefficients = loop.coefficients or functools.partial(_coefficients, method)
+    coefficients = loop.coefficients or functools.partial(_coefficients, method, loop.number)
     return PartialSteps(loop, coefficients, plan.start, plan.h)
 
 
@@ -316,9 +316,9 @@ def _on_threads(
     return found
 
 
-def _coefficients(method: Splitting | Gauss | RK4, h: Fraction) -> list[Fraction]:
+def _coefficients(method: FixedStep, number: MachineType, h: Fraction) -> list[Fraction]:
     if isinstance(method, Gauss):
-        return [Fraction(x) for x in gauss_coefficients(method.stages, h)]
+        return gauss_coefficients(method.stages, h, number)
     if isinstance(method, RK4):
         return [h / 2, h / 6, h / 3]
     a, b = method.scheme.a, method.scheme.b

@@ -14,30 +14,28 @@ doi:10.1007/s11075-017-0287-z.
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import sympy as sp
 from mpmath import MPContext
 
 from canon.kernel.loop import METHOD, Loop, blocks_of, finished, increase, steps_of
-from canon.kernel.machine import DOUBLE
+from canon.kernel.machine import DOUBLE, double_pair
 from canon.kernel.writer import Writer
 
 if TYPE_CHECKING:
+    from canon.kernel.machine import MachineType
     from canon.kernel.structure import Equations
 
 __all__ = ["HIGHEST_STAGES", "Tableau", "gauss_coefficients", "gauss_loop", "gauss_tableau"]
 
 HIGHEST_STAGES = 8
 _ITERATIONS = 100
-_ROUND_OFF = Fraction(1, 2**42)
-"""Changes above this part of the largest component are not taken for round-off while iterations are left."""
-
-_NOT_CONVERGED = Fraction(1, 2**20)
-"""A last change above this part of the largest component means that the iteration has not converged."""
+_BITS = 42, 20
+"""In doubles, changes above 2⁻⁴² of the largest component are not taken for round-off while iterations are left; a
+last change above 2⁻²⁰ of it means that the iteration has not converged. In wider numbers accordingly."""
 
 
 @dataclass(frozen=True)
@@ -100,33 +98,37 @@ def gauss_tableau(stages: int) -> Tableau:
     return Tableau(exact(c), exact(b), tuple(map(exact, mu)), tuple(map(exact, prediction)))
 
 
-def gauss_coefficients(stages: int, h: Fraction) -> list[float]:
+def gauss_coefficients(stages: int, h: Fraction, number: MachineType = DOUBLE) -> list[Fraction]:
     """Return what the loop reads after t0 and h: h b, h c, the columns of µ, the columns of ν, padded to lanes.
 
-    µ_ij is rounded for i > j, where it lies in [½, 2] so that 1 − µ_ij is a double as well.
+    µ_ij is rounded for i > j, where it lies in [½, 2] so that 1 − µ_ij is a number of the same type as well.
     """
     tableau = gauss_tableau(stages)
-    mu = np.full((stages, stages), 0.5)
+
+    def rounded(value: Fraction) -> Fraction:
+        high, low = double_pair(value)
+        return Fraction(high) + Fraction(low) if number.pair else Fraction(high)
+
+    mu = [[Fraction(1, 2)] * stages for _ in range(stages)]
     for i in range(stages):
         for j in range(i):
-            mu[i, j] = float(tableau.mu[i][j])
-            mu[j, i] = 1 - mu[i, j]
+            mu[i][j] = rounded(tableau.mu[i][j])
+            mu[j][i] = 1 - mu[i][j]
     rows = [
-        [float(h * b) for b in tableau.b],
-        [float(h * c) for c in tableau.c],
-        *mu.T,
-        *np.array(tableau.prediction, dtype=np.float64).T,
+        [rounded(h * b) for b in tableau.b],
+        [rounded(h * c) for c in tableau.c],
+        *map(list, zip(*mu, strict=True)),
+        *([rounded(x) for x in column] for column in zip(*tableau.prediction, strict=True)),
     ]
-    padded = np.zeros((len(rows), _lanes(stages)))
-    padded[:, :stages] = rows
-    return padded.ravel().tolist()
+    empty = [Fraction(0)] * (_lanes(stages) - stages)
+    return [x for row in rows for x in (*row, *empty)]
 
 
 def _lanes(stages: int) -> int:
     return 1 << (stages - 1).bit_length()
 
 
-def gauss_loop(system: Equations, stages: int, *, compensated: bool) -> Loop:
+def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
     """Compile Gauss–Legendre steps, the stages side by side in SIMD lanes.
 
     After the 2n numbers of compensation, ``e`` keeps the number of iterations, the last change of an iteration
@@ -134,14 +136,18 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool) -> Loop:
     iteration does not converge makes the state NaN.
     """
     size, lanes = 2 * len(system.q), _lanes(stages)
-    w = Writer(DOUBLE)
+    w = Writer(number)
     v = w.side_by_side(lanes)
+    # Changes and sizes are watched in doubles, of pairs by their high parts.
+    d, g = (each.in_numbers(replace(each.number, pair=False)) for each in (w, v))
+    round_off, not_converged = (Fraction(1, 2 ** (bits * number.mantissa // 53)) for bits in _BITS)
     carry = size + 2 + size * lanes
     y, e = w.array(size), w.array(size) if compensated else ""
-    method = _Stages(v, w.at("%c", METHOD), stages)
-    stage, place, least = v.array(size), v.array(size), v.array(size)
-    done, change, reach = w.array(1), v.array(1), v.array(1)
-    zero, none = w.constant(Fraction(0)), v.constant(Fraction(0))
+    method = _Stages(w, v, w.at("%c", METHOD), stages)
+    stage, place, least = v.array(size), v.array(size), g.array(size)
+    done, change, reach = d.array(1), g.array(1), g.array(1)
+    zero, none = d.constant(Fraction(0)), v.constant(Fraction(0))
+    nothing = g.constant(Fraction(0))
     field = system.program((*system.velocity, *system.force))
     with blocks_of(w, y, e, size, carry) as kept:
         v.copy(w.at(kept, size + 2), stage, size)
@@ -149,36 +155,41 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool) -> Loop:
             clock = v.algebra("add", v.splat(time), method.node)
             with w.loop(0, size) as i:
                 v.store(method.predicted(v.load(stage, i)), stage, i)
-                v.store(v.infinity(), least, i)
-            w.store(zero, done, 0)
+                g.store(g.infinity(), least, i)
+            d.store(zero, done, 0)
             with w.loop(0, _ITERATIONS):
-                last = w.less(zero, w.load(done, 0))
+                last = d.less(zero, d.load(done, 0))
                 with w.loop(0, size) as i:
                     moved = method.moved(v.splat(w.load(e, i)) if e else none, v.load(stage, i))
                     v.store(v.algebra("add", v.splat(w.load(y, i)), moved), place, i)
-                v.store(none, change, 0)
-                v.store(none, reach, 0)
-                w.store(w.constant(Fraction(1)), done, 0)
+                g.store(nothing, change, 0)
+                g.store(nothing, reach, 0)
+                d.store(d.constant(Fraction(1)), done, 0)
                 for i, rate in enumerate(v.program(field, [*(v.load(place, i) for i in range(size)), clock])):
                     new = v.algebra("mul", method.weight, rate)
-                    difference = v.intrinsic("fabs", v.algebra("sub", new, v.load(stage, i)))
-                    before = v.load(least, i)
-                    decreasing = v.any_lane(v.less(difference, before))
+                    difference = _size(v, g, v.algebra("sub", new, v.load(stage, i)))
+                    before = g.load(least, i)
+                    decreasing = g.any_lane(g.less(difference, before))
                     v.store(new, stage, i)
-                    v.store(v.intrinsic("minnum", before, difference), least, i)
-                    v.store(v.intrinsic("maxnum", v.load(change, 0), difference), change, 0)
-                    far = v.algebra("add", v.intrinsic("fabs", new), v.intrinsic("fabs", v.load(place, i)))
-                    v.store(v.intrinsic("maxnum", v.load(reach, 0), far), reach, 0)
-                    w.store(w.select(decreasing, zero, w.load(done, 0)), done, 0)
+                    g.store(g.intrinsic("minnum", before, difference), least, i)
+                    g.store(g.intrinsic("maxnum", g.load(change, 0), difference), change, 0)
+                    far = g.algebra("add", _size(v, g, new), _size(v, g, v.load(place, i)))
+                    g.store(g.intrinsic("maxnum", g.load(reach, 0), far), reach, 0)
+                    d.store(d.select(decreasing, zero, d.load(done, 0)), done, 0)
                 w.store(w.algebra("add", w.load(kept, size), w.constant(Fraction(1))), kept, size)
-                moves, scale = v.greatest(v.load(change, 0)), v.greatest(v.load(reach, 0))
-                coarse = w.less(w.algebra("mul", scale, w.constant(_ROUND_OFF)), moves)
-                w.store(w.select(coarse, zero, w.load(done, 0)), done, 0)
-                w.leave_if(w.let(f"or i1 {last}, {w.equal(moves, zero)}"))
-            moves, scale = v.greatest(v.load(change, 0)), v.greatest(v.load(reach, 0))
-            diverges = w.less(w.algebra("mul", scale, w.constant(_NOT_CONVERGED)), moves)
-            w.store(w.select(diverges, moves, w.load(kept, size + 1)), kept, size + 1)
-            w.store(w.select(diverges, w.nan(), w.load(y, 0)), y, 0)
+                moves, scale = g.greatest(g.load(change, 0)), g.greatest(g.load(reach, 0))
+                coarse = d.less(d.algebra("mul", scale, d.constant(round_off)), moves)
+                d.store(d.select(coarse, zero, d.load(done, 0)), done, 0)
+                w.leave_if(w.let(f"or i1 {last}, {d.equal(moves, zero)}"))
+            moves, scale = g.greatest(g.load(change, 0)), g.greatest(g.load(reach, 0))
+            diverges = d.less(d.algebra("mul", scale, d.constant(not_converged)), moves)
+            pair = number.pair
+            w.store(
+                w.select(diverges, w.paired(moves, zero) if pair else moves, w.load(kept, size + 1)),
+                kept,
+                size + 1,
+            )
+            w.store(w.select(diverges, w.paired(d.nan(), zero) if pair else w.nan(), w.load(y, 0)), y, 0)
             with w.loop(0, size) as i:
                 found = v.load(stage, i)
                 for j in range(stages):
@@ -187,13 +198,33 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool) -> Loop:
     return finished(w, len(system.q), compensated=compensated, carry=carry)
 
 
+def _size(v: Writer, g: Writer, value: str) -> str:
+    """Write the sizes of numbers in lanes, as doubles."""
+    return g.intrinsic("fabs", v.let(f"extractvalue {v.number.name} {value}, 0") if v.number.pair else value)
+
+
 class _Stages:
     """The method's numbers, read from the loop's coefficients, and the sums over stages made with them."""
 
-    def __init__(self, v: Writer, table: str, stages: int) -> None:
+    def __init__(self, w: Writer, v: Writer, table: str, stages: int) -> None:
         self.v, self.stages = v, stages
-        self.weight, self.node = v.load(table, 0), v.load(table, 1)
-        columns = [v.load(table, 2 + column) for column in range(2 * stages)]
+
+        def row(k: int) -> str:
+            """Read a row: pairs lie in memory one by one, in lanes all high parts come first."""
+            if not v.number.pair or v.number.lanes == 1:
+                return v.load(table, k)
+            parts = ["poison", "poison"]
+            for lane in range(v.number.lanes):
+                one = w.load(table, k * v.number.lanes + lane)
+                for part in (0, 1):
+                    value = w.let(f"extractvalue {w.number.name} {one}, {part}")
+                    parts[part] = w.let(
+                        f"insertelement {v.number.base} {parts[part]}, {v.number.scalar} {value}, i32 {lane}"
+                    )
+            return v.paired(*parts)
+
+        self.weight, self.node = row(0), row(1)
+        columns = [row(2 + column) for column in range(2 * stages)]
         self.mu, self.prediction = columns[:stages], columns[stages:]
 
     def moved(self, carried: str, stage: str) -> str:
@@ -206,5 +237,5 @@ class _Stages:
 
     def _sum(self, total: str, columns: list[str], stage: str) -> str:
         for j, column in enumerate(columns):
-            total = self.v.intrinsic("fma", column, self.v.splat(self.v.lane(stage, j)), total)
+            total = self.v.multiply_add(column, self.v.splat(self.v.lane(stage, j)), total)
         return total

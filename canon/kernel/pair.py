@@ -86,7 +86,7 @@ _ALGEBRA = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 
 
 def pair_functions(base: str, intrinsic: str, flags: str) -> str:
-    """Return the definitions of ``@pair.add``, ``mul``, ``div`` and ``sqrt`` for doubles or lanes of them.
+    """Return the definitions of ``@pair.add.f64``, ``mul``, ``div`` and ``sqrt`` for doubles or lanes of them.
 
     Parameters
     ----------
@@ -107,9 +107,8 @@ def pair_functions(base: str, intrinsic: str, flags: str) -> str:
 def _definition(name: str, base: str, intrinsic: str, flags: str) -> str:
     kind = f"{{ {base}, {base} }}"
     operands = ["x"] if name == "sqrt" else ["x", "y"]
-    lines = [
-        f"define internal {kind} @pair.{name}({', '.join(f'{kind} %{x}' for x in operands)}) alwaysinline {{"
-    ]
+    arguments = ", ".join(f"{kind} %{x}" for x in operands)
+    lines = [f"define internal {kind} @pair.{name}.{intrinsic}({arguments}) alwaysinline {{"]
     for x in operands:
         lines += [f"  %{x}{part} = extractvalue {kind} %{x}, {i}" for i, part in enumerate("hl")]
     for statement in _FUNCTIONS[name].strip().splitlines():

@@ -215,7 +215,9 @@ def call_pair_function(w: Writer, name: str, operands: list[str]) -> str:
     text, declarations = _definition(type(w), w.number, name, len(operands))
     w.declarations.add(text)
     w.declarations |= declarations
-    return w.let(f"call {kind} @pair.{name}({', '.join(f'{kind} {o}' for o in operands)})")
+    return w.let(
+        f"call {kind} @pair.{name}.{w.number.intrinsic}({', '.join(f'{kind} {o}' for o in operands)})"
+    )
 
 
 @functools.cache
@@ -226,6 +228,6 @@ def _definition(
     arguments = [f"%x{k}" for k in range(count)]
     result = PAIR_FUNCTIONS[name](f, *arguments)
     kind = number.name
-    head = f"define internal {kind} @pair.{name}({', '.join(f'{kind} {x}' for x in arguments)}) {{"
+    head = f"define internal {kind} @pair.{name}.{number.intrinsic}({', '.join(f'{kind} {x}' for x in arguments)}) {{"
     text = "\n".join([head, "entry:", *f.reserved, *f.lines, f"  ret {kind} {result}", "}"])
     return text, frozenset(f.declarations)

@@ -121,7 +121,9 @@ class Writer:
     def _of_pairs(self, function: str, *operands: str) -> str:
         kind = self.number.name
         self.declarations.add(pair_functions(self.number.base, self.number.intrinsic, self.number.flags))
-        return self.let(f"call {kind} @pair.{function}({', '.join(f'{kind} {o}' for o in operands)})")
+        return self.let(
+            f"call {kind} @pair.{function}.{self.number.intrinsic}({', '.join(f'{kind} {o}' for o in operands)})"
+        )
 
     def negative(self, a: str) -> str:
         """Write −a."""
@@ -172,9 +174,19 @@ class Writer:
         """Put a scalar into every lane."""
         if self.number.lanes == 1:
             return scalar
+        if self.number.pair:
+            kind = f"{{ {self.number.scalar}, {self.number.scalar} }}"
+            part = self._part
+            high, low = (part.splat(self.let(f"extractvalue {kind} {scalar}, {k}")) for k in (0, 1))
+            return self.paired(high, low)
         first = self.let(f"insertelement {self.number.base} poison, {self.number.scalar} {scalar}, i32 0")
         mask = f"<{self.number.lanes} x i32> zeroinitializer"
         return self.let(f"shufflevector {self.number.base} {first}, {self.number.base} poison, {mask}")
+
+    @property
+    def _part(self) -> Writer:
+        """A writer of the same function in the doubles that pairs are made of."""
+        return self.in_numbers(dataclasses.replace(self.number, pair=False))
 
     def body(self) -> str:
         """Return what was written, as the inside of a function that returns nothing."""
@@ -186,6 +198,9 @@ class Writer:
         """Take one lane of a value."""
         if self.number.lanes == 1:
             return value
+        if self.number.pair:
+            parts = [self.let(f"extractvalue {self.number.name} {value}, {k}") for k in (0, 1)]
+            return self.side_by_side(1).paired(*(self._part.lane(part, index) for part in parts))
         return self.let(f"extractelement {self.number.name} {value}, i32 {index}")
 
     def greatest(self, value: str) -> str:

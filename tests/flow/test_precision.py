@@ -75,6 +75,34 @@ def test_double_double_energy_error_is_the_methods_own():
     assert errors[0] / errors[1] == pytest.approx(2**10, rel=0.3)
 
 
+@pytest.mark.parametrize(("stages", "floor"), [(3, 0.0), (6, 0.0), (8, 5e-31)])
+def test_gauss_methods_in_double_double_keep_their_order_far_below_doubles(stages, floor):
+    arguments = {"method": Gauss(stages), "precision": "double-double", "samples": 4}
+    errors = [
+        abs(
+            propagate(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 2), step=step, **arguments).energy_error
+        ).max()
+        for step in (1 / 16, 1 / 32)
+    ]
+    assert errors[0] / errors[1] == pytest.approx(2 ** (2 * stages), rel=0.2)
+    assert floor < errors[1] < {3: 1e-11, 6: 1e-22, 8: 2e-30}[stages]
+    doubles = propagate(
+        DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 2), method=Gauss(stages), step=1 / 32, samples=4
+    )
+    wide = propagate(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 2), step=1 / 32, **arguments)
+    np.testing.assert_allclose(doubles.y, wide.y, atol=2e-15)
+
+
+def test_gauss_methods_in_double_double_keep_quadratic_integrals():
+    x, y, px, py = *KEPLER.q, *KEPLER.p
+    motion = propagate(
+        KEPLER, kepler_start(0.5), (0, 20), method=Gauss(2), step=0.05, precision="double-double",
+        observables={"L": x * py - y * px},
+    )  # fmt: skip
+    assert abs(motion.energy_error).max() > 1e-6
+    assert abs(motion.changes["L"]).max() < 1e-30
+
+
 def test_a_start_beyond_doubles_is_kept():
     exact = ["1/3", "0.1", "0", "1.1"]
     motion = propagate(KEPLER, exact, (0, 1), method=SS10, step=0.01, precision="double-double", samples=1)

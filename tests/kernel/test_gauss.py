@@ -39,7 +39,7 @@ def test_the_prediction_continues_polynomials(s):
 
 @pytest.mark.parametrize("s", STAGES)
 def test_the_rounded_method_is_symplectic_without_error(s):
-    rows = np.array(gauss_coefficients(s, Fraction(1, 10))).reshape(2 + 2 * s, -1)[:, :s]
+    rows = np.array([float(x) for x in gauss_coefficients(s, Fraction(1, 10))]).reshape(2 + 2 * s, -1)[:, :s]
     mu = [[Fraction(x) for x in row] for row in rows[2 : 2 + s].T.tolist()]
     assert all(mu[i][j] + mu[j][i] == 1 for i in range(s) for j in range(s))
     true = np.array([[float(x) for x in row] for row in gauss_tableau(s).mu])
