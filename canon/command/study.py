@@ -92,6 +92,8 @@ def run(arguments: argparse.Namespace) -> int:
     actions = {"run": _run, "resume": _resume, "status": _status, "export": _export, "report": _report}
     try:
         return {**actions, "merge": _merge}[arguments.action](arguments)
+    except BrokenPipeError:
+        raise  # the reader of the output went away, which is no error of the study
     except (StudyError, PlotError, ExportError, OSError) as error:
         print(f"canon study: {error}", file=sys.stderr)
         return 2
@@ -107,8 +109,8 @@ def _run(arguments: argparse.Namespace) -> int:
         study = study.share(*arguments.share)
     store = Store(arguments.store or arguments.study.with_suffix(".sqlite"))
     _forget_failed(store, arguments)
-    with _executor(arguments) as executor, _progress() as progress:
-        run_study(study, store, executor, progress, arguments.checkpoint)
+    with _executor(arguments) as (executor, room), _progress() as progress:
+        run_study(study, store, executor, progress, arguments.checkpoint, room)
     return _told(store, arguments.plot)
 
 
@@ -117,8 +119,8 @@ def _resume(arguments: argparse.Namespace) -> int:
 
     store = _existing(arguments.store)
     _forget_failed(store, arguments)
-    with _executor(arguments) as executor, _progress() as progress:
-        resume(store, executor, progress, arguments.checkpoint)
+    with _executor(arguments) as (executor, room), _progress() as progress:
+        resume(store, executor, progress, arguments.checkpoint, room)
     return _told(store, arguments.plot)
 
 
@@ -202,8 +204,8 @@ def _draw(results: Sequence[Result], plot: Path) -> None:
 
 
 @contextmanager
-def _executor(arguments: argparse.Namespace) -> Generator[Executor | None]:
-    """Start what the cases are run on: worker processes, a cluster's client, or nothing."""
+def _executor(arguments: argparse.Namespace) -> Generator[tuple[Executor | None, int | None]]:
+    """Start what the cases are run on (worker processes, a cluster's client, or nothing); tell how many it takes."""
     if arguments.dask:
         from canon.study.errors import StudyError
 
@@ -212,15 +214,15 @@ def _executor(arguments: argparse.Namespace) -> Generator[Executor | None]:
         except ImportError as missing:
             raise StudyError("a dask cluster needs: pip install canon-mechanics[cluster]") from missing
         with Client(arguments.dask) as client:
-            yield client.get_executor()
+            yield client.get_executor(), 1 + sum(client.nthreads().values())
     elif arguments.jobs > 1:
         import multiprocessing
         from concurrent.futures import ProcessPoolExecutor
 
         with ProcessPoolExecutor(arguments.jobs, multiprocessing.get_context("spawn")) as pool:
-            yield pool
+            yield pool, arguments.jobs + 1
     else:
-        yield None
+        yield None, None
 
 
 @contextmanager

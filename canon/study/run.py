@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Status", "resume", "run_study", "status_of"]
 
 IN_FLIGHT = 256
-"""Cases handed to an executor at a time, so that a large study does not fill its queue."""
+"""Cases handed to an executor at a time where it is not known how many it can run."""
 
 CHECKPOINT_SECONDS = 30.0
 """How long a case runs before its state is kept: what a kill may cost at most, one part of the run aside."""
@@ -56,6 +56,7 @@ def run_study(
     executor: Executor | None = None,
     progress: Callable[[Status], None] | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    in_flight: int | None = None,
 ) -> Status:
     """Run the cases of a study that are not finished yet, and keep each one as soon as it is.
 
@@ -72,6 +73,9 @@ def run_study(
         Called with the status after each case and checkpoint.
     checkpoint_seconds
         Time between checkpoints of a case. Results do not depend on it.
+    in_flight
+        How many cases are handed to the executor at a time. They take turns from checkpoint to checkpoint, so give
+        little more than it has workers; a pool of this machine tells, for others it is 256 if left out.
 
     Returns
     -------
@@ -88,7 +92,7 @@ def run_study(
     kept = store if isinstance(store, Store) else Store(Path(store))
     keyed = {key_of(case): case for case in study.cases}
     kept.add_cases({key: case.to_text() for key, case in keyed.items()})
-    _run(keyed, kept, executor, progress, checkpoint_seconds)
+    _run(keyed, kept, executor, progress, checkpoint_seconds, in_flight)
     return status_of(kept)
 
 
@@ -97,6 +101,7 @@ def resume(
     executor: Executor | None = None,
     progress: Callable[[Status], None] | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    in_flight: int | None = None,
 ) -> Status:
     """Run the pending cases of a file; see :func:`run_study`."""
     kept = store if isinstance(store, Store) else Store(Path(store))
@@ -112,7 +117,7 @@ def resume(
                 f"{kept.path} was begun with other versions ({other or 'not known'}); resume with those, "
                 "or run the study again to have all cases with the present ones"
             )
-    _run(written, kept, executor, progress, checkpoint_seconds)
+    _run(written, kept, executor, progress, checkpoint_seconds, in_flight)
     return status_of(kept)
 
 
@@ -138,12 +143,19 @@ def _run(
     executor: Executor | None,
     progress: Callable[[Status], None] | None,
     seconds: float,
+    in_flight: int | None,
 ) -> None:
+    if in_flight is not None and in_flight < 1:
+        raise StudyError(f"in_flight = {in_flight}: hand at least one case to the executor")
     if not seconds >= 0.0:
         raise StudyError(f"checkpoint_seconds = {seconds}: give a time, 0 or more")
     pending = _not_finished(cases, store)
     done: dict[str, float] = {}
-    for key, found in _here(pending, seconds) if executor is None else _on(executor, pending, seconds):
+    if executor is None:
+        coming = _here(pending, seconds)
+    else:
+        coming = _on(executor, pending, seconds, in_flight or _room(executor))
+    for key, found in coming:
         if isinstance(found, Record):
             store.save(found)
             done.pop(key, None)
@@ -173,8 +185,17 @@ def _here(
         yield key, found
 
 
+def _room(executor: Executor) -> int:
+    """Return how many cases keep an executor busy: one more than the workers of a pool, if it tells their number."""
+    workers = getattr(executor, "_max_workers", None)
+    return workers + 1 if isinstance(workers, int) else IN_FLIGHT
+
+
 def _on(
-    executor: Executor, pending: Iterator[tuple[str, Case, Checkpoint | None]], seconds: float
+    executor: Executor,
+    pending: Iterator[tuple[str, Case, Checkpoint | None]],
+    seconds: float,
+    in_flight: int,
 ) -> Iterator[tuple[str, Checkpoint | Record]]:
     """Yield what comes back, sending cases on from their checkpoints; where workers die, first what others did."""
     flying: dict[Future[Checkpoint | Record], tuple[str, Case]] = {}
@@ -188,7 +209,7 @@ def _on(
 
     try:
         while True:
-            while not lost and len(flying) < IN_FLIGHT and (following := next(pending, None)) is not None:
+            while not lost and len(flying) < in_flight and (following := next(pending, None)) is not None:
                 send(*following)
             if not flying:
                 break

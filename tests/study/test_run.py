@@ -101,6 +101,22 @@ def test_threads_give_the_same(tmp_path, uninterrupted):
     assert seen[-1].pending == 0
 
 
+def test_long_cases_take_turns_only_with_few_others(tmp_path):
+    """With one worker two cases are under way at a time, not all of them."""
+    seen = []
+    study = Study(tuple(replace(case, parts=4) for case in SHORT.cases if case.method != Taylor()))
+    with ThreadPoolExecutor(1) as pool:
+        run_study(study, tmp_path / "turns.sqlite", pool, progress=seen.append, checkpoint_seconds=0.0)
+    assert max(status.begun for status in seen) == 2
+    with ThreadPoolExecutor(1) as pool:
+        many = tmp_path / "many.sqlite"
+        run_study(study, many, pool, progress=seen.append, checkpoint_seconds=0.0, in_flight=8)
+    assert max(status.begun for status in seen) == 8
+    assert outcomes(Store(many)) == outcomes(Store(tmp_path / "turns.sqlite"))
+    with pytest.raises(StudyError, match="at least one case"):
+        run_study(study, many, in_flight=0)
+
+
 def test_failures_are_rows_with_reasons(tmp_path):
     methods = ["verlet", "rk4", "wisdom-holman", {"splitting": {"a": ["1/2", "1/2"], "b": [1]}}]
     study = Study.of(system="double-pendulum", method=methods, step=0.02, periods=20.0, samples=300)
