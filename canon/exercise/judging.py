@@ -15,12 +15,15 @@ from canon.exercise.steps import steps
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from canon.exercise.judge import Finding
     from canon.exercise.sheet import Claim
     from canon.proof.verdict import Verdict
 
 __all__ = ["judgements"]
 
 FEEDBACK_SECONDS = 1.0
+REFUSALS = (TypeError, ValueError, ArithmeticError, NotImplementedError)
+"""What SymPy raises when it meets what it can't build, such as a comparison of infinities or a nonsensical repair."""
 
 
 def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
@@ -35,8 +38,26 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
         known = f"the {what} that it needs is beyond the limit"
         yield replace(invalid(claim, known), status="undecided"), True
         return
+    except REFUSALS as error:
+        known = _cut(f"on the way SymPy meets what it can't build: {type(error).__name__}, {error}")
+        yield replace(invalid(claim, known), status="undecided"), True
+        return
     judgement = replace(_told(claim, finding.verdict), warnings=finding.reading.warnings)
     yield judgement, False
+    yield from _explained(claim, finding, judgement)
+
+
+def _explained(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator[tuple[Judgement, bool]]:
+    """Yield the judgement with what explains it; where that can't be built, as it stands."""
+    try:
+        for step in _explanations(claim, finding, judgement):
+            judgement = step[0]
+            yield step
+    except REFUSALS:
+        yield judgement, True
+
+
+def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator[tuple[Judgement, bool]]:
     judgement = replace(judgement, steps=steps(finding))
     if not finding.verdict.fails:
         yield judgement, True
