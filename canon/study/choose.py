@@ -262,7 +262,7 @@ def _question(
         if integral is None and observable not in ("energy", "position"):
             raise StudyError(f"observable={observable!r}: give the function of (q, p) as integral=")
         state = np.asarray(y0, dtype=np.float64)
-        return Question(system, state, dict(given), span, observable, integral), "Hamiltonian"
+        return Question(system, state, {**given}, span, observable, integral), "Hamiltonian"
     scene = system.with_parameters(**given)
     if integral is None and observable not in ("energy", "position"):
         constants = scene.constants()

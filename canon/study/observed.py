@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from canon.scene.scene import Scene, near
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
     from sympy import Expr, Symbol
@@ -87,8 +88,9 @@ def observables_of(
     >>> [each.name for each in found]
     ['angular momentum', 'Runge–Lenz vector, x', 'Runge–Lenz vector, y']
     """
-    if not isinstance(wanted, str) and hasattr(wanted, "items"):
-        functions = dict(wanted.items())
+    functions: dict[str, Expr | None]
+    if isinstance(wanted, Mapping):
+        functions = {**wanted}
     else:
         functions = _by_name(system, hamiltonian, [wanted] if isinstance(wanted, str) else list(wanted))
     if not functions:
@@ -119,20 +121,25 @@ def _by_name(
         elif name in single:
             found[name] = single[name]
         else:
-            raise StudyError(f"there is no observable {name!r}{near(name, [*single, 'momenta', 'integrals'])}")
+            raise StudyError(
+                f"there is no observable {name!r}{near(name, [*single, 'momenta', 'integrals'])}"
+            )
     return found
 
 
 def _constants(scene: Scene) -> dict[str, Expr]:
     """Return the known constants of a scene as functions of q, p and t."""
+    from canon.mechanics.substitution import exchanged
+
     velocities = dict(zip((q.dot for q in scene.q), scene.hamiltonian.q_dot, strict=True))
-    return {name: f.xreplace(velocities) for name, f in scene.constants().items()}
+    return {name: exchanged(f, velocities) for name, f in scene.constants().items()}
 
 
 def _with_unit(
     name: str, f: Expr, hamiltonian: HamiltonianSystem, y0: Array, values: Mapping[Symbol | str, float]
 ) -> Observable:
     from canon.expression.graph import Graph
+    from canon.proof.typed import free_symbols
 
     graph = Graph()
     variables = (*hamiltonian.q, *hamiltonian.p)
@@ -140,13 +147,13 @@ def _with_unit(
     nodes = [node, *graph.gradient(node, variables)]
     by_name = {str(symbol): value for symbol, value in values.items()}
     point = {s: np.float64(x) for s, x in zip(variables, y0, strict=True)} | {hamiltonian.t: np.float64(0.0)}
-    missing = [s for s in f.free_symbols if s not in point and str(s) not in by_name]
+    missing = [s for s in free_symbols(f) if s not in point and str(s) not in by_name]
     if missing:
         raise StudyError(
             f"the observable {name!r} holds {', '.join(sorted(map(str, missing)))}, which is no variable of the "
             "motion and has no value: give it one in parameters"
         )
-    point |= {s: np.float64(by_name[str(s)]) for s in f.free_symbols if s not in point}
+    point |= {s: np.float64(by_name[str(s)]) for s in free_symbols(f) if s not in point}
     value, *slopes = (float(x) for x in graph.evaluate(nodes, point))
     if not math.isfinite(value):
         raise StudyError(f"the observable {name!r} is not finite at the start")

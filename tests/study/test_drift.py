@@ -50,7 +50,7 @@ def test_bounded_noise_with_a_memory_is_not_called_round_off(share, most):
 
 
 def test_the_reason_names_the_memory():
-    found = drift(TIMES, 1e-8 * series.remembering(np.random.default_rng(2), 1.0 / 50.0))
+    found = drift(TIMES, 1e-8 * series.remembering(np.random.default_rng(5), 1.0 / 41.0))
     assert found.verdict is Growth.BOUNDED
     assert "returns within a time of about" in found.reason
     assert 8.0 < float(found.reason.split()[-1]) < 50.0
