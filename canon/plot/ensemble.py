@@ -40,6 +40,17 @@ def plot_ensemble_fan(of: Trajectory, ax: Axes | None = None, *, intervals: int 
         Where matplotlib is not installed.
     ValueError
         Where there are not at least four orbits, or no error at all.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from canon import Splitting, propagate
+    >>> from canon.scene import find
+    >>> scene = find("henon-heiles")
+    >>> starts = np.outer(scene.state(), np.linspace(0.9, 1.1, 8))
+    >>> motion = propagate(scene.hamiltonian, starts, (0, 50), method=Splitting("verlet"), step=0.1)
+    >>> plot_ensemble_fan(motion).get_title(loc="left")
+    'verlet, 8 orbits'
     """
     if of.y.ndim != 3 or of.y.shape[2] < 4:
         raise ValueError(

@@ -88,6 +88,17 @@ def plot_poincare_section(
         Where matplotlib is not installed.
     ValueError
         Where there is no crossing, or no such degree of freedom.
+
+    Examples
+    --------
+    >>> from canon import Taylor, propagate
+    >>> from canon.flow.event import Event
+    >>> from canon.scene import find
+    >>> scene = find("henon-heiles")
+    >>> crossing = Event(scene.q[0], 1)
+    >>> met = propagate(scene.hamiltonian, scene.state(), (0, 60), method=Taylor(), events=[crossing]).events
+    >>> len(plot_poincare_section({"Taylor": met}).lines[0].get_xdata()) == len(met) > 5
+    True
     """
     axes = new_axes(ax)
     if reference is not None:

@@ -69,6 +69,16 @@ def study_report(results: Sequence[Result], title: str) -> str:
         Where matplotlib is not installed.
     ValueError
         Where there is no case.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from canon import Study, results_of, run_study
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = f"{folder}/study.sqlite"
+    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=0.1, until=100.0), file)
+    ...     study_report(results_of(file), "Drifts").count("<tr class=")
+    1
     """
     heading = escape(title)
     return "\n".join(

@@ -115,6 +115,14 @@ def plot_drift_by_step(
         Where matplotlib is not installed.
     ValueError
         Where there is no such quantity.
+
+    Examples
+    --------
+    >>> from canon import RK4, work_precision
+    >>> from canon.scene import find
+    >>> found = work_precision(find("henon-heiles"), None, 20.0, [RK4()], steps=[0.4, 0.2, 0.1], repetitions=1)
+    >>> plot_drift_by_step(found).get_xlabel()
+    'step (units of time)'
     """
     from canon.study.precision import WorkPrecision
 

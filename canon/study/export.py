@@ -42,6 +42,17 @@ def rows_of(store: Store) -> list[dict[str, Any]]:
     Columns are the inputs (a column ``parameter NAME`` each changed parameter), the numbers of
     :class:`canon.study.drift.Drift`, the cost, ``final`` (the last state), ``failure``, and all inputs with the
     versions as JSON in ``inputs``.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from canon import Study, run_study
+    >>> from canon.study.store import Store
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     store = Store(f"{folder}/study.sqlite")
+    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=[0.1, 0.2], until=200.0), store)
+    ...     [(row["method"], row["steps"], row["verdict"]) for row in rows_of(store)]
+    [('RK4', 2000, 'secular'), ('RK4', 1000, 'secular')]
     """
     return [_row(result) for result in results_of(store)]
 

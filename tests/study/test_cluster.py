@@ -7,14 +7,14 @@ import signal
 import subprocess
 import sys
 
+import distributed
 import pytest
 
 from canon import Gauss, Splitting, Taylor
+from canon.cli import main
 from canon.study.definition import Study
 from canon.study.run import run_study
 from canon.study.store import Store
-
-distributed = pytest.importorskip("distributed", reason="canon-mechanics[cluster] is not installed")
 
 STUDY = Study.of(
     system=["henon-heiles", "simple-pendulum"],
@@ -81,6 +81,9 @@ def test_a_cluster_of_which_a_worker_is_killed_gives_the_same(tmp_path, cluster)
 
         status = run_study(STUDY, store, client.get_executor(), progress=kill_one, checkpoint_seconds=0.0)
         assert len(client.scheduler_info()["workers"]) == 1
+        file = tmp_path / "small.toml"
+        file.write_text('[[study]]\nsystem = "henon-heiles"\nmethod = "verlet"\nstep = 0.1\nuntil = 300\n')
+        assert main(["study", "run", str(file), "--dask", client.scheduler.address]) == 0
     assert (status.finished, status.failed, status.pending) == (10, 0, 0)
     assert len(legs) == 40  # each part came back once
     assert outcomes(store) == outcomes(here)
