@@ -31,12 +31,15 @@ if TYPE_CHECKING:
     from canon.flow.geometry import flow_jacobian as flow_jacobian
     from canon.flow.geometry import reversal_error as reversal_error
     from canon.flow.geometry import symplecticity_defect as symplecticity_defect
+    from canon.flow.measure import AccuracyWarning as AccuracyWarning
     from canon.flow.method import DOP853 as DOP853
     from canon.flow.method import RK4 as RK4
     from canon.flow.method import Gauss as Gauss
     from canon.flow.method import Splitting as Splitting
     from canon.flow.method import Taylor as Taylor
     from canon.flow.method import TimeTransformed as TimeTransformed
+    from canon.flow.propagate import Interrupted as Interrupted
+    from canon.flow.propagate import NonFiniteStateError as NonFiniteStateError
     from canon.flow.propagate import Trajectory as Trajectory
     from canon.flow.propagate import propagate as propagate
     from canon.flow.solvable import SABA as SABA
@@ -98,6 +101,7 @@ __all__ = [
     "RK4",
     "SABA",
     "SBAB",
+    "AccuracyWarning",
     "CanonicalTransformation",
     "Choice",
     "Claim",
@@ -113,9 +117,11 @@ __all__ = [
     "GibbsAppell",
     "Hamiltonian",
     "ImplicitTransformation",
+    "Interrupted",
     "InvalidClaim",
     "Judgement",
     "Lagrangian",
+    "NonFiniteStateError",
     "Particle",
     "PlanarBody",
     "Report",
@@ -189,8 +195,9 @@ _ROOMS = {
     "canon.expression.symbol": ("Coordinate", "coordinates", "parameters", "time", "time_derivative"),
     "canon.flow.event": ("Event",),
     "canon.flow.geometry": ("flow_jacobian", "reversal_error", "symplecticity_defect"),
+    "canon.flow.measure": ("AccuracyWarning",),
     "canon.flow.method": ("DOP853", "Gauss", "RK4", "Splitting", "Taylor", "TimeTransformed"),
-    "canon.flow.propagate": ("Trajectory", "propagate"),
+    "canon.flow.propagate": ("Interrupted", "NonFiniteStateError", "Trajectory", "propagate"),
     "canon.flow.solvable": ("SABA", "SBAB", "WisdomHolman"),
     "canon.flow.witness": ("brackets_at_points", "integral_drift", "symplectic_flow"),
     "canon.mechanics.appell": ("GibbsAppell",),
