@@ -159,7 +159,7 @@ def _family(
     factor = np.linalg.cholesky(np.stack(members))
     log_determinant = 2.0 * np.sum(np.log(np.diagonal(factor, axis1=1, axis2=2)), axis=1)
     # One by one and as the triangles they are: a stack of full inverses takes many times as long.
-    invert = get_lapack_funcs("trtri", (factor[0],))
+    (invert,) = get_lapack_funcs(("trtri",), (factor[0],))
     whitener = np.stack([invert(each, lower=1)[0] for each in factor])
     line = whitener @ (np.diff(window_starts(windows)) / PLACES)
     return Family(exponents, ratios, whitener, log_determinant, line)
