@@ -174,6 +174,11 @@ def fixed_steps(
     steps, orbits = steps_between(loop, method, plan), states[0].shape[1]
     first = 0 if so_far is None else len(so_far.t) - 1
     stops, memory = plan.stops[first:], None if so_far is None else so_far.beyond
+    if watch is not None and not np.diff([stop // watch.cadence for stop in stops]).all():
+        raise ValueError(
+            f"cadence={watch.cadence} steps is longer than the shortest interval between samples, "
+            f"{int(np.diff(stops).min())} steps: take a smaller cadence or fewer samples"
+        )
     pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
     met, end = (), Fraction(0)
     if events:
@@ -250,11 +255,6 @@ def _statistics(runs: Sequence[Run], stops: Sequence[int], watch: Watch | None, 
         return np.empty((watch.start.shape[1], 3, 0, orbits))
     found = np.concatenate(parts, axis=1)[:, :orbits].transpose(2, 3, 0, 1).copy()
     counts = np.diff([stop // watch.cadence for stop in stops])
-    if not counts.all():
-        raise ValueError(
-            f"cadence={watch.cadence} steps is longer than the shortest interval between samples, "
-            f"{int(np.diff(stops).min())} steps: take a smaller cadence or fewer samples"
-        )
     found[:, 0] /= counts[:, np.newaxis]
     if not np.isfinite(found).all():
         raise ArithmeticError(
