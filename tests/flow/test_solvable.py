@@ -255,7 +255,14 @@ def test_the_harmonic_oscillator_is_exact_for_any_step():
     assert abs(found - true).max() < 1e-14
 
 
-@pytest.mark.parametrize("name", ["verlet", "blanes-moan-4", "srkn-6b", "kahan-li-8"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "verlet",
+        "srkn-6b",
+        *(pytest.param(n, marks=pytest.mark.slow) for n in ("blanes-moan-4", "kahan-li-8")),
+    ],
+)
 def test_named_parts_keep_the_order_of_any_splitting(name):
     x, y = HENON_HEILES.q
     cubic = x**2 * y - y**3 / 3
