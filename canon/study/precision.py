@@ -58,6 +58,8 @@ class WorkRow:
         the smaller and the larger step let expect.
     failure
         Why the run failed; empty where it did not.
+    precision
+        The arithmetic.
     """
 
     method: Method
@@ -69,6 +71,7 @@ class WorkRow:
     position_error: float = math.nan
     resonant: bool = False
     failure: str = ""
+    precision: str = ""
 
 
 @dataclass(frozen=True)
@@ -98,7 +101,7 @@ def work_precision(
     *,
     steps: Iterable[float] = (),
     tolerances: Iterable[float] = (),
-    precision: str | None = None,
+    precision: str | Sequence[str] | None = None,
     parameters: Mapping[Symbol | str, float] | None = None,
     repetitions: int = 3,
     progress: Callable[[float], None] | None = None,
@@ -116,7 +119,7 @@ def work_precision(
     steps, tolerances
         Steps for the methods of fixed step, tolerances for the others.
     precision
-        Arithmetic of the methods of fixed step.
+        Arithmetic of the methods of fixed step, or several to compare, lowest first.
     parameters
         Values of parameters; those of a scene are its own unless replaced.
     repetitions
@@ -144,7 +147,14 @@ def work_precision(
     """
     if repetitions < 1:
         raise StudyError("run each method at least once")
-    cases = [(method, *setting) for method in methods for setting in _settings(method, steps, tolerances)]
+    given_steps, given_tolerances = tuple(steps), tuple(tolerances)
+    several = (precision,) if precision is None or isinstance(precision, str) else tuple(precision)
+    cases = [
+        (method, *setting, arithmetic)
+        for method in methods
+        for arithmetic in (several if isinstance(method, FixedStep) else (None,))
+        for setting in _settings(method, given_steps, given_tolerances)
+    ]
     if isinstance(system, Scene):
         given = {str(name): value for name, value in (parameters or {}).items()}
         scene = system.with_parameters(**given)
@@ -179,14 +189,13 @@ def work_precision(
     except (NonFiniteStateError, ValueError) as error:
         raise StudyError(f"the reference could not be run: {error}") from error
     rows: list[WorkRow] = []
-    for number, (method, step, tolerance) in enumerate(cases, 1):
-        arithmetic = precision if step is not None else None
+    for number, (method, step, tolerance, arithmetic) in enumerate(cases, 1):
         try:
             found = run(method, step, tolerance, arithmetic)
             timed = [run(method, step, tolerance, arithmetic, samples=1) for _ in range(repetitions)]
             rows.append(_measured(found, timed, tolerance, reference))
         except (NonFiniteStateError, ValueError) as error:
-            rows.append(WorkRow(method, step, tolerance, failure=str(error)))
+            rows.append(WorkRow(method, step, tolerance, failure=str(error), precision=arithmetic or ""))
         if progress is not None:
             progress(number / len(cases))
     return WorkPrecision(title, span, tuple(_marked(rows)))
@@ -216,6 +225,7 @@ def _measured(
         evaluations=found.evaluations,
         energy_error=float(np.abs(found.energy_error).max()),
         position_error=float(np.linalg.norm(found.q[:, -1] - reference) / np.linalg.norm(reference)),
+        precision=found.precision,
     )
 
 
@@ -225,7 +235,7 @@ def _marked(rows: Sequence[WorkRow]) -> list[WorkRow]:
     for i in range(1, len(rows) - 1):
         larger, row, smaller = rows[i - 1 : i + 2]
         known = all(each.step is not None and each.energy_error > 0.0 for each in (larger, row, smaller))
-        if not known or not larger.method == row.method == smaller.method:
+        if not known or len({(str(each.method), each.precision) for each in (larger, row, smaller)}) > 1:
             continue
         x, y = (
             [math.log(value) for value in values]

@@ -132,6 +132,23 @@ def test_a_step_that_stands_out_from_its_neighbours_is_resonant():
     assert resonance(peaked) == [False] * 5
 
 
+def test_precisions_side_by_side():
+    """Single precision stops at its round-off, doubles go on with the order of the method."""
+    found = work_precision(
+        find("henon-heiles"),
+        None,
+        20.0,
+        [Splitting("kahan-li-8"), Taylor()],
+        steps=iter([0.4, 0.1]),
+        tolerances=[1e-9],
+        precision=["single", "double"],
+        repetitions=1,
+    )
+    assert [row.precision for row in found.rows] == ["single", "single", "double", "double", "double"]
+    single, double = found.rows[1], found.rows[3]
+    assert single.position_error > 1e-7 > 1e-10 > double.position_error
+
+
 def test_the_picture_holds_every_run(galaxy):
     axes = plot_work_precision(galaxy)
     lines = {line.get_label(): line for line in axes.lines if not line.get_label().startswith("_")}
