@@ -66,17 +66,19 @@ class Guard:
             )
         return [(g, self.forward * rate) for g, rate in zip(numbers[::2], numbers[1::2], strict=True)]
 
-    def start(self, state: State, t: Fraction) -> list[tuple[int, float]]:
-        """Note on which side of zero each g is and return that with dg/dt, for the compiled loop."""
+    def start(self, state: State, t: Fraction) -> list[tuple[int, float, float]]:
+        """Note on which side of zero each g is and return that with dg/dt and g, for the compiled loop."""
         looks = self.look(state, t)
         self.sides = [_sign(g) or _sign(rate) for g, rate in looks]
         return self.known(looks)
 
-    def known(self, looks: Sequence[tuple[float, float]]) -> list[tuple[int, float]]:
+    def known(self, looks: Sequence[tuple[float, float]]) -> list[tuple[int, float, float]]:
         """Return what the compiled loop is to know of each event."""
-        return [(side, rate) for side, (_, rate) in zip(self.sides, looks, strict=True)]
+        return [(side, rate, g) for side, (g, rate) in zip(self.sides, looks, strict=True)]
 
-    def through(self, n: int, before: State, after: State) -> tuple[State, Fraction, list[tuple[int, float]]]:
+    def through(
+        self, n: int, before: State, after: State
+    ) -> tuple[State, Fraction, list[tuple[int, float, float]]]:
         """Meet the events of step n + 1 in their order.
 
         Parameters

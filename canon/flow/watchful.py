@@ -78,7 +78,7 @@ def run_with_events(
     code = _kept_sentry(system, tuple(e.value for e in events), tuple(e.rate for e in events), loop)
     pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
     job = Job(loop, start.high, start.low, pairs, memory=start.beyond)
-    kept = np.zeros(1 + 2 * len(events))
+    kept = np.zeros(1 + 3 * len(events))
     kept[0] = guard.forward
     done, before = np.array([stops[0]], dtype=np.int64), (np.empty_like(job.y), np.empty_like(job.e))
     states, beyond = [job.states()], [job.beyond()]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.kernel.loop import compiled_function
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from canon.kernel.structure import Equations
 
 __all__ = ["sentry_function"]
+
+_REACH = Fraction(4)
+"""A g that turns once within a step moves by no more than its slope times the step; so many times that is allowed."""
 
 _POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
 _SIGNATURE = (*[_POINTER] * 8, *[_INTEGER] * 2)
@@ -37,8 +41,9 @@ def sentry_function(
 
     It calls the loop's own machine code for one step at a time, so that the motion is bit for bit the one
     without it, and returns after the first step in which some event may have happened: its function g
-    changed sign, or g approached zero at the start of the step and recedes at its end. ``before`` has the
-    state from which that step started, ``done`` the number of steps taken since step 0.
+    changed sign, or g approached zero at the start of the step and recedes at its end, so fast at both that it may
+    have reached it. ``before`` has the state from which that step started, ``done`` the number of steps taken
+    since step 0.
 
     Parameters
     ----------
@@ -48,7 +53,7 @@ def sentry_function(
         The nodes of each g and of dg/dt along the motion.
     loop
         A loop for one orbit. ``kept`` has the direction of time, ±1, and for each event the sign that g has
-        had last (0: not known yet) and dg/dt, positive where g rises in the order of passing.
+        had last (0: not known yet), dg/dt, positive where g rises in the order of passing, and g.
     """
     w = Writer(dataclasses.replace(loop.number, lanes=1))
     size = len(system.inputs) - 1
@@ -65,14 +70,21 @@ def sentry_function(
             state = [w.algebra("add", y, w.load("%e", i)) for i, y in enumerate(state)]
         clock = w.multiply_add(w.whole(after), w.load("%c", 1), w.load("%c", 0))
         found = [w.as_double(x) for x in w.program(system.program((*values, *rates)), [*state, clock])]
+        length = d.algebra("mul", direction, w.as_double(w.load("%c", 1)))
+        far = d.algebra("mul", length, d.constant(_REACH))
         flag = "false"
         for i, (value, rate) in enumerate(zip(found[: len(values)], found[len(values) :], strict=True)):
-            side, before = d.load("%kept", 1 + 2 * i), d.load("%kept", 2 + 2 * i)
+            side, before, old = (d.load("%kept", 1 + 3 * i + k) for k in range(3))
             passed = d.algebra("mul", direction, rate)
-            d.store(passed, "%kept", 2 + 2 * i)
+            d.store(passed, "%kept", 2 + 3 * i)
+            d.store(value, "%kept", 3 + 3 * i)
             crossed = d.less(d.algebra("mul", side, value), zero)
             came, goes = d.algebra("mul", side, before), d.algebra("mul", side, passed)
-            dipped = w.let(f"and i1 {d.less(came, zero)}, {d.less(zero, goes)}")
+            dipped = "true"
+            for distance, slope in ((old, d.negative(came)), (value, goes)):
+                reach = d.algebra("mul", slope, far)
+                near = d.less(d.algebra("mul", side, distance), reach)
+                dipped = w.let(f"and i1 {dipped}, {w.let(f'and i1 {d.less(zero, slope)}, {near}')}")
             unknown = d.equal(side, zero)
             for each in (crossed, dipped, unknown):
                 flag = w.let(f"or i1 {flag}, {each}")
