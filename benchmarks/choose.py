@@ -5,8 +5,8 @@ Run:  python -m benchmarks.choose [part of a scene's name]
 Every case is a scene, a start, a span in periods, an observable and an accuracy. The chosen setting is run over the
 whole span: its cost (least of three runs without samples) and its largest error (followed at every step). The
 exhaustive search runs every method of the candidates in doubles and in compensated doubles over the whole span too, on
-a grid of steps of ratio 2^(1/4) and of tolerances of ratio 4, beginning with the largest; it leaves out what can only cost more
-than the best already found. Times are processor times, without compilation.
+a grid of steps of ratio 2^(1/4) and of tolerances of ratio 4, beginning with the largest; it leaves out what can only
+cost more than the best already found. Times are processor times, without compilation.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def dear(question: Question, setting: Setting, limit: float) -> bool:
         return False
 
 
-def settings(question: Question, method: object, natural: float) -> Iterator[Setting]:
+def settings(method: object, natural: float) -> Iterator[Setting]:
     """Yield settings of a method, dearer and dearer."""
     if isinstance(method, FixedStep):
         step = 6.0 * natural if isinstance(method, Splitting) else 12.0 * natural
@@ -124,7 +124,7 @@ def exhaustive(
     best = dict(seeds)
     for method in candidate_methods(question):
         wanted = set(best)
-        for setting in settings(question, method, natural):
+        for setting in settings(method, natural):
             dearest = max((best[each][0] for each in wanted), default=0.0)
             if dear(question, setting, dearest):
                 break
@@ -177,18 +177,24 @@ def line(found: Outcome, periods: float) -> str:
     choice = found.choice
     name = f"{found.scene} {periods:.0e} {choice.observable[:14]}"
     if not choice.reached:
-        return f"{name:46s} {found.accuracy:.0e}  nothing keeps it; best {choice.predicted_error:.0e}  (search: {found.best})"
-    setting = f"{str(choice.method).partition('(')[0] if choice.tolerance else choice.method} {choice.chosen.setting.knob:.3g}"
-    marks = (
-        ("" if found.kept else " LOST")
-        + ("" if within(found, 2.0) else " COST")
-        + ("" if near(found) else " DEAR")
-    )
-    return (
-        f"{name:46s} {found.accuracy:.0e}  {setting:29s} {choice.precision[:4]}  {choice.predicted_error:7.1e} {found.error:7.1e}"
-        f"  {1e3 * choice.predicted_cost:8.2f} {1e3 * found.cost:8.2f}  {found.cost / found.best_cost:5.2f}  {found.best:30s}"
-        f" {found.seconds:4.1f}{marks}"
-    )
+        best = f"{choice.predicted_error:.0e}"
+        return f"{name:46s} {found.accuracy:.0e}  nothing keeps it; best {best}  (search: {found.best})"
+    method = str(choice.method).partition("(")[0] if choice.tolerance else str(choice.method)
+    marks = [
+        "" if found.kept else "LOST",
+        "" if within(found, 2.0) else "COST",
+        "" if near(found) else "DEAR",
+    ]
+    cells = [
+        f"{name:46s} {found.accuracy:.0e}",
+        f"{method} {choice.chosen.setting.knob:.3g}".ljust(29),
+        choice.precision[:4],
+        f"{choice.predicted_error:7.1e} {found.error:7.1e}",
+        f"{1e3 * choice.predicted_cost:8.2f} {1e3 * found.cost:8.2f}",
+        f"{found.cost / found.best_cost:5.2f}",
+        f"{found.best:30s} {found.seconds:4.1f}",
+    ]
+    return "  ".join([*cells, *filter(None, marks)])
 
 
 def within(found: Outcome, factor: float) -> bool:
@@ -203,8 +209,7 @@ def main() -> None:
     part = sys.argv[1] if len(sys.argv) > 1 else ""
     started = time.process_time()
     print(
-        f"{'scene, periods, observable':46s} {'wanted':>6s}  {'chosen':29s} {'prec':4s}  {'error: predicted, measured':15s}"
-        "  ms: predicted, measured  /best  best of the search"
+        "error and cost: predicted, measured; cost in ms; measured over the best of the search; s it took to choose"
     )
     found: list[Outcome] = []
     for scene, start, observable, periods, accuracies in CASES:
@@ -220,16 +225,16 @@ def main() -> None:
         f"accuracy kept (or rightly called out of reach): {sum(each.kept for each in found)} of {len(found)}"
     )
     print(
-        f"cost within a factor of 2 of the prediction: {sum(within(each, 2.0) for each in reached)} of {len(reached)}; "
+        f"cost within a factor of 2 of what was predicted: {sum(within(each, 2.0) for each in reached)} "
+        f"of {len(reached)}; "
         f"predicted / measured from {ratios[0]:.2f} to {ratios[-1]:.2f}, median {ratios[len(ratios) // 2]:.2f}"
     )
     print(
         f"cost within 1.5 times the best of the search: {sum(near(each) for each in reached)} of {len(reached)}; "
         f"median {over[len(over) // 2]:.2f}, 95 % below {over[int(0.95 * len(over))]:.2f}, largest {over[-1]:.2f}"
     )
-    print(
-        f"processor time: {time.process_time() - started:.0f} s, of which choosing {sum(each.seconds for each in found):.0f} s"
-    )
+    choosing = sum(each.seconds for each in found)
+    print(f"processor time: {time.process_time() - started:.0f} s, of which choosing {choosing:.0f} s")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@ Synthetic series (4097 samples over one run) are those of tests/study/series.py 
 come from Hénon–Heiles orbits on random points of the section at energy 1/12, 500 periods each. "right" is the
 verdict that the kind deserves. Secular is claimed falsely in at most 1 %, a walk in about 1 % of bounded series.
 The harder kinds show where the assumptions end: noise with a memory of a twentieth of the run or more can't be told
-from a random walk by that run. Of the real series, those of symplectic methods must not be called secular, those of RK4 must be.
+from a random walk by that run. Of the real series, those of symplectic methods must not be called secular, and those
+of RK4 must be.
 """
 
 from __future__ import annotations

@@ -52,9 +52,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a parameter")
     parser.add_argument("--start", metavar="NAME", help="the initial state, by its name in the scene")
     parser.add_argument(
-        "--method", metavar="NAME", action="append", help="consider this one; may be repeated (all that apply)"
+        "--method",
+        metavar="NAME",
+        action="append",
+        help="consider this one; may be repeated (all that apply)",
     )
-    parser.add_argument("--json", action="store_true", help="one JSON object a candidate and line, the choice first")
+    parser.add_argument(
+        "--json", action="store_true", help="one JSON object a candidate and line, the choice first"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

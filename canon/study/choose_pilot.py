@@ -121,7 +121,9 @@ class Question:
         """
         plain = precision in ("single", "double", "compensated")
         if (duration, plain) not in self._known:
-            setting = Setting(REFERENCE if plain else FINE_REFERENCE, precision="extended" if plain else "quad")
+            setting = Setting(
+                REFERENCE if plain else FINE_REFERENCE, precision="extended" if plain else "quad"
+            )
             try:
                 found = self.run(setting, duration, PLACES)
             except ValueError:

@@ -49,6 +49,7 @@ ADAPTIVE_ONLY = ("extended", "quad")
 BLOCKS_KEPT = 2**13
 """Blocks that a run is judged by where the observables are followed inside the loop."""
 
+
 @dataclass(frozen=True)
 class DriftStudy:
     """The errors of several methods on one motion.

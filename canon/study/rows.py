@@ -126,7 +126,9 @@ class Run:
                 parameters=self.parameters,
                 samples=samples,
                 cadence=cadence,
-                observables={each.name: each.expression for each in observables if each.expression is not None},
+                observables={
+                    each.name: each.expression for each in observables if each.expression is not None
+                },
                 progress=progress,
             )
 

@@ -63,7 +63,9 @@ def drift_table(study: DriftStudy) -> str:
     rule = "─" * max(map(len, lines))
     verdicts = dict.fromkeys(row.drift.verdict for row in study.rows if row.drift is not None)
     notes = [f"{WORDS[verdict]}: {MEANING[verdict]}" for verdict in verdicts]
-    notes.extend(dict.fromkeys(f"{row.method} failed: {row.failure}" for row in study.rows if row.drift is None))
+    notes.extend(
+        dict.fromkeys(f"{row.method} failed: {row.failure}" for row in study.rows if row.drift is None)
+    )
     if any(isinstance(row.method, Taylor) and row.drift for row in study.rows):
         notes.append("evaluations: of the force; for Taylor, of the whole series of its order")
     return "\n".join([study.title, _run(study), "", lines[0], rule, *lines[1:], rule, *notes])
