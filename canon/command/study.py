@@ -6,7 +6,7 @@ import argparse
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
@@ -214,7 +214,8 @@ def _executor(arguments: argparse.Namespace) -> Generator[tuple[Executor | None,
         except ImportError as missing:
             raise StudyError("a dask cluster needs: pip install canon-mechanics[cluster]") from missing
         with Client(arguments.dask) as client:
-            yield client.get_executor(), 1 + sum(client.nthreads().values())
+            threads: Any = client.nthreads()
+            yield client.get_executor(), 1 + sum(threads.values())
     elif arguments.jobs > 1:
         import multiprocessing
         from concurrent.futures import ProcessPoolExecutor

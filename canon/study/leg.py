@@ -10,12 +10,14 @@ from __future__ import annotations
 import json
 import math
 import time
+import warnings
 from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.measure import AccuracyWarning
 from canon.flow.method import FixedStep
 from canon.flow.propagate import propagate
 from canon.study.case import parts_of
@@ -186,17 +188,19 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
     else:
         ends = np.linspace(0.0, case.span, end + 1)
         span, step = (Fraction(ends[point.part]), Fraction(ends[point.part + 1])), case.step
-    found = propagate(
-        case.hamiltonian,
-        np.array(state, dtype=object),
-        span,  # pyright: ignore[reportArgumentType] - times may be exact
-        method=case.method,
-        step=step,
-        tolerance=case.tolerance,
-        precision=case.precision,
-        parameters={**case.values},
-        samples=samples,
-    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
+        found = propagate(
+            case.hamiltonian,
+            np.array(state, dtype=object),
+            span,  # pyright: ignore[reportArgumentType] - times may be exact
+            method=case.method,
+            step=step,
+            tolerance=case.tolerance,
+            precision=case.precision,
+            parameters={**case.values},
+            samples=samples,
+        )
     if not found.autonomous:
         raise ValueError("H depends on t, so its change is no error")
     return found

@@ -79,6 +79,12 @@ def test_without_what_rounding_took_it_would_end_elsewhere():
     assert advance(KEPLER, poorer).numbers["final"] != advance(KEPLER, first).numbers["final"]
 
 
+def test_a_jump_over_a_collision_is_a_verdict_and_no_warning():
+    falling = Formula("falling", "p**2/2 - 1/q", ("q",), ("p",), starts=(("rest", (1.0, 0.0)),))
+    case = Case(falling, Splitting("verlet"), span=40.0, step=0.01, samples=400, parts=4)
+    assert advance(case).numbers["verdict"] == "diverged"
+
+
 def test_the_error_is_that_since_the_start_of_the_run():
     case = replace(KEPLER, method=RK4(), parts=4)
     point = started(case)
