@@ -36,7 +36,9 @@ def states_at(task: Task, samples: Samples, times: Array) -> Array:
             raise ValueError("the motion was not kept as a function of time: propagate(…, dense=True)")
         return np.stack([orbit(times) for orbit in samples.dense], axis=2)
     if not isinstance(task.method, FixedStep):
-        raise ValueError(f"{task.method} is not kept as a function of time: name the times, propagate(…, times=…)")
+        raise ValueError(
+            f"{task.method} is not kept as a function of time: name the times, propagate(…, times=…)"
+        )
     if any(met.after is not None for met in samples.crossings):
         raise ValueError(
             "events changed the state on the way, which steps from a sample do not know: propagate(…, times=…)"
