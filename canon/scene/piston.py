@@ -322,7 +322,7 @@ def _piston_force(value: Mapping[str, float], _t: Array) -> float:
     inertia, k_s = _inertia(s), _ratios(s)[1]
 
     def at(f: Expr, angle: Expr | int) -> float:
-        return float(exchanged(f, {theta: sympify(angle)}))
+        return float(exchanged(f, {theta: sympify(angle, strict=True)}))
 
     quarter = pi / 2
     square = _SPEED**2 * at(inertia, 0) / at(inertia, quarter)
