@@ -184,6 +184,8 @@ def choose(
             f"an accuracy of {accuracy} makes no sense: give a number between 0 and 0.1, such as 1e-8"
         )
     question, title = _question(system, y0, span, observable, integral, parameters)
+    if observable == "energy" and question.hamiltonian.t in question.hamiltonian.H.free_symbols:
+        raise StudyError("H depends on t, so its change is no error: choose by observable='position'")
     considered = tuple(methods) if methods is not None else candidate_methods(question)
     if not considered:
         raise StudyError("no method to choose from: name at least one")

@@ -220,7 +220,7 @@ def _watched(question: Question, setting: Setting, duration: float, windows: int
         t=(found.t[1:] + found.t[:-1]) / 2.0,
         mean=seen.mean / unit,
         largest=seen.largest / unit,
-        energy=worst / (abs(found.energy[0]) if found.relative else 1.0),
+        energy=_energy(found, worst),
     )
 
 
@@ -236,7 +236,7 @@ def _sampled(question: Question, setting: Setting, duration: float) -> Pilot:
         t=found.t,
         mean=error,
         largest=np.abs(error),
-        energy=float(np.abs(found.energy_error).max()),
+        energy=_energy(found),
     )
 
 
@@ -258,8 +258,16 @@ def _against_reference(question: Question, setting: Setting, duration: float) ->
         t=found.t[1:],
         mean=away,
         largest=away,
-        energy=float(np.abs(found.energy_error).max()),
+        energy=_energy(found),
     )
+
+
+def _energy(found: Trajectory, largest: float | None = None) -> float:
+    """Return the largest energy error, relative where the energy is not zero; 0 where H depends on time."""
+    if not found.autonomous:
+        return 0.0
+    change = float(np.abs(found.energy_change).max()) if largest is None else largest
+    return change / (float(abs(found.energy[0])) if found.relative else 1.0)
 
 
 def _unit(found: Trajectory, question: Question) -> float:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates
 from canon.scene import find
@@ -169,6 +170,21 @@ def test_requests_that_make_no_sense(options, told):
     request = {"span": 100.0, "accuracy": 1e-6, **options}
     with pytest.raises(StudyError, match=told):
         choose(find("kepler"), None, **request)
+
+
+def test_a_driven_motion_is_chosen_for_by_its_position():
+    from canon import time
+
+    (x,) = coordinates("x")
+    H = x.momentum**2 / 2 + x**2 / 2 - x * sp.cos(time / 3) / 4
+    driven = Hamiltonian(H, [x], [x.momentum])
+    with pytest.raises(StudyError, match="H depends on t"):
+        choose(driven, [1.0, 0.0], 300.0, 1e-6)
+    choice = choose(driven, [1.0, 0.0], 300.0, 1e-6, "position", methods=[Splitting("srkn-6b"), Taylor()])
+    motion = choice.run(samples=200)
+    # x″ + x = cos(t/3)/4 has the solution (9/32) cos(t/3) + (23/32) cos t.
+    exact = 9.0 / 32.0 * np.cos(motion.t / 3.0) + 23.0 / 32.0 * np.cos(motion.t)
+    assert np.abs(motion.q[0] - exact).max() <= 1e-6
 
 
 def test_a_motion_that_can_not_be_followed():
