@@ -20,6 +20,7 @@ def test_all_scenes_are_listed(capsys):
     status, text, _ = out(capsys)
     assert status == 0
     assert [line.split()[0] for line in text.splitlines()] == list(names())
+    assert out(capsys, "list")[1] == text
 
 
 def test_a_scene_shows_its_equations(capsys):

@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     from canon.command.setting import setting
     from canon.scene import SceneError, find
 
-    if arguments.scene is None:
+    if arguments.scene in (None, "list"):
         _list()
         return 0
     try:

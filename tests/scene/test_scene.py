@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -185,3 +185,20 @@ def test_the_default_state_is_the_first_start():
     at = dict(zip((*hamiltonian.q, *hamiltonian.p), find("henon-heiles").state(), strict=True))
     assert float(hamiltonian.H.subs(at)) == pytest.approx(1.0 / 12.0, abs=1e-15)
     assert isinstance(hamiltonian.H, sp.Expr)
+
+
+@pytest.mark.parametrize(
+    ("question", "built"),
+    [
+        (lambda scene: scene.values, set()),
+        (lambda scene: scene.lagrangian.equations, {"q", "symbols", "lagrangian"}),
+        (lambda scene: scene.hamiltonian.H, {"q", "p", "symbols", "lagrangian", "hamiltonian"}),
+        (equation_of, {"q", "symbols", "lagrangian"}),
+    ],
+)
+def test_a_question_builds_what_it_needs_and_nothing_else(question, built):
+    scene = replace(find("spherical-pendulum"))
+    question(scene)
+    assert set(vars(scene)) - {f.name for f in fields(scene)} == built
+    if "hamiltonian" not in built and "lagrangian" in built:
+        assert not {"accelerations", "jacobi_energy"} & set(vars(scene.lagrangian))
