@@ -47,6 +47,14 @@ def plot_scene(motion: Motion, ax: Axes | None = None, *, at: int = 0) -> Axes:
     ------
     PlotError
         Where matplotlib is not installed.
+
+    Examples
+    --------
+    >>> from canon.scene import find
+    >>> from canon.scene.motion import run
+    >>> axes = plot_scene(run(find("spring-pendulum"), periods=1, samples=50))
+    >>> len(axes.lines)  # the way of the bob, the spring and the bob
+    3
     """
     axes = _square(ax)
     drawing = _Drawing(motion)

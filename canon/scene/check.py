@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from canon.proof.verdict import Verdict
     from canon.scene.scene import Scene
 
-__all__ = ["Check", "check", "conserved", "integrals_along", "solutions_met"]
+__all__ = ["Check", "check", "conserved", "integrals_along", "rate_of", "solutions_met"]
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,15 @@ def conserved(scene: Scene, integral: Integral) -> Verdict:
 
 
 def rate_of(scene: Scene, f: Expr) -> Expr:
-    """Return df/dt by the scene's equations of motion, for f(q, q̇, p, t)."""
+    """Return df/dt by the scene's equations of motion, for f(q, q̇, p, t).
+
+    Examples
+    --------
+    >>> from canon.scene import find
+    >>> scene = find("damped-oscillator")
+    >>> rate_of(scene, scene.symbols.x.dot)
+    (-c*x_dot - k*x)/m
+    """
     from canon.expression.symbol import acceleration, momentum, time_derivative, velocity
     from canon.mechanics.quasi_velocity import independent_velocities
     from canon.mechanics.substitution import exchanged
@@ -127,7 +135,17 @@ def check(scene: Scene, start: str | None = None, periods: float | None = None) 
 
 
 def integrals_along(motion: Motion) -> tuple[Check, ...]:
-    """Return how well energy, integrals and constraints are kept along a motion."""
+    """Return how well energy, integrals and constraints are kept along a motion.
+
+    Examples
+    --------
+    >>> from canon.scene import find
+    >>> for kept in integrals_along(run(find("chaplygin-sleigh"), periods=2)):
+    ...     print(kept.name, kept.passed)
+    energy True
+    energy m (u² + k² ω²)/2 True
+    constraints True
+    """
     scene, equation = motion.scene, motion.equation
     about = f"{motion.start.name}, {motion.t[-1] / scene.period:g} periods"
     name = "energy" if equation.work == equation.field.graph.zero else "energy less the work done"
@@ -144,7 +162,15 @@ def integrals_along(motion: Motion) -> tuple[Check, ...]:
 
 
 def solutions_met(scene: Scene, start: str | None = None) -> Iterator[Check]:
-    """Yield how well the motions known beforehand are met, one after another."""
+    """Yield how well the motions known beforehand are met, one after another.
+
+    Examples
+    --------
+    >>> from canon.scene import find
+    >>> for met in solutions_met(find("hemisphere"), "aside"):
+    ...     print(met.name, met.passed)
+    it leaves from rest at θ₀ where cos θ = (2/3) cos θ₀ True
+    """
     for solution in scene.solutions:
         if start is not None and solution.start != start:
             continue

@@ -165,7 +165,15 @@ class Solution:
 
 
 def multiplier(number: int = 1) -> Symbol:
-    """Return the symbol of a constraint's multiplier, for quantities and events; holonomic constraints come first."""
+    """Return the symbol of a constraint's multiplier, for quantities and events; holonomic constraints come first.
+
+    Examples
+    --------
+    >>> from canon.scene import find
+    >>> from canon.scene.motion import run
+    >>> run(find("gear-pair"), periods=1, samples=1).observed(multiplier()).round(3)
+    array([-10., -10.])
+    """
     from canon.expression.symbol import parameters
 
     return parameters(f"lambda{number}")[0]

@@ -64,7 +64,15 @@ def ring(
 
 
 def wheel(centre: Point, radius: Expr | float, angle: Expr) -> tuple[tuple[Point, ...], tuple[Point, ...]]:
-    """Return the rim of a wheel in the plane and one of its diameters, which shows how it turns."""
+    """Return the rim of a wheel in the plane and one of its diameters, which shows how it turns.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> rim, diameter = wheel((0, 0), 2, Symbol("phi"))
+    >>> diameter[1]
+    (2*cos(phi), 2*sin(phi))
+    """
     from sympy import cos, sin
 
     spoke = (radius * cos(angle), radius * sin(angle))
