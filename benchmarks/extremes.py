@@ -1,0 +1,108 @@
+"""Extreme cases: what ordinary tools do there, and what canon does. Writes docs/extremes.md.
+
+python benchmarks/extremes.py                        # every row not done yet, then the page
+python benchmarks/extremes.py numeric kepler         # rows of a part whose names hold a text, done anew
+python benchmarks/extremes.py --fresh                # all of them anew
+python benchmarks/extremes.py --page                 # the page from what is there
+
+Every row runs in a process of its own. What is done is kept in out/extremes.json, so an interrupted run goes on where
+it stopped. Ends with status 1 where canon hung, crashed or was silently wrong.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import platform
+import sys
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parent))
+sys.path.insert(0, str(HERE))
+
+from extremes.page import page, summary
+from extremes.running import PARTS, do_pieces, rows_of, run_row
+
+if TYPE_CHECKING:
+    from extremes.row import Row
+
+KEPT = HERE.parent / "out" / "extremes.json"
+PAGE = HERE.parent / "docs" / "extremes.md"
+BAD = {"hang", "crash", "wrong"}
+
+
+def main(arguments: list[str]) -> int:
+    if arguments[:1] == ["--pieces"]:
+        part, name, first, into = arguments[1:]
+        do_pieces(part, name, int(first), Path(into))
+        return 0
+    said = parsed(arguments)
+    parts = {part: rows_of(part) for part in ([said.part] if said.part else PARTS)}
+    kept: dict[str, Any] = json.loads(KEPT.read_text()) if KEPT.exists() else {}
+    if not said.page:
+        anew = said.fresh or bool(said.text)
+        wanted = [(part, row) for part, rows in parts.items() for row in rows if said.text in row.name]
+        run_all([(part, row) for part, row in wanted if anew or key(part, row) not in kept], kept, said.jobs)
+    done = {
+        part: [(row, kept[key(part, row)]) for row in rows_of(part) if key(part, row) in kept]
+        for part in PARTS
+    }
+    tools = ", ".join(f"{name} {version(name)}" for name in ("sympy", "numpy", "scipy", "heyoka", "llvmlite"))
+    where = f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
+    PAGE.write_text(page(done, where), encoding="utf-8")
+    for part in PARTS:
+        print(f"{part}: {summary(done[part])}")
+    return int(any(pieces[0]["kind"] in BAD for found in done.values() for _, pieces in found))
+
+
+def parsed(arguments: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("part", nargs="?", choices=PARTS)
+    parser.add_argument("text", nargs="?", default="", help="only rows whose names hold this")
+    parser.add_argument("--fresh", action="store_true", help="do rows anew that are done")
+    parser.add_argument("--page", action="store_true", help="run nothing")
+    parser.add_argument("--jobs", type=int, default=2, help="rows at once")
+    return parser.parse_args(arguments)
+
+
+def key(part: str, row: Row) -> str:
+    return f"{part}/{row.name}"
+
+
+def run_all(wanted: list[tuple[str, Row]], kept: dict[str, Any], jobs: int) -> None:
+    KEPT.parent.mkdir(exist_ok=True)
+    with ThreadPoolExecutor(jobs) as pool:
+        futures = {pool.submit(run_row, part, row): key(part, row) for part, row in wanted}
+        for count, future in enumerate(as_completed(futures), 1):
+            name, pieces = futures[future], future.result()
+            keep(kept, name, pieces)
+            for piece in pieces:
+                error, estimate = (
+                    f"{piece[k]:.1e}" if piece[k] is not None else "–" for k in ("error", "estimate")
+                )
+                print(
+                    f"{count}/{len(futures)} {name} {piece['tool']}: {piece['kind']}, error {error}, "
+                    f"stated {estimate}, {piece['seconds']:.1f} s: {piece['said']}",
+                    flush=True,
+                )
+
+
+def keep(kept: dict[str, Any], name: str, pieces: list[dict[str, Any]]) -> None:
+    """Add a row to the file, with what another run has written there meanwhile."""
+    kept[name] = pieces
+    if KEPT.exists():
+        kept |= {other: found for other, found in json.loads(KEPT.read_text()).items() if other not in kept}
+    fresh = KEPT.with_suffix(".new")
+    fresh.write_text(json.dumps(kept, indent=1))
+    fresh.replace(KEPT)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

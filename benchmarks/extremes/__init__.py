@@ -1,0 +1,1 @@
+"""Rows of extreme cases, and what runs them."""
