@@ -169,10 +169,8 @@ def multiplier(number: int = 1) -> Symbol:
 
     Examples
     --------
-    >>> from canon.scene import find
-    >>> from canon.scene.motion import run
-    >>> run(find("gear-pair"), periods=1, samples=1).observed(multiplier()).round(3)
-    array([-10., -10.])
+    >>> multiplier(2)
+    lambda2
     """
     from canon.expression.symbol import parameters
 
