@@ -223,8 +223,9 @@ def _counterexample(card: Element, judgement: Judgement, scope: Scope) -> None:
     at = _put(card, "p", "at ", "counterexample")
     point = list(example["point"].items())
     for name, value in point[:MAX_ITEMS]:
+        if len(at):
+            at[-1].tail = ", "
         at.append(_formula(f"{name} = {value}", scope))
-        at[-1].tail = ", "
     if not point:
         at.text = "at every point"
     _put(at, "span", f": {example['left']} against {example['right']}")

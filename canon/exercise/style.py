@@ -35,6 +35,7 @@ STYLE = """
 .canon .warning { color: var(--undecided); margin: .3rem 0; }
 .canon details { margin-top: .5rem; } .canon summary { cursor: pointer; color: var(--faint); }
 .canon ol { margin: .4rem 0; padding-left: 1.6rem; } .canon li { padding: .1rem 0; }
-.canon math { font-size: 1.12em; } .canon code { font-size: .9em; word-break: break-word; }
+.canon math { font-family: "STIX Two Math", "Latin Modern Math", "Cambria Math", "Noto Sans Math",
+  "DejaVu Math TeX Gyre", math; math-style: normal; } .canon code { font-size: .9em; word-break: break-word; }
 @media print { .canon details { display: block; } }
 """
