@@ -21,9 +21,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent))
-sys.path.insert(0, str(HERE))
+sys.path.insert(0, str(Path(__file__).parent.parent))
+sys.path.insert(0, str(Path(__file__).parent))
 
 from extremes.page import page, summary
 from extremes.running import PARTS, do_pieces, rows_of, run_row
@@ -31,6 +30,7 @@ from extremes.running import PARTS, do_pieces, rows_of, run_row
 if TYPE_CHECKING:
     from extremes.row import Row
 
+HERE = Path(__file__).parent
 KEPT = HERE.parent / "out" / "extremes.json"
 PAGE = HERE.parent / "docs" / "extremes.md"
 BAD = {"hang", "crash", "wrong"}

@@ -20,7 +20,8 @@ _HEAD = """\
 # At the extremes
 
 Where numbers, expressions and systems end: what was tried, what ordinary tools do there, and what canon does.
-Written by `python benchmarks/extremes.py` ({where}); every row runs in a process of its own under a limit of time and memory.
+Written by `python benchmarks/extremes.py` ({where}); every row runs in a process of its own,
+under a limit of time and memory.
 
 A result stands with its true error and the error that the tool itself states (canon: an estimate with the trajectory or
 verdict; others: the tolerance they were asked for). **said** is a clear error, a warning or UNDECIDED with the reason;
