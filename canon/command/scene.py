@@ -79,6 +79,8 @@ def run(arguments: argparse.Namespace) -> int:
         status = _check(scene, arguments) if arguments.integrate else 0
         if arguments.plot or arguments.animate:
             _draw(scene, arguments)
+    except BrokenPipeError:
+        raise  # the reader went away; canon.cli says so by its exit status
     except (SceneError, ValueError, ArithmeticError, OSError, ImportError) as error:
         print(f"canon scene: {error}", file=sys.stderr)
         return 2
