@@ -205,7 +205,7 @@ class Trajectory:
 
     @cached_property
     def energy_error(self) -> Array:
-        """(H − H(start)) / |H(start)|, or H − H(start) where the starting energy is zero; shape (times,).
+        """Relative error of the energy, (H − H₀)/abs(H₀), or H − H₀ where H₀ = H(start) is zero; shape (times,).
 
         Raises
         ------

@@ -83,7 +83,7 @@ class Drift:
     Parameters
     ----------
     bound
-        max |error| over the samples.
+        Largest absolute error of the samples.
     slope, slope_error
         Drift of the error per unit of time and its standard error, a random walk allowed for. The error is
         right for a walk and twice too large for a mere oscillation; at worst, for both together, it is 1.4
@@ -155,7 +155,7 @@ def drift(
         Times, strictly increasing, shape (times,), evenly spread (jitter welcome: samples in step with an
         oscillation see it as a slow one).
     error
-        Error with its sign, (E(t) − E(0))/|E(0)|, shape (times,).
+        Error with its sign, such as (E(t) − E₀)/abs(E₀), shape (times,).
     roundoff
         Random walk expected of round-off over the whole run, such as u√n after n steps; a walk more than
         50 times larger is not called round-off.
