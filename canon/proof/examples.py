@@ -28,7 +28,7 @@ def with_example_functions(
     """
     applied = sorted(set[sp.Basic]().union(*(e.atoms(AppliedUndef) for e in expressions)), key=str)
     chosen: dict[str, str] = {}
-    replaced = list(expressions)
+    replaced = [_by_symbols(e) for e in expressions]
     for function, sample in {a.func: a for a in applied}.items():
         places = sp.symbols(f"_u0:{len(sample.args)}", real=True)
         polynomial = _as_declared(_random_polynomial(places, chance), sample)
@@ -39,6 +39,27 @@ def with_example_functions(
         body = sp.Lambda(places, polynomial)
         replaced = [cast("Expr", e.replace(function, body)) for e in replaced]
     return tuple(evaluated(e) for e in replaced), chosen
+
+
+def _by_symbols(expr: Expr) -> Expr:
+    """Write ∂U(r(x))/∂r(x) as U′ at the place r(x): there is no derivative by an example of r."""
+    if not expr.has(Derivative):
+        return expr
+    standing = expr.replace(
+        lambda e: isinstance(e, Derivative) and not all(v.is_Symbol for v in _by(e)), _at_places
+    )
+    return cast("Expr", standing)
+
+
+def _at_places(derivative: Derivative) -> Expr:
+    places = {v: sp.Dummy() for v in sorted(_by(derivative), key=str) if not isinstance(v, sp.Symbol)}
+    by = [(places.get(v, v), n) for v, n in cast("Sequence[tuple[Expr, Expr]]", derivative.variable_count)]
+    return Subs(Derivative(derivative.expr.xreplace(places), *by), tuple(places.values()), tuple(places))
+
+
+def _by(derivative: Derivative) -> set[sp.Basic]:
+    """Return what a derivative is by."""
+    return set(cast("tuple[sp.Basic, ...]", derivative.variables))
 
 
 def _random_polynomial(places: tuple[Symbol, ...], chance: random.Random) -> Expr:

@@ -155,3 +155,24 @@ def test_rounded_numbers_and_text_are_declined():
         equal(0.1 * x, x / 10)
     with pytest.raises(TypeError, match="expression"):
         equal("x", x)
+
+
+U, r, s = sp.Function("U"), sp.Function("r"), sp.Function("s")
+AT_FUNCTIONS = [
+    (U(r(x)).diff(x), 0, FAILS),
+    (U(r(x)).diff(x), U(r(x)).diff(r(x)) * r(x).diff(x), HOLDS),
+    (U(r(x)).diff(x), U(r(x)).diff(r(x)), FAILS),
+    (U(r(x)).diff(r(x)), sp.Subs(U(y).diff(y), y, r(x)), HOLDS),
+    (U(r(x)).diff(r(x)), sp.Subs(U(y).diff(y), y, 2 * r(x)), FAILS),
+    (U(r(s(x))).diff(x), U(r(s(x))).diff(r(s(x))) * r(s(x)).diff(x), HOLDS),
+    (U(r(s(x))).diff(x), U(r(s(x))).diff(r(s(x))) * s(x).diff(x), FAILS),
+    (U(U(x)).diff(x), U(x), FAILS),
+    (U(r(x), x).diff(x, 2), 0, FAILS),
+    ((r(x).diff(x) ** 2).diff(r(x).diff(x)), 2 * r(x).diff(x), HOLDS),
+]
+
+
+@pytest.mark.parametrize(("left", "right", "expected"), AT_FUNCTIONS)
+def test_derivatives_by_functions(left, right, expected):
+    verdict = equal(left, right)
+    assert verdict.status is expected, f"{left} = {right}: {verdict}"
