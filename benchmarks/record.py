@@ -21,9 +21,14 @@ BENCHMARKS = {
     "zero_test": "The zero test on its corpus of identities",
     "canonical": "Canonical maps and generating functions",
     "derivation": "Equations of motion, beside SymPy's LagrangesMethod",
+    "operations": "Operations of a pendulum's equations, by four designs",
+    "minimal": "Only what is asked for",
+    "classroom": "A class of two hundred",
     "kernels": "Compiled loops, beside a C program",
+    "planets": "The planets, by methods for small perturbations",
     "scale_out": "Studies on two processes",
     "drift_calibration": "The drift statistics on series of known growth",
+    "choose": "What `choose` foretells, beside what came of it",
 }
 HEAD = """\
 # What was measured
