@@ -7,6 +7,7 @@ anyone is told.
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -244,6 +245,9 @@ def _constant_ratio(above: list[acb] | None, below: list[acb] | None) -> Fractio
         if any(b.contains(0) for b in below):
             return None
         ratios = [a / b for a, b in zip(above, below, strict=True)]
-        guess = Fraction(float(ratios[0].real.mid())).limit_denominator(64)
+        middle = float(ratios[0].real.mid())
+        if not math.isfinite(middle):  # beyond 1e308: no factor that a person forgets
+            return None
+        guess = Fraction(middle).limit_denominator(64)
         exact = acb(guess.numerator) / guess.denominator
         return guess if all((r - exact).contains(0) for r in ratios) else None

@@ -120,7 +120,9 @@ def times(factor: Fraction | Expr) -> str:
 
 
 def _twins(f: Expr) -> tuple[Callable[..., Expr], ...]:
-    """Return the functions that one is mistaken for."""
+    """Return the functions that one of one argument is mistaken for; those of more have no twins."""
+    if len(f.args) != 1:  # such as the incomplete elliptic_e(z, m)
+        return ()
     return cast("dict[object, tuple[Callable[..., Expr], ...]]", _TWINS).get(f.func, ())
 
 
@@ -154,7 +156,7 @@ def _factors(node: Expr) -> Iterator[tuple[Expr, Change]]:
 
 
 def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    for twin in _twins(node) if len(arguments(node)) == 1 else ():
+    for twin in _twins(node):
         yield twin(*arguments(node)), Change("{} should be {}", node, twin(*arguments(node)))
     if _twins(node) or isinstance(node, sp.exp):
         for factor in (sp.S.NegativeOne, sp.Rational(2), sp.Rational(1, 2)):
@@ -194,8 +196,8 @@ def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Ch
     for place in places:
         for old in symbols_of(place) if place.is_Function or place.is_Pow or place.is_Symbol else ():
             for new in symbols:
-                if new != old:
-                    changed = replaced(place, {old: new})
+                changed = slipped(place, {old: new}) if new != old else None
+                if changed is not None:
                     rest = (
                         node.func(*(changed if p == place else p for p in arguments(node)))
                         if place != node
@@ -220,11 +222,14 @@ def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[E
             yield new, change
     own = symbols_of(expression)
     for a, b in combinations(own, 2):
-        yield replaced(expression, {a: b, b: a}), Change("{} and {} should be exchanged", a, b)
+        exchanged = slipped(expression, {a: b, b: a})
+        if exchanged is not None:
+            yield exchanged, Change("{} and {} should be exchanged", a, b)
     for old in own:
         for new in symbols:
-            if new != old:
-                yield replaced(expression, {old: new}), Change("{} should be {} everywhere", old, new)
+            renamed = slipped(expression, {old: new}) if new != old else None
+            if renamed is not None:
+                yield renamed, Change("{} should be {} everywhere", old, new)
     if expression.has(*_TWINS):
         for angle in _CONSTANTS:
             yield expression + angle, Change("the term {} is missing", angle)

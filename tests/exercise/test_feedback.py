@@ -107,3 +107,37 @@ def test_a_repair_is_always_right(number):
         return
     assert vanishes(found.right - RIGHT).holds
     assert "the answer" in str(found.change)
+
+
+k = sp.Symbol("k", imaginary=True)
+x, y = sp.symbols("x y", real=True)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        sp.elliptic_e(x, y) + x,
+        x - sp.elliptic_k(y) * sp.elliptic_f(x, y),
+        sp.Piecewise((x, x < 1), (y, True)) + sp.Abs(k),
+        sp.sin(sp.Piecewise((x, x < 1), (y, True))) * sp.Abs(k),
+        sp.sin(sp.Max(x, y)) * sp.Abs(k),
+    ],
+)
+def test_slips_that_say_nothing_are_left_out(expression):
+    """The twins of an elliptic integral take another number of arguments; an imaginary symbol has no order."""
+    found = list(variants(expression, [x, y, k]))
+    assert len(found) > 5
+    assert all(isinstance(new, sp.Expr) for new, _ in found)
+
+
+@pytest.mark.parametrize(
+    ("claimed", "right"),
+    [
+        (sp.exp(1000 * x**2), sp.exp(3000 * x**2)),
+        (sp.exp(-1000 * x**2), sp.exp(-3000 * x**2)),
+        (x**1_000_000, 2 * x**1_000_001),
+    ],
+)
+def test_ratios_beyond_all_bounds_are_no_factors(claimed, right):
+    found = repair(Part("a", claimed, right), Domain(), 2.0)
+    assert found is None or vanishes(found.right - right).holds
