@@ -146,6 +146,9 @@ class _Lowering:
         kind, operands, _ = self.graph.nodes[node]
         if not self.graph.symbols(node):
             return []
+        if self._is_negative_sum(node):
+            node = operands[1]
+            kind, operands, _ = self.graph.nodes[node]
         if kind == "mul":
             return [base for factor in operands for base in self._factor(factor)[0]]
         if kind == "add":
@@ -179,6 +182,13 @@ class _Lowering:
             return True, [operands[1]]
         return False, [node]
 
+    def _is_negative_sum(self, node: int) -> bool:
+        """Return whether a product is −(a + b − c …) of a sum that nothing else reads: then it is c − (a + b)."""
+        kind, operands, _ = self.graph.nodes[node]
+        if kind != "mul" or len(operands) != 2 or self.graph.nodes[operands[0]].value != -1:
+            return False
+        return self.graph.nodes[operands[1]].kind == "add" and self.uses.get(operands[1], 0) == 1
+
     # emission ----------------------------------------------------------------------------------
 
     def _emit(self, operation: str, *operands: int, value: Any = None) -> int:
@@ -200,6 +210,8 @@ class _Lowering:
             return self._emit("input", value=self.inputs[value])
         if kind == "add":
             return self._sum(operands)
+        if self._is_negative_sum(node):
+            return self._sum(self.graph.nodes[operands[1]].operands, negated=True)
         if kind == "mul":
             return self._product(operands)
         exponent = self._exact_exponent(node)
@@ -210,11 +222,11 @@ class _Lowering:
             return self._emit("div", self._constant(Fraction(1)), self._power(base, -exponent))
         return self._emit(kind, *(self.register[o] for o in operands))
 
-    def _sum(self, terms: Sequence[int]) -> int:
+    def _sum(self, terms: Sequence[int], *, negated: bool = False) -> int:
         plus, minus = list[int](), list[int]()
         for term in terms:
-            negated, (read,) = self._term(term)
-            (minus if negated else plus).append(self.register[read])
+            subtracted, (read,) = self._term(term)
+            (minus if subtracted != negated else plus).append(self.register[read])
         if not plus:
             return self._emit("neg", self._balanced("add", minus))
         total = self._balanced("add", plus)
