@@ -99,8 +99,8 @@ def _table(value: Any) -> bool:
 
 def _fits(value: Any, shape: Shape) -> bool:
     match shape:
-        case Shape.TEXT:
-            return _text(value)
+        case Shape.TEXT:  # a list of one is read as the one
+            return _text(value) or (isinstance(value, list) and len(value) == 1 and _text(value[0]))
         case Shape.TEXTS:
             return _texts(value) or value == []
         case Shape.NAMES:

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.tree import symbols_of
 from canon.expression.symbol import Momentum
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
-from canon.proof.equations import equivalent_equations
+from canon.proof.equations import equivalent_equations, without_solution
 from canon.proof.vanish import equal, vanishes
-from canon.proof.verdict import Status, Verdict
+from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -264,7 +265,34 @@ def _same_equations(
                 affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}"
             )
     verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
+    if verdict.holds and without_solution(right, unknowns, domain):
+        verdict = _equations_of_lower_order(claimed, right, unknowns, domain, deadline)
     return replace(verdict, feedback=_in_our_words(verdict.feedback))
+
+
+def _equations_of_lower_order(
+    claimed: tuple[Expr, ...],
+    right: tuple[Expr, ...],
+    unknowns: tuple[Symbol, ...],
+    domain: Domain,
+    deadline: Deadline,
+) -> Verdict:
+    """Compare systems that no accelerations solve at a generic state, as they bind velocities or coordinates.
+
+    With L = x ẏ − H both say ẋ = … and ẏ = …: what they determine are the velocities then.
+    """
+    known = {s.name: s for equation in (*claimed, *right) for s in symbols_of(equation)}
+    bases = [u.name.removesuffix("_ddot").removesuffix("_dot") for u in unknowns]
+    for ending in ("_dot", ""):
+        names = (f"{base}{ending}" for base in bases)
+        unknowns += tuple(known[n] for n in names if n in known and known[n] not in unknowns)
+        try:
+            verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
+        except ValueError:
+            break
+        if not verdict.holds or not without_solution(right, unknowns, domain):
+            return verdict
+    raise Undecided("the equations bind the state in a way that is not affine; solve them for the velocities")
 
 
 def _in_our_words(feedback: str) -> str:

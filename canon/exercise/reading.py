@@ -213,7 +213,7 @@ class Reading:
         """Return the expression under a key."""
         if default is not None and not self.has(key):
             return default
-        return self._parse(parse_expression, self.claim.keys[key], key)
+        return self._parse(parse_expression, _the_one(self.claim.keys[key]), key)
 
     def expressions(self, key: str, like: str = "") -> tuple[Expr, ...]:
         """Return the expressions of a list, as many as there are names under ``like``."""
@@ -308,6 +308,11 @@ def _texts_in(value: Any, key: str = "") -> Iterator[tuple[str, str]]:
     elif isinstance(value, list | tuple):
         for item in value:
             yield from _texts_in(item, key)
+
+
+def _the_one(value: Any) -> Any:
+    """Return what stands alone in a list, or the value itself."""
+    return value[0] if isinstance(value, list) and len(value) == 1 else value
 
 
 def _as_list(value: Any) -> list[Any]:

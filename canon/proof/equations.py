@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["equivalent_equations"]
+__all__ = ["equivalent_equations", "without_solution"]
 
 SAME_SOLUTIONS = "the two systems of equations have the same solutions"
 
@@ -109,6 +109,25 @@ def equivalent_equations(
     missing = _rows_follow(a, b, system_a, ("first", "second"), domain, deadline, field=field)
     worst = missing if missing.fails or extra.holds else extra
     return replace(worst, question=SAME_SOLUTIONS, seconds=time.monotonic() - start)
+
+
+def without_solution(system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain = EVERYWHERE) -> bool:
+    """Tell whether a system is certainly without solution at some point of the domain, and so at generic ones.
+
+    Parameters
+    ----------
+    system, unknowns, domain
+        As for :func:`equivalent_equations`.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, u, v = symbols("x u v")
+    >>> without_solution([u + v, u + v - x], [u, v]), without_solution([u + v - x], [u, v])
+    (True, False)
+    """
+    augmented = _augmented(system, unknowns, domain, "given", time.monotonic() + 1.0)
+    return not isinstance(augmented, str) and len(unknowns) in _largest_minor(augmented, domain).columns
 
 
 def _augmented(
