@@ -95,10 +95,9 @@ def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
     terms = node.operands if node.kind == "add" else (system.hamiltonian,)
     values = dict(zip(system.inputs, (*samples.y[:, 0], np.float64(samples.t[0])), strict=True))
     sizes = [abs(np.broadcast_to(v, change.shape[1:])) for v in system.graph.evaluate(terms, values)]
-    wrong = np.abs(change) > _IMPLAUSIBLE * np.sum(sizes, axis=0)
-    wrong[:, np.sum(sizes, axis=0) == 0] = (
-        False  # started at rest where H is 0: there is nothing to compare with
-    )
+    size = np.sum(sizes, axis=0)
+    # Where H and its terms are 0 at the start there is nothing to compare with.
+    wrong = (np.abs(change) > _IMPLAUSIBLE * size) & (size > 0)
     if not wrong.any():
         return
     first, orbit = (int(k[0]) for k in np.nonzero(wrong))
@@ -108,7 +107,7 @@ def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
         f"{samples.t[first - 1]:.9g} before that): a step jumped over a collision or is far too large; what follows is "
         "not the system's motion. Take a smaller step, Taylor(), or stop before with an Event",
         AccuracyWarning,
-        stacklevel=4,
+        stacklevel=5,  # the line that called propagate() or resume()
     )
 
 

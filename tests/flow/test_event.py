@@ -56,8 +56,12 @@ def test_a_bounce_keeps_the_energy_and_its_times(method, how, action):
         FALL, [0.5, 0.0], (0, 100), method=method, samples=100, events=[Event(x, -1, action)], **how
     )
     np.testing.assert_allclose(times(motion), np.arange(1, 100, 2), rtol=1e-14)
-    # A position set to 0 forgets up to a rounding of the time.
-    assert abs(motion.energy_error).max() < (2e-14 if isinstance(action, dict) and x in action else 2e-15)
+    u, missed = 2.0**-53, np.array([abs(met.y[0]) for met in motion.events])
+    # At the wall terms of size 2 cancel: a few of their roundings in doubles, none where these are carried along.
+    assert missed.max() < (16 * u if method == Taylor() else u / 16)
+    # H = p²/2 + x: where the bounce sets x to 0, H forgets as much as x was.
+    forgotten = missed.sum() if isinstance(action, dict) and x in action else 0.0
+    assert abs(motion.energy_change).max() <= forgotten + u
     assert motion.y[0].min() > -1e-14
     np.testing.assert_allclose(motion.events[3].after, -motion.events[3].y, atol=1e-13)
 
