@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_expression, given_symbols
+from canon.mechanics.substitution import as_tuple
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -41,8 +44,9 @@ def poisson_bracket(f: Expr, g: Expr, q: Sequence[Symbol], p: Sequence[Symbol]) 
     >>> poisson_bracket(x*py - y*px, x, [x, y], [px, py])
     y
     """
+    q, p = given_symbols(q, "q"), given_symbols(p, "p")
     _same_length(q, p, "coordinates", "momenta")
-    f, g = sp.sympify(f, strict=True), sp.sympify(g, strict=True)
+    f, g = given_expression(f, "f"), given_expression(g, "g")
     return sp.Add(*(f.diff(a) * g.diff(b) - f.diff(b) * g.diff(a) for a, b in zip(q, p, strict=True)))
 
 
@@ -63,14 +67,10 @@ def lagrange_bracket(u: Symbol, v: Symbol, q: Sequence[Expr], p: Sequence[Expr])
     >>> lagrange_bracket(Q, P, [sqrt(2*P)*sin(Q)], [sqrt(2*P)*cos(Q)])
     sin(Q)**2 + cos(Q)**2
     """
+    (u,), (v,) = given_symbols(u, "u"), given_symbols(v, "v")
+    q, p = as_tuple(q), as_tuple(p)
     _same_length(q, p, "coordinates", "momenta")
-    return sp.Add(
-        *(
-            sp.sympify(a, strict=True).diff(u) * sp.sympify(b, strict=True).diff(v)
-            - sp.sympify(a, strict=True).diff(v) * sp.sympify(b, strict=True).diff(u)
-            for a, b in zip(q, p, strict=True)
-        )
-    )
+    return sp.Add(*(a.diff(u) * b.diff(v) - a.diff(v) * b.diff(u) for a, b in zip(q, p, strict=True)))
 
 
 def lie_bracket(X: Sequence[Expr], Y: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, ...]:
@@ -90,9 +90,12 @@ def lie_bracket(X: Sequence[Expr], Y: Sequence[Expr], x: Sequence[Symbol]) -> tu
     >>> lie_bracket([y, 0], [0, x], [x, y])
     (-x, y)
     """
-    _same_length(X, x, "components", "coordinates")
-    _same_length(Y, x, "components", "coordinates")
-    first, second = [sp.sympify(a, strict=True) for a in X], [sp.sympify(b, strict=True) for b in Y]
+    for field in (X, Y):
+        if hasattr(field, "components"):
+            raise TypeError("lie_bracket takes lists of components; of vector fields write X.bracket(Y)")
+    first, second, x = as_tuple(X), as_tuple(Y), given_symbols(x, "x")
+    _same_length(first, x, "components", "coordinates")
+    _same_length(second, x, "components", "coordinates")
     return tuple(
         sp.Add(
             *(a * second[i].diff(s) - b * first[i].diff(s) for a, b, s in zip(first, second, x, strict=True))

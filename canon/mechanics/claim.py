@@ -6,7 +6,7 @@ import time as clock
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Verdict, all_hold
 
@@ -39,7 +39,7 @@ def all_vanish(
     Verdict
         The first claim that fails gives the residual, the counterexample and is named in the feedback.
     """
-    domain = domain or Domain()
+    domain = as_domain(domain)
     end = clock.monotonic() + budget
 
     def verdicts() -> Iterator[Verdict]:
@@ -73,4 +73,4 @@ def differ(expression: Expr, domain: Domain | None = None) -> bool:
     """Whether an expression certainly does not vanish identically on the domain."""
     if expression.is_Rational:
         return bool(expression != 0)
-    return vanishes(expression, domain or Domain()).fails
+    return vanishes(expression, as_domain(domain)).fails

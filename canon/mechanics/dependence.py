@@ -13,7 +13,7 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.claim import differ
 from canon.mechanics.linear import eliminate
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
@@ -133,5 +133,5 @@ def _contradict(
 
 
 def _undecided_as_none(value: Expr, domain: Domain | None) -> bool | None:
-    verdict = vanishes(value, domain or Domain())
+    verdict = vanishes(value, as_domain(domain))
     return None if verdict.undecided else verdict.fails

@@ -8,6 +8,7 @@ import sympy as sp
 from sympy import Derivative, Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.expression.given import given_expression, given_kind
 from canon.expression.symbol import Coordinate, acceleration, time, velocity, without_dynamicsymbols
 from canon.mechanics.substitution import exchanged
 
@@ -51,7 +52,8 @@ def coordinate_symbols(q: Any) -> tuple[Symbol, ...]:
     >>> coordinate_symbols(dynamicsymbols("x y"))
     (x, y)
     """
-    return tuple(coordinate(x) for x in ((q,) if isinstance(q, sp.Basic) else q))
+    several = (q,) if isinstance(q, sp.Basic) or not hasattr(q, "__iter__") else q
+    return tuple(coordinate(x) for x in several)
 
 
 def plain_all(functions: Sequence[Any], q: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
@@ -96,7 +98,8 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     >>> plain(dynamicsymbols("theta", 1) ** 2 + dynamicsymbols("theta"), [theta]) == theta.dot**2 + theta
     True
     """
-    expression: Expr = sp.sympify(f, strict=True)
+    expression = given_expression(f)
+    given_kind(t, Symbol, "the time", "give a domain and the like by their names")
     named = {s.name: s for s in q}
     applied = {
         g: named[g.func.__name__]

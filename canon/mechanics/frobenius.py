@@ -19,7 +19,7 @@ from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import eliminate
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import entry, shortened
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -99,7 +99,7 @@ def pfaffian(constrained: ConstrainedLagrangian, domain: Domain | None = None) -
     first = len(constrained.holonomic)
     A, rests = constrained.directions, constrained.rests
     forms = tuple((*A.row(a), rests[a]) for a in range(first, A.rows))
-    return Pfaffian(forms, (*constrained.lagrangian.q, constrained.lagrangian.t), domain or Domain())
+    return Pfaffian(forms, (*constrained.lagrangian.q, constrained.lagrangian.t), as_domain(domain))
 
 
 def is_integrable(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> Verdict:

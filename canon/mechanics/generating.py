@@ -27,7 +27,7 @@ from canon.mechanics.linear import is_regular
 from canon.mechanics.parametric import ParametricGeneratingFunction
 from canon.mechanics.recovery import Recovery
 from canon.mechanics.substitution import as_tuple, substitute
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 from canon.proof.verdict import Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class GeneratingFunction:
         object.__setattr__(self, "kind", kinds_of(kind, n))
         object.__setattr__(self, "F", sp.sympify(F, strict=True))
         object.__setattr__(self, "t", t)
-        object.__setattr__(self, "domain", domain or Domain())
+        object.__setattr__(self, "domain", as_domain(domain))
         variables = (*self.q, *self.p, *self.new_q, *self.new_p)
         if len(variables) != 4 * n or len(set(variables)) < 4 * n:
             raise ValueError(
@@ -218,7 +218,7 @@ class GeneratingFunction:
         budget
             Seconds for the rules.
         """
-        domain = domain or Domain()
+        domain = as_domain(domain)
         end = clock.monotonic() + budget
 
         def verdicts() -> Iterator[Verdict]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_kind
 from canon.expression.symbol import momentum, time, velocity
 from canon.mechanics.bracket import poisson_bracket
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_all, plain_places
@@ -16,7 +17,7 @@ from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.legendre import LegendreError, eliminate_velocities, legendre_residual
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Verdict, all_hold
 
@@ -61,6 +62,8 @@ class Hamiltonian:
         object.__setattr__(self, "p", coordinate_symbols(p))
         object.__setattr__(self, "H", plain(H, (*self.q, *self.p), t))
         object.__setattr__(self, "t", t)
+        if not self.q:
+            raise ValueError("no coordinates given; a system moves in at least one")
         if len(self.q) != len(self.p):
             raise ValueError(
                 f"{len(self.q)} coordinates and {len(self.p)} momenta; each coordinate needs one"
@@ -100,7 +103,7 @@ class Hamiltonian:
         self, q_dot: Sequence[Expr], p_dot: Sequence[Expr], domain: Domain | None = None
     ) -> Verdict:
         """Tell whether q̇ = ``q_dot`` and ṗ = ``p_dot`` are Hamilton's equations of H."""
-        domain = domain or Domain()
+        domain = as_domain(domain)
         claimed = plain_all((*q_dot, *p_dot), (*self.q, *self.p), self.t)
         if len(claimed) != 2 * len(self.q):
             raise ValueError(f"{len(claimed)} rates given for {2 * len(self.q)} canonical variables")
@@ -130,7 +133,7 @@ class Hamiltonian:
         >>> Hamiltonian(p**2/2 + q**2/2, q, p).is_solution({q: sin(t), p: cos(t)}).status.name
         'HOLDS'
         """
-        domain = domain or Domain()
+        domain = as_domain(domain)
         variables = (*self.q, *self.p)
         motion = plain_places(motion, variables, (), self.t)
         missing = [str(z) for z in variables if z not in motion]
@@ -162,7 +165,7 @@ class Hamiltonian:
         3*x_dot**2/2
         """
         velocities = tuple(velocity(q) for q in self.q)
-        L = eliminate_velocities(self.H, self.p, velocities, domain or Domain(), "H", "momenta")
+        L = eliminate_velocities(self.H, self.p, velocities, as_domain(domain), "H", "momenta")
         return Lagrangian(L, self.q, self.t)
 
     def _repr_latex_(self) -> str:
@@ -200,6 +203,7 @@ def legendre(
     >>> legendre(Lagrangian(m*(r.dot**2 + r**2*phi.dot**2)/2, [r, phi])).H
     p_phi**2/(2*m*r**2) + p_r**2/(2*m)
     """
+    given_kind(lagrangian, Lagrangian, "what legendre() transforms", "a Hamiltonian has .lagrangian()")
     if any(Q != 0 for Q in lagrangian.forces):
         raise LegendreError(
             "the system has forces without a potential; Hamilton's equations of H alone would miss them. "
@@ -209,7 +213,7 @@ def legendre(
     if len(momenta) != len(lagrangian.q):
         raise ValueError(f"{len(momenta)} momenta for {len(lagrangian.q)} coordinates; each needs one")
     H = eliminate_velocities(
-        lagrangian.L, lagrangian.velocities, momenta, domain or Domain(), "L", "velocities"
+        lagrangian.L, lagrangian.velocities, momenta, as_domain(domain), "L", "velocities"
     )
     return Hamiltonian(H, lagrangian.q, momenta, lagrangian.t)
 
@@ -244,7 +248,7 @@ def is_hamiltonian_of(
     >>> is_hamiltonian_of(L, x.momentum**2/2 - x**2, [x.momentum]).status.name
     'FAILS'
     """
-    domain = domain or Domain()
+    domain = as_domain(domain)
     question = "H is the Hamiltonian of L"
 
     def verdicts() -> Iterator[Verdict]:

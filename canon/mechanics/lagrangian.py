@@ -10,9 +10,9 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbol import acceleration, time, time_derivative, velocity
-from canon.mechanics.dynamicsymbols import coordinate, plain
+from canon.mechanics.dynamicsymbols import coordinate_symbols, plain
 from canon.mechanics.linear import SingularMatrixError, solve
-from canon.mechanics.substitution import entry, exchanged
+from canon.mechanics.substitution import as_tuple, entry, exchanged
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,9 +66,12 @@ class Lagrangian:
     def __init__(
         self, L: Expr, q: Sequence[Expr] | Expr, t: Symbol = time, forces: Sequence[Expr] | None = None
     ) -> None:
-        given = (q,) if isinstance(q, sp.Basic) else tuple(q)
-        symbols = tuple(coordinate(x) for x in given)
-        expressions = [plain(e, symbols, t) for e in (L, *(forces or ()))]
+        symbols = coordinate_symbols(q)
+        if not symbols:
+            raise ValueError("no coordinates given; a system moves in at least one")
+        if len({*symbols}) < len(symbols):
+            raise ValueError(f"the coordinates {symbols} are not all different; every one moves on its own")
+        expressions = [plain(e, symbols, t) for e in (L, *as_tuple(forces or ()))]
         object.__setattr__(self, "L", expressions[0])
         object.__setattr__(self, "q", symbols)
         object.__setattr__(self, "t", t)

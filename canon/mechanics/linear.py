@@ -13,7 +13,7 @@ import sympy as sp
 from sympy import Expr
 
 from canon.mechanics.substitution import size
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict
 
@@ -136,7 +136,7 @@ def eliminate(
     >>> eliminate(Matrix([[m, -m], [-m, m]])).null_direction
     (1, 1)
     """
-    domain = domain or Domain()
+    domain = as_domain(domain)
     whole = matrix if right is None else matrix.row_join(right)
     rows: list[list[Expr]] = [list(whole.row(i)) for i in range(whole.rows)]
     order = list(range(whole.rows))

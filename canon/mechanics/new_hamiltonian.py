@@ -13,9 +13,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_expression, given_kind
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import substitute
+from canon.proof.domain import as_domain
 from canon.proof.verdict import Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -46,7 +49,7 @@ def rate_form(transformation: CanonicalTransformation) -> tuple[Expr, ...]:
 
 
 def new_hamiltonian(
-    transformation: CanonicalTransformation, H: Expr, valence: Expr = sp.S.One
+    transformation: CanonicalTransformation, H: Expr | Hamiltonian, valence: Expr = sp.S.One
 ) -> Expr | None:
     """Return K in the old variables, up to a function of t; None where R was not found in closed form.
 
@@ -55,7 +58,7 @@ def new_hamiltonian(
     transformation
         A canonical map of that valence.
     H
-        The old Hamiltonian in the old variables.
+        The old Hamiltonian in the old variables, as an expression or as a Hamiltonian.
     valence
         The c of M J Mᵀ = c J.
 
@@ -67,8 +70,30 @@ def new_hamiltonian(
     >>> new_hamiltonian(CanonicalTransformation(q, p, q - v*t, p - m*v), p**2/(2*m))
     -p*v + p**2/(2*m)
     """
+    _is_map(transformation)
+    energy = _energy(H, transformation)
     R = potential(rate_form(transformation), transformation.variables, transformation.domain)
-    return None if R is None else valence * sp.sympify(H, strict=True) + R
+    return None if R is None else given_expression(valence, "valence") * energy + R
+
+
+def _is_map(transformation: CanonicalTransformation) -> None:
+    from canon.mechanics.transformation import CanonicalTransformation
+
+    given_kind(
+        transformation, CanonicalTransformation, "the map", "the map comes first, then the Hamiltonian"
+    )
+
+
+def _energy(H: Expr | Hamiltonian, transformation: CanonicalTransformation) -> Expr:
+    """Return the old Hamiltonian as an expression in the old variables of the map."""
+    if not isinstance(H, Hamiltonian):
+        return given_expression(H, "H")
+    if {*H.q, *H.p} != {*transformation.variables}:
+        raise ValueError(
+            f"H is a function of {(*H.q, *H.p)} and the map one of {transformation.variables}; "
+            "give both in the same variables"
+        )
+    return H.H
 
 
 def is_new_hamiltonian(
@@ -107,12 +132,15 @@ def is_new_hamiltonian(
     >>> is_new_hamiltonian(exchange, p**2 + w*q, Q**2 + w*P, [Q, P]).status.name
     'FAILS'
     """
+    _is_map(transformation)
     T = transformation
-    domain = domain or T.domain
+    domain = as_domain(domain, T.domain)
     if len(images) != 2 * len(T.q):
         raise ValueError(f"{len(images)} symbols for the {2 * len(T.q)} new variables; give (*Q, *P)")
-    carried = substitute(sp.sympify(after, strict=True), dict(zip(images, T.images, strict=True)))
-    gap = carried - valence * sp.sympify(before, strict=True)
+    carried = substitute(
+        given_expression(after, "the Hamiltonian after the map"), dict(zip(images, T.images, strict=True))
+    )
+    gap = carried - valence * given_expression(before, "the Hamiltonian before the map")
     claims = [
         (f"∂(K − c H)/∂{z} = ∂R/∂{z}", gap.diff(z) - r)
         for z, r in zip(T.variables, rate_form(T), strict=True)

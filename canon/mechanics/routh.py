@@ -21,7 +21,7 @@ from canon.mechanics.ignorable import ignorable_coordinates, is_ignorable
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.legendre import eliminate_velocities
 from canon.mechanics.substitution import exchanged, substitute
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -239,7 +239,7 @@ def routhian(
         lagrangian.L,
         [velocities[i] for i in order],
         [p[i] for i in order],
-        domain or Domain(),
+        as_domain(domain),
         "L",
         "ignorable velocities",
     )

@@ -21,7 +21,7 @@ from canon.mechanics.dynamicsymbols import coordinate_symbols
 from canon.mechanics.legendre import LegendreError, eliminate_velocities
 from canon.mechanics.linear import SingularMatrixError, eliminate
 from canon.mechanics.substitution import exchanged, substitute
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def singularity(
       primary constraint: c*sqrt(c**2*m**2 + p_x**2) + p_t = 0
       the motion along (t_dot, x_dot) is arbitrary: Lagrange's equations hold an identity
     """
-    domain = domain or Domain()
+    domain = as_domain(domain)
     symbols = coordinate_symbols(p) if p is not None else tuple(momentum(s) for s in lagrangian.q)
     reduced = eliminate(lagrangian.mass_matrix, domain=domain)
     null = reduced.null_directions

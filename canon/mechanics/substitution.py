@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, cast
 import sympy as sp
 from sympy import Expr
 
+from canon.expression.given import given_expression
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -46,7 +48,9 @@ def as_tuple(given: Sequence[Expr] | Expr) -> tuple[Expr, ...]:
     """Return one expression, or several, as a tuple of expressions."""
     if isinstance(given, Expr):
         return (given,)
-    return tuple(sp.sympify(f, strict=True) for f in given)
+    if not hasattr(given, "__iter__") or isinstance(given, str):
+        return (given_expression(given),)
+    return tuple(given_expression(f) for f in given)
 
 
 def shortened(F: Expr) -> Expr:

@@ -13,21 +13,21 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import all_of, given_kind
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.bracket import poisson_bracket
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.dynamicsymbols import plain, plain_all
 from canon.mechanics.hamiltonian import Hamiltonian
+from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import exchanged
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 from canon.proof.equations import equivalent_equations
 from canon.proof.verdict import Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-
-    from canon.mechanics.lagrangian import Lagrangian
 
 __all__ = [
     "gauge_function",
@@ -65,6 +65,7 @@ def is_constant_of_motion(
     >>> is_constant_of_motion(x*b - y*a, H).status.name, is_constant_of_motion(x*b + y*a, H).status.name
     ('HOLDS', 'FAILS')
     """
+    given_kind(system, (Hamiltonian, Lagrangian), "the system", "the function comes first, then the system")
     if isinstance(system, Hamiltonian):
         rate = system.rate(plain(I, (*system.q, *system.p), system.t))
     else:
@@ -115,6 +116,7 @@ def noether_charge(
     >>> noether_charge(Lagrangian((x.dot**2 + y.dot**2)/2, [x, y]), [-y, x])
     x*y_dot - x_dot*y
     """
+    given_kind(lagrangian, Lagrangian, "the system", "the Lagrangian comes first, then the displacements")
     moves, delay, gain = _displacements(lagrangian, xi, tau, K)
     terms = (p * a for p, a in zip(lagrangian.momenta, moves, strict=True))
     return sp.Add(*terms, -delay * lagrangian.jacobi_energy, -gain)
@@ -206,7 +208,7 @@ def gauge_function(first: Lagrangian, second: Lagrangian, domain: Domain | None 
     form = [*(exchanged(difference.diff(a), at_rest) for a in v), exchanged(difference, at_rest)]
     angles = [sp.atan2(b, a) for a, b in combinations(q, 2)]
     hints = {} if all(e.is_polynomial(*q) for e in form) else {angle: angle for angle in angles}
-    return potential(form, (*q, t), domain or Domain(), hints)
+    return potential(form, (*q, t), as_domain(domain), hints)
 
 
 def have_same_equations(first: Lagrangian, second: Lagrangian, domain: Domain | None = None) -> Verdict:
@@ -226,14 +228,14 @@ def have_same_equations(first: Lagrangian, second: Lagrangian, domain: Domain | 
     unknowns = [acceleration(s) for s in q]
 
     def verdicts() -> Iterator[Verdict]:
-        yield equivalent_equations(
-            list(first.equations), list(second.equations), unknowns, domain or Domain()
-        )
+        yield equivalent_equations(list(first.equations), list(second.equations), unknowns, as_domain(domain))
 
     return all_hold(verdicts(), "both Lagrangians have the same equations of motion")
 
 
 def _same_coordinates(first: Lagrangian, second: Lagrangian) -> tuple[tuple[Symbol, ...], Symbol]:
+    for each in (first, second):
+        given_kind(each, Lagrangian, "what is compared")
     if first.q != second.q or first.t != second.t:
         raise ValueError(f"the Lagrangians are about different coordinates, {first.q} and {second.q}")
     return first.q, first.t
@@ -242,7 +244,6 @@ def _same_coordinates(first: Lagrangian, second: Lagrangian) -> tuple[tuple[Symb
 def _displacements(
     lagrangian: Lagrangian, xi: Sequence[Expr], tau: Expr, K: Expr
 ) -> tuple[tuple[Expr, ...], Expr, Expr]:
-    if len(xi) != len(lagrangian.q):
-        raise ValueError(f"{len(xi)} displacements for {len(lagrangian.q)} coordinates; give one each")
+    all_of(xi, len(lagrangian.q), "xi", "coordinates")
     *moves, delay, gain = plain_all((*xi, tau, K), lagrangian.q, lagrangian.t)
     return tuple(moves), delay, gain

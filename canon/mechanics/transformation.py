@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Literal
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_expression, given_kind, given_symbols
 from canon.expression.symbol import time
 from canon.mechanics.bracket import lagrange_matrix, poisson_matrix
 from canon.mechanics.canonicity import disagreement, residuals
@@ -23,7 +24,7 @@ from canon.mechanics.linear import solve
 from canon.mechanics.mending import constant_value, mending
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import as_tuple, entry, substitute
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
@@ -78,10 +79,12 @@ class CanonicalTransformation:
         t: Symbol = time,
         domain: Domain | None = None,
     ) -> None:
-        for name, given in (("q", q), ("p", p), ("Q", Q), ("P", P)):
+        for name, given in (("q", q), ("p", p)):
+            object.__setattr__(self, name, given_symbols(given, name))
+        for name, given in (("Q", Q), ("P", P)):
             object.__setattr__(self, name, as_tuple(given))
-        object.__setattr__(self, "t", t)
-        object.__setattr__(self, "domain", domain or Domain())
+        object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "give the domain as domain=…"))
+        object.__setattr__(self, "domain", as_domain(domain))
         lengths = {len(self.q), len(self.p), len(self.Q), len(self.P)}
         if len(lengths) > 1:
             raise ValueError(
@@ -176,7 +179,7 @@ class CanonicalTransformation:
         """
         if by == "all":
             return disagreement({test: self.is_canonical(test, valence, budget) for test in _TESTS})
-        c = self.valence if valence is None else sp.sympify(valence, strict=True)
+        c = self.valence if valence is None else _as_valence(valence, (*self.variables, self.t))
         if c is None:
             return self._without_valence(budget)
         question = f"the map is canonical{'' if c == 1 else f' with valence {c}'}"
@@ -218,6 +221,7 @@ class CanonicalTransformation:
         >>> exchange.then(CanonicalTransformation(Q, P, P, -Q)).images
         (-q, -p)
         """
+        given_kind(following, CanonicalTransformation, "what follows")
         if len(following.q) != len(self.q):
             raise ValueError(
                 f"a map of {len(self.q)} degrees of freedom cannot precede one of {len(following.q)}"
@@ -275,7 +279,11 @@ def point_transformation(
     >>> point_transformation(q, p, q**2).P
     (p/(2*q),)
     """
-    old, momenta, new = _symbols(q), _symbols(p), as_tuple(Q)
+    old, momenta, new = given_symbols(q, "q"), given_symbols(p, "p"), as_tuple(Q)
+    if not len(old) == len(momenta) == len(new):
+        raise ValueError(
+            f"{len(old)} coordinates, {len(momenta)} momenta, {len(new)} new coordinates; give as many of each"
+        )
     if any(f.has(*momenta) for f in new):
         raise ValueError("the new coordinates of a point transformation depend on q and t only, not on p")
     transposed = sp.Matrix([[f.diff(x) for f in new] for x in old])
@@ -283,5 +291,9 @@ def point_transformation(
     return CanonicalTransformation(old, momenta, new, [entry(P, i, 0) for i in range(len(old))], t, domain)
 
 
-def _symbols(given: Sequence[Symbol] | Symbol) -> tuple[Symbol, ...]:
-    return (given,) if isinstance(given, Symbol) else tuple(given)
+def _as_valence(valence: Expr | int, moving: Sequence[Symbol]) -> Expr:
+    """Return the valence, a constant that is not zero."""
+    c = given_expression(valence, "valence")
+    if c == 0 or c.has(*moving):
+        raise ValueError(f"the valence should be a constant other than 0, not {c}; valence=None finds it")
+    return c

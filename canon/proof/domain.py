@@ -8,24 +8,25 @@ from __future__ import annotations
 
 import random
 import time
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
 from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo
 from sympy.core.function import AppliedUndef
+from sympy.logic.boolalg import Boolean
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
 from canon.proof.typed import free_symbols, rational
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping
 
     from sympy import Basic, Expr
     from sympy.core.relational import Relational
-    from sympy.logic.boolalg import Boolean
 
-__all__ = ["EVERYWHERE", "Domain", "declared_complex", "linear", "parts_of", "said_of"]
+__all__ = ["EVERYWHERE", "Domain", "as_domain", "declared_complex", "linear", "parts_of", "said_of"]
 
 
 def _declared(named: Basic) -> Mapping[str, bool]:
@@ -96,6 +97,24 @@ class Domain:
 
     conditions: tuple[Boolean, ...] = ()
     box: Mapping[Symbol, tuple[Rational, Rational]] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __post_init__(self) -> None:
+        conditions: object = self.conditions
+        if isinstance(conditions, str) or not isinstance(conditions, Iterable):
+            raise TypeError(f"the conditions should be a tuple, as in Domain((x > 0,)), not {conditions!r}")
+        object.__setattr__(self, "conditions", tuple(conditions))
+        for condition in self.conditions:
+            if not isinstance(condition, Boolean) and condition not in (True, False):
+                raise TypeError(
+                    f"a condition should be one of SymPy's, such as x > 0 or Ne(x, 0), not {condition!r}"
+                )
+        for name, ends in self.box.items():
+            if not isinstance(name, Symbol):
+                raise TypeError(
+                    f"the box names symbols, not {name!r}; write {{x: (low, high)}} with the symbol x"
+                )
+            if not isinstance(ends, Sequence) or len(ends) != 2:
+                raise TypeError(f"the box should give {name} a pair (low, high), not {ends!r}")
 
     def points(
         self,
@@ -236,6 +255,32 @@ class Domain:
 
 EVERYWHERE = Domain()
 """No condition beside the symbols' own assumptions."""
+
+
+def as_domain(given: Domain | None, otherwise: Domain = EVERYWHERE) -> Domain:
+    """Return a domain that may not have been given.
+
+    Raises
+    ------
+    TypeError
+        Where something else was given.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x = symbols("x", real=True)
+    >>> as_domain(x > 0)
+    Traceback (most recent call last):
+        ...
+    TypeError: a domain is needed, not x > 0; write Domain((x > 0,))
+    """
+    if given is None:
+        return otherwise
+    if not isinstance(given, Domain):
+        remedy = f"; write Domain(({given},))" if isinstance(given, Boolean) else ""
+        raise TypeError(f"a domain is needed, not {given}{remedy}")
+    return given
+
 
 _SCALES = tuple(Rational(p, q) for p, q in ((1, 2), (1, 1), (1, 8), (4, 1), (1, 1), (1, 500), (30, 1)))
 """Sizes that points are drawn at, one after another."""
