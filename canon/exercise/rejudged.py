@@ -12,6 +12,7 @@ import sympy as sp
 
 from canon.exercise.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.reading import Reading
+from canon.exercise.screening import screening
 from canon.exercise.tree import replaced
 from canon.exercise.variants import Change, common_slips, slipped, times, variants
 from canon.expression.symbol import velocity
@@ -125,6 +126,7 @@ def one_change(
         How many questions of the claim were answered before the one that failed.
     """
     answers = sorted(_answers(reading), key=lambda answer: _rank(answer[0], suspects))
+    screen = screening(reading, dict(answers))
     symbols = tuple(reading.scope.names.values())
     groups = groupby(sorted(answers, key=lambda a: _outer(a[0])), key=lambda a: _outer(a[0]))
     for key, group in groups:
@@ -133,11 +135,14 @@ def one_change(
             for slip, change in common_slips([e for _, e in items], symbols):
                 if time.monotonic() > deadline:
                     return
-                trial: Reading | None = reading
-                for name, expression in items:
-                    new = slipped(expression, slip)
-                    trial = trial.with_instead(name, new) if trial is not None and new is not None else None
-                if trial is not None and _holds(trial, deadline):
+                slipped_all = {name: slipped(expression, slip) for name, expression in items}
+                changed = {name: new for name, new in slipped_all.items() if new is not None}
+                if len(changed) < len(items) or (screen is not None and not screen.passes(changed)):
+                    continue
+                trial = reading
+                for name, new in changed.items():
+                    trial = trial.with_instead(name, new)
+                if _holds(trial, deadline):
                     yield Diagnosis(f"in {key} {change}", trial)
     for number, (key, expression) in enumerate(answers, 1):
         left = deadline - time.monotonic()
@@ -145,7 +150,7 @@ def one_change(
         for new, change in chain(_rescaled(key, expression), _named(key, variants(expression, symbols))):
             if time.monotonic() > until:
                 break
-            if _trivial(new, reading):
+            if _trivial(new, reading) or (screen is not None and not screen.passes({key: new})):
                 continue
             trial = reading.with_instead(key, new)
             if _holds(trial, deadline, held if key == "K" else 0):

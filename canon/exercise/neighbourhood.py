@@ -1,0 +1,110 @@
+"""Values and slopes of expressions at a point, from differences at a very small distance.
+
+With balls of a few hundred bits a difference quotient is right to thirty digits, enough to tell a wrong
+candidate at once. What passes is proved elsewhere: nothing is ever decided here.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from flint import acb, arb
+from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef, Derivative, Subs
+
+from canon.proof.balls import value
+from canon.proof.examples import with_example_functions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+__all__ = ["BITS", "Examples", "Neighbourhood", "small"]
+
+BITS = 320
+STEP = arb(2) ** -100
+TOLERANCE = arb(2) ** -60
+
+
+class Examples:
+    """Polynomials put for the arbitrary functions, the same ones in every expression."""
+
+    def __init__(self, expressions: Iterable[Expr]) -> None:
+        applied = {a for e in expressions for a in e.atoms(AppliedUndef)}
+        self._applied: tuple[Expr, ...] = tuple(sorted(applied, key=str))
+        self._known: dict[sp.Basic, Expr] = {}
+
+    def unknowns(self, f: Expr) -> Sequence[Expr]:
+        """Return the arbitrary functions and derivatives of an expression, not those inside others."""
+        if not self._applied:
+            return []
+        walk, found = sp.preorder_traversal(f), list[Expr]()
+        for node in walk:
+            if isinstance(node, AppliedUndef | Derivative | Subs):
+                walk.skip()
+                found.append(node)
+        return found
+
+    def __getitem__(self, unknown: Expr) -> Expr:
+        """Return what a function, or derivative, is in the example."""
+        found = self._known.get(unknown)
+        if found is None:
+            every, _ = with_example_functions((*self._applied, unknown), random.Random(7))
+            found = self._known[unknown] = every[-1]
+        return found
+
+
+class Neighbourhood:
+    """A point, and the points a little beside it along each symbol.
+
+    Parameters
+    ----------
+    point
+        The value of every symbol.
+    examples
+        What the arbitrary functions are.
+    """
+
+    def __init__(self, point: Mapping[Symbol, acb], examples: Examples) -> None:
+        self.point = dict(point)
+        self.examples = examples
+        self._memos: dict[Symbol | None, dict[sp.Basic, acb]] = {}
+
+    def beyond(self, values: Mapping[Symbol, acb]) -> Neighbourhood:
+        """Return the neighbourhood of the point with more or other values."""
+        return Neighbourhood({**self.point, **values}, self.examples)
+
+    def value(self, f: Expr, along: Symbol | None = None) -> acb:
+        """Return the value of an expression, a step along a symbol away if one is given."""
+        memo = self._memos.get(along)
+        if memo is None:
+            memo = self._memos[along] = dict(self.point)
+            if along is not None:
+                memo[along] = self.point[along] + STEP
+        for unknown in self.examples.unknowns(f):
+            if unknown not in memo:
+                memo[unknown] = value(self.examples[unknown], {}, memo)
+        return value(f, {}, memo)
+
+    def slope(self, f: Expr, by: Symbol) -> acb:
+        """Return ∂f/∂s, to about thirty digits."""
+        if by not in f.free_symbols:
+            return acb(0)
+        return (self.value(f, by) - self.value(f)) / STEP
+
+    def slopes(self, f: Expr, by: Sequence[Symbol]) -> list[acb]:
+        """Return the slopes along several symbols."""
+        return [self.slope(f, s) for s in by]
+
+
+def small(terms: Sequence[acb]) -> bool:
+    """Whether a sum vanishes as far as slopes tell.
+
+    Examples
+    --------
+    >>> small([acb(1), acb(-1), acb(2) ** -90]), small([acb(1), acb(-1), acb(2) ** -20])
+    (True, False)
+    """
+    scale = sum((abs(term) for term in terms), arb(1))
+    return bool(abs(sum(terms, acb(0))) < TOLERANCE * scale)
