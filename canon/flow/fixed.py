@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.job import Watch
 from canon.flow.measure import values_in
 from canon.flow.method import RK4, FixedStep, Gauss, Splitting
 from canon.flow.partial import PartialSteps, State, coefficient_pairs
 from canon.flow.sampling import Plan, Sampling, fixed_plan, steps_over
 from canon.flow.solvable import SolvableSplitting
 from canon.flow.solvable import loop_of as solvable_loop_of
-from canon.flow.stepping import Interruption, Run, Watch, run
+from canon.flow.stepping import Interruption, Run, run
 from canon.flow.trajectory import Array, Samples
 from canon.flow.watchful import run_with_events
 from canon.kernel.gauss import gauss_coefficients, gauss_loop

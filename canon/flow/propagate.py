@@ -55,8 +55,8 @@ def propagate(
         The first and the last time; the last may be the earlier one.
     method
         ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
-        not given. By exactly solvable parts:
-        ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that vary: ``TimeTransformed(...)``.
+        not given. By exactly solvable parts: ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that
+        vary: ``TimeTransformed(...)``.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
         span; ``Trajectory.step`` has it.
@@ -126,17 +126,24 @@ def propagate(
     (10000, True)
     """
     if isinstance(method, TimeTransformed):
-        others = (tolerance, times, observables, cadence, events, dense)
-        if any(other is not None and other is not False and other != () for other in others):
-            raise ValueError(
-                f"{method} takes step, precision, parameters and samples, not times, observables, cadence, "
-                "events or dense"
-            )
+        given = {
+            "tolerance": tolerance is not None,
+            "times": times is not None,
+            "observables": bool(observables),
+            "cadence": cadence is not None,
+            "events": bool(events),
+            "dense": dense,
+        }
+        if any(given.values()):
+            foreign = ", ".join(name for name, is_given in given.items() if is_given)
+            raise ValueError(f"{method} takes step, precision, parameters and samples, not {foreign}")
         from canon.flow.fictitious import transformed_motion
 
-        return transformed_motion(
-            hamiltonian, y0, t_span, method, step=step, precision=precision, parameters=parameters, samples=samples
-        )  # fmt: skip
+        with reporting(progress) as report:
+            return transformed_motion(
+                hamiltonian, y0, t_span, method, step=step, precision=precision, parameters=parameters,
+                samples=samples, progress=report,
+            )  # fmt: skip
     task = task_of(
         hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,

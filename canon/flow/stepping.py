@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.job import Array, Job, Memory, NonFiniteStateError, Watch
+from canon.flow.job import Array, Job, Memory, Watch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.kernel.loop import Loop
 
-__all__ = ["Interruption", "NonFiniteStateError", "Run", "Watch", "run"]
+__all__ = ["Interruption", "Run", "run"]
 
 _SLICE_SECONDS = 0.1
 """Between calls of compiled code Python can handle an interruption and report progress."""

@@ -12,8 +12,8 @@ import sympy as sp
 
 from canon.expression.graph import Graph
 from canon.expression.symbol import time
+from canon.flow.job import NonFiniteStateError
 from canon.flow.pointwise import Miss, Value, definite_node, values_at
-from canon.flow.stepping import NonFiniteStateError
 from canon.kernel.structure import exact
 from canon.kernel.taylor import heyoka_expressions
 from canon.mechanics.vector_field import VectorField

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.stepping import NonFiniteStateError
+from canon.flow.job import NonFiniteStateError
 from canon.scene.motion import Motion, first_zero, run
 from canon.scene.parts import Integral, SceneError, Solution
 
@@ -131,7 +131,7 @@ def check(scene: Scene, start: str | None = None, periods: float | None = None) 
     found: list[Check] = []
     for name in names:
         found += integrals_along(run(scene, name, min(periods or 100.0, scene.horizon)))
-    return (*found, *(each for each in solutions_met(scene, start)))
+    return (*found, *solutions_met(scene, start))
 
 
 def integrals_along(motion: Motion) -> tuple[Check, ...]:

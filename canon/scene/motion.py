@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.arithmetic import LONGDOUBLE
-from canon.flow.stepping import NonFiniteStateError
+from canon.flow.job import NonFiniteStateError
 from canon.kernel.taylor import heyoka_expressions
 from canon.mechanics.constrained_derivation import constrained, constrained_motion
 from canon.mechanics.derivation import derivation_of_lagrangian
@@ -101,7 +101,7 @@ def run(
 
     Raises
     ------
-    canon.flow.stepping.NonFiniteStateError
+    NonFiniteStateError
         The motion can't be continued over the whole span.
 
     Examples
@@ -160,7 +160,7 @@ def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Moti
 
     Raises
     ------
-    canon.flow.stepping.NonFiniteStateError
+    NonFiniteStateError
         f does not vanish within these periods, or the motion ends before.
 
     Examples

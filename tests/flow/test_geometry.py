@@ -6,9 +6,9 @@ import pytest
 import sympy as sp
 
 from canon.expression.arithmetic import multiprecision
+from canon.flow.job import NonFiniteStateError
 from canon.flow.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
-from canon.flow.stepping import NonFiniteStateError
 from canon.kernel.program import run
 from canon.kernel.scheme import SCHEMES
 from canon.kernel.structure import equations

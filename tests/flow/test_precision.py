@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from canon.flow.job import NonFiniteStateError
 from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.precision import ADAPTIVE, FIXED
 from canon.flow.propagate import propagate
-from canon.flow.stepping import NonFiniteStateError
 from canon.kernel.scheme import SCHEMES
 from tests.flow.systems import (
     DOUBLE_PENDULUM,

@@ -5,10 +5,10 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbol import coordinates, parameters
+from canon.flow.job import NonFiniteStateError
 from canon.flow.measure import _many_digits, _wide_values
 from canon.flow.method import DOP853, RK4, Splitting, Taylor
 from canon.flow.propagate import propagate
-from canon.flow.stepping import NonFiniteStateError
 from canon.flow.trajectory import Samples
 from canon.kernel.structure import equations
 from tests.flow.systems import (

@@ -1,13 +1,17 @@
 """Time transformations: close encounters with long steps, geometry in the fictitious time, and what is refused."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 import sympy as sp
 
+from canon.flow.fictitious import _Way
 from canon.flow.method import RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.propagate import propagate
+from canon.flow.trajectory import Samples
 from canon.flow.transformed import extended
-from tests.flow.systems import DOUBLE_PENDULUM, HENON_HEILES, KEPLER, System, kepler_start
+from tests.flow.systems import DOUBLE_PENDULUM, HENON_HEILES, KEPLER, PENDULUM, System, kepler_start
 from tests.flow.test_geometry import compiled_jacobian, kepler_orbit
 from tests.flow.test_solvable import planets, planets_start
 
@@ -130,6 +134,54 @@ def test_samples_are_evenly_spaced_in_steps_and_no_more_than_twice_as_many():
     assert steps.max() > 15 * steps.min()
 
 
+@pytest.mark.parametrize("samples", [1, 3, 4, 10, 100])
+def test_a_motion_whose_last_step_ends_at_the_end_has_that_state(samples):
+    # With g = 1 the fictitious time is the time: 84 steps of 1/8 end at 10.5, thinned out or not.
+    method = TimeTransformed(Gauss(2), sp.Integer(1))
+    found = propagate(PENDULUM, [1.0, 0.0], (0, 10.5), method=method, step=0.125, samples=samples)
+    plain = propagate(PENDULUM, [1.0, 0.0], (0, 10.5), method=Gauss(2), step=0.125, samples=1)
+    assert found.t[-1] == 10.5
+    assert found.steps == plain.steps == 84
+    assert abs(found.final - plain.final).max() < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("precision", "bits"), [("single", 24), ("double", 53), ("compensated", 53), ("double-double", 53)]
+)
+@pytest.mark.parametrize("forward", [1, -1])
+def test_the_end_is_met_to_the_rounding_of_time(precision, bits, forward):
+    found = motion(
+        0.5, TimeTransformed(Splitting("verlet")), 0.02, span=(0, 10 * forward), precision=precision
+    )
+    assert abs(found.t[-1] - 10 * forward) <= 10 * 2.0 ** (1 - bits)
+
+
+def test_an_end_that_no_part_of_a_step_meets_is_an_error():
+    def stubborn(state, stops, part):
+        # A whole step passes the end, but no part of one advances the time.
+        times = np.array([float(state[1]) + (5.0 if part == 1 and k else 0.0) for k in range(len(stops))])
+        y = np.zeros((4, len(stops), 1))
+        y[1, :, 0] = times
+        return Samples(times, y, np.zeros_like(y), 0, 0, 0.1, 0.0, 0.0)
+
+    way = _Way(stubborn, 1, Fraction(0), Fraction(1), 1, 53)
+    with pytest.raises(ArithmeticError, match="no part of a step ends at t = 1"):
+        way.run([Fraction(0)] * 4)
+
+
+def test_an_interrupted_motion_is_not_taken_for_a_whole_one():
+    seen = []
+
+    def impatient(fraction):
+        seen.append(fraction)
+        if fraction > 0.3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt, match="nothing of it is kept"):
+        motion(0.9, LOGARITHMIC, 0.1, samples=20, progress=impatient)
+    assert seen == sorted(seen)
+
+
 @pytest.mark.parametrize(
     ("system", "start", "method", "message"),
     [
@@ -151,8 +203,16 @@ def test_steps_and_other_arguments_are_checked():
             propagate(KEPLER, kepler_start(0.5), (0, 1), method=LOGARITHMIC, step=step)
     with pytest.raises(ValueError, match="no length"):
         propagate(KEPLER, kepler_start(0.5), (1, 1), method=LOGARITHMIC, step=0.1)
-    with pytest.raises(ValueError, match="not times, observables"):
-        propagate(KEPLER, kepler_start(0.5), (0, 1), method=LOGARITHMIC, step=0.1, cadence=3)
+    with pytest.raises(ValueError, match=r"not times, cadence$"):
+        propagate(
+            KEPLER,
+            kepler_start(0.5),
+            (0, 1),
+            method=LOGARITHMIC,
+            step=0.1,
+            cadence=3,
+            times=np.array([0.5, 1]),
+        )
 
 
 def test_methods_without_a_transformation_of_theirs_are_refused():

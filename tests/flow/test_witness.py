@@ -6,7 +6,7 @@ import sympy as sp
 from sympy import Function, cos, sin, sqrt, symbols
 
 from canon.expression.symbol import time
-from canon.flow.stepping import NonFiniteStateError
+from canon.flow.job import NonFiniteStateError
 from canon.flow.witness import bilinear_covariant, brackets_at_points, integral_drift, symplectic_flow
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.transformation import CanonicalTransformation

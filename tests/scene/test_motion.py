@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from canon import Gauss, propagate
-from canon.flow.stepping import NonFiniteStateError
+from canon.flow.job import NonFiniteStateError
 from canon.mechanics.constrained_derivation import constrained, constrained_motion
 from canon.mechanics.derivation import derivation, derivation_of_lagrangian
 from canon.mechanics.motion import acceleration_function
