@@ -45,6 +45,8 @@ PARAMETERS = "ptr noalias %y, ptr noalias %e, ptr noalias %c, i64 %first, i64 %s
 METHOD = 2
 """Where the method's own coefficients start in c."""
 
+_LONG, _ALIGNED = 64, 8
+
 
 @dataclass(frozen=True, eq=False)
 class Loop:
@@ -103,18 +105,20 @@ def splitting_loop(
     """
     n = len(system.q)
     w = Writer(number)
-    y, e = w.array(2 * n), w.array(2 * n) if compensated else ""
+    gap = _gap(n)
+    y, e = w.array(2 * n + gap), w.array(2 * n + gap) if compensated else ""
     force = w.array(n)
     drift_clock, kick_clock = w.array(1), w.array(1)
 
     def evaluate(nodes: Sequence[int], reads: int, clock: str, take: Callable[[str, str], None]) -> None:
         steps = system.program(nodes)
+        state = w.at(y, gap) if reads else y
         if is_worth_rolling(steps):
-            write_rolled(w, steps, y, clock, take)
+            write_rolled(w, steps, state, clock, take)
             return
         arguments = ["poison"] * (2 * n + 1)
         for i in range(n):
-            arguments[reads + i] = w.load(y, reads + i)
+            arguments[reads + i] = w.load(state, reads + i)
         arguments[2 * n] = w.load(clock, 0)
         for i, value in enumerate(w.program(steps, arguments)):
             take(str(i), value)
@@ -136,14 +140,14 @@ def splitting_loop(
             evaluate(system.force, 0, drift_clock, lambda i, rate: w.store(rate, force, i))
             kick_again(coefficient)
         else:
-            evaluate(system.force, 0, drift_clock, moving(n, coefficient))
+            evaluate(system.force, 0, drift_clock, moving(n + gap, coefficient))
         advance_clock(kick_clock, coefficient)
 
     def kick_again(coefficient: str) -> None:
         with w.loop(0, n) as i:
-            moving(n, coefficient)(i, w.load(force, i))
+            moving(n + gap, coefficient)(i, w.load(force, i))
 
-    with blocks_of(w, y, e, 2 * n, 2 * n):
+    with blocks_of(w, y, e, 2 * n, 2 * n, gap):
         if kick_first:
             evaluate(system.force, 0, drift_clock, lambda i, rate: w.store(rate, force, i))
         with steps_of(w, system) as time:
@@ -202,19 +206,33 @@ def field_function(field: Program) -> MachineCode:
 # pieces of loops -------------------------------------------------------------------------------------
 
 
+def _gap(n: int) -> int:
+    """Return how many numbers to leave free between q and p: where they are many, both start where SIMD loads do."""
+    return -n % _ALIGNED if n >= _LONG else 0
+
+
 @contextlib.contextmanager
-def blocks_of(w: Writer, y: str, e: str, size: int, carry: int) -> Generator[str]:
-    """Repeat what is written inside for every block, on local copies y and e, and yield the block's outer e."""
+def blocks_of(w: Writer, y: str, e: str, size: int, carry: int, gap: int = 0) -> Generator[str]:
+    """Repeat what is written inside for every block, on local copies y and e, and yield the block's outer e.
+
+    The copies may have a gap in the middle, between q and p.
+    """
+
+    def halves(outer: str, own: str) -> list[tuple[str, str, int]]:
+        if not gap:
+            return [(outer, own, size)]
+        half = size // 2
+        return [(outer, own, half), (w.at(outer, half), w.at(own, half + gap), half)]
+
     with w.loop(0, "%blocks") as block:
         outer_y = w.at("%y", w.let(f"mul i64 {block}, {size}"))
         outer_e = w.at("%e", w.let(f"mul i64 {block}, {carry}"))
-        w.copy(outer_y, y, size)
-        if e:
-            w.copy(outer_e, e, size)
+        pieces = [*halves(outer_y, y), *(halves(outer_e, e) if e else ())]
+        for outer, own, length in pieces:
+            w.copy(outer, own, length)
         yield outer_e
-        w.copy(y, outer_y, size)
-        if e:
-            w.copy(e, outer_e, size)
+        for outer, own, length in pieces:
+            w.copy(own, outer, length)
 
 
 @contextlib.contextmanager
