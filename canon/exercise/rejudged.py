@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from canon.exercise.diagnosis import Diagnosis, judged_to_hold
-from canon.exercise.reading import Reading
+from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.screening import screening
 from canon.exercise.tree import replaced
 from canon.exercise.variants import Change, common_slips, slipped, times, variants
@@ -96,7 +96,7 @@ def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
                 return
             changed = {**keys, "parameters": {**assumed, symbol.name: word}}
             trial = _read_anew(reading, reading.claim.kind, changed)
-            if _holds(trial, deadline):
+            if _could_hold(trial) and _holds(trial, deadline):
                 yield Diagnosis(f"right only for {symbol} {sign} 0", trial)
     variables = {
         name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
@@ -105,7 +105,7 @@ def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
         if time.monotonic() > deadline:
             return
         trial = replace(reading, at=MappingProxyType({reading.scope.names[name]: sp.S.One}))
-        if _holds(trial, deadline):
+        if _could_hold(trial) and _holds(trial, deadline):
             yield Diagnosis(f"right only for {name} = 1", trial)
 
 
@@ -171,7 +171,7 @@ def _rank(key: str, suspects: Sequence[str]) -> int:
 
 def _rescaled(key: str, expression: Expr) -> Iterator[tuple[Expr, Change]]:
     yield -expression, Change("{} has the wrong sign", key)
-    for factor in (sp.Rational(1, 2), sp.Rational(2)):
+    for factor in map(sp.Rational, ("1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2")):
         yield factor * expression, Change("{} should be {} what it is", key, times(factor))
 
 
@@ -226,6 +226,15 @@ def _read_anew(reading: Reading, kind: str, keys: Mapping[str, Any]) -> Reading:
 def _holds(reading: Reading, deadline: float, held: int = 0) -> bool:
     """Whether a changed claim holds; the first ``held`` questions are known to and hardly touched by the change."""
     return judged_to_hold(reading, min(TRIAL_SECONDS, max(0.05, deadline - time.monotonic())), held)
+
+
+def _could_hold(reading: Reading) -> bool:
+    """Whether values at points leave it open that a claim holds."""
+    try:
+        screen = screening(reading, dict(_answers(reading)))
+    except InvalidClaim:
+        return False
+    return screen is None or screen.passes({})
 
 
 def _names(value: object) -> list[str]:

@@ -23,6 +23,9 @@ _FAMILIES = (
     (sp.atan, sp.acot), (sp.asinh, sp.acosh, sp.atanh), (sp.elliptic_k, sp.elliptic_e),
 )  # fmt: skip
 _TWINS = {f: tuple(g for g in family if g is not f) for family in _FAMILIES for f in family}
+MOST_FUNCTIONS = 6
+MOST_SWAPPED = 6
+_SHIFTS = (sp.S.One, sp.S.NegativeOne)
 _CONSTANTS = (sp.pi, -sp.pi, sp.pi / 2, -sp.pi / 2)
 
 
@@ -64,7 +67,15 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, symbols)
 
-    for edits in (_signs, _functions, _factors, _exponents, _dropped, exchanged, multiplied):
+    functions = sorted((f for f in expression.atoms(sp.Function) if _TWINS.get(f.func)), key=str)[
+        :MOST_FUNCTIONS
+    ]
+
+    def multiplied_by_functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
+        return _multiplied(node, functions)
+
+    first = (_signs, _functions, _factors, _exponents, exchanged, _by_another, multiplied)
+    for edits in (*first, _dropped, _swapped, _shifted, multiplied_by_functions):
         yield from _one_place(expression, edits)
     if not expression.is_Add:
         for symbol in symbols:
@@ -206,7 +217,34 @@ def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Ch
                     yield rest, Change("{} should be {}", place, changed)
 
 
-def _multiplied(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+def _by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """The derivative by another argument of the function."""
+    if isinstance(node, sp.Derivative) and len(node.variables) == 1:
+        for other in symbols_of(*(a for a in arguments(node.expr) if a.is_Symbol)):
+            if other != node.variables[0]:
+                right = sp.Derivative(node.expr, other)
+                yield right, Change("{} should be {}", node, right)
+
+
+def _swapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """Two symbols exchanged in one sum."""
+    if node.is_Add:
+        for a, b in combinations(symbols_of(node)[:MOST_SWAPPED], 2):
+            new = replaced(node, {a: b, b: a})
+            if new != node:
+                yield new, Change("in {} the symbols {} and {} should be exchanged", node, a, b)
+
+
+def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """A number lost in the argument of a function, or beside one."""
+    if node.is_Function and len(arguments(node)) == 1:
+        for number in _SHIFTS:
+            new = node.func(arguments(node)[0] + number)
+            yield new, Change("{} should be {}", node, new)
+            yield node + number, Change("{} should be {}", node, node + number)
+
+
+def _multiplied(node: Expr, symbols: Sequence[Expr]) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
         for term in arguments(node):
             for symbol in symbols:
