@@ -1,4 +1,4 @@
-"""The command line: ``canon check``, ``canon drift``, ``canon scene``, ``canon study``, ``canon tour``.
+"""The command line: ``canon check``, ``choose``, ``drift``, ``scene``, ``study``, ``tour``.
 
 Every command is a module of :mod:`canon.command` with ``DESCRIPTION``, ``EXAMPLES``, ``add_arguments(parser)``
 and ``run(arguments) -> exit status``; only the one that is asked for is imported.
@@ -24,14 +24,16 @@ COMMANDS = {
     "drift": "run long and measure how the errors of a method grow",
     "scene": "list ready systems; show one's equations, run it, draw it",
     "study": "run, resume, export and report studies of many cases, on one machine or many",
-    "tour": "both on bundled examples, in less than half a minute",
+    "tour": "judge bundled answers and run a bundled system, in less than half a minute",
 }
 EXAMPLES = """\
 examples:
-  canon tour                          see what canon does
-  canon check answers.toml            judge a sheet of answers
-  canon check --json answers.toml     the same for a program: one JSON object a line
-  canon check --help                  how a sheet is written
+  canon tour                                        see what canon does
+  canon check answers.toml                          judge a sheet of answers
+  canon check --help                                how a sheet is written
+  canon scene double-pendulum                       equations of a ready system
+  canon drift kepler --plot drift.png               which methods can be trusted for long
+  canon choose kepler --accuracy 1e-9               the cheapest one that suffices
 """
 BROKEN_PIPE = 141
 """Exit status of a program whose reader went away, as shells report it: 128 + SIGPIPE."""
@@ -49,6 +51,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without ✓ shows ?
+    if not given:
+        _parser(given).print_help(sys.stderr)
+        return 2
+    if (word := given[0]) not in COMMANDS and not word.startswith("-"):
+        print(f"canon: there is no command {word!r}{_near(word)}; 'canon --help' lists all", file=sys.stderr)
+        return 2
     arguments = _parser(given).parse_args(given)
     try:
         status = arguments.run(arguments)
@@ -60,6 +68,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         print("canon: interrupted", file=sys.stderr)
         return 130
     return status
+
+
+def _near(word: str) -> str:
+    import difflib
+
+    close = difflib.get_close_matches(word, COMMANDS, n=1)
+    return f" (did you mean {close[0]}?)" if close else ""
 
 
 def _parser(given: list[str]) -> argparse.ArgumentParser:

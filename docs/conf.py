@@ -1,9 +1,14 @@
 """Sphinx: every notebook is executed, every warning is an error, nothing is fetched.
 
-Build with ``sphinx-build -W --keep-going -b html docs docs/_build``.
+Build with ``sphinx-build -W -b html docs docs/_build``. While you write, ``-D nb_execution_mode=cache`` executes only
+the pages that changed.
 """
 
+import contextlib
 import importlib
+import io
+import os
+import re
 import sys
 from pathlib import Path
 
@@ -11,6 +16,9 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))
 
 from canon import _ROOMS, __version__  # noqa: E402  (the checkout's canon, found through the line above)
+from canon.cli import COMMANDS, main  # noqa: E402
+
+os.environ["COLUMNS"] = "100"  # what argparse wraps help to
 
 project = "canon"
 author = copyright = "The canon developers"  # noqa: A001  (Sphinx's own name)
@@ -29,7 +37,7 @@ myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 exclude_patterns = ["_build", "README.md"]
 
-nb_execution_mode = "cache"
+nb_execution_mode = "force"  # a cached page would not know that canon has changed
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_merge_streams = True
@@ -81,9 +89,36 @@ def public_names() -> str:
     return "\n".join(lines)
 
 
+def command_line() -> str:
+    """Return the page that shows what ``canon --help`` prints, and the help of every command and action."""
+    lines = [
+        "# The command line",
+        "",
+        "What `canon --help` and the help of each command print, written when the pages are built.",
+    ]
+    lines += ["`python -m canon` is the same as `canon`.", "", *_console("canon")]
+    for name in COMMANDS:
+        lines += [f"## canon {name}", "", *_console(f"canon {name}")]
+        for action in re.findall(r"^    (\w+)  +\S", help_of(name).partition("  action\n")[2], re.MULTILINE):
+            lines += [f"### canon {name} {action}", "", *_console(f"canon {name} {action}")]
+    return "\n".join(lines)
+
+
+def help_of(*words: str) -> str:
+    """Return what a command prints when asked for help."""
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed), contextlib.suppress(SystemExit):
+        main([*words, "--help"])
+    return printed.getvalue().rstrip()
+
+
+def _console(command: str) -> list[str]:
+    return ["```console", f"$ {command} --help", help_of(*command.split()[1:]), "```", ""]
+
+
 def setup(app: object) -> None:  # noqa: ARG001  (Sphinx gives it)
-    """Write the list of public names before Sphinx reads it."""
-    page = HERE / "reference" / "api.md"
-    text = public_names()
-    if not page.exists() or page.read_text(encoding="utf-8") != text:
-        page.write_text(text, encoding="utf-8")
+    """Write the list of public names and the commands' help before Sphinx reads them."""
+    for name, text in (("api", public_names()), ("command_line", command_line())):
+        page = HERE / "reference" / f"{name}.md"
+        if not page.exists() or page.read_text(encoding="utf-8") != text:
+            page.write_text(text, encoding="utf-8")

@@ -156,8 +156,9 @@ def test_equal_claims_are_judged_once_and_several_at_a_time(tmp_path):
         (["check"], "SHEET"),
         (["check", "missing.toml"], "can't be read"),
         (["check", "--budget", "no", "x.toml"], "seconds"),
-        (["judge"], "invalid choice"),
-        ([], "command"),
+        (["judge"], "there is no command 'judge'"),
+        (["chek", "sheet.toml"], "did you mean check?"),
+        ([], "canon tour"),
     ],
 )
 def test_bad_usage_is_2_and_says_why(arguments, said):
