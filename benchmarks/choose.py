@@ -24,8 +24,8 @@ from canon.flow.method import FixedStep, Splitting
 from canon.flow.propagate import NonFiniteStateError
 from canon.scene import find
 from canon.study.choose import Choice, choose
+from canon.study.choose_candidate import candidate_methods
 from canon.study.choose_pilot import Question, Setting, natural_step, pilot
-from canon.study.choose_search import candidate_methods
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from canon.scene.scene import Scene
     from canon.study.choose import Choice
-    from canon.study.choose_search import Candidate
+    from canon.study.choose_candidate import Candidate
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 

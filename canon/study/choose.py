@@ -11,8 +11,10 @@ import numpy as np
 from canon.flow.method import FixedStep, Taylor
 from canon.flow.propagate import propagate
 from canon.scene.scene import Scene, near
+from canon.study.choose_candidate import Candidate, candidate_methods
+from canon.study.choose_last import confirmed, double_instead
 from canon.study.choose_pilot import Question, natural_step
-from canon.study.choose_search import Candidate, candidate_methods, confirmed, double_instead, searched
+from canon.study.choose_search import searched
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:

@@ -13,6 +13,7 @@ import numpy as np
 from canon.flow.measure import AccuracyWarning
 from canon.flow.method import DOP853, FixedStep, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.flow.solvable import SolvableSplitting
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
@@ -177,7 +178,7 @@ class Pilot:
 
 def is_symplectic(method: Method) -> bool:
     """Tell whether a method keeps a modified energy, so that its energy error does not grow."""
-    return isinstance(method, Splitting | Gauss)
+    return isinstance(method, Splitting | Gauss | SolvableSplitting)
 
 
 def pilot(question: Question, setting: Setting, duration: float, windows: int = WINDOWS) -> Pilot:

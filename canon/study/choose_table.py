@@ -9,7 +9,7 @@ from canon.study.table import aligned
 
 if TYPE_CHECKING:
     from canon.study.choose import Choice
-    from canon.study.choose_search import Candidate
+    from canon.study.choose_candidate import Candidate
 
 __all__ = ["choice_table", "duration_in_words"]
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.method import RK4, FixedStep, Gauss, Splitting, Taylor
+from canon.flow.method import RK4, FixedStep, Gauss, Splitting, Stepped, Taylor
 from canon.flow.propagate import is_separable
 from canon.scene.scene import Scene
 from canon.study.drift import FEWEST
 from canon.study.errors import StudyError
 from canon.study.observed import ENERGY, observables_of
-from canon.study.rows import UNIT_ROUND_OFF, DriftRow, Run, drift_row, drift_rows
+from canon.study.rows import DriftRow, Run, drift_row, drift_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from canon.flow.method import Method
     from canon.flow.propagate import HamiltonianSystem
 
-__all__ = ["UNIT_ROUND_OFF", "DriftRow", "DriftStudy", "StudyError", "drift_row", "drift_study"]
+__all__ = ["DriftRow", "DriftStudy", "StudyError", "drift_row", "drift_study"]
 
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 
@@ -180,18 +180,18 @@ def drift_study(
     inside = samples is None and known_period is not None and kept >= MOST_SAMPLES
     rows: list[DriftRow] = []
     for method in chosen:
-        fixed = _is_fixed(method)
+        stepped, watched = isinstance(method, Stepped), inside and isinstance(method, FixedStep)
         run = Run(
             hamiltonian,
             starts,
             span,
             method,
-            BLOCKS_KEPT if fixed and inside else kept,
-            step=h if fixed else None,
-            tolerance=None if fixed else tolerance,
-            precision=precision if fixed or precision in ADAPTIVE_ONLY else None,
+            BLOCKS_KEPT if watched else kept,
+            step=h if stepped else None,
+            tolerance=None if stepped else tolerance,
+            precision=precision if stepped or precision in ADAPTIVE_ONLY else None,
             parameters=values,
-            cadence=_cadence(h, known_period) if fixed and inside else None,
+            cadence=_cadence(h, known_period) if watched else None,
         )
         rows.extend(drift_rows(run, followed, partial(progress, str(method)) if progress else None))
     if all(row.failure for row in rows):
@@ -228,10 +228,6 @@ def _cadence(step: float | None, period: float | None) -> int:
     return max(1, int((period or 1.0) / (step or 1.0) / SAMPLES_PER_PERIOD))
 
 
-def _is_fixed(method: Method) -> bool:
-    return isinstance(method, FixedStep)
-
-
 def _period(system: Scene | HamiltonianSystem) -> float | None:
     return system.period if isinstance(system, Scene) else None
 
@@ -245,10 +241,10 @@ def _span(periods: float, period: float | None) -> float:
 def _usual_step(methods: Sequence[Method], period: float | None) -> float | None:
     if period is not None:
         return period / STEPS_PER_PERIOD
-    fixed = [str(method) for method in methods if _is_fixed(method)]
-    if fixed:
+    stepped = [str(method) for method in methods if isinstance(method, Stepped)]
+    if stepped:
         raise StudyError(
-            f"{fixed[0]} takes fixed steps: give step=, or period= to take about a fiftieth of it"
+            f"{stepped[0]} takes steps of a given size: give step=, or period= to take about a fiftieth of it"
         )
     return None
 

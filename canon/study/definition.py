@@ -8,7 +8,7 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.method import FixedStep, TimeTransformed
+from canon.flow.method import Stepped
 from canon.scene import Scene, SceneError, find
 from canon.study.case import Case, key_of, method_from
 from canon.study.comparison import SAMPLES_PER_PERIOD
@@ -164,12 +164,12 @@ def _case(
     table: Mapping[str, Any],
 ) -> Case:
     method = method_from(chosen["method"]) if isinstance(chosen["method"], str | dict) else chosen["method"]
-    fixed = isinstance(method, FixedStep | TimeTransformed)
+    stepped = isinstance(method, Stepped)
     period = _period(system, parameters)
     step = chosen["step"]
     if chosen["steps_per_period"] is not None:
         step = _known(period, "steps_per_period") / float(chosen["steps_per_period"])
-    if fixed and step is None:
+    if stepped and step is None:
         raise ValueError(f"{method} needs a size of steps: give step or steps_per_period")
     until = table.get("until")
     span = float(until) if until is not None else float(table["periods"]) * _known(period, "periods")
@@ -181,9 +181,9 @@ def _case(
         samples=int(table["samples"]) if "samples" in table else _usual_samples(span, period),
         start=tuple(map(float, start)) if isinstance(start, list | tuple) else start,
         parameters=parameters,
-        step=float(step) if fixed else None,
-        tolerance=None if fixed else chosen["tolerance"],
-        precision=chosen["precision"] if fixed else None,
+        step=float(step) if stepped else None,
+        tolerance=None if stepped else chosen["tolerance"],
+        precision=chosen["precision"] if stepped else None,
         parts=int(table["parts"]) if "parts" in table else None,
     )
     _check(case)

@@ -19,11 +19,12 @@ import numpy as np
 
 from canon.flow.measure import AccuracyWarning
 from canon.flow.method import FixedStep
+from canon.flow.precision import unit_round_off
 from canon.flow.propagate import propagate
+from canon.flow.sampling import steps_over
 from canon.study.case import parts_of
 from canon.study.drift import drift
 from canon.study.envelope import envelope_of
-from canon.study.rows import UNIT_ROUND_OFF
 
 if TYPE_CHECKING:
     from canon.flow.trajectory import Trajectory
@@ -208,11 +209,7 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
 
 def _whole_steps(case: Case, part: int, end: int) -> tuple[tuple[Fraction, Fraction], float]:
     """Return first and last time of a part and the step, so that all parts take steps of the same exact size."""
-    if case.step is None or not (math.isfinite(case.step) and case.step > 0.0):
-        raise ValueError(f"step={case.step}: {case.method} takes fixed steps, give a positive number")
-    ratio = Fraction(case.span) / Fraction(case.step)
-    near = max(1, round(ratio))
-    steps = near if abs(ratio - near) <= near * Fraction(1, 10**9) else math.ceil(ratio)
+    steps = steps_over(Fraction(0), Fraction(case.span), case.step, case.method)
     if steps < end:
         raise ValueError(f"{steps} steps can't be run in {end} parts: ask for fewer")
     h = Fraction(case.span) / steps
@@ -225,7 +222,7 @@ def _numbers(point: Checkpoint) -> dict[str, Any]:
     relative = point.energy != 0.0
     scale = abs(point.energy) if relative else 1.0
     t, error = np.array(point.t), np.array(point.change) / scale
-    unit = UNIT_ROUND_OFF.get(point.precision, 2.0**-53)
+    unit = unit_round_off(point.precision)
     roundoff = unit * math.sqrt(point.steps) if relative else None
     found = drift(t, error, roundoff=roundoff, resolution=unit)
     curve = envelope_of(t, error, CURVE)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.method import FixedStep, Taylor
+from canon.flow.method import Stepped, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
 from canon.scene.scene import Scene
 from canon.study.errors import StudyError
+from canon.study.resonance import resonant_steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -27,9 +28,6 @@ __all__ = ["WorkPrecision", "WorkRow", "work_precision"]
 
 REFERENCE = Taylor(1e-30)
 """Method of the reference, run in quadruple precision."""
-
-RESONANT = 10.0
-"""How many times larger than its neighbours let expect the energy error of a resonant step is."""
 
 SAMPLES = 1000
 """Samples the largest energy error is taken over."""
@@ -152,7 +150,7 @@ def work_precision(
     cases = [
         (method, *setting, arithmetic)
         for method in methods
-        for arithmetic in (several if isinstance(method, FixedStep) else (None,))
+        for arithmetic in (several if isinstance(method, Stepped) else (None,))
         for setting in _settings(method, given_steps, given_tolerances)
     ]
     if isinstance(system, Scene):
@@ -205,9 +203,9 @@ def _settings(
     method: Method, steps: Iterable[float], tolerances: Iterable[float]
 ) -> list[tuple[float | None, float | None]]:
     """Return (step, tolerance) pairs, precision rising."""
-    if isinstance(method, FixedStep):
+    if isinstance(method, Stepped):
         if not (ordered := sorted(steps, reverse=True)):
-            raise StudyError(f"{method} takes fixed steps: give steps")
+            raise StudyError(f"{method} takes steps of given sizes: give steps")
         return [(step, None) for step in ordered]
     if not (ordered := sorted(tolerances, reverse=True)):
         raise StudyError(f"{method} chooses its steps by a tolerance: give tolerances")
@@ -230,20 +228,15 @@ def _measured(
 
 
 def _marked(rows: Sequence[WorkRow]) -> list[WorkRow]:
-    """Mark the steps whose energy error stands out from the line through that of their neighbours."""
+    """Mark the steps that are in resonance with the motion."""
     marked = list(rows)
-    for i in range(1, len(rows) - 1):
-        larger, row, smaller = rows[i - 1 : i + 2]
-        known = all(each.step is not None and each.energy_error > 0.0 for each in (larger, row, smaller))
-        if not known or len({(str(each.method), each.precision) for each in (larger, row, smaller)}) > 1:
-            continue
-        x, y = (
-            [math.log(value) for value in values]
-            for values in (
-                [each.step or 1.0 for each in (larger, row, smaller)],
-                [each.energy_error for each in (larger, row, smaller)],
-            )
-        )
-        expected = y[0] + (y[2] - y[0]) * (x[1] - x[0]) / (x[2] - x[0])
-        marked[i] = replace(row, resonant=y[1] - expected > math.log(RESONANT))
+    steps: dict[tuple[str, str], list[tuple[int, float]]] = {}
+    for i, row in enumerate(rows):
+        if row.step is not None:
+            steps.setdefault((str(row.method), row.precision), []).append((i, row.step))
+    for of_method in steps.values():
+        errors = [rows[i].energy_error for i, _ in of_method]
+        resonant = resonant_steps([step for _, step in of_method], errors)
+        for (i, _), is_resonant in zip(of_method, resonant.tolist(), strict=True):
+            marked[i] = replace(rows[i], resonant=is_resonant)
     return marked

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["RESONANT", "resonant_steps"]
+__all__ = ["resonant_steps"]
 
 RESONANT = 10.0
 """How many times larger than its neighbours let expect the error of a resonant step is."""

@@ -11,7 +11,8 @@ import numpy as np
 
 from canon.flow.measure import AccuracyWarning
 from canon.flow.method import FixedStep
-from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.flow.precision import unit_round_off
+from canon.flow.propagate import propagate
 from canon.study.drift import Growth, drift
 from canon.study.observed import ENERGY, SYMPLECTICITY, Observable, tangent_of
 
@@ -28,10 +29,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = ["UNIT_ROUND_OFF", "DriftRow", "Run", "drift_row", "drift_rows"]
-
-UNIT_ROUND_OFF = {"single": 2.0**-24, "extended": 2.0**-64, "quad": 2.0**-113, "double-double": 2.0**-106}
-"""Unit round-off by precision; 2⁻⁵³ for the others."""
+__all__ = ["DriftRow", "Run", "drift_row", "drift_rows"]
 
 TIMED_STEPS = 20_000
 """Steps that are timed without samples."""
@@ -171,7 +169,7 @@ def drift_rows(
             rows[each.name] = _judged(found, each, seconds)
         if len(along) < len(observables):
             rows[SYMPLECTICITY] = _symplecticity(run, found, seconds)
-    except (NonFiniteStateError, ArithmeticError, ValueError) as failed:
+    except (ArithmeticError, ValueError) as failed:
         lost = DriftRow(run.method, run.step, np.empty(0), np.empty(0), failure=str(failed))
         return [replace(lost, observable=each.name) for each in observables]
     return [rows[each.name] for each in observables]
@@ -187,7 +185,7 @@ def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftR
     if found.statistics:
         seen = found.statistics[observable.name]
         t, error, largest = (t[1:] + t[:-1]) / 2.0, seen.mean / unit, (seen.largest / unit).max(axis=0)
-    smallest = UNIT_ROUND_OFF.get(found.precision, 2.0**-53)
+    smallest = unit_round_off(found.precision)
     roundoff = smallest * math.sqrt(found.steps) if observable.name == ENERGY and relative else None
     judged = [
         replace(drift(t, series, roundoff=roundoff, resolution=smallest), bound=float(bound))

@@ -12,7 +12,7 @@ from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinate
 from canon.scene import find
 from canon.study.choose_law import expected_error
 from canon.study.choose_pilot import Pilot, Setting, pilot
-from canon.study.choose_search import tolerance_at
+from canon.study.choose_tolerance import tolerance_at
 from canon.study.errors import StudyError
 from tests.study import series
 

@@ -1,0 +1,192 @@
+"""What may be chosen: the methods that apply, and one of them with what is expected of it over the whole span."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.propagate import NonFiniteStateError, is_separable
+from canon.flow.request import numbers_of, system_of
+from canon.flow.solvable import SABA, WisdomHolman
+from canon.kernel.planets import Planets, Quadratic, UnsolvableError, solvable_part
+from canon.kernel.scheme import SCHEMES
+from canon.study.choose_law import expected_error, order_of
+from canon.study.choose_pilot import Pilot, Question, Setting, pilot, seconds_per_time
+
+if TYPE_CHECKING:
+    from canon.flow.method import Method
+
+__all__ = [
+    "HOPELESS",
+    "MARGIN",
+    "PILOTS",
+    "Candidate",
+    "Try",
+    "by_order",
+    "candidate_methods",
+    "candidate_of",
+    "nothing",
+    "tried_with",
+]
+
+MARGIN = 0.85
+"""Share of the accuracy that is aimed at; what is above this and below one is taken as it is."""
+
+PILOTS = 9
+"""Pilot runs a method gets at most."""
+
+HOPELESS = 4.0
+"""How many times dearer than the best so far a method may be expected to be before its search ends."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A method at the step or tolerance it needs, or why it does not reach the accuracy.
+
+    Parameters
+    ----------
+    method, step, tolerance, precision
+        As :func:`canon.flow.propagate.propagate` takes them; a step or tolerance is None where the method
+        has the other.
+    predicted_error
+        Largest error expected over the span.
+    predicted_cost
+        Processor seconds expected of the steps.
+    evaluations
+        Evaluations of the force expected (Taylor: of the series).
+    keeps
+        Whether the accuracy is expected to be kept.
+    resonant
+        Whether a neighbouring step was resonant and had to be avoided.
+    note
+        What else there is to say.
+    """
+
+    method: Method
+    step: float | None
+    tolerance: float | None
+    precision: str
+    predicted_error: float
+    predicted_cost: float
+    evaluations: float
+    keeps: bool
+    resonant: bool = False
+    note: str = ""
+
+    @property
+    def setting(self) -> Setting:
+        """The setting as pilots take it."""
+        return Setting(self.method, self.step, self.tolerance, self.precision)
+
+
+def candidate_methods(question: Question) -> tuple[Method, ...]:
+    """Return the methods that apply, those first that are usually the cheapest.
+
+    Splittings where H = T(p) + V(q), else Gauss's methods; Wisdom & Holman's and its kin where H is a disturbed
+    motion known in closed form; Taylor's, and two ordinary ones for comparison.
+    """
+    others = *_of_disturbed(question), RK4(), DOP853()
+    if not is_separable(question.hamiltonian, question.values):
+        return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *others
+    names = sorted(SCHEMES, key=lambda name: -SCHEMES[name].order)
+    return Taylor(), *(Splitting(name) for name in names), *others
+
+
+def _of_disturbed(question: Question) -> tuple[Method, ...]:
+    """Return the splittings by solvable parts where H is a solvable part and something else.
+
+    Where nothing else is there, the motion is known and no method need be chosen; where the solvable part is T(p)
+    alone, they are ordinary splittings.
+    """
+    try:
+        part = solvable_part(system_of(question.hamiltonian, numbers_of(question.values)))
+    except UnsolvableError:
+        return ()
+    if not isinstance(part, Planets) and all(force == part.rest.graph.zero for force in part.rest.force):
+        return ()
+    n = len(question.y0) // 2
+    if isinstance(part, Quadratic) and not any(any(row[:n]) for row in part.field):
+        return ()
+    return WisdomHolman(), SABA(4), SABA("8-6-4"), SABA("10-6-4")
+
+
+@dataclass(frozen=True)
+class Try:
+    """A pilot run and what is expected of its setting over the whole span."""
+
+    pilot: Pilot
+    error: float
+    cost: float
+
+    @property
+    def knob(self) -> float:
+        """The step, or the tolerance of an adaptive method."""
+        return self.pilot.setting.knob
+
+
+def tried_with(question: Question, setting: Setting, duration: float) -> Try:
+    """Return a setting after a pilot run of that duration."""
+    found = pilot(question, setting, duration)
+    if found.lost:
+        return Try(found, math.inf, question.span / duration * found.steps)
+    error = expected_error(found, question.span, question.observable)
+    try:
+        rate = seconds_per_time(question, found.setting, duration)
+    except NonFiniteStateError:  # with a step a little smaller, to divide another span
+        return Try(found, math.inf, math.inf)
+    return Try(found, error, rate * question.span)
+
+
+def by_order(question: Question, tried: Try, accuracy: float) -> Candidate:
+    """Return the candidate at the step that its order lets expect, which was not tried."""
+    if math.isinf(tried.error):
+        return nothing(tried.pilot.setting, tried.pilot.failure or "its error grows too fast")
+    knob = tried.knob * (MARGIN * accuracy / tried.error) ** (1.0 / order_of(tried.pilot))
+    setting = tried.pilot.setting
+    if setting.step is None and knob < 2.0**-52:
+        return candidate_of(question, tried, accuracy, note="its tolerance is as small as it can be")
+    share = tried.knob / knob if setting.step is not None else 1.0
+    found = candidate_of(question, tried, accuracy)
+    return replace(
+        found,
+        step=None if setting.step is None else knob,
+        tolerance=None if setting.tolerance is None else knob,
+        predicted_error=MARGIN * accuracy,
+        predicted_cost=found.predicted_cost * share,
+        evaluations=found.evaluations * share,
+        keeps=True,
+        note="by its order, not tried",
+    )
+
+
+def candidate_of(question: Question, tried: Try, accuracy: float, note: str = "") -> Candidate:
+    """Return a setting that was tried as a candidate."""
+    setting, found = tried.pilot.setting, tried.pilot
+    return Candidate(
+        method=setting.method,
+        step=setting.step,
+        tolerance=setting.tolerance,
+        precision=setting.precision,
+        predicted_error=tried.error,
+        predicted_cost=tried.cost,
+        evaluations=found.evaluations * question.span / found.span,
+        keeps=tried.error <= accuracy,
+        note=note,
+    )
+
+
+def nothing(setting: Setting, reason: str) -> Candidate:
+    """Return a setting that can't follow the motion, and why."""
+    return Candidate(
+        setting.method,
+        None,
+        None,
+        setting.precision,
+        predicted_error=math.inf,
+        predicted_cost=math.inf,
+        evaluations=math.inf,
+        keeps=False,
+        note=reason,
+    )

@@ -1,0 +1,60 @@
+"""A last, longer look at the candidate that would be chosen, and whether plain doubles suffice."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from canon.study.choose_candidate import MARGIN, Candidate, candidate_of, tried_with
+from canon.study.choose_law import order_of
+from canon.study.choose_pilot import Question, Setting, dop853_share
+from canon.study.choose_search import LONGEST_PILOT
+from canon.study.choose_tolerance import ADAPTIVE_MARGIN, last_rung, tolerance_at
+
+__all__ = ["confirmed", "double_instead"]
+
+CONFIRMING = 8.0
+"""How many times longer than the pilots the last look at the cheapest candidate is."""
+
+RESONANT = 3.0
+"""How many times larger than at the neighbouring steps the error of a resonant one is."""
+
+NEIGHBOUR = 0.97
+"""Ratio of neighbouring steps."""
+
+
+def double_instead(
+    question: Question, chosen: Candidate, duration: float, accuracy: float
+) -> Candidate | None:
+    """Return the candidate in plain doubles where that is expected to keep the accuracy and to cost less."""
+    if chosen.precision != "compensated":
+        return None
+    tried = tried_with(question, Setting(chosen.method, chosen.step, precision="double"), duration)
+    found = candidate_of(question, tried, accuracy)
+    return found if found.keeps and found.predicted_cost < 0.97 * chosen.predicted_cost else None
+
+
+def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: float) -> Candidate:
+    """Return the candidate after a longer look: at resonance, and at an error that grows late."""
+    if question.span <= duration:
+        return chosen
+    longer = min(question.span, CONFIRMING * duration * dop853_share(chosen.method))
+    if chosen.step is not None:
+        longer = min(longer, LONGEST_PILOT * chosen.step)
+    setting, resonant = chosen.setting, False
+    tried = tried_with(question, setting, longer)
+    share = 1.0 if setting.step is not None or longer >= question.span else ADAPTIVE_MARGIN
+    for _ in range(4):
+        if tried.error <= share * accuracy:
+            break
+        if setting.step is not None:
+            resonant = resonant or tried.error > RESONANT * chosen.predicted_error
+            order = order_of(tried.pilot)
+            factor = (MARGIN * accuracy / tried.error) ** (1.0 / order) if tried.error < math.inf else 0.5
+            setting = setting.turned(setting.knob * min(NEIGHBOUR, max(factor, 0.3)))
+        elif setting.knob > tolerance_at(last_rung(setting.precision)):
+            setting = setting.turned(setting.knob * math.exp(-2.0))
+        else:
+            break
+        tried = tried_with(question, setting, longer)
+    return replace(candidate_of(question, tried, accuracy), resonant=resonant)
