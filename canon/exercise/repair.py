@@ -20,6 +20,7 @@ from flint import acb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.exercise.monomial import Monomials
 from canon.exercise.tree import symbols_of
 from canon.exercise.variants import Change, times, variants
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
@@ -37,6 +38,7 @@ POINTS = 3
 PRECISION = 128
 MOST_VARIANTS = 3_000
 PROOF_SECONDS = 0.5
+MOST_TERMS = 6
 
 
 @dataclass(frozen=True)
@@ -109,8 +111,8 @@ def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[R
             right = sp.Rational(factor.numerator, factor.denominator) * claimed
             yield Repair(right, Change("{} should be {} what it is", name, times(factor)))
     yield from _terms_rescaled(part, screen)
-    missing = list(_terms_missing(part, screen, hints))
-    yield from missing
+    yield from _terms_missing(part, screen, hints)
+    yield from _monomials(part, screen)
     slips: list[tuple[Expr, Change]] = []
     for new, change in islice(
         variants(claimed, symbols_of(claimed, part.right, *part.through)), MOST_VARIANTS
@@ -152,6 +154,22 @@ def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterato
             yield Repair(part.claimed + missing, Change("in {} the term {} is missing", part.name, missing))
 
 
+def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
+    """A term or a factor lost that is a product of powers, found from how the residual scales."""
+    claimed, name = part.claimed, part.name
+    found = Monomials(part, screen.first, screen.memo)
+    with precision(PRECISION):
+        missing = list(found.of_residual())
+        terms = sorted(sp.Add.make_args(claimed), key=lambda term: term.has(*part.determined))
+        factors = [(t, list(found.of_share(t))) for t in terms] if len(terms) <= MOST_TERMS else []
+    for term in missing:
+        yield Repair(claimed - term, Change("in {} the term {} is missing", name, -term))
+    for term, products in factors:
+        for factor in products:
+            right = claimed - term + factor * term
+            yield Repair(right, Change("in {} the term {} should be {}", name, term, factor * term))
+
+
 def _says_something(part: Part, right: Expr) -> bool:
     """Whether a repaired equation still holds an acceleration or multiplier, if the wrong one did."""
     return part.right != 0 or not part.claimed.has(*part.determined) or right.has(*part.determined)
@@ -174,15 +192,17 @@ class Screen:
         self.part = part
         symbols = symbols_of(part.right, part.claimed, *part.through.values())
         self.points: list[dict[sp.Basic, acb]] = []
+        self.first: dict[Symbol, sp.Rational] | None = None
         with precision(PRECISION):
             for number, point in enumerate(
                 domain.points((s for s in symbols if s not in part.through), POINTS, seed=11)
             ):
-                memo = self._memo(point, number)
+                memo = self.memo(point, number)
                 if memo is not None:
+                    self.first = self.first or point
                     self.points.append(memo)
 
-    def _memo(self, point: dict[Symbol, sp.Rational], number: int) -> dict[sp.Basic, acb] | None:
+    def memo(self, point: dict[Symbol, sp.Rational], number: int) -> dict[sp.Basic, acb] | None:
         """Return the values of symbols and arbitrary functions at a point, of the replaced symbols too."""
         memo: dict[sp.Basic, acb] = {s: value(s, point) for s in point}
         whole = sp.Tuple(self.part.claimed, self.part.right, *self.part.through.values())

@@ -96,6 +96,8 @@ def common_slips(
         yield {f: -f}, Change("the sign of {} is wrong everywhere", f)
         for twin in _twins(f):
             yield {f: twin(*arguments(f))}, Change("{} should be {} everywhere", f, twin(*arguments(f)))
+    for a, b in combinations(own, 2) if len(expressions) > 1 else ():
+        yield {a: b, b: a}, Change("{} and {} should be exchanged everywhere", a, b)
     for node in _repeated(expressions):
         for new, change in chain(_signs(node), _factors(node)):
             yield {node: new}, Change("in {} {}, everywhere", node, change)
