@@ -18,7 +18,17 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-__all__ = ["DOP853", "RK4", "FixedStep", "Gauss", "Method", "Splitting", "Taylor", "TimeTransformed"]
+__all__ = [
+    "DOP853",
+    "RK4",
+    "FixedStep",
+    "Gauss",
+    "Method",
+    "Splitting",
+    "Stepped",
+    "Taylor",
+    "TimeTransformed",
+]
 
 Coefficient = float | int | str | Fraction
 """Text is read as the exact decimal or quotient it spells, a float as the binary number it is."""
@@ -33,15 +43,14 @@ class Splitting:
     name
         One of ``verlet``, ``forest-ruth``, ``suzuki-4``, ``mclachlan-4``, ``blanes-moan-4``,
         ``blanes-moan-6``, ``kahan-li-6``, ``kahan-li-8``, ``sofroniou-spaletta-10``; or ``srkn-6a``,
-        ``srkn-6b`` where T is
-        quadratic in p.
+        ``srkn-6b`` where T is quadratic in p.
     a, b
         Coefficients of your own instead: drift a₁h, kick b₁h, drift a₂h …; as many drifts as kicks, or one
         more.
     parts
-        H₀ and H₁ with H = H₀ + H₁, in place of T and V: the flow of H₀, which is quadratic in (q, p) or
-        Kepler's motion,
-        takes the drifts' place, kicks by H₁, a function of q, the kicks'. See also :func:`canon.flow.solvable.SABA`.
+        H₀ and H₁ with H = H₀ + H₁, in place of T and V: the flow of H₀, which is quadratic in (q, p) or Kepler's
+        motion, takes the drifts' place, kicks by H₁, a function of q, the kicks'. See also
+        :func:`canon.flow.solvable.SABA`.
 
     Raises
     ------
@@ -258,8 +267,7 @@ class TimeTransformed:
         V(q, t) with V < 0 along the motion: dt/ds = −1/V. Or a Gauss method with a function g.
     g
         dt/ds as a function of (q, p), positive along the motion, for Poincaré's K = g(H − E₀), which takes a
-        Gauss method;
-        a constant factor in it is of no account.
+        Gauss method; a constant factor in it is of no account.
 
     Raises
     ------
@@ -268,9 +276,8 @@ class TimeTransformed:
 
     Notes
     -----
-    ``step`` is the size in t of the first step. The samples' times are as the method gives them, evenly spaced
-    in steps;
-    the last step ends where the span does. One orbit at a time.
+    ``step`` is the size in t of the first step. The samples' times are as the method gives them, evenly spaced in
+    steps; the last step ends where the span does. One orbit at a time.
 
     Examples
     --------
@@ -328,7 +335,10 @@ class TimeTransformed:
 FixedStep = Splitting | Gauss | RK4 | SolvableSplitting
 """Methods that take steps of one size."""
 
-Method = FixedStep | Taylor | DOP853 | TimeTransformed
+Stepped = FixedStep | TimeTransformed
+"""Methods that take ``step=``; the others choose theirs by ``tolerance=``."""
+
+Method = Stepped | Taylor | DOP853
 """What ``propagate`` takes as ``method``."""
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, EXTENDED, SINGLE, MachineType
 
-__all__ = ["ADAPTIVE", "FIXED", "Precision", "fixed_precision"]
+__all__ = ["ADAPTIVE", "FIXED", "Precision", "fixed_precision", "unit_round_off"]
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,36 @@ FIXED = {
 
 ADAPTIVE = ("double", "extended", "quad")
 """Precisions of heyoka's Taylor method beside a number of decimal digits: 53, 64 and 113 bits."""
+
+_QUAD_BITS = 113
+"""Bits of IEEE 754's binary128."""
+
+
+def unit_round_off(precision: str) -> float:
+    """Return the largest relative error of rounding to the numbers of a precision, 2⁻ᵖ with p bits of mantissa.
+
+    Parameters
+    ----------
+    precision
+        A keyword, or a number of decimal digits as text, as :class:`canon.Trajectory` has it.
+
+    Raises
+    ------
+    ValueError
+        There is no such precision.
+
+    Examples
+    --------
+    >>> [unit_round_off(name) == 2.0**-bits for name, bits in (("single", 24), ("compensated", 53), ("quad", 113))]
+    [True, True, True]
+    """
+    if precision in FIXED:
+        return 2.0 ** -FIXED[precision].number.mantissa
+    if precision == "quad":
+        return 2.0**-_QUAD_BITS
+    if precision.isdecimal():
+        return 0.5 * 10.0 ** (1 - int(precision))
+    raise ValueError(f"precision={precision!r}: there are {', '.join((*FIXED, 'quad'))} and decimal digits")
 
 
 def fixed_precision(name: str | int | None) -> Precision:

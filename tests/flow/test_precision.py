@@ -7,7 +7,7 @@ import sympy as sp
 
 from canon.flow.job import NonFiniteStateError
 from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
-from canon.flow.precision import ADAPTIVE, FIXED
+from canon.flow.precision import ADAPTIVE, FIXED, unit_round_off
 from canon.flow.propagate import propagate
 from canon.kernel.scheme import SCHEMES
 from tests.flow.systems import (
@@ -25,6 +25,21 @@ from tests.flow.test_geometry import exact_step
 
 SS10 = Splitting("sofroniou-spaletta-10")
 UNIT = {"single": 2.0**-24, "double": 2.0**-53, "compensated": 2.0**-53, "extended": 2.0**-64}
+
+
+@pytest.mark.parametrize("precision", UNIT)
+def test_the_unit_round_off_is_the_arithmetics_own(precision):
+    assert unit_round_off(precision) == UNIT[precision]
+    number = FIXED[precision].number
+    assert unit_round_off(precision) == np.finfo(number.dtype).eps / 2
+
+
+def test_the_unit_round_off_of_more_digits():
+    assert unit_round_off("double-double") == unit_round_off("double") ** 2
+    assert unit_round_off("quad") == 2.0**-113
+    assert unit_round_off("34") == pytest.approx(5e-34)
+    with pytest.raises(ValueError, match="'half'"):
+        unit_round_off("half")
 
 
 @pytest.mark.parametrize("precision", UNIT)

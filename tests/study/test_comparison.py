@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from canon import DOP853, RK4, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon.flow.method import TimeTransformed
 from canon.scene import find
 from canon.study.comparison import StudyError, drift_study
 from canon.study.drift import Growth
@@ -25,7 +26,10 @@ def galaxy():
 
 def test_symplectic_methods_stay_bounded_and_runge_kutta_drifts(galaxy):
     kahan_li, verlet, runge_kutta, taylor = (row.drift for row in galaxy.rows)
-    assert kahan_li.verdict in (Growth.BOUNDED, Growth.ROUND_OFF)
+    # One random walk in twenty looks as if it perhaps returned, and is left undecided; how far it went is certain.
+    assert kahan_li.verdict in (Growth.BOUNDED, Growth.ROUND_OFF, Growth.UNDECIDED)
+    assert kahan_li.walk < 2.0**-53 * galaxy.rows[0].steps ** 0.5
+    assert abs(kahan_li.slope) < 3 * kahan_li.slope_error < 1e-17
     assert verdict_and_size(verlet) == (Growth.BOUNDED, -2)
     assert runge_kutta.verdict is Growth.SECULAR
     assert taylor.verdict in (Growth.ROUND_OFF, Growth.BOUNDED)
@@ -101,6 +105,16 @@ def test_a_method_that_does_not_fit_is_a_row_with_the_reason():
     assert taylor.drift is not None
     table = drift_table(study)
     assert "verlet failed: H is not a sum" in table
+
+
+def test_time_transformed_methods_take_the_step_of_a_study():
+    method = TimeTransformed(Splitting("verlet"))
+    study = drift_study(find("kepler"), methods=[method, Splitting("verlet")], periods=50, tolerance=1e-6)
+    transformed, plain = study.rows
+    assert not transformed.failure
+    assert transformed.step == pytest.approx(plain.step, rel=1e-3)
+    # On Kepler's problem it errs in time only: Mikkola & Tanikawa 1999.
+    assert transformed.drift.bound < 1e-13 < 1e-3 < plain.drift.bound
 
 
 def test_a_collision_is_a_row_with_the_reason():

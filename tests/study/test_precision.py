@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from canon import DOP853, RK4, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon.flow.method import TimeTransformed
 from canon.plot import plot_work_precision
 from canon.scene import find
 from canon.study.comparison import StudyError
@@ -100,7 +101,7 @@ def test_a_run_that_fails_is_a_row_with_the_reason():
 
 def test_requests_that_make_no_sense():
     scene = find("henon-heiles")
-    with pytest.raises(StudyError, match="RK4 takes fixed steps: give steps"):
+    with pytest.raises(StudyError, match="RK4 takes steps of given sizes"):
         work_precision(scene, None, 10.0, [RK4()], tolerances=[1e-6])
     with pytest.raises(StudyError, match="give tolerances"):
         work_precision(scene, None, 10.0, [DOP853()], steps=[0.1])
@@ -130,6 +131,14 @@ def test_a_step_that_stands_out_from_its_neighbours_is_resonant():
     assert resonance(peaked) == [False, False, True, False, False]
     peaked[2] /= 5.0
     assert resonance(peaked) == [False] * 5
+
+
+def test_time_transformed_methods_have_their_order_of_the_step():
+    method = TimeTransformed(Splitting("verlet"))
+    found = work_precision(find("kepler"), None, 1.0, [method], steps=[0.004, 0.002], repetitions=1)
+    assert [row.tolerance for row in found.rows] == [None, None]
+    errors = [row.position_error for row in found.rows]
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.02)
 
 
 def test_precisions_side_by_side():
