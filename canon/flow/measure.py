@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from canon.kernel.machine import MachineType
     from canon.kernel.structure import Equations
 
-__all__ = ["AccuracyWarning", "measured", "values_in", "warn_of_jumps"]
+__all__ = ["AccuracyWarning", "jumped", "measured", "values_in", "warn_of_jumps"]
 
 Array = npt.NDArray[np.float64]
 
@@ -74,7 +74,7 @@ def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
     """Warn where the energy of an autonomous system changed as by a step over a singularity.
 
     Steps of one size may pass a collision from one side to the other without ever meeting an infinity. The
-    energy does not survive it: where it has changed by half the size of H's terms at the start, the motion
+    energy does not survive it: where it has changed by a quarter of the size of H's terms at the start, the motion
     after that is not the system's.
 
     Parameters
@@ -91,13 +91,7 @@ def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
     AccuracyWarning
         With the interval of time in which that was first seen.
     """
-    node = system.graph.nodes[system.hamiltonian]
-    terms = node.operands if node.kind == "add" else (system.hamiltonian,)
-    values = dict(zip(system.inputs, (*samples.y[:, 0], np.float64(samples.t[0])), strict=True))
-    sizes = [abs(np.broadcast_to(v, change.shape[1:])) for v in system.graph.evaluate(terms, values)]
-    size = np.sum(sizes, axis=0)
-    # Where H and its terms are 0 at the start there is nothing to compare with.
-    wrong = (np.abs(change) > _IMPLAUSIBLE * size) & (size > 0)
+    wrong = jumped(system, samples, change)
     if not wrong.any():
         return
     first, orbit = (int(k[0]) for k in np.nonzero(wrong))
@@ -109,6 +103,17 @@ def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
         AccuracyWarning,
         stacklevel=5,  # the line that called propagate() or resume()
     )
+
+
+def jumped(system: Equations, samples: Samples, change: Array) -> npt.NDArray[np.bool_]:
+    """Return where the energy has changed by half the size of H's terms at the start, shape (times, orbits)."""
+    node = system.graph.nodes[system.hamiltonian]
+    terms = node.operands if node.kind == "add" else (system.hamiltonian,)
+    values = dict(zip(system.inputs, (*samples.y[:, 0], np.float64(samples.t[0])), strict=True))
+    sizes = [abs(np.broadcast_to(v, change.shape[1:])) for v in system.graph.evaluate(terms, values)]
+    size = np.sum(sizes, axis=0)
+    # Where H and its terms are 0 at the start there is nothing to compare with.
+    return (np.abs(change) > _IMPLAUSIBLE * size) & (size > 0)
 
 
 def _rounded(values: npt.NDArray[Any]) -> Array:

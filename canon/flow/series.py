@@ -199,7 +199,7 @@ class _Orbit:
             steps += steps_taken
             rows += found
             left = left[len(found) :]
-        made = np.array(rows).reshape(len(rows), -1)
+        made = np.array(rows).reshape(len(rows), len(self.integrator.state))
         if not left and not np.isfinite(made.astype(np.float64)).all():
             failure = "the state is not finite"
         if stopped or (not left and not isinstance(failure, str)):

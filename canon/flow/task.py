@@ -72,6 +72,10 @@ class Task:
             raise Interrupted(made)
         return made
 
+    def samples(self) -> Samples:
+        """Carry the task out and return the states alone."""
+        return self._continued(lambda _: None, None)
+
     def _continued(self, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
         states = self.states if so_far is None else (so_far.y[:, -1], so_far.carried[:, -1])
         events, orbits = prepared(self.system, self.events), states[0].shape[1]

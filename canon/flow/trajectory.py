@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from canon.flow.error import ErrorEstimate
     from canon.flow.event import Crossing
     from canon.flow.method import Method
     from canon.flow.task import Task
@@ -216,6 +217,37 @@ class Trajectory:
             raise ValueError("H depends on t, so its change is no error; energy_change has it")
         return self.energy_change / abs(self.energy[0]) if self.relative else self.energy_change
 
+    def error_estimate(self, orbits: Sequence[int] | None = None) -> ErrorEstimate:
+        """Return how far this motion is from the true one, by a companion run that is more exact.
+
+        A method of fixed steps is repeated with half the step in wider numbers, which takes about ten times as long
+        as the motion did; others are compared with Taylor's method in wider numbers. See :mod:`canon.flow.error`.
+
+        Parameters
+        ----------
+        orbits
+            Which orbits of many to estimate; all of them where not given.
+
+        Raises
+        ------
+        ValueError
+            The trajectory does not come from ``propagate``.
+
+        Examples
+        --------
+        >>> from canon import Hamiltonian, Splitting, coordinates, propagate
+        >>> import sympy
+        >>> (x,) = coordinates("x")
+        >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
+        >>> motion = propagate(pendulum, [1.0, 0.0], (0, 100), method=Splitting("verlet"), step=0.1)
+        >>> estimate = motion.error_estimate()
+        >>> bool(0.02 < estimate.relative[-1] < 0.1), estimate.meaningful_until, estimate.lyapunov_time
+        (True, None, None)
+        """
+        from canon.flow.error import error_estimate
+
+        return error_estimate(self, orbits)
+
     @property
     def stopped(self) -> bool:
         """Whether an event ended the motion."""
@@ -283,6 +315,7 @@ class Trajectory:
         >>> bool((half.resume(20).y == whole.y).all())
         True
         """
+        from canon.flow.method import DOP853, Taylor
         from canon.flow.progress import reporting
         from canon.flow.sampling import sampling
         from canon.kernel.structure import exact
@@ -290,6 +323,8 @@ class Trajectory:
         task, kept = self.origin
         if self.stopped:
             raise ValueError(f"the motion was ended by the event {self.events[-1].event}: it does not go on")
+        if task.plan.h is None and not isinstance(task.method, Taylor | DOP853):
+            raise ValueError(f"{task.method} does not go on: propagate() anew from the last state")
         if until is not None:
             last, end = task.plan.last(len(kept.t) - 1), exact(until, "until")
             if len(kept.t) < len(task.plan.instants):
