@@ -74,7 +74,7 @@ def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
     """Warn where the energy of an autonomous system changed as by a step over a singularity.
 
     Steps of one size may pass a collision from one side to the other without ever meeting an infinity. The
-    energy does not survive it: where it has changed by a quarter of the size of H's terms at the start, the motion
+    energy does not survive it: where it has changed by half the size of H's terms at the start, the motion
     after that is not the system's.
 
     Parameters
