@@ -12,7 +12,7 @@ import numpy as np
 from canon.flow.fixed import compiled_loop, fixed_steps
 from canon.flow.measure import measured
 from canon.flow.precision import fixed_precision
-from canon.flow.request import numbers_of, system_of
+from canon.flow.request import system_of
 from canon.flow.sampling import Plan, fixed_plan
 from canon.flow.task import Task
 from canon.flow.trajectory import Samples, Trajectory
@@ -83,7 +83,7 @@ def transformed_motion(
     start, end = (exact(t, "t_span") for t in t_span)
     if start == end:
         raise ValueError(f"t_span = {t_span} has no length")
-    ours, larger = system_of(hamiltonian, numbers_of(parameters or {})), extended(hamiltonian, method)
+    ours, larger = system_of(hamiltonian, parameters or {}), extended(hamiltonian, method)
     energy, rate = _at_start(ours, larger, state, start)
     if not rate > 0:
         raise ValueError(
@@ -92,7 +92,7 @@ def transformed_motion(
         )
     h = (1 if end > start else -1) * Fraction(step) / rate
     kind = fixed_precision(precision)
-    system = system_of(larger, numbers_of(parameters or {}))
+    system = system_of(larger, parameters or {})
     loop = compiled_loop(system, method.method, kind)
 
     def advance(y: Sequence[Fraction], stops: Sequence[int], part: Fraction) -> Samples:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from canon.flow.job import NonFiniteStateError
 from canon.flow.method import TimeTransformed
 from canon.flow.progress import reporting
-from canon.flow.request import HamiltonianSystem, numbers_of, system_of, task_of
+from canon.flow.request import HamiltonianSystem, system_of, task_of
 from canon.flow.trajectory import Interrupted, Trajectory
 
 if TYPE_CHECKING:
@@ -170,4 +170,4 @@ def is_separable(hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | st
     >>> is_separable(kepler.hamiltonian, kepler.values), is_separable(pendulum.hamiltonian, pendulum.values)
     (True, False)
     """
-    return system_of(hamiltonian, numbers_of(parameters)).separable
+    return system_of(hamiltonian, parameters).separable

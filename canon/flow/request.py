@@ -15,7 +15,7 @@ from canon.flow.method import DOP853, FixedStep, Method, Taylor
 from canon.flow.sampling import adaptive_plan, sampling
 from canon.flow.task import Task
 from canon.kernel.machine import double_pair
-from canon.kernel.structure import Equations, equations, exact
+from canon.kernel.structure import Equations, equations, exact, exact_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from canon.flow.trajectory import Array
 
-__all__ = ["HamiltonianSystem", "numbers_of", "system_of", "task_of"]
+__all__ = ["HamiltonianSystem", "system_of", "task_of"]
 
 _KEPT = 64
 """Systems kept for the next call."""
@@ -81,7 +81,7 @@ def task_of(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
     fixed, varying = _by_orbit(parameters or {})
-    system = system_of(hamiltonian, numbers_of(fixed), tuple(varying))
+    system = system_of(hamiltonian, fixed, tuple(varying))
     nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
     given, single = _with_parameters(y0, len(hamiltonian.q), varying)
     start, end = (exact(t, "t_span") for t in t_span)
@@ -122,19 +122,30 @@ def _with_tolerance(method: Method, tolerance: float | None) -> Method:
     raise ValueError(f"{method} takes fixed steps: give step=, not tolerance=")
 
 
-def numbers_of(parameters: Mapping[Symbol | str, Any]) -> frozenset[tuple[str, Fraction]]:
-    """Return parameters' exact numbers by name."""
-    return frozenset((str(name), exact(value, str(name))) for name, value in parameters.items())
-
-
 def system_of(
     hamiltonian: HamiltonianSystem,
-    parameters: frozenset[tuple[str, Fraction]],
+    parameters: Mapping[Symbol | str, Any],
     varying: tuple[str, ...] = (),
 ) -> Equations:
-    """Return a Hamiltonian's equations, kept from an earlier call if there was one."""
+    """Return a Hamiltonian's equations, kept from an earlier call if there was one.
+
+    Parameters
+    ----------
+    hamiltonian
+        The Hamiltonian.
+    parameters
+        A number for every parameter, by symbol or name.
+    varying
+        Names of the parameters that differ from orbit to orbit.
+
+    Raises
+    ------
+    KeyError
+        A parameter of H has no value.
+    """
     q, p = tuple(hamiltonian.q), tuple(hamiltonian.p)
-    return _kept_system(hamiltonian.H, q, p, hamiltonian.t, parameters, varying)
+    numbers = frozenset(exact_numbers(parameters).items())
+    return _kept_system(hamiltonian.H, q, p, hamiltonian.t, numbers, varying)
 
 
 @functools.lru_cache(maxsize=_KEPT)

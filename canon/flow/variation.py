@@ -14,7 +14,7 @@ from canon.expression.graph import Graph
 from canon.expression.symbol import time
 from canon.flow.job import NonFiniteStateError
 from canon.flow.pointwise import Miss, Value, definite_node, values_at
-from canon.kernel.structure import exact
+from canon.kernel.structure import exact, exact_numbers
 from canon.kernel.taylor import heyoka_expressions
 from canon.mechanics.vector_field import VectorField
 
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from canon.flow.propagate import HamiltonianSystem
     from canon.flow.trajectory import Array
 
-__all__ = ["Field", "Look", "carried", "exact_numbers", "field_of", "look_at", "step_error"]
+__all__ = ["COMPACT_FROM", "Field", "Look", "carried", "field_of", "look_at", "step_error"]
 
-_COMPACT_FROM = 60
+COMPACT_FROM = 60
 """Equations with more operations are compiled in heyoka's compact mode."""
 
 
@@ -119,7 +119,7 @@ def carried(
     start, end = (float(exact(t, "t_span")) for t in t_span)
     if start == end or samples < 1:
         raise ValueError(f"t_span = {t_span} with samples={samples}: there is no motion to look at")
-    large = len(field.graph.reachable(field.rates)) * (1 + variations) > _COMPACT_FROM
+    large = len(field.graph.reachable(field.rates)) * (1 + variations) > COMPACT_FROM
     integrator = hy.taylor_adaptive(equations, y0, time=start, compact_mode=large)
     outcome, _, _, steps, _, rows = integrator.propagate_grid(np.linspace(start, end, samples + 1))
     if outcome != hy.taylor_outcome.time_limit or not np.isfinite(rows).all():
@@ -180,8 +180,3 @@ def look_at(field: Field, claimed: int, y: Array, t: float) -> Look:
         (abs(a.number * where[s]) for a, s in zip(by, variables, strict=True)), Fraction(0)
     )
     return Look(I.number, tuple(abs(float(a.number)) for a in by[:-1]), scale, rate)
-
-
-def exact_numbers(parameters: Mapping[Symbol | str, Any]) -> dict[str, Fraction]:
-    """Return the parameters' exact numbers by name."""
-    return {str(name): exact(value, str(name)) for name, value in parameters.items()}

@@ -21,7 +21,8 @@ import numpy as np
 import sympy as sp
 
 from canon.flow.pointwise import FINE, Miss, bracket_misses
-from canon.flow.variation import carried, exact_numbers, field_of, look_at, step_error
+from canon.flow.variation import carried, field_of, look_at, step_error
+from canon.kernel.structure import exact_numbers
 from canon.proof.verdict import Evidence
 
 if TYPE_CHECKING:

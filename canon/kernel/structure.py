@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["Equations", "equations", "exact"]
+__all__ = ["Equations", "equations", "exact", "exact_numbers"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,3 +217,19 @@ def exact(value: Any, what: str) -> Fraction:
         )
     except (ValueError, OverflowError, AttributeError):
         raise ValueError(f"{what} = {value!r} is no finite real number") from None
+
+
+def exact_numbers(parameters: Mapping[Symbol | str, Any]) -> dict[str, Fraction]:
+    """Return parameters' exact numbers by name.
+
+    Raises
+    ------
+    ValueError
+        A value is no finite real number.
+
+    Examples
+    --------
+    >>> exact_numbers({sp.Symbol("g"): "9.81", "m": 0.5})
+    {'g': Fraction(981, 100), 'm': Fraction(1, 2)}
+    """
+    return {str(name): exact(value, str(name)) for name, value in parameters.items()}

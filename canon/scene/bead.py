@@ -95,7 +95,7 @@ def _hoop_picture(s: SimpleNamespace) -> Picture:
     return Picture(masses=(_on_the_hoop(s, s.phi),), bars=(tuple(_on_the_hoop(s, turn) for turn in turns),))
 
 
-_HOOP = {"a": 0.2, "w": 10.0, "g": 9.80665}
+_HOOP = {"a": 0.2, "w": 10.0, "g": GRAVITY.value}
 
 
 def _balance(value: Mapping[str, float]) -> float:

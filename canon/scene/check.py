@@ -103,7 +103,7 @@ def rate_of(scene: Scene, f: Expr) -> Expr:
     lagrangian = scene.lagrangian
     through = dict(zip(map(momentum, scene.q), lagrangian.momenta, strict=True))
     rate = time_derivative(exchanged(f, through), scene.q, lagrangian.t)
-    bound = scene.constrained if scene.holonomic_of or scene.nonholonomic_of else None
+    bound = scene.constrained if scene.is_constrained else None
     accelerations = (bound or lagrangian).accelerations
     rate = exchanged(rate, dict(zip(map(acceleration, scene.q), accelerations, strict=True)))
     return exchanged(rate, independent_velocities(bound).through) if bound else rate

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from canon.scene.parts import multiplier
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -71,8 +73,7 @@ def description(scene: Scene) -> Iterator[Section]:
     Hamiltonian | H = -g*l*m*cos(theta) + p_theta**2/(2*l**2*m) |
     Routhian | no coordinate is ignorable, so R = L
     """
-    has_lagrangian = scene.L_of is not None or scene.bodies_of is not None
-    if has_lagrangian:
+    if scene.has_lagrangian:
         lagrangian = scene.lagrangian
         yield Section("Lagrangian", (Formula("L", lagrangian.L),))
         if lagrangian.forces:
@@ -82,7 +83,7 @@ def description(scene: Scene) -> Iterator[Section]:
     if scene.is_free:
         hamiltonian = scene.hamiltonian
         yield Section("Hamiltonian", (Formula("H", hamiltonian.H),))
-        if not has_lagrangian:
+        if not scene.has_lagrangian:
             variables = (*hamiltonian.q, *hamiltonian.p)
             rates = zip(variables, hamiltonian.vector_field, strict=True)
             yield Section("Hamilton's equations", tuple(Formula(f"d{x}/dt", rate) for x, rate in rates))
@@ -96,16 +97,14 @@ def description(scene: Scene) -> Iterator[Section]:
 
 
 def _equations(scene: Scene) -> Iterator[Section]:
-    if not (scene.holonomic_of or scene.nonholonomic_of):
+    if not scene.is_constrained:
         equations = scene.lagrangian.equations
         yield Section("Lagrange's equations", tuple(Formula(None, e) for e in equations))
         return
-    from canon.expression.symbol import parameters
-
     bound = scene.constrained
     constraints = (*bound.holonomic, *bound.nonholonomic)
     yield Section("Constraints", tuple(Formula(None, f) for f in constraints))
-    multipliers = parameters(" ".join(f"lambda{i}" for i in range(1, len(constraints) + 1)))
+    multipliers = [multiplier(i) for i in range(1, len(constraints) + 1)]
     with_reactions = bound.equations(multipliers)[: len(scene.q)]
     yield Section(
         "Lagrange's equations with multipliers",
@@ -115,8 +114,7 @@ def _equations(scene: Scene) -> Iterator[Section]:
 
 
 def _routhian(scene: Scene) -> Iterator[Section]:
-    has_lagrangian = scene.L_of is not None or scene.bodies_of is not None
-    if not has_lagrangian and all(scene.hamiltonian.H.has(s) for s in scene.q):
+    if not scene.has_lagrangian and all(scene.hamiltonian.H.has(s) for s in scene.q):
         yield Section("Routhian", (), "no coordinate is ignorable, so R = L")
         return
     from canon.mechanics.routh import routhian

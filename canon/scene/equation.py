@@ -17,7 +17,8 @@ import sympy as sp
 
 from canon.expression.graph import Graph
 from canon.expression.symbol import momentum, velocity
-from canon.flow.variation import Field, exact_numbers
+from canon.flow.variation import Field
+from canon.kernel.structure import exact_numbers
 from canon.mechanics.constrained_derivation import constrained
 from canon.mechanics.derivation import derivation_of_lagrangian
 from canon.mechanics.factorisation import solved_on_graph
@@ -93,9 +94,7 @@ def equation_of(scene: Scene) -> Equation:
     >>> found.field.x
     (theta, p_theta)
     """
-    if scene.H_of is not None and scene.L_of is None and scene.bodies_of is None:
-        return _hamiltonian_equation(scene)
-    return _lagrangian_equation(scene)
+    return _lagrangian_equation(scene) if scene.has_lagrangian else _hamiltonian_equation(scene)
 
 
 def _hamiltonian_equation(scene: Scene) -> Equation:
@@ -155,7 +154,7 @@ def _constraints(
     scene: Scene, found: Equations
 ) -> tuple[list[int], tuple[int, ...], tuple[int, ...], tuple[tuple[int, ...], ...]]:
     """Return residuals, multipliers λ, a₀ and A of the scene's constraints as nodes in q, q̇, t."""
-    if not (scene.holonomic_of or scene.nonholonomic_of):
+    if not scene.is_constrained:
         return [], (), (), ()
     graph, add, mul = found.graph, found.graph.add, found.graph.mul
     bound = scene.constrained

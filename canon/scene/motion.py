@@ -9,6 +9,7 @@ import numpy as np
 
 from canon.expression.arithmetic import LONGDOUBLE
 from canon.flow.job import NonFiniteStateError
+from canon.flow.variation import COMPACT_FROM
 from canon.kernel.taylor import heyoka_expressions
 from canon.mechanics.constrained_derivation import constrained, constrained_motion
 from canon.mechanics.derivation import derivation_of_lagrangian
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Motion", "first_zero", "run", "start_state"]
 
-_COMPACT_FROM = 60
-"""Equations with more operations are compiled in heyoka's compact mode."""
+_MET = -1
+"""heyoka's outcome where the first of its terminal events stopped the motion."""
 
 _TURN_HIGH, _TURN_LOW = 6.28125, 1.9353071795864769e-03
 """2π in two parts, the first with so few digits that a multiple of it is exact."""
@@ -130,7 +131,7 @@ def _carried(field: Field, y0: Array, times: Array, angles: NDArray[np.intp]) ->
     """
     import heyoka as hy
 
-    large = len(field.graph.reachable(field.rates)) > _COMPACT_FROM
+    large = len(field.graph.reachable(field.rates)) > COMPACT_FROM
     integrator = hy.taylor_adaptive(field.heyoka_pairs(), y0, compact_mode=large)
     turns = np.zeros(len(field.x))
     rows, whole, steps = [y0], [turns.copy()], 0
@@ -183,7 +184,7 @@ def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Moti
     y0 = start_state(scene, chosen, equation)
     integrator = hy.taylor_adaptive(pairs, y0, t_events=[hy.t_event(crossing)], compact_mode=True)
     outcome, _, _, steps, _, _ = integrator.propagate_until(periods * scene.period)
-    if int(outcome) not in (-1, 0) or not np.isfinite(integrator.state).all():
+    if int(outcome) != _MET or not np.isfinite(integrator.state).all():
         raise NonFiniteStateError(
             f"{f} does not vanish before t = {integrator.time:.9g} ({outcome}); follow the motion longer",
             float(integrator.time),

@@ -190,7 +190,7 @@ def _steady_spin(value: Mapping[str, float], tilt: float, turning: float) -> flo
     return (turning**2 * s * c / 4.0 - value["g"] / value["R"] * c) / (1.5 * turning * s)
 
 
-_TILT, _CIRCLING, _DISC = 1.2, 3.0, {"R": 0.1, "g": 9.80665}
+_TILT, _CIRCLING, _DISC = 1.2, 3.0, {"R": 0.1, "g": GRAVITY.value}
 _OMEGA3 = _steady_spin(_DISC, _TILT, _CIRCLING)
 
 

@@ -78,8 +78,9 @@ PROJECTILE = Scene(
 
 _MU = Parameter("mu", SUN, "au³/a²", "gravitational parameter G(M + m)")
 _CIRCULAR = math.sqrt(SUN)
-_NEAR = 0.4
-_FAST = math.sqrt(SUN * (1.0 + 0.6) / 0.4)
+_ECCENTRICITY = 0.6
+_NEAR = 1.0 - _ECCENTRICITY
+_FAST = math.sqrt(SUN * (1.0 + _ECCENTRICITY) / _NEAR)
 _TILT = 0.4
 
 
@@ -100,6 +101,13 @@ def _polar_place(s: SimpleNamespace) -> tuple[Expr, Expr]:
     from sympy import cos, sin
 
     return (s.r * cos(s.phi), s.r * sin(s.phi))
+
+
+def _conic(s: SimpleNamespace) -> Expr:
+    """Return r (1 + e cos φ)."""
+    from sympy import Rational, cos
+
+    return s.r * (1 + Rational(str(_ECCENTRICITY)) * cos(s.phi))
 
 
 def _focus(dimension: int) -> tuple[tuple[Point, ...], ...]:
@@ -130,18 +138,12 @@ POLAR = Scene(
         Solution(
             "the orbit: r (1 + e cos φ) = a (1 − e²)",
             "e=0.6",
-            lambda s: s.r * (1 + _six_tenths() * _cosine(s.phi)),
-            lambda _v, _t: 0.64,
+            _conic,
+            lambda _v, _t: 1.0 - _ECCENTRICITY**2,
         ),
     ),
     picture_of=lambda s: Picture(masses=(_polar_place(s),), ground=_focus(2)),
 )
-
-
-def _six_tenths() -> Expr:
-    from sympy import Rational
-
-    return Rational(3, 5)
 
 
 def _cosine(angle: Expr) -> Expr:
@@ -290,7 +292,7 @@ def _table_picture(s: SimpleNamespace) -> Picture:
     return Picture(masses=(place, hanging), bars=((place, hole, hanging),), ground=(edge,))
 
 
-_TABLE = {"m1": 0.2, "m2": 0.3, "g": 9.80665}
+_TABLE = {"m1": 0.2, "m2": 0.3, "g": GRAVITY.value}
 _RADIUS = 0.4
 
 

@@ -149,7 +149,7 @@ SLIDING_MASS = Scene(
             "horizontal place: harmonic",
             "swinging",
             lambda s: s.r * _sine(s.theta),
-            lambda v, t: _horizontal_place(v, t),
+            _horizontal_place,
             bound=1e-11,
         ),
     ),
@@ -217,7 +217,9 @@ SPHERICAL = Scene(
     parameters=(Parameter("m", 1.0, "kg", "mass of the bob"), Parameter("l", 1.0, "m", "length"), GRAVITY),
     starts=(
         Start("precessing", "thrown sideways from 1 rad", q=(1.0, 0.0), v=(0.0, 2.0)),
-        Start("conical", "circling at 1 rad", q=(1.0, 0.0), v=(0.0, math.sqrt(9.80665 / math.cos(1.0)))),
+        Start(
+            "conical", "circling at 1 rad", q=(1.0, 0.0), v=(0.0, math.sqrt(GRAVITY.value / math.cos(1.0)))
+        ),
     ),
     time_scale=_small_swing,
     time_unit="s",

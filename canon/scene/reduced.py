@@ -42,7 +42,7 @@ def reduced(scene: Scene, start: str | None = None) -> Scene:
     from canon.mechanics.ignorable import ignorable_coordinates
     from canon.mechanics.routh import routhian
 
-    if scene.holonomic_of or scene.nonholonomic_of:
+    if scene.is_constrained:
         raise SceneError(f"{scene.name} has constraints; eliminate them before coordinates are ignored")
     ignored = ignorable_coordinates(scene.lagrangian)
     if not ignored:

@@ -144,7 +144,17 @@ class Scene:
     @property
     def is_free(self) -> bool:
         """Whether no constraints and no forces without potential act, so that a Hamiltonian says all."""
-        return not (self.forces_of or self.holonomic_of or self.nonholonomic_of)
+        return not (self.forces_of or self.is_constrained)
+
+    @property
+    def is_constrained(self) -> bool:
+        """Whether constraints act."""
+        return bool(self.holonomic_of or self.nonholonomic_of)
+
+    @property
+    def has_lagrangian(self) -> bool:
+        """Whether it is given by a Lagrangian or by bodies, and not by a Hamiltonian alone."""
+        return self.L_of is not None or self.bodies_of is not None
 
     @cached_property
     def lagrangian(self) -> Lagrangian:

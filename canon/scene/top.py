@@ -89,7 +89,7 @@ def _slow_precession(value: Mapping[str, float], spin: float, theta: float) -> f
 
 
 _STEADY_SPIN, _STEADY_TILT = 150.0, 0.5
-_TOP = {"m": 0.1, "l": 0.04, "A": 2.2e-4, "C": 0.8e-4, "g": 9.80665}
+_TOP = {"m": 0.1, "l": 0.04, "A": 2.2e-4, "C": 0.8e-4, "g": GRAVITY.value}
 _OMEGA = _slow_precession(_TOP, _STEADY_SPIN, _STEADY_TILT)
 
 

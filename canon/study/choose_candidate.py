@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, is_separable
-from canon.flow.request import numbers_of, system_of
+from canon.flow.request import system_of
 from canon.flow.solvable import SABA, WisdomHolman
 from canon.kernel.planets import Planets, Quadratic, UnsolvableError, solvable_part
 from canon.kernel.scheme import SCHEMES
@@ -101,7 +101,7 @@ def _of_disturbed(question: Question) -> tuple[Method, ...]:
     alone, they are ordinary splittings.
     """
     try:
-        part = solvable_part(system_of(question.hamiltonian, numbers_of(question.values)))
+        part = solvable_part(system_of(question.hamiltonian, question.values))
     except UnsolvableError:
         return ()
     if not isinstance(part, Planets) and all(force == part.rest.graph.zero for force in part.rest.force):
