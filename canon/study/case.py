@@ -93,6 +93,13 @@ class Case:
         return find(self.system).with_parameters(**dict(self.parameters)).values
 
     @property
+    def period(self) -> float | None:
+        """The period of a typical motion, None where none is known."""
+        if isinstance(self.system, Formula):
+            return self.system.period
+        return find(self.system).with_parameters(**dict(self.parameters)).period
+
+    @property
     def state(self) -> tuple[float, ...]:
         """The state (q, p) at the start, of length 2n."""
         if isinstance(self.start, tuple):

@@ -311,11 +311,17 @@ def _wandering(
         memory = back.memory * blocks.duration * (WINDOWS + WIDTH) / (means.size + WIDTH)
         return Growth.BOUNDED, exponent, f"the mean wanders, but returns within a time of about {memory:.2g}"
     found = f"the mean wanders by {walk.size:.2g} over the run"
-    if roundoff is not None and walk.size > BEYOND_ROUND_OFF * roundoff:
+    like_a_walk = exponent.low <= 0.5 <= exponent.high
+    if roundoff is not None and walk.size <= BEYOND_ROUND_OFF * roundoff:
+        # Rounding is known to be there: that it returns would need more evidence than one walk in twenty gives.
+        if like_a_walk:
+            return Growth.ROUND_OFF, exponent, f"{found}, as round-off of {roundoff:.2g} does"
+        found += ", no more than round-off but not as t^½"
+    elif roundoff is not None:
         found += f", far beyond the {roundoff:.2g} of round-off"
     elif back.evidence > PERHAPS_RETURNS:
         found += ", and perhaps returns"
-    elif exponent.low <= 0.5 <= exponent.high:
+    elif like_a_walk:
         return Growth.ROUND_OFF, exponent, f"{found}, as a random walk does"
     else:
         found += ", without a direction but not as t^½"

@@ -18,15 +18,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.measure import AccuracyWarning
-from canon.flow.method import FixedStep
+from canon.flow.method import FixedStep, TimeTransformed
 from canon.flow.precision import unit_round_off
 from canon.flow.propagate import propagate
 from canon.flow.sampling import steps_over
 from canon.study.case import parts_of
 from canon.study.drift import drift
 from canon.study.envelope import envelope_of
+from canon.study.instants import is_resolved, scattered
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from canon.flow.trajectory import Trajectory
     from canon.study.case import Case
 
@@ -34,6 +37,12 @@ __all__ = ["Checkpoint", "FailedRun", "Outcome", "advance", "started"]
 
 CURVE = 64
 """Points of the curve of |ΔE| that is kept of a run."""
+
+FEWEST_A_PERIOD = 8.0
+"""Samples in a period that are enough to see what happens in it, where the period is known."""
+
+INTERVALS, FINE = 16, 512
+"""Intervals between samples that are looked at where it is not, and looks in each."""
 
 
 class FailedRun(ArithmeticError):
@@ -68,6 +77,8 @@ class Checkpoint:
         Cost so far; the processor time is that of the steps and of keeping samples.
     step, precision
         As the run has them.
+    even
+        Whether the samples stand at equal distances (:mod:`canon.study.instants`).
     """
 
     part: int
@@ -81,6 +92,7 @@ class Checkpoint:
     seconds: float = 0.0
     step: float | None = None
     precision: str = ""
+    even: bool = True
 
     def to_text(self) -> str:
         """Return the checkpoint as JSON; floats survive exactly."""
@@ -159,6 +171,8 @@ def advance(case: Case, reached: Checkpoint | None = None, seconds: float = math
 
 def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
     """Return the checkpoint after one more part."""
+    if point.part == 0:
+        point = replace(point, even=_evenly(case))
     found = _part(case, point, end)
     before = point.change[-1] if point.change else 0.0
     change = tuple((before + found.energy_change).tolist())
@@ -189,6 +203,18 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
     else:
         ends = np.linspace(0.0, case.span, end + 1)
         span, step = (Fraction(ends[point.part]), Fraction(ends[point.part + 1])), case.step
+    times = None if point.even else _between(span, samples, seed=point.part)
+    return _run(case, state, span, step, samples, times)
+
+
+def _run(
+    case: Case,
+    state: Sequence[Fraction | float],
+    span: tuple[Fraction, Fraction],
+    step: float | None,
+    samples: int,
+    times: Sequence[float] | None = None,
+) -> Trajectory:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
         found = propagate(
@@ -200,11 +226,36 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
             tolerance=case.tolerance,
             precision=case.precision,
             parameters={**case.values},
-            samples=samples,
+            samples=samples if times is None else None,
+            times=times,
         )
     if not found.autonomous:
         raise ValueError("H depends on t, so its change is no error")
     return found
+
+
+def _evenly(case: Case) -> bool:
+    """Tell whether even samples do, from the period where it is known, else from a look at the first few intervals."""
+    interval = case.span / case.samples
+    if isinstance(case.method, TimeTransformed):
+        return True  # it keeps even samples only
+    if (period := case.period) is not None and interval * FEWEST_A_PERIOD <= period:
+        return True
+    every, step = FINE, case.step
+    if isinstance(case.method, FixedStep):
+        _, step = _whole_steps(case, 0, 1)
+        every = min(FINE, round(interval / step))
+    if every < 2:
+        return True
+    seen = min(INTERVALS, case.samples)
+    found = _run(case, case.state, (Fraction(0), Fraction(seen * interval)), step, seen * every)
+    return is_resolved(found.energy_change, every)
+
+
+def _between(span: tuple[Fraction, Fraction], samples: int, seed: int) -> list[float]:
+    """Return scattered times inside a span."""
+    first, last = span
+    return [t for t in scattered(float(first), float(last), samples, seed).tolist() if first < t < last]
 
 
 def _whole_steps(case: Case, part: int, end: int) -> tuple[tuple[Fraction, Fraction], float]:
