@@ -7,15 +7,16 @@ import queue
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from canon.exercise.report import Report
 from canon.exercise.sheet import Sheet, read_sheet
 from canon.exercise.worker import Worker
+from canon.expression.given import given_kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     from canon.exercise.report import Judgement
     from canon.exercise.sheet import Claim
@@ -54,6 +55,7 @@ def check(sheet: str | Path | Sheet, jobs: int = 1) -> Report:
     >>> report.counts
     {'holds': 1}
     """
+    given_kind(sheet, (Sheet, str, Path), "the sheet", "write Sheet(title, claims) of claims")
     read = sheet if isinstance(sheet, Sheet) else read_sheet(sheet)
     return Report(read.title or read.file, tuple(judged(read.claims, jobs)), read.claims)
 
@@ -75,6 +77,8 @@ def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
     >>> [j.status for j in judged([Claim("a", "equality-only", same), Claim("b", "equality-only", same)])]
     ['holds', 'holds']
     """
+    if given_kind(jobs, int, "jobs") < 1:
+        raise ValueError(f"jobs should be a number of processes, 1 or more, not {jobs!r}")
     with ExitStack() as stack:
         workers = [stack.enter_context(Worker()) for _ in range(jobs)]
         idle: queue.SimpleQueue[Worker] = queue.SimpleQueue()

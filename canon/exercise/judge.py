@@ -25,7 +25,8 @@ from canon.exercise import (
 from canon.exercise.manifold import EmptyDomainError
 from canon.exercise.question import Deadline, Question, Stated, decide
 from canon.exercise.reading import InvalidClaim, Reading
-from canon.exercise.sheet import Claim, ClaimError
+from canon.exercise.sheet import Claim, ClaimError, claim_from
+from canon.expression.given import given_kind
 from canon.mechanics.linear import SingularMatrixError
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
@@ -130,8 +131,10 @@ def examine(claim: Claim) -> Finding:
     InvalidClaim
         As :func:`judge` does.
     """
-    if claim.errors:
-        raise InvalidClaim(claim.errors[0])
+    given_kind(claim, Claim, "what is judged", "write Claim(id, kind, keys), or ask expect(kind, …)")
+    errors = claim.errors or claim_from({**claim.keys, "id": claim.id, "kind": claim.kind}).errors
+    if errors:
+        raise InvalidClaim(errors[0])
     deadline = Deadline.after(claim.budget)
     reading = Reading(claim)
     answered: list[Verdict] = []

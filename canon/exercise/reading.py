@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -25,6 +26,7 @@ from canon.expression.symbol import Coordinate, Momentum, velocity
 from canon.expression.units import units
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
+from canon.proof.prove import is_empty
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -175,7 +177,14 @@ class Reading:
             if symbol is None:
                 self.fault("box", f"{name} is not declared; {self.scope.near(name)}")
             box[symbol] = (exact(low), exact(high))
-        return Domain(tuple(conditions), MappingProxyType(box))
+        domain = Domain(tuple(conditions), MappingProxyType(box))
+        if (
+            conditions
+            and next(domain.points((), 1), None) is None
+            and is_empty(domain, time.monotonic() + 0.5)
+        ):
+            self.fault("domain", "no point satisfies these conditions and assumptions together")
+        return domain
 
     def _of_rates(self) -> Iterator[Boolean]:
         """Yield what ``parameters`` assumes of velocities and accelerations, as conditions."""

@@ -17,6 +17,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from canon.exercise.form import MAX_DIGITS, faults
+from canon.expression.given import given_kind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -150,7 +151,7 @@ def read_sheet(path: str | Path) -> Sheet:
     SheetError
         Where the file can't be read, is too large, or is no sheet.
     """
-    path = Path(path)
+    path = Path(given_kind(path, (str, Path), "the path of the sheet"))
     try:
         with path.open("rb") as file:
             data = file.read(MAX_BYTES + 1)  # never more, even of what has no size, such as a pipe
@@ -198,8 +199,28 @@ def sheet_from(data: bytes, *, file: str = "", toml: bool = False) -> Sheet:
     except RecursionError as error:
         raise SheetError(f"{shown}: nested too deeply to be a sheet") from error
     except ValueError as error:
-        raise SheetError(f"{shown}: not valid {'TOML' if toml else 'JSON'} ({error})") from error
+        remedy = _QUOTES if toml and "\\" in str(error) else ""
+        raise SheetError(f"{shown}: not valid {'TOML' if toml else 'JSON'} ({error}){remedy}") from error
     return _sheet(found, file, shown)
+
+
+_QUOTES = (
+    "; a backslash means something to TOML between double quotes: write LaTeX between single quotes, '…'"
+)
+
+_EATEN = re.compile(
+    "\t(?=au|an|heta|ext|imes|frac|o\\b)|\x08(?=eta|ar|igl?|oldsymbol)|\x0c(?=rac)|\r(?=ho|ight|angle|m\\b)|\n(?=abla|eq?\\b|u\\b)"
+)
+"""What is left of \\theta, \\beta, \\frac, \\rho, \\nabla where a backslash and a letter became one character."""
+
+
+def _eaten(value: Any) -> bool:
+    """Tell whether LaTeX in a value lost backslashes to the quotes it stood in."""
+    if isinstance(value, str):
+        return value.lstrip().startswith("$") and _EATEN.search(value) is not None
+    if isinstance(value, dict):
+        return any(map(_eaten, value.values()))
+    return isinstance(value, list) and any(map(_eaten, value))
 
 
 def _decimal(text: str) -> Decimal | str:
@@ -294,6 +315,9 @@ def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
     kind = said if isinstance(said, str) else ""
     found = [("id", "missing (a name for the claim)")] if id_ != name else []
     found += faults(kind, keys)
+    found += [
+        (key, f"a backslash and a letter became one sign here{_QUOTES}") for key in keys if _eaten(keys[key])
+    ]
     expect = keys.get("expect", "")
     if expect not in ("", "holds", "fails"):
         found.append(("expect", "write holds or fails"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import sympy as sp
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["all_of", "given_expression", "given_kind", "given_symbols"]
+__all__ = ["all_of", "given_expression", "given_kind", "given_seconds", "given_symbols"]
 
 Kind = TypeVar("Kind")
 
@@ -78,7 +79,9 @@ def given_symbols(x: Any, name: str = "") -> tuple[Symbol, ...]:
         ...
     TypeError: x should be symbols, as coordinates('q') or parameters('m') make them, not q**2
     """
-    several = (x,) if isinstance(x, sp.Basic | str) or not hasattr(x, "__iter__") else tuple(x)
+    several: tuple[Any, ...] = (
+        (x,) if isinstance(x, sp.Basic | str) or not hasattr(x, "__iter__") else tuple(x)
+    )
     for each in several:
         if not isinstance(each, sp.Symbol):
             said = "symbols, as coordinates('q') or parameters('m') make them"
@@ -119,6 +122,28 @@ def given_kind(x: Any, kinds: type[Kind] | tuple[type[Any], ...], name: str, ins
     raise TypeError(f"{name} should be {wanted}, not {_described(x)}{f'; {instead}' if instead else ''}")
 
 
+def given_seconds(budget: Any) -> float:
+    """Return a budget of time as it was given.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Where it is no number.
+
+    Examples
+    --------
+    >>> given_seconds("3")
+    Traceback (most recent call last):
+        ...
+    TypeError: budget should be a number of seconds, not the text '3'
+    """
+    if not isinstance(budget, Real):
+        raise TypeError(f"budget should be a number of seconds, not {_described(budget)}")
+    if budget != budget:
+        raise ValueError("budget should be a number of seconds, not NaN")
+    return float(budget)
+
+
 def all_of(x: Any, count: int, name: str, of: str) -> Sequence[Any]:
     """Return as many things as there should be.
 
@@ -156,7 +181,8 @@ def _not_an_expression(f: Any, name: str) -> str:
     else:
         held = [letter for letter in ("H", "L", "F") if isinstance(getattr(f, letter, None), sp.Expr)]
         remedy = f"; give its .{held[0]}" if held else ""
-    return f"{name or 'this'} should be an expression, not {_described(f)}{remedy}"
+    wanted = f"{name} should be an expression" if name else "an expression is needed"
+    return f"{wanted}, not {_described(f)}{remedy}"
 
 
 def _described(x: Any) -> str:

@@ -13,6 +13,7 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.expression import syntax
+from canon.expression.given import given_kind
 from canon.expression.juxtaposition import parse_juxtaposed
 from canon.expression.scope import Scope
 from canon.expression.symbol import Coordinate
@@ -101,6 +102,8 @@ def syntax_of(text: str, scope: Scope) -> syntax.Node:
     LanguageError
         With the column, the reason and a remedy.
     """
+    given_kind(text, str, "an expression of the language")
+    given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
     if text.lstrip().startswith("$"):
         from canon.expression.latex import parse_latex  # only here: it loads a parser generator
 

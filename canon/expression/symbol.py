@@ -7,10 +7,14 @@ A coordinate is an ordinary SymPy symbol that knows the names of its rates and o
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
+from sympy.core.facts import InconsistentAssumptions
+
+from canon.expression.given import given_expression, given_symbols
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -107,7 +111,8 @@ def coordinates(names: str, **assumptions: bool) -> tuple[Coordinate, ...]:
     >>> theta.dot, theta.ddot, theta.momentum
     (theta_dot, theta_ddot, p_theta)
     """
-    return tuple(Coordinate(name, **(assumptions or {"real": True})) for name in _split(names))
+    assumed = _assumed(names, assumptions)
+    return tuple(Coordinate(name, **assumed) for name in _split(names))
 
 
 def parameters(names: str, **assumptions: bool) -> tuple[Symbol, ...]:
@@ -132,7 +137,8 @@ def parameters(names: str, **assumptions: bool) -> tuple[Symbol, ...]:
     >>> m.is_positive
     True
     """
-    return tuple(Symbol(name, **(assumptions or {"real": True})) for name in _split(names))
+    assumed = _assumed(names, assumptions)
+    return tuple(Symbol(name, **assumed) for name in _split(names))
 
 
 def velocity(q: Symbol) -> Rate:
@@ -162,8 +168,9 @@ def time_derivative(f: Expr, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     >>> time_derivative(x * x.dot, [x])
     x*x_ddot + x_dot**2
     """
+    f = given_expression(f, "f")
     terms: list[Expr] = [f.diff(t)]
-    for s in q:
+    for s in given_symbols(q, "q"):
         terms.append(f.diff(s) * velocity(s))
         terms.append(f.diff(velocity(s)) * acceleration(s))
     return sp.Add(*terms)
@@ -189,7 +196,36 @@ def without_dynamicsymbols(f: Expr, functions: Mapping[Expr, Symbol], t: Symbol 
     return replaced
 
 
-def _split(names: str) -> list[str]:
+_ASSUMPTIONS = (
+    "positive", "negative", "nonzero", "real", "integer", "nonnegative", "nonpositive", "complex", "imaginary",
+    "rational", "irrational", "algebraic", "transcendental", "even", "odd", "prime", "composite", "zero", "noninteger",
+    "finite", "infinite", "commutative", "hermitian", "antihermitian", "polar", "extended_real", "extended_positive",
+    "extended_negative", "extended_nonzero", "extended_nonnegative", "extended_nonpositive",
+)  # fmt: skip
+"""What SymPy takes as an assumption."""
+
+
+def _assumed(names: Any, assumptions: Mapping[str, Any]) -> dict[str, bool]:
+    """Return SymPy's assumptions, real unless said otherwise; a misspelt one is no assumption and says so."""
+    for word, value in assumptions.items():
+        if word not in _ASSUMPTIONS:
+            close = get_close_matches(word, _ASSUMPTIONS, n=1)
+            remedy = f"is {close[0]} meant?" if close else "such as positive, real, integer"
+            raise ValueError(f"SymPy has no assumption {word!r}; {remedy}")
+        if not isinstance(value, bool):
+            raise TypeError(f"{word} should be True or False, not {value!r}")
+    said = {**assumptions} or {"real": True}
+    try:
+        Symbol("_", **said)
+    except InconsistentAssumptions:
+        together = ", ".join(f"{word}={value}" for word, value in said.items())
+        raise ValueError(f"{names}: nothing is {together} at once") from None
+    return said
+
+
+def _split(names: Any) -> list[str]:
+    if not isinstance(names, str):
+        raise TypeError(f"the names should be one text, as in coordinates('theta phi'), not {names!r}")
     found = names.replace(",", " ").split()
     if not found:
         raise ValueError("no names given: write them separated by spaces, as in coordinates('theta phi')")

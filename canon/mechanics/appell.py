@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_expression
 from canon.expression.symbol import time
+from canon.mechanics.body import bodies_of
 from canon.mechanics.quasi_velocity import Kinematics, solved_for
 from canon.mechanics.substitution import as_tuple, entry, exchanged
 
@@ -71,9 +73,9 @@ class GibbsAppell:
         forces: Sequence[Expr] | None = None,
         t: Symbol = time,
     ) -> None:
-        object.__setattr__(self, "bodies", tuple(bodies))
+        object.__setattr__(self, "bodies", bodies_of(bodies))
         object.__setattr__(self, "kinematics", Kinematics(q, u, q_dot, t))
-        object.__setattr__(self, "V", self.kinematics.plain(sp.sympify(V, strict=True)))
+        object.__setattr__(self, "V", self.kinematics.plain(given_expression(V, "V")))
         given = as_tuple(forces or (sp.S.Zero,) * len(q))
         object.__setattr__(self, "Q", tuple(self.kinematics.plain(force) for force in given))
         if len(self.Q) != len(self.q):

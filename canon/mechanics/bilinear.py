@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_expression, given_symbols
 from canon.mechanics.claim import all_vanish
-from canon.mechanics.substitution import entry
+from canon.mechanics.substitution import as_tuple, entry
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,6 +63,7 @@ def bilinear_covariant(
     >>> bilinear_covariant([p, 0], [q, p])
     -d_p*delta_q + d_q*delta_p
     """
+    form, x = as_tuple(form), given_symbols(x, "x")
     named = displacements(x)
     d, delta = d or named[0], delta or named[1]
     rotation = curl(form, x)
@@ -102,9 +104,7 @@ def curl(form: Sequence[Expr], x: Sequence[Symbol]) -> sp.Matrix:
     matrix = sp.zeros(n, n)
     for i in range(n):
         for j in range(i + 1, n):
-            matrix[i, j] = sp.sympify(form[i], strict=True).diff(x[j]) - sp.sympify(
-                form[j], strict=True
-            ).diff(x[i])
+            matrix[i, j] = given_expression(form[i]).diff(x[j]) - given_expression(form[j]).diff(x[i])
             matrix[j, i] = -matrix[i, j]
     return matrix
 

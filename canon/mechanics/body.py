@@ -6,13 +6,15 @@ T = ½ q̇ᵀA q̇ + b·q̇ + c; b and c vanish where nothing depends on time ex
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_expression, given_kind
 from canon.expression.symbol import time, velocity
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_all
@@ -47,7 +49,7 @@ class Particle:
     r: tuple[Expr, ...]
 
     def __init__(self, m: Expr, r: Sequence[Expr]) -> None:
-        object.__setattr__(self, "m", sp.sympify(m, strict=True))
+        object.__setattr__(self, "m", given_expression(m, "m"))
         object.__setattr__(self, "r", as_tuple(r))
 
     @property
@@ -83,10 +85,10 @@ class PlanarBody:
     angle: Expr
 
     def __init__(self, m: Expr, r: Sequence[Expr], moment: Expr, angle: Expr) -> None:
-        object.__setattr__(self, "m", sp.sympify(m, strict=True))
+        object.__setattr__(self, "m", given_expression(m, "m"))
         object.__setattr__(self, "r", as_tuple(r))
-        object.__setattr__(self, "moment", sp.sympify(moment, strict=True))
-        object.__setattr__(self, "angle", sp.sympify(angle, strict=True))
+        object.__setattr__(self, "moment", given_expression(moment, "moment"))
+        object.__setattr__(self, "angle", given_expression(angle, "angle"))
 
     @property
     def inertia(self) -> sp.ImmutableDenseMatrix:
@@ -131,12 +133,12 @@ class RigidBody:
         rotation: sp.MatrixBase | None = None,
         omega: Sequence[Expr] | None = None,
     ) -> None:
-        matrix = inertia if isinstance(inertia, sp.MatrixBase) else sp.diag(*inertia)
+        matrix = inertia if isinstance(inertia, sp.MatrixBase) else sp.diag(*as_tuple(inertia))
         if matrix.shape != (3, 3) or matrix != matrix.T:
             raise ValueError(f"the inertia {matrix.tolist()} is no symmetric 3×3 matrix nor three moments")
         if (rotation is None) == (omega is None):
             raise ValueError("say how the body turns by rotation or by omega, and not by both")
-        object.__setattr__(self, "m", sp.sympify(m, strict=True))
+        object.__setattr__(self, "m", given_expression(m, "m"))
         object.__setattr__(self, "r", as_tuple(r))
         object.__setattr__(self, "inertia", sp.ImmutableDenseMatrix(matrix))
         turned = None if rotation is None else sp.ImmutableDenseMatrix(rotation)
@@ -158,6 +160,20 @@ class RigidBody:
 
 Body = Particle | PlanarBody | RigidBody
 """What has mass."""
+
+
+def bodies_of(given: Any) -> tuple[Body, ...]:
+    """Return one body or several as a tuple.
+
+    Raises
+    ------
+    TypeError
+        Where something else is among them.
+    """
+    several = tuple(given) if isinstance(given, Iterable) else (given,)
+    for each in several:
+        given_kind(each, (Particle, PlanarBody, RigidBody), "what has mass", "write Particle(m, (x, y))")
+    return several
 
 
 def euler_rotation(phi: Expr, theta: Expr, psi: Expr) -> sp.ImmutableDenseMatrix:
@@ -195,6 +211,7 @@ def kinetic_energy(bodies: Sequence[Body], q: Sequence[Symbol], t: Symbol = time
     0
     """
     kinematics = Kinematics(q, t=t)
+    bodies = bodies_of(bodies)
     terms: list[Expr] = []
     for body in bodies:
         terms += [body.m * kinematics.rate(place) ** 2 / 2 for place in body.r]

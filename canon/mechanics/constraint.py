@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_kind
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.dependence import check_independent
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain
+from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import SingularMatrixError, solve
 from canon.mechanics.substitution import as_tuple, entry, exchanged
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from canon.mechanics.lagrangian import Lagrangian
 
 __all__ = ["ConstrainedLagrangian"]
 
@@ -69,6 +69,7 @@ class ConstrainedLagrangian:
         holonomic: Sequence[Expr] = (),
         nonholonomic: Sequence[Expr] = (),
     ) -> None:
+        given_kind(lagrangian, Lagrangian, "the system")
         object.__setattr__(self, "lagrangian", lagrangian)
         for name, given in (("holonomic", holonomic), ("nonholonomic", nonholonomic)):
             constraints = tuple(plain(f, lagrangian.q, lagrangian.t) for f in as_tuple(given))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_kind
 from canon.mechanics.generating import GeneratingFunction, kinds_of
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.implicit import ImplicitTransformation
@@ -19,7 +20,7 @@ from canon.mechanics.inversion import Inversion, solve_system
 from canon.mechanics.substitution import shortened, substitute
 from canon.mechanics.transformation import CanonicalTransformation
 from canon.mechanics.witness import far_from_principal, witnesses
-from canon.proof.domain import Domain
+from canon.proof.domain import Domain, as_domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -57,7 +58,8 @@ def generated_transformation(F: GeneratingFunction, domain: Domain | None = None
     >>> generated_transformation(GeneratingFunction(2, q*P + f*q**2/2, q, p, Q, P)).images
     (q, -f*q + p)
     """
-    return _solved(F, (*F.q, *F.p), (*F.new_q, *F.new_p), domain or F.domain)
+    _is_generating(F)
+    return _solved(F, (*F.q, *F.p), (*F.new_q, *F.new_p), as_domain(domain, F.domain))
 
 
 def generated_inverse(F: GeneratingFunction, domain: Domain | None = None) -> CanonicalTransformation:
@@ -70,7 +72,12 @@ def generated_inverse(F: GeneratingFunction, domain: Domain | None = None) -> Ca
     >>> generated_inverse(GeneratingFunction(2, q*P + f*q**2/2, q, p, Q, P)).images
     (Q, P + Q*f)
     """
-    return _solved(F, (*F.new_q, *F.new_p), (*F.q, *F.p), domain or F.domain)
+    _is_generating(F)
+    return _solved(F, (*F.new_q, *F.new_p), (*F.q, *F.p), as_domain(domain, F.domain))
+
+
+def _is_generating(F: GeneratingFunction) -> None:
+    given_kind(F, GeneratingFunction, "F", "write GeneratingFunction(2, q*P, q, p, Q, P)")
 
 
 def implicit_map(F: GeneratingFunction) -> ImplicitTransformation:

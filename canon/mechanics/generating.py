@@ -21,12 +21,13 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_expression, given_kind, given_symbols
 from canon.expression.symbol import time
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import is_regular
 from canon.mechanics.parametric import ParametricGeneratingFunction
 from canon.mechanics.recovery import Recovery
-from canon.mechanics.substitution import as_tuple, substitute
+from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain, as_domain
 from canon.proof.verdict import Verdict, all_hold
 
@@ -121,11 +122,11 @@ class GeneratingFunction:
         domain: Domain | None = None,
     ) -> None:
         for name, given in (("q", q), ("p", p), ("new_q", new_q), ("new_p", new_p)):
-            object.__setattr__(self, name, as_tuple(given))
+            object.__setattr__(self, name, given_symbols(given, name))
         n = len(self.q)
         object.__setattr__(self, "kind", kinds_of(kind, n))
-        object.__setattr__(self, "F", sp.sympify(F, strict=True))
-        object.__setattr__(self, "t", t)
+        object.__setattr__(self, "F", given_expression(F, "F"))
+        object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "give the domain as domain=…"))
         object.__setattr__(self, "domain", as_domain(domain))
         variables = (*self.q, *self.p, *self.new_q, *self.new_p)
         if len(variables) != 4 * n or len(set(variables)) < 4 * n:
@@ -315,6 +316,9 @@ def generating_function(
     >>> generating_function(T, 1).F
     m*q**2*w*cot(Q)/2
     """
+    from canon.mechanics.transformation import CanonicalTransformation
+
+    given_kind(transformation, CanonicalTransformation, "the map")
     kinds = kinds_of(kind, len(transformation.q))
     canonical = transformation.is_canonical()
     if canonical.fails:

@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_expression, given_kind, given_symbols
 from canon.expression.symbol import time
 from canon.mechanics.bracket import symplectic_unit
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import SingularMatrixError, is_regular, solve
-from canon.mechanics.substitution import entry, exchanged, substitute
+from canon.mechanics.substitution import as_tuple, entry, exchanged, substitute
 from canon.proof.domain import Domain
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
@@ -65,6 +66,10 @@ class ImplicitTransformation:
     domain: Domain = field(default_factory=Domain)
 
     def __post_init__(self) -> None:
+        for name in ("q", "p", "new_q", "new_p"):
+            object.__setattr__(self, name, given_symbols(getattr(self, name), name))
+        object.__setattr__(self, "equations", as_tuple(self.equations))
+        given_kind(self.domain, Domain, "the domain")
         n = len(self.q)
         if len(self.equations) != 2 * n:
             raise ValueError(
@@ -89,7 +94,7 @@ class ImplicitTransformation:
         """Tell whether A J Aᵀ = c B J Bᵀ wherever the equations hold, with B regular."""
         J = symplectic_unit(len(self.q))
         A, B = self.old_jacobian, self.new_jacobian
-        difference = A * J * A.T - sp.sympify(valence, strict=True) * B * J * B.T
+        difference = A * J * A.T - given_expression(valence, "valence") * B * J * B.T
         size = 2 * len(self.q)
         entries = [
             (f"(A J Aᵀ − c B J Bᵀ)[{i + 1}, {j + 1}] = 0", entry(difference, i, j))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_kind, given_symbols
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.inversion import Inversion, solve_system
 from canon.mechanics.substitution import substitute
@@ -52,7 +53,12 @@ def inverse_transformation(
     >>> inverse_transformation(T, [Q], [P]).images
     (sqrt(Q), 2*P*sqrt(Q))
     """
-    T = transformation
+    T = given_kind(transformation, CanonicalTransformation, "the map")
+    new_q, new_p = given_symbols(new_q, "new_q"), given_symbols(new_p, "new_p")
+    if not len(new_q) == len(new_p) == len(T.q):
+        raise ValueError(
+            f"{len(new_q)} new_q and {len(new_p)} new_p for {len(T.q)} degrees of freedom; give one each"
+        )
     meaning = dict(zip((*new_q, *new_p), T.images, strict=True))
     if len(set(meaning)) < 2 * len(T.q) or set(meaning) & set(T.variables):
         raise ValueError("the new variables need different symbols, none of them an old variable")

@@ -15,6 +15,7 @@ import numpy as np
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_kind
 from canon.expression.symbol import momentum, velocity
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.ignorable import ignorable_coordinates, is_ignorable
@@ -214,6 +215,7 @@ def routhian(
     """
     if convention not in get_args(Convention):
         raise ValueError(f"convention {convention!r} is unknown; write 'L-pq' or 'pq-L'")
+    given_kind(lagrangian, Lagrangian, "what routhian() reduces")
     ignored = (
         coordinate_symbols(ignorable) if ignorable is not None else ignorable_coordinates(lagrangian, domain)
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_symbols
 from canon.mechanics.bracket import lie_bracket
 from canon.mechanics.substitution import as_tuple
 
@@ -45,7 +46,7 @@ class VectorField:
 
     def __init__(self, components: Sequence[Expr], x: Sequence[Symbol]) -> None:
         object.__setattr__(self, "components", as_tuple(components))
-        object.__setattr__(self, "x", tuple(x))
+        object.__setattr__(self, "x", given_symbols(x, "x"))
         if len(self.components) != len(self.x):
             raise ValueError(
                 f"{len(self.components)} components for {len(self.x)} coordinates; give one each"

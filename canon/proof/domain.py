@@ -11,9 +11,9 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
-from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo
+from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
@@ -99,16 +99,18 @@ class Domain:
     box: Mapping[Symbol, tuple[Rational, Rational]] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
-        conditions: object = self.conditions
+        conditions: Any = self.conditions
+        box: Any = self.box
         if isinstance(conditions, str) or not isinstance(conditions, Iterable):
             raise TypeError(f"the conditions should be a tuple, as in Domain((x > 0,)), not {conditions!r}")
-        object.__setattr__(self, "conditions", tuple(conditions))
-        for condition in self.conditions:
-            if not isinstance(condition, Boolean) and condition not in (True, False):
+        sorted_out = (sympify(c) if isinstance(c, bool) else c for c in conditions)
+        object.__setattr__(self, "conditions", tuple(sorted_out))
+        for condition in cast("tuple[Any, ...]", self.conditions):
+            if not isinstance(condition, Boolean):
                 raise TypeError(
                     f"a condition should be one of SymPy's, such as x > 0 or Ne(x, 0), not {condition!r}"
                 )
-        for name, ends in self.box.items():
+        for name, ends in box.items():
             if not isinstance(name, Symbol):
                 raise TypeError(
                     f"the box names symbols, not {name!r}; write {{x: (low, high)}} with the symbol x"
@@ -257,7 +259,7 @@ EVERYWHERE = Domain()
 """No condition beside the symbols' own assumptions."""
 
 
-def as_domain(given: Domain | None, otherwise: Domain = EVERYWHERE) -> Domain:
+def as_domain(given: Any, otherwise: Domain = EVERYWHERE) -> Domain:
     """Return a domain that may not have been given.
 
     Raises

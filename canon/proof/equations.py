@@ -11,9 +11,10 @@ import sympy as sp
 from flint import acb, acb_mat
 from sympy.core.function import AppliedUndef
 
+from canon.expression.given import given_expression, given_kind, given_seconds, given_symbols
 from canon.proof.anatomy import anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.domain import EVERYWHERE, Domain
+from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import with_example_functions
 from canon.proof.generic import is_analytic, proved_sign
 from canon.proof.split import defined_nowhere
@@ -94,8 +95,11 @@ def equivalent_equations(
     >>> print(equivalent_equations([u - x, v], [u - x], [u, v]).feedback)
     equation 2 of the first system does not follow from the second: v = 0
     """
+    unknowns, domain = given_symbols(unknowns, "unknowns"), as_domain(domain)
+    for name, system in (("system_a", system_a), ("system_b", system_b)):
+        given_kind(system, (list, tuple), name, "put a single equation into brackets")
     start = time.monotonic()
-    deadline = start + budget
+    deadline = start + given_seconds(budget)
     a = _augmented(system_a, unknowns, domain, "first", deadline)
     b = _augmented(system_b, unknowns, domain, "second", deadline)
     unknown = [system for system in (a, b) if isinstance(system, str)]
@@ -140,7 +144,7 @@ def _augmented(
     at_rest: dict[sp.Basic, Expr] = dict.fromkeys(unknowns, sp.Integer(0))
     rows: list[tuple[Expr, ...]] = []
     for number, equation in enumerate(system, start=1):
-        expr = equation + sp.Integer(0)
+        expr = given_expression(equation, f"equation {number} of the {which} system")
         row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
         row.append(cast("Expr", expr.xreplace(at_rest)))
         if not _is_affine(expr, set(unknowns)):

@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
-from sympy import Add, LambertW, Ne, Piecewise, Pow, default_sort_key, false, true
+from sympy import Add, Integer, LambertW, Ne, Piecewise, Pow, default_sort_key, false, true
 from sympy.concrete.expr_with_limits import ExprWithLimits
 from sympy.functions.elementary.hyperbolic import InverseHyperbolicFunction
 from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction
@@ -19,7 +19,7 @@ from canon.proof.groups import groups
 from canon.proof.normal_form import NormalForm
 from canon.proof.phases import arcs_cancel
 from canon.proof.split import KINKED, cases, settle_equalities
-from canon.proof.tower import THOROUGH, Full, Limits, OutOfTime, TooLarge
+from canon.proof.tower import QUICK, THOROUGH, Full, Limits, OutOfTime, TooLarge
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Sequence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from sympy import Expr
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["REFUSALS", "Attempt", "prove_each", "prove_zero"]
+__all__ = ["REFUSALS", "Attempt", "is_empty", "prove_each", "prove_zero"]
 
 MOST_STARTS = 60
 """Times that the normal form is begun anew because a kernel had to be refined."""
@@ -90,6 +90,19 @@ def prove_zero(expr: Expr, domain: Domain, deadline: float, limits: Limits = THO
     except REFUSALS as reason:
         attempt.stop(f"no value could be given to a part: {reason}")
     return attempt
+
+
+def is_empty(domain: Domain, deadline: float) -> bool:
+    """Tell whether it is proved that no point satisfies the conditions: there 1 = 0 holds.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x = symbols("x", real=True)
+    >>> is_empty(Domain((x < 1, x > 2)), time.monotonic() + 1)
+    True
+    """
+    return prove_zero(Integer(1), domain, min(deadline, time.monotonic() + 0.5), QUICK).holds
 
 
 def prove_each(

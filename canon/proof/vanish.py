@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.expression.given import given_expression, given_seconds
 from canon.proof.anatomy import anatomy
 from canon.proof.budget import prove_in_worker
-from canon.proof.domain import EVERYWHERE, Domain
+from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import evaluated
-from canon.proof.prove import REFUSALS, Attempt, prove_each, prove_zero
+from canon.proof.prove import REFUSALS, Attempt, is_empty, prove_each, prove_zero
 from canon.proof.refute import Search, first_counterexample, look_for_counterexample, search_widely
 from canon.proof.tower import QUICK
 from canon.proof.verdict import Evidence, Status, Verdict
@@ -34,6 +35,9 @@ WORKER_SHARE = 0.8
 
 SEARCH_SHARE = 0.3
 """Part of the time left that the wider search for a counterexample may use."""
+
+
+EMPTY = "no point satisfies the conditions, so that anything holds there"
 
 
 def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: float = 10.0) -> Verdict:
@@ -63,7 +67,7 @@ def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: fl
     >>> vanishes(sin(x) ** 2 + cos(x) ** 2 - 1).status
     <Status.HOLDS: 'holds'>
     """
-    start = time.monotonic()
+    start, domain, budget = time.monotonic(), as_domain(domain), given_seconds(budget)
     if isinstance(expr, sp.MatrixBase):
         return _matrix_vanishes(expr, domain, start, budget).about("the matrix is zero")
     verdict = _decide(_exact(expr), sp.Integer(0), domain, start + budget)
@@ -89,7 +93,7 @@ def equal(
     >>> print(equal((x + 1)**2, x**2 + 1).status.value)
     fails
     """
-    start = time.monotonic()
+    start, domain, budget = time.monotonic(), as_domain(domain), given_seconds(budget)
     if isinstance(a, sp.MatrixBase) and isinstance(b, sp.MatrixBase):
         if a.shape != b.shape:
             raise ValueError(f"matrices of shapes {a.shape} and {b.shape} cannot be compared entry by entry")
@@ -150,7 +154,8 @@ def _exact(expr: object) -> Expr:
     """Return an expression without floating-point numbers, which would absorb small terms."""
     if isinstance(expr, int):
         return sp.Integer(expr)
-    if not isinstance(expr, sp.Expr) or isinstance(expr, sp.Lambda | sp.Order):
+    expr = given_expression(expr)
+    if isinstance(expr, sp.Lambda | sp.Order):
         raise TypeError(f"an expression is needed, not {type(expr).__name__}: {expr!r}")
     if not expr.is_commutative:
         raise ValueError(f"{expr} holds factors that do not commute, which the zero test does not model")
@@ -184,7 +189,8 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
         return _refuted(left, right, search)
     proof = prove_zero(left - right, domain, min(deadline, time.monotonic() + QUICK_SECONDS), QUICK)
     if proof.holds:
-        return _proved(proof)
+        nothing = search.agreements == 0 and domain.conditions and is_empty(domain, deadline)
+        return replace(_proved(proof), assumed=(EMPTY,)) if nothing else _proved(proof)
     now = time.monotonic()
     search = search_widely(left, right, domain, now + SEARCH_SHARE * (deadline - now))
     if search.counterexample is not None:
