@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from canon.kernel.llvm import MachineCode, compiled
 from canon.kernel.machine import DOUBLE, MachineType
+from canon.kernel.pairwise import pair_forces, write_pair_forces
 from canon.kernel.rolled import is_worth_rolling, write_rolled
 from canon.kernel.writer import LIBRARY, Writer
 
@@ -109,6 +110,7 @@ def splitting_loop(
     y, e = w.array(2 * n + gap), w.array(2 * n + gap) if compensated else ""
     force = w.array(n)
     drift_clock, kick_clock = w.array(1), w.array(1)
+    pairs = pair_forces(system)
 
     def evaluate(nodes: Sequence[int], reads: int, clock: str, take: Callable[[str, str], None]) -> None:
         steps = system.program(nodes)
@@ -122,6 +124,13 @@ def splitting_loop(
         arguments[2 * n] = w.load(clock, 0)
         for i, value in enumerate(w.program(steps, arguments)):
             take(str(i), value)
+
+    def evaluate_force(take: Callable[[str, str], None]) -> None:
+        if pairs is None:
+            evaluate(system.force, 0, drift_clock, take)
+            return
+        others = pairs.rest
+        write_pair_forces(w, pairs, y, lambda each: evaluate(others, 0, drift_clock, each), take)
 
     def moving(first: int, coefficient: str) -> Callable[[str, str], None]:
         """Return what adds coefficient · rate to the components from ``first`` on."""
@@ -137,10 +146,10 @@ def splitting_loop(
 
     def kick(coefficient: str) -> None:
         if kick_first:
-            evaluate(system.force, 0, drift_clock, lambda i, rate: w.store(rate, force, i))
+            evaluate_force(lambda i, rate: w.store(rate, force, i))
             kick_again(coefficient)
         else:
-            evaluate(system.force, 0, drift_clock, moving(n + gap, coefficient))
+            evaluate_force(moving(n + gap, coefficient))
         advance_clock(kick_clock, coefficient)
 
     def kick_again(coefficient: str) -> None:
@@ -149,7 +158,7 @@ def splitting_loop(
 
     with blocks_of(w, y, e, 2 * n, 2 * n, gap):
         if kick_first:
-            evaluate(system.force, 0, drift_clock, lambda i, rate: w.store(rate, force, i))
+            evaluate_force(lambda i, rate: w.store(rate, force, i))
         with steps_of(w, system) as time:
             w.store(time, drift_clock, 0)
             w.store(time, kick_clock, 0)

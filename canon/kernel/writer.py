@@ -13,7 +13,7 @@ from canon.kernel.pair import pair_functions
 from canon.kernel.pair_function import PAIR_FUNCTIONS, call_pair_function
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Callable, Generator, Sequence
 
     from canon.kernel.machine import MachineType
     from canon.kernel.program import Program
@@ -281,6 +281,16 @@ class Writer:
         self.declarations.add(f"{name} = {known}")
         address = self.let(f"getelementptr inbounds i32, ptr {name}, i64 {index}")
         return self.let(f"sext i32 {self.let(f'load i32, ptr {address}')} to i64")
+
+    def number_table(self, values: Sequence[Fraction]) -> Callable[[str], str]:
+        """Keep exact numbers in a constant table, and return what looks one up, in every lane."""
+        one = self.side_by_side(1)
+        kind = one.number.name
+        numbers = ", ".join(f"{kind} {one.constant(value)}" for value in values)
+        known = f"private unnamed_addr constant [{len(values)} x {kind}] [{numbers}], align 64"
+        name = self._tables.setdefault(known, f"@table{len(self._tables)}")
+        self.declarations.add(f"{name} = {known}")
+        return lambda index: self.splat(one.load(name, index))
 
     # loops ---------------------------------------------------------------------------------------
 

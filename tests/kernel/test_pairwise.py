@@ -1,0 +1,146 @@
+"""Forces of pairs: what is found, what is not, and that the loops compute the written-out force."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from canon.expression.symbol import coordinates
+from canon.expression.symbol import time as t
+from canon.flow.fixed import compiled_loop
+from canon.flow.method import Splitting
+from canon.flow.precision import FIXED
+from canon.flow.propagate import propagate
+from canon.kernel import loop
+from canon.kernel.pairwise import PairForces, pair_forces
+from canon.kernel.structure import Equations, equations
+from canon.mechanics.hamiltonian import Hamiltonian
+
+BODIES = 13
+SOFTENING = sp.Rational(1, 4)
+
+
+def system_of(potential: sp.Expr, q: tuple[sp.Symbol, ...]) -> Equations:
+    H = sp.Add(*(s.momentum**2 / 2 for s in q)) + potential
+    return equations(H, q, tuple(s.momentum for s in q), t, {})
+
+
+def plane(count: int = BODIES) -> list[tuple[sp.Symbol, sp.Symbol]]:
+    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xy"))
+    return list(zip(q[::2], q[1::2], strict=True))
+
+
+def flat(bodies: list[tuple[sp.Symbol, sp.Symbol]]) -> tuple[sp.Symbol, ...]:
+    return tuple(itertools.chain.from_iterable(bodies))
+
+
+def attraction(
+    bodies: list[tuple[sp.Symbol, sp.Symbol]], softening: sp.Rational = sp.Rational(1, 4)
+) -> sp.Expr:
+    return sp.Add(*(
+        -sp.Rational(i + 1, j + 3) / sp.sqrt((a[0] - b[0]) ** 2 + (b[1] - a[1]) ** 2 + SOFTENING)
+        for (i, a), (j, b) in itertools.combinations(enumerate(bodies), 2)
+    ))  # fmt: skip
+
+
+def start(n: int, orbits: int = 1) -> np.ndarray:
+    random = np.random.default_rng(5)
+    return random.uniform(-2, 2, (2 * n, orbits))
+
+
+def test_every_pair_and_its_strength_is_found() -> None:
+    bodies = plane()
+    trap = sp.Add(*(x**2 - y**4 / 7 for x, y in bodies))
+    found = pair_forces(system_of(attraction(bodies) + trap, flat(bodies)))
+    assert found is not None
+    assert (found.bodies, found.axes) == (BODIES, 2)
+    assert found.strengths[2][5] == found.strengths[5][2] == Fraction(-3, 8)
+    assert all(found.strengths[i][i] == 0 for i in range(BODIES))
+    assert len(found.rest) == 2 * BODIES
+
+
+def not_found() -> dict[str, sp.Expr]:
+    bodies = plane()
+    (first, second), *_ = itertools.combinations(bodies, 2)
+    lost = 1 / sp.sqrt((first[0] - second[0]) ** 2 + (first[1] - second[1]) ** 2 + sp.Rational(1, 4))
+    return {
+        "a pair is missing": attraction(bodies) + sp.Rational(1, 4) * lost - lost / 12,
+        "one pair is softened otherwise": attraction(bodies).subs(first[0] - second[0], 2 * (first[0] - second[0])),
+        "not symmetric": sp.Add(*(
+            sp.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + 1) * (a[0] - 2 * b[0])
+            for a, b in itertools.combinations(bodies, 2)
+        )),
+        "few bodies": attraction(bodies[:5]) + sp.Add(*(x**2 + y**2 for x, y in bodies)),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("what", not_found())
+def test_what_is_no_sum_over_all_pairs_is_left_alone(what: str) -> None:
+    assert pair_forces(system_of(not_found()[what], flat(plane()))) is None
+
+
+@pytest.mark.parametrize("precision", ["double", "compensated", "double-double", "extended", "single"])
+@pytest.mark.parametrize("scheme", ["verlet", "srkn-6b"])
+def test_loops_give_the_written_out_motion(
+    precision: str, scheme: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bodies = plane()
+    q = flat(bodies)
+    H = Hamiltonian(
+        sp.Add(*(s.momentum**2 / 2 for s in q), *(x**2 + y**4 / 7 for x, y in bodies)) + attraction(bodies),
+        q, [s.momentum for s in q],
+    )  # fmt: skip
+
+    def end() -> np.ndarray:
+        motion = propagate(
+            H,
+            start(len(q))[:, 0],
+            (0, 1),
+            method=Splitting(scheme),
+            step=0.01,
+            precision=precision,
+            samples=1,
+        )
+        return motion.y[:, -1]
+
+    rolled = end()
+    monkeypatch.setattr(loop, "pair_forces", lambda system: None)
+    written_out = end()
+    bound = {"single": 2e-5, "double": 1e-13, "compensated": 1e-13}.get(precision, 2e-15)
+    assert not np.array_equal(rolled, start(len(q))[:, 0])
+    assert abs(rolled - written_out).max() < bound
+
+
+def test_lanes_give_the_bits_of_one_orbit() -> None:
+    bodies = plane(12)
+    q = flat(bodies)
+    H = Hamiltonian(sp.Add(*(s.momentum**2 / 2 for s in q)) + attraction(bodies), q, [s.momentum for s in q])
+    states = start(len(q), 11)
+    settings = {"method": Splitting("verlet"), "step": 0.01, "samples": 3}
+    together = propagate(H, states, (0, 1), **settings)
+    for orbit in (0, 10):
+        alone = propagate(H, states[:, orbit], (0, 1), **settings)
+        np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
+
+
+def test_a_wrong_strength_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    bodies = plane()
+    system = system_of(attraction(bodies), flat(bodies))
+    found = pair_forces(system)
+    assert isinstance(found, PairForces)
+    wrong = replace(found, strengths=tuple(tuple(2 * c for c in row) for row in found.strengths))
+    ends = []
+    for forces in (found, wrong):
+        monkeypatch.setattr(loop, "pair_forces", lambda system, forces=forces: forces)
+        made = compiled_loop(
+            system_of(attraction(bodies), flat(bodies)), Splitting("verlet"), FIXED["double"]
+        )
+        y, e, c = start(len(system.q))[:, 0].copy(), np.zeros(made.carry), np.array([0, 0.1, 0.05, 0.1, 0.05])
+        made.code.call(y.ctypes.data, e.ctypes.data, c.ctypes.data, 0, 1, 1)
+        ends.append(y)
+    assert abs(ends[0] - ends[1]).max() > 1e-3
