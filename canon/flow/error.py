@@ -142,13 +142,14 @@ def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> E
     better = next(companions)
     while True:
         found, known = _companions(better.task, samples, scale)
-        away, condition = _compared(own, scale, None if found is None else _of(found, rows, known))
-        companion_errs = np.nan_to_num(condition, nan=1.0) * better.unit
-        finer = None if (companion_errs <= (away / scale).max(axis=0)).all() else next(companions, None)
+        away, apart = _compared(own, None if found is None else _of(found, rows, known))
+        # Rounding shifts the companion as its neighbour was shifted, but by so much less.
+        companion_errs = np.where(np.isnan(apart), scale * better.unit, apart * (better.unit / _BESIDE))
+        finer = None if (companion_errs[:, -1] <= away[:, -1]).all() else next(companions, None)
         if finer is None:
             break
         better = finer
-    away = away + companion_errs * scale
+    away = away + companion_errs
     if task.system.autonomous and not any(met.after is not None for met in samples.crossings):
         change = motion.energy_change.reshape(len(motion.t), -1)[:, chosen]
         deluded = _deluded(
@@ -156,6 +157,7 @@ def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> E
         )
         away = np.where(np.maximum.accumulate(deluded, axis=0), np.inf, away)
     relative = (away / scale).max(axis=0)
+    condition = _growth(apart / scale)
     if motion.y.ndim == 2:
         away, relative, condition = away[:, :, 0], relative[:, 0], condition[:, 0]
     events = _event_errors(samples, found)
@@ -182,21 +184,27 @@ def _of(found: Samples, rows: Sequence[int], known: int) -> tuple[Array, Array]:
     return found.y[rows][:, :known], found.carried[rows][:, :known]
 
 
-def _compared(own: Array, scale: Array, companion: tuple[Array, Array] | None) -> tuple[Array, Array]:
+def _compared(own: Array, companion: tuple[Array, Array] | None) -> tuple[Array, Array]:
     """Return how far a motion is from its companion so far, and how far neighbours have gone apart so far."""
-    times, m = own.shape[1:]
-    away, condition = np.full(own.shape, np.inf), np.full((times, m), np.nan)
+    m = own.shape[2]
+    away, apart = np.full(own.shape, np.inf), np.full(own.shape, np.nan)
     if companion is None:
-        return away, condition
+        return away, apart
     y, rest = companion
     known = y.shape[1]
     missed = abs((own[:, :known] - y[:, :, :m]) - rest[:, :, :m])
     away[:, :known] = _SAFETY * np.maximum.accumulate(missed, axis=1) + np.spacing(abs(own[:, :known]))
     if y.shape[2] > m:
-        apart = (y[:, :, m:] - y[:, :, :m]) + (rest[:, :, m:] - rest[:, :, :m])
-        distance = (abs(apart) / scale).max(axis=0)
-        condition[:known] = np.maximum.accumulate(distance / distance[0], axis=0)
-    return away, condition
+        distance = (y[:, :, m:] - y[:, :, :m]) + (rest[:, :, m:] - rest[:, :, :m])
+        apart[:, :known] = np.maximum.accumulate(abs(distance), axis=1)
+    return away, apart
+
+
+def _growth(apart: Array) -> Array:
+    """Return how many times larger a distance has become; NaN where it was none, as between the smallest numbers."""
+    largest = apart.max(axis=0)
+    at_start = np.broadcast_to(largest[0], largest.shape)
+    return np.divide(largest, at_start, out=np.full(largest.shape, np.nan), where=at_start > 0)
 
 
 def _sizes(y: Array) -> Array:

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from sympy import Symbol
 
+from canon.expression.arithmetic import FLOAT64, LONGDOUBLE
 from canon.flow.event import Event, prepared
 from canon.flow.fixed import planned
+from canon.flow.magnitude import check_magnitudes, is_narrow
 from canon.flow.method import DOP853, FixedStep, Method, Taylor
 from canon.flow.sampling import adaptive_plan, sampling
 from canon.flow.task import Task
@@ -86,7 +88,8 @@ def task_of(
     given, single = _with_parameters(y0, len(hamiltonian.q), varying)
     start, end = (exact(t, "t_span") for t in t_span)
     wanted = sampling((start, end), samples, times)
-    _check_start(system, given[0], start)
+    _check_start(system, given, start, precision)
+    check_magnitudes(system, given[0], start, method, precision)
     if isinstance(method, FixedStep):
         plan = planned(wanted, step, method)
     elif not isinstance(method, Taylor | DOP853):
@@ -216,13 +219,22 @@ def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]
     return given.reshape(2 * n, -1), np.zeros((2 * n, given.size // (2 * n)))
 
 
-def _check_start(system: Equations, states: Array, start: Fraction) -> None:
-    values = dict(zip(system.inputs, (*states, np.float64(start)), strict=True))
-    found = system.graph.evaluate([system.hamiltonian, *system.velocity, *system.force], values)
+def _check_start(
+    system: Equations, given: tuple[Array, Array], start: Fraction, precision: str | int | None
+) -> None:
+    states, low = given
+    narrow = is_narrow(precision)
+    point = states if narrow else states.astype(np.longdouble) + low
+    values = dict(zip(system.inputs, (*point, point.dtype.type(float(start))), strict=True))
+    nodes = [system.hamiltonian, *system.velocity, *system.force]
+    found = system.graph.evaluate(nodes, values, FLOAT64 if narrow else LONGDOUBLE)
     finite = np.logical_and.reduce([np.isfinite(np.broadcast_to(x, states.shape[1:])) for x in found])
     if not finite.all():
         wrong = states[system.rows, np.argmin(finite)]
-        raise ValueError(f"H or its derivatives are not finite at y0 = {wrong}: start inside H's domain")
+        raise ValueError(
+            f"H or its derivatives are not finite at y0 = {wrong}: start inside H's domain, in units "
+            "in which no number on the way is beyond 1e±308"
+        )
 
 
 def _check_adaptive(

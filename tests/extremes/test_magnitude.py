@@ -1,0 +1,60 @@
+"""Numbers beyond doubles on the way are told, not computed with; wider numbers hold them."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from canon import Hamiltonian, Splitting, Taylor, coordinates, propagate
+
+x, y = coordinates("x y")
+OSCILLATOR = Hamiltonian(x.momentum**2 / 2 + x**2 / 2, [x], [x.momentum])
+
+
+def kepler(length):
+    """Circular motion with speed 1 at a radius."""
+    mu = sp.Rational(10) ** length
+    H = (x.momentum**2 + y.momentum**2) / 2 - mu / sp.sqrt(x**2 + y**2)
+    return Hamiltonian(H, [x, y], [x.momentum, y.momentum]), [float(mu), 0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize("method", [Taylor(), Splitting("kahan-li-8")])
+@pytest.mark.parametrize("length", [120, 150, 160, -110, -150])
+def test_lengths_whose_cubes_doubles_do_not_hold(method, length):
+    H, start = kepler(length)
+    how = {} if method == Taylor() else {"step": 0.02 * start[0]}
+    with pytest.raises(ValueError, match="beyond 1e±308"):
+        propagate(H, start, (0, start[0]), method=method, samples=4, **how)
+
+
+@pytest.mark.parametrize("length", [120, 150, -110, -150])
+def test_wider_exponents_hold_them(length):
+    H, start = kepler(length)
+    motion = propagate(
+        H,
+        start,
+        (0, start[0]),
+        method=Splitting("kahan-li-8"),
+        step=0.02 * start[0],
+        precision="extended",
+        samples=4,
+    )
+    angle = motion.t / start[0]
+    assert np.allclose(motion.q / start[0], [np.cos(angle), np.sin(angle)], atol=1e-13)
+    assert (
+        abs(motion.p - [-np.sin(angle), np.cos(angle)]).max(axis=0) < motion.error_estimate().relative + 1e-15
+    ).all()
+
+
+def test_a_time_scale_whose_twentieth_power_is_no_double():
+    H, start = kepler(60)
+    with pytest.raises(ValueError, match="time scale of 1e\\+60"):
+        propagate(H, start, (0, start[0]))
+    motion = propagate(H, start, (0, start[0]), precision="extended", samples=2)
+    assert abs(motion.final[0] / start[0] - np.cos(1)) < 1e-15
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-310, 1e-318, 1e150])
+def test_small_and_large_oscillations(size):
+    motion = propagate(OSCILLATOR, [size, 0.0], (0, 10), method=Splitting("kahan-li-8"), step=0.1, samples=10)
+    missed = np.maximum.accumulate(abs(motion.q[0] - size * np.cos(motion.t)))
+    assert (missed <= motion.error_estimate().error[0] + np.spacing(size)).all()
