@@ -21,7 +21,7 @@ import sympy as sp
 
 from canon.expression.symbol import coordinates
 from canon.expression.symbol import time as t
-from canon.flow.fixed import compiled_loop
+from canon.flow.compiled import compiled_loop
 from canon.flow.method import Splitting
 from canon.flow.precision import FIXED
 from canon.kernel.scheme import SCHEMES

@@ -12,7 +12,7 @@ import sympy as sp
 
 from canon.expression.symbol import coordinates
 from canon.expression.symbol import time as t
-from canon.flow.fixed import compiled_loop
+from canon.flow.compiled import compiled_loop
 from canon.flow.method import Splitting
 from canon.flow.precision import FIXED
 from canon.flow.propagate import propagate
@@ -39,9 +39,7 @@ def flat(bodies: list[tuple[sp.Symbol, sp.Symbol]]) -> tuple[sp.Symbol, ...]:
     return tuple(itertools.chain.from_iterable(bodies))
 
 
-def attraction(
-    bodies: list[tuple[sp.Symbol, sp.Symbol]], softening: sp.Rational = sp.Rational(1, 4)
-) -> sp.Expr:
+def attraction(bodies: list[tuple[sp.Symbol, sp.Symbol]]) -> sp.Expr:
     return sp.Add(*(
         -sp.Rational(i + 1, j + 3) / sp.sqrt((a[0] - b[0]) ** 2 + (b[1] - a[1]) ** 2 + SOFTENING)
         for (i, a), (j, b) in itertools.combinations(enumerate(bodies), 2)
