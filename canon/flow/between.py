@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.fixed import compiled_loop, steps_between
+from canon.flow.compiled import compiled_loop, steps_between
 from canon.flow.method import FixedStep, Taylor
 from canon.flow.partial import State
 from canon.flow.precision import fixed_precision

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.fixed import compiled_loop, fixed_steps
+from canon.flow.compiled import compiled_loop
+from canon.flow.fixed import fixed_steps
 from canon.flow.measure import measured
 from canon.flow.precision import fixed_precision
 from canon.flow.request import system_of

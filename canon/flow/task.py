@@ -7,13 +7,15 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from canon.flow.adaptive import dop853_motion
+from canon.flow.compiled import compiled_loop
 from canon.flow.event import Event, prepared
-from canon.flow.fixed import compiled_loop, fixed_steps, watch_for
+from canon.flow.fixed import fixed_steps
 from canon.flow.measure import measured, warn_of_jumps
 from canon.flow.method import DOP853, FixedStep, Method, Taylor
 from canon.flow.precision import fixed_precision
 from canon.flow.series import taylor_motion
 from canon.flow.trajectory import Array, Interrupted, Samples, Statistics, Trajectory, joined
+from canon.flow.watching import watch_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable

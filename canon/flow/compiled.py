@@ -1,0 +1,121 @@
+"""The compiled loop of a method of fixed steps, kept for the next run, and the coefficients it reads."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from typing import TYPE_CHECKING
+
+from canon.flow.method import RK4, FixedStep, Gauss, Splitting
+from canon.flow.partial import PartialSteps
+from canon.flow.solvable import SolvableSplitting
+from canon.flow.solvable import loop_of as solvable_loop_of
+from canon.kernel.gauss import gauss_coefficients, gauss_loop
+from canon.kernel.llvm import simd_bytes
+from canon.kernel.loop import Loop, runge_kutta_loop, splitting_loop
+from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, MachineType
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from canon.flow.precision import Precision
+    from canon.flow.sampling import Plan
+    from canon.kernel.structure import Equations
+
+__all__ = ["compiled_loop", "steps_between"]
+
+_KEPT = 64
+"""Compiled loops kept for the next call."""
+
+_INTERLEAVED = 4
+"""SIMD registers' worth of orbits stepped together: while one waits for a root or a quotient, others compute."""
+
+_SMALL = 200
+"""Up to this many operations in the force the registers hold that many orbits."""
+
+
+def compiled_loop(system: Equations, method: FixedStep, precision: Precision, orbits: int = 1) -> Loop:
+    """Return the machine code that steps a system with a method, kept from an earlier call if there was one.
+
+    Parameters
+    ----------
+    system, method, precision
+        What to integrate, how, and in which numbers.
+    orbits
+        How many orbits will be stepped together: several run side by side in SIMD lanes.
+
+    Raises
+    ------
+    ValueError
+        A splitting is asked of a Hamiltonian that does not split; a Nyström method of one whose kinetic energy
+        is not quadratic; or a Gauss method in other numbers than doubles and double-double.
+    """
+    if isinstance(method, Splitting) and method.parts is not None:
+        method = SolvableSplitting(method.scheme, parts=method.parts)
+    if isinstance(method, SolvableSplitting):
+        return solvable_loop_of(system, method, precision)
+    number = _with_lanes(precision.number, system) if orbits > 1 else precision.number
+    if isinstance(method, Gauss):
+        if precision.number not in (DOUBLE, DOUBLE_DOUBLE):
+            raise ValueError(
+                f"precision={precision.name!r}: Gauss methods have 'double', 'compensated' and 'double-double'"
+            )
+        return _kept_gauss(system, method.stages, precision.number, compensated=precision.compensated)
+    if isinstance(method, RK4):
+        return _kept_runge_kutta(system, number, compensated=precision.compensated)
+    if not system.separable:
+        raise ValueError(
+            "H is not a sum T(p, t) + V(q, t), so it does not split into drifts and kicks; use Gauss(6), which is "
+            "symplectic for every H, or Taylor()"
+        )
+    if method.scheme.nystrom and not system.quadratic_kinetic:
+        raise ValueError(
+            f"{method} keeps its order only for kinetic energies quadratic in p with constant coefficients; "
+            "use Splitting('blanes-moan-6') or Splitting('kahan-li-8')"
+        )
+    kick_first = method.scheme.kick_first and system.autonomous
+    return _kept_splitting(
+        system, len(method.scheme.b), number, compensated=precision.compensated, kick_first=kick_first
+    )
+
+
+def _with_lanes(number: MachineType, system: Equations) -> MachineType:
+    if number.scalar == "x86_fp80":  # x87 numbers have no SIMD instructions
+        return number
+    small = len(system.program(system.force).instructions) <= _SMALL
+    return dataclasses.replace(
+        number, lanes=simd_bytes() // number.alignment * (_INTERLEAVED if small else 1)
+    )
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_splitting(
+    system: Equations, stages: int, number: MachineType, *, compensated: bool, kick_first: bool
+) -> Loop:
+    return splitting_loop(system, stages, number=number, compensated=compensated, kick_first=kick_first)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_runge_kutta(system: Equations, number: MachineType, *, compensated: bool) -> Loop:
+    return runge_kutta_loop(system, number=number, compensated=compensated)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_gauss(system: Equations, stages: int, number: MachineType, *, compensated: bool) -> Loop:
+    return gauss_loop(system, stages, compensated=compensated, number=number)
+
+
+def steps_between(loop: Loop, method: FixedStep, plan: Plan) -> PartialSteps:
+    """Return what takes steps of any length between those of a run."""
+    assert plan.h is not None
+    coefficients = loop.coefficients or functools.partial(_coefficients, method, loop.number)
+    return PartialSteps(loop, coefficients, plan.start, plan.h)
+
+
+def _coefficients(method: FixedStep, number: MachineType, h: Fraction) -> list[Fraction]:
+    if isinstance(method, Gauss):
+        return gauss_coefficients(method.stages, h, number)
+    if isinstance(method, RK4):
+        return [h / 2, h / 6, h / 3]
+    a, b = method.scheme.a, method.scheme.b
+    return [h * c for pair in zip(a, b, strict=False) for c in pair] + [h * a[-1]]
