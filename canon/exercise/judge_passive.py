@@ -149,17 +149,23 @@ def _coefficients(f: sp.Poly) -> list[Expr]:
 
 
 def _between_roots(f: sp.Poly) -> list[Expr]:
-    """Return a rational point in each interval of w ≥ 0 on which f keeps its sign, and 0."""
+    """Return 0 and a rational point in each interval of w > 0 on which f keeps its sign."""
     if f.is_zero or f.degree() == 0:
         return [sp.S.Zero]
-    roots = cast("list[tuple[tuple[Expr, Expr], int]]", f.sqf_part().intervals(inf=0))
-    points: list[Expr] = [sp.S.Zero]
-    edges = [end for ends, _ in roots for end in ends]
-    for left, right in pairwise(edges):
-        points.append((left + right) / 2)
-    points += edges
-    points.append((edges[-1] if edges else sp.S.Zero) + 1)
-    return sorted(set(points), key=Rational)
+    edges = _isolated(f)
+    gaps = [(left + right) / 2 for (_, left), (right, _) in pairwise(edges)]
+    return [sp.S.Zero, *gaps, (edges[-1][1] if edges else sp.S.Zero) + 1]
+
+
+def _isolated(f: sp.Poly) -> list[tuple[Expr, Expr]]:
+    """Return an interval around each zero w ≥ 0, in order, with room between any two."""
+    width = sp.S.One
+    while True:
+        found = cast("list[tuple[tuple[Expr, Expr], int]]", f.sqf_part().intervals(inf=0, eps=width))
+        edges = [ends for ends, _ in found]
+        if all(bool(left < right) for (_, left), (right, _) in pairwise(edges)):
+            return edges
+        width /= 16
 
 
 def _is_hurwitz(f: sp.Poly) -> bool:

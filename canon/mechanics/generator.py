@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["generator_values", "low_degree_roots"]
 
 
-def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, Expr | None]]:
+def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, tuple[Expr, ...]]]:
     """Yield functions of x with the values that the equation may give them.
 
     Parameters
@@ -32,7 +32,7 @@ def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, Ex
     Yields
     ------
     tuple
-        A function of x, a value without x, and the expression whose sign tells this root from its partner.
+        A function of x, a value without x, and the expressions whose signs tell this root from its partners.
 
     Examples
     --------
@@ -50,10 +50,10 @@ def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, Ex
         reduced = _eliminated(polynomial, kernel, names, x)
         if reduced is None:
             continue
-        for root, sign in low_degree_roots(reduced, names[kernel]):
+        for root, signs in low_degree_roots(reduced, names[kernel]):
             value = exchanged(root, back)
             if not value.has(x):
-                yield kernel, value, None if sign is None else exchanged(sign, back)
+                yield kernel, value, tuple(exchanged(sign, back) for sign in signs)
 
 
 def _eliminated(polynomial: Expr, kept: Expr, names: Mapping[Expr, Symbol], x: Symbol) -> Expr | None:
@@ -83,27 +83,29 @@ def _relation(kernel: Expr, name: Symbol, kept: Expr, u: Symbol, names: Mapping[
     return None
 
 
-def low_degree_roots(polynomial: Expr, u: Symbol) -> list[tuple[Expr, Expr | None]]:
-    """Return the roots in u of factors of low degree, each with the expression whose sign tells it."""
+def low_degree_roots(polynomial: Expr, u: Symbol) -> list[tuple[Expr, tuple[Expr, ...]]]:
+    """Return the roots in u of factors of low degree, each with the expressions whose signs tell it."""
     if not polynomial.is_polynomial(u):
         return []
     poly = sp.Poly(polynomial, u)
     factors = [poly] if poly.degree() <= 2 else [f for f, _ in poly.factor_list()[1]]
-    roots: list[tuple[Expr, Expr | None]] = []
+    roots: list[tuple[Expr, tuple[Expr, ...]]] = []
     for factor in factors:
         coefficients = factor.all_coeffs()
         if len(coefficients) == 2:
-            roots.append((-coefficients[1] / coefficients[0], None))
+            roots.append((-coefficients[1] / coefficients[0], ()))
         elif len(coefficients) > 2 and all(c == 0 for c in coefficients[1:-1]):
             root = sp.root(-coefficients[-1] / coefficients[0], len(coefficients) - 1)
-            roots.extend([(cast("Expr", root), u), (cast("Expr", -root), u)])
+            roots.extend([(cast("Expr", root), (u,)), (cast("Expr", -root), (u,))])
         elif len(coefficients) == 3:
             a, b, c = coefficients
             half = sp.sqrt(sp.factor(b**2 - 4 * a * c))
-            roots.extend([((-b + half) / (2 * a), 2 * a * u + b), ((-b - half) / (2 * a), 2 * a * u + b)])
+            slope = 2 * a * u + b
+            roots.extend([((-b + half) / (2 * a), (slope,)), ((-b - half) / (2 * a), (slope,))])
         elif len(coefficients) == 5 and all(c == 0 for c in coefficients[1::2]):
-            for square, _ in low_degree_roots(exchanged(factor.as_expr(), {u**4: u**2, u**2: u}), u):
-                roots.extend([(sp.sqrt(square), u), (-sp.sqrt(square), u)])
+            for square, signs in low_degree_roots(exchanged(factor.as_expr(), {u**4: u**2, u**2: u}), u):
+                told = (u, *(exchanged(sign, {u: u**2}) for sign in signs))
+                roots.extend([(sp.sqrt(square), told), (-sp.sqrt(square), told)])
     return roots
 
 

@@ -216,9 +216,9 @@ def isolate(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | Non
             return isolate(bound, rhs - free if lhs.is_Add else rhs / free, x, inversion)
         if size(lhs - rhs) > _LARGEST:
             return None
-        for kernel, value, sign in generator_values(lhs - rhs, x):
+        for kernel, value, signs in generator_values(lhs - rhs, x):
             if inversion.witness.agree(value, kernel):
-                if sign is not None:
+                for sign in signs:
                     inversion.note_sign(sign)
                 return isolate(kernel, value, x, inversion)
         return None

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from canon.exercise.checking import judged
@@ -62,6 +62,7 @@ def least_real_part(above, below):
 
 
 @settings(max_examples=50, deadline=None)
+@example([1, 0, 0], [2, 1, 1])
 @given(coefficients, coefficients)
 def test_positive_real_against_values_in_the_right_half_plane(above, below):
     s = sp.Symbol("s")

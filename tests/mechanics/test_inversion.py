@@ -46,6 +46,7 @@ def test_where_two_branches_meet_none_is_chosen():
 
 @settings(max_examples=30, deadline=None)
 @example(["quadratic"], 38)
+@example(["square", "fraction", "quadratic"], 0)
 @given(st.lists(st.sampled_from(sorted(LAYERS)), min_size=1, max_size=3), st.integers(0, 50))
 def test_an_isolated_unknown_is_right_wherever_its_conditions_hold(layers, seed):
     f = x
