@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -21,9 +22,10 @@ if TYPE_CHECKING:
     from canon.exercise.reading import Reading
     from canon.proof.domain import Domain
 
-__all__ = ["convention"]
+__all__ = ["convention", "variable_valence"]
 
 PROOF_SECONDS = 0.5
+_VARIABLE_VALENCE = re.compile(r"canonical with valence [^;]*[A-Za-z_]")
 _BRACKETS = {
     "poisson-bracket": "the convention here is {q, p} = +1",
     "lagrange-bracket": "the convention here is [u, v] = Σ (∂q/∂u ∂p/∂v − ∂q/∂v ∂p/∂u)",
@@ -39,7 +41,9 @@ def convention(reading: Reading, parts: Sequence[Part], domain: Domain) -> Itera
         return
     if kind.startswith("canonicity"):
         yield from _valence(reading, parts, domain)
-        yield from _stated(_mended(reading))
+        mended = _mended(reading)
+        if not _VARIABLE_VALENCE.search(mended):
+            yield from _stated(mended)
         return
     if kind.startswith("generating"):
         yield from _rescaled(reading, parts, domain)
@@ -58,6 +62,13 @@ def convention(reading: Reading, parts: Sequence[Part], domain: Domain) -> Itera
     elif kind == "routhian" and factor == -1:
         sentence = "right under the opposite convention: R has the other sign here"
         yield Diagnosis(sentence, scaled(reading, parts, factor), only_fault=True)
+
+
+def variable_valence(reading: Reading) -> Iterator[Diagnosis]:
+    """Yield that a map is canonical with a valence that depends on parameters, a thing rarely meant."""
+    mended = _mended(reading) if reading.claim.kind.startswith("canonicity") else ""
+    if _VARIABLE_VALENCE.search(mended):
+        yield from _stated(mended)
 
 
 def _stated(sentence: str) -> Iterator[Diagnosis]:

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.affine import solved
-from canon.exercise.convention import convention
+from canon.exercise.asymptotic import right_to_an_order
+from canon.exercise.convention import convention, variable_valence
+from canon.exercise.derived_part import new_hamiltonian_part, second_lagrangian_part, time_term
 from canon.exercise.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.question import Part, Same, SameEquations, Stated
 from canon.exercise.rejudged import another_gauge, another_reading, one_change, only_where
@@ -105,9 +107,26 @@ def _diagnoses(finding: Finding, deadline: float) -> Iterator[Diagnosis]:
     yield from another_reading(reading, deadline)
     if parts and not reading.has("solution"):
         yield from _part_by_part(reading, parts, domain, deadline, _hints(question))
+    if reading.claim.kind == "transformed-hamiltonian-K" and finding.held:
+        for part in new_hamiltonian_part(reading):
+            yield from _part_by_part(reading, (part,), domain, _partly(deadline, 0.6), [()])
+    if reading.claim.kind == "constant-of-motion":
+        yield from time_term(reading)
     yield from only_where(reading, deadline)
-    yield from one_change(reading, deadline, _suspects(parts, domain), finding.held)
+    two_answers = reading.claim.kind == "lagrangian-equivalence" and reading.has("F")
+    until = _partly(deadline, 0.5 if two_answers else 0.75)
+    yield from one_change(reading, until, _suspects(parts, domain), finding.held)
+    yield from right_to_an_order(parts, domain, deadline)
+    yield from variable_valence(reading)
     yield from another_gauge(reading, deadline)
+    if two_answers:
+        yield from _part_by_part(reading, (second_lagrangian_part(reading),), domain, deadline, [()])
+
+
+def _partly(deadline: float, share: float) -> float:
+    """Return a deadline that leaves some of the time to what comes after."""
+    now = time.monotonic()
+    return now + share * (deadline - now)
 
 
 def _suspects(parts: Sequence[Part], domain: Domain) -> list[str]:

@@ -17,6 +17,7 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.tree import symbols_of
+from canon.expression.symbol import Rate
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, value
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ __all__ = ["Monomials"]
 MOST_SYMBOLS = 14
 MOST_FACTORS = 9
 MOST_EXPONENT = 4
+MOST_FORGOTTEN = 3
+_KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside)
 _NO_VALUE = (Undefined, NotDecided, Unmodelled, ZeroDivisionError)
 
 
@@ -57,7 +60,7 @@ class Monomials:
 
     def of_residual(self) -> Iterator[Expr]:
         """Yield the monomials, times at most two functions, that the residual is."""
-        yield from self._explaining(self._residuals)
+        yield from (term for term in self._explaining(self._residuals) if not _divides_by_motion(term))
 
     def of_share(self, term: Expr) -> Iterator[Expr]:
         """Yield the factors that a term lacks: the monomials that 1 − residual/term is."""
@@ -65,7 +68,7 @@ class Monomials:
             shares = {s: 1 - r / value(term, {}, self._memos[s]) for s, r in self._residuals.items()}
         except _NO_VALUE:
             return
-        yield from (factor for factor in self._explaining(shares) if not factor.is_Number)
+        yield from (factor for factor in self._explaining(shares) if _forgettable(factor, self._part))
 
     @cached_property
     def _memos(self) -> dict[Symbol | None, dict[sp.Basic, acb]]:
@@ -100,7 +103,8 @@ class Monomials:
         """1, the replaced symbols and the functions, and products of two of them; those claimed come first."""
         part = self._part
         whole = sp.Tuple(part.claimed, part.right, *part.through.values())
-        functions = {a for a in whole.atoms(AppliedUndef, sp.Derivative, sp.Function) if isinstance(a, Expr)}
+        found = whole.atoms(AppliedUndef, sp.Derivative, sp.Function) - whole.atoms(*_KINKED)
+        functions = [a for a in found if isinstance(a, Expr)]
         factors = sorted(
             [*part.through, *functions], key=lambda f: (not part.claimed.has(f), not f.is_Symbol, str(f))
         )[:MOST_FACTORS]
@@ -118,6 +122,22 @@ class Monomials:
                 continue
             if found is not None and share:
                 yield sp.Rational(share.numerator, share.denominator) * found * divisor
+
+
+def _forgettable(factor: Expr, part: Part) -> bool:
+    """Whether a factor is one that a person may have lost: short, and no acceleration."""
+    powers = factor.as_powers_dict()
+    if factor.is_Number or factor.has(*part.determined) or _divides_by_motion(factor):
+        return False
+    exponents = [e if e.is_Number else sp.S.One for base, e in powers.items() if not base.is_Number]
+    return sum(map(abs, exponents)) <= MOST_FORGOTTEN
+
+
+def _divides_by_motion(term: Expr) -> bool:
+    """Whether a velocity or acceleration is in a denominator, or under a root."""
+    return any(
+        isinstance(base, Rate) and not (e.is_Integer and e > 0) for base, e in term.as_powers_dict().items()
+    )
 
 
 def _powers(values: Mapping[Symbol | None, acb]) -> Expr | None:

@@ -37,7 +37,7 @@ class Examples:
 
     def unknowns(self, f: Expr) -> list[Expr]:
         """Return the arbitrary functions and derivatives of an expression, not those inside others."""
-        if not self._polynomials:
+        if not self._polynomials and not f.has(Derivative, Subs):
             return []
         walk, found = sp.preorder_traversal(f), list[Expr]()
         for node in walk:

@@ -128,6 +128,13 @@ def one_change(
     answers = sorted(_answers(reading), key=lambda answer: _rank(answer[0], suspects))
     screen = screening(reading, dict(answers))
     symbols = tuple(reading.scope.names.values())
+    for changed, sentence in _staggered(reading, dict(answers)):
+        if screen is None or screen.passes(changed):
+            trial = reading
+            for name, new in changed.items():
+                trial = trial.with_instead(name, new)
+            if _holds(trial, deadline):
+                yield Diagnosis(sentence, trial)
     groups = groupby(sorted(answers, key=lambda a: _outer(a[0])), key=lambda a: _outer(a[0]))
     for key, group in groups:
         items = list(group)
@@ -157,21 +164,40 @@ def one_change(
                 yield Diagnosis(str(change), trial)
 
 
+def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[Mapping[str, Expr], str]]:
+    """Yield maps with new momenta or coordinates where the old ones stand: a step of one after that of the other."""
+    if not reading.claim.kind.startswith("canonicity") or not reading.has("Q"):
+        return
+    for here, there, letter in (("Q", "P", "p"), ("P", "Q", "q")):
+        old = reading.symbols(letter)
+        step = {z: answers[f"{there}[{i}]"] for i, z in enumerate(old)}
+        images = {f"{here}[{i}]": answers[f"{here}[{i}]"] for i in range(len(old))}
+        staggered = {key: f.subs(step, simultaneous=True) for key, f in images.items() if f.has(*old)}
+        names = "the new momenta P" if letter == "p" else "the new coordinates Q"
+        for key in staggered if len(images) > 1 else ():
+            yield {key: staggered[key]}, f"in {key} {names} belong in place of the old ones"
+        if staggered:
+            yield staggered, f"in {here} {names} belong in place of the old ones"
+
+
 def _outer(key: str) -> str:
     """Return the part of a key before the component: P of P[0], solution of solution.q."""
+    if key.startswith("pairs"):
+        return key
     return "solution" if key.startswith("solution.") else key.partition("[")[0]
 
 
 def _rank(key: str, suspects: Sequence[str]) -> int:
     """Return how far back in the line of suspects a component stands: P[1] is called P2, or P if it is alone."""
     letter, _, index = key.removeprefix("map.").partition("[")
-    names = (letter, f"{letter}{int(index[:-1]) + 1}" if index else letter)
+    names = (letter, f"{letter}{int(index[:-1]) + 1}" if index.endswith("]") else letter)
     return min((i for i, suspect in enumerate(suspects) if suspect in names), default=len(suspects))
 
 
 def _rescaled(key: str, expression: Expr) -> Iterator[tuple[Expr, Change]]:
     yield -expression, Change("{} has the wrong sign", key)
-    for factor in map(sp.Rational, ("1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2")):
+    simple = map(sp.Rational, ("1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2"))
+    for factor in (*simple, 2 * sp.pi, 1 / (2 * sp.pi)):
         yield factor * expression, Change("{} should be {} what it is", key, times(factor))
 
 
@@ -180,6 +206,9 @@ def _named(key: str, found: Iterator[tuple[Expr, Change]]) -> Iterator[tuple[Exp
 
 
 def _answers(reading: Reading) -> Iterator[tuple[str, Expr]]:
+    if reading.claim.kind == "poisson-bracket":
+        for i, (f, g, value) in enumerate(reading.brackets("f", "g")):
+            yield from zip((f"pairs[{i}].{key}" for key in ("value", "f", "g")), (value, f, g), strict=True)
     for key in _ANSWERS.get(reading.claim.kind, ()):
         outer, _, inner = key.partition(".")
         if not reading.has(outer):

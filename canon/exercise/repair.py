@@ -166,8 +166,8 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
         yield Repair(claimed - term, Change("in {} the term {} is missing", name, -term))
     for term, products in factors:
         for factor in products:
-            right = claimed - term + factor * term
-            yield Repair(right, Change("in {} the term {} should be {}", name, term, factor * term))
+            lacks = Change("in {} the term {} lacks the factor {}", name, term, factor)
+            yield Repair(claimed - term + factor * term, lacks)
 
 
 def _says_something(part: Part, right: Expr) -> bool:

@@ -26,11 +26,13 @@ __all__ = [
     "canonical_map",
     "constant",
     "dependent",
+    "equality",
     "gauge",
     "generating",
     "implicit",
     "lagrange_brackets",
     "new_hamiltonian",
+    "poisson_brackets",
     "solution",
 ]
 
@@ -76,6 +78,33 @@ def canonical_map(reading: Reading) -> Test:
     def test(answer: Answers, place: Neighbourhood) -> bool:
         M = [place.slopes(answer(key), (*q, *p)) for key in keys]
         return _symplectic(M, acb(1) if valence is None else place.value(valence))
+
+    return test
+
+
+def equality() -> Test:
+    """Both sides have the same value."""
+
+    def test(answer: Answers, place: Neighbourhood) -> bool:
+        return small([place.value(answer("lhs")), -place.value(answer("rhs"))])
+
+    return test
+
+
+def poisson_brackets(reading: Reading) -> Test:
+    """{f, g} is the value of each pair."""
+    z, pairs = (*reading.symbols("q"), *reading.symbols("p")), range(len(reading.brackets("f", "g")))
+
+    def test(answer: Answers, place: Neighbourhood) -> bool:
+        return all(
+            small(
+                [
+                    *_bracket(*(place.slopes(answer(f"pairs[{i}].{k}"), z) for k in "fg")),
+                    -place.value(answer(f"pairs[{i}].value")),
+                ]
+            )
+            for i in pairs
+        )
 
     return test
 

@@ -94,6 +94,10 @@ def _test_of(reading: Reading) -> tuple[Test, Sequence[Symbol], Domain, Sequence
         test = tests.implicit(reading)
     elif kind.startswith("canonicity") or (kind == "bilinear-covariant" and reading.has("Q")):
         test = tests.canonical_map(reading)
+    elif kind == "equality-only":
+        test = tests.equality()
+    elif kind == "poisson-bracket":
+        test = tests.poisson_brackets(reading)
     elif kind == "lagrange-bracket":
         test = tests.lagrange_brackets(reading)
         given += [value for *_, value in reading.brackets("u", "v")]

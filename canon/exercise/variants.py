@@ -232,8 +232,8 @@ def _swapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
     """Two symbols exchanged in one sum."""
     if node.is_Add:
         for a, b in combinations(symbols_of(node)[:MOST_SWAPPED], 2):
-            new = replaced(node, {a: b, b: a})
-            if new != node:
+            new = slipped(node, {a: b, b: a})
+            if new is not None and new != node:
                 yield new, Change("in {} the symbols {} and {} should be exchanged", node, a, b)
 
 

@@ -30,6 +30,7 @@ STATEMENTS = (
     "multiply P",
     "nothing simple mends the map",
     "momenta stand in the wrong order",
+    "right only for small",
 )
 """What is told without anything to put into the claim."""
 

@@ -25,7 +25,7 @@ EXPECTED = {
     "EL-02a": "in equation 2 the term phi_dot*r_dot should be twice that",
     "EL-02b": "each equation is right, but together they do not determine the motion: an equation is missing",
     "EL-02c": "each equation is right, but together they do not determine the motion: an equation is missing",
-    "EL-06b": "in equation 1 omega should be omega**2",
+    "EL-06b": "in equation 1 the term a*omega*sin(theta)*cos(omega*t) lacks the factor omega",
     "EL-10a": "in equation 1 the term x_dot**2*Derivative(M(x), x) should be half that",
     "EL-14a": "in equation 1 the term -Omega**2*m*x is missing; in equation 2 the term -Omega**2*m*y is missing",
     "DI-01a": "dE/dt should be twice what it is",
