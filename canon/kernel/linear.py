@@ -1,8 +1,7 @@
 """Linear motion: the flow of a quadratic Hamiltonian is multiplication by exp(tL).
 
-What is added to a state is (exp(tL) − 1) y. The matrix is known to 60 digits, as balls that hold it; each entry
-enters as
-a sum of two doubles, for an entry rounded to one would be off in the same direction in every step.
+What is added to a state is (exp(tL) − 1) y. The matrix is known to 60 digits, as balls that hold it; each entry enters
+as a sum of two doubles, for an entry rounded to one would be off in the same direction in every step.
 """
 
 from __future__ import annotations
@@ -22,7 +21,10 @@ if TYPE_CHECKING:
 __all__ = ["LinearMotion", "flow_matrices"]
 
 _BITS = 280
+"""Bits that matrices are computed with; their balls grow with exp |tL|."""
+
 _ENOUGH = Fraction(1, 2**130)
+"""Radius of a ball that leaves both doubles of an entry right."""
 
 
 class LinearMotion:

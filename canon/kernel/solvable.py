@@ -23,7 +23,7 @@ from canon.kernel.planets import Centres, Planets
 from canon.kernel.writer import Writer
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from canon.kernel.perturbed import Corrector
     from canon.kernel.planets import Part
@@ -139,7 +139,10 @@ def _differs(w: Writer, record: str, state: tuple[str, str], size: int) -> str:
     return w.let(f"zext i1 {w.equal(w.load(same, 0), w.constant(Fraction(0)))} to i64")
 
 
-def _motion(w: Writer, part: Part, pairs: int, *, compensated: bool):
+def _motion(
+    w: Writer, part: Part, pairs: int, *, compensated: bool
+) -> tuple[PlanetsInLanes | CentresInLanes | LinearMotion, Callable[[Sequence[Fraction]], list[Fraction]]]:
+    """Return a part's motion, and what it reads beyond the times of its flows."""
     if isinstance(part, Planets):
         return PlanetsInLanes(w, part, compensated=compensated), _nothing
     if isinstance(part, Centres):
