@@ -123,8 +123,10 @@ ABA = {
         odd="a",
     ),
 }
-"""Schemes that take ε² τ² away too, named by their orders in ε, ε² and ε³; the digits beyond those published by Newton's
-method on the order conditions."""
+"""Schemes that take ε² τ² away too, named by their orders in ε, ε² and ε³.
+
+The digits beyond those published are by Newton's method on the order conditions.
+"""
 
 _DIGITS = 60
 
@@ -251,7 +253,7 @@ def _generator(scheme: Scheme, length: int) -> list[Fraction]:
         c += a
         for n in range(count):
             kicks[n] += b * (c - Fraction(1, 2)) ** n / math.factorial(n)
-    # sinh(x/2)/(x/2)
+    # The series of sinh(x/2)/(x/2).
     sinh = [Fraction(0) if n % 2 else Fraction(1, 2**n * math.factorial(n + 1)) for n in range(count)]
     quotient = list[Fraction]()
     for n in range(count):
