@@ -37,7 +37,7 @@ exit status: 0 the accuracy is expected to be kept, 1 nothing keeps it, 2 bad us
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command reads."""
-    parser.add_argument("scene", metavar="SCENE", help="a scene by name; 'list' names them all")
+    parser.add_argument("scene", metavar="SCENE", help="a scene by name; 'list' names those to take")
     parser.add_argument(
         "--accuracy", metavar="EPS", type=float, default=1e-8, help="largest relative error allowed (1e-8)"
     )

@@ -49,7 +49,7 @@ exit status: 0 every run finished, 1 a run failed, 2 bad usage
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command reads."""
-    parser.add_argument("scene", metavar="SCENE", help="a scene by name; 'list' names them all")
+    parser.add_argument("scene", metavar="SCENE", help="a scene by name; 'list' names those to take")
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a parameter")
     parser.add_argument("--start", metavar="NAME", help="the initial state, by its name in the scene")
     parser.add_argument(
@@ -164,16 +164,20 @@ def _study(scene: Scene, methods: Sequence[Method] | None, arguments: argparse.N
 
 
 def list_scenes() -> None:
-    """Print every scene with its starts and parameters."""
+    """Print every scene a Hamiltonian describes, with its starts and parameters, and name the others."""
     from canon.scene import SCENES
 
-    width = max(len(scene.name) for scene in SCENES)
-    for scene in SCENES:
+    taken = [scene for scene in SCENES if scene.is_free]
+    width = max(len(scene.name) for scene in taken)
+    for scene in taken:
         print(f"{scene.name:{width}}  {scene.title}")
         print(f"{'':{width}}  starts: {', '.join(start.name for start in scene.starts)}")
         if scene.parameters:
             constants = (f"{c.name} = {c.value:g} {c.unit}".strip() for c in scene.parameters)
             print(f"{'':{width}}  parameters: {', '.join(constants)}")
+    others = ", ".join(scene.name for scene in SCENES if not scene.is_free)
+    print(f"\nnot taken, for their constraints or forces without potential: {others}")
+    print("'canon scene NAME --run' runs these and checks what is known of them")
 
 
 def _print_lines(study: DriftStudy) -> None:

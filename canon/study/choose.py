@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,7 @@ from canon.study.choose_last import confirmed, double_instead
 from canon.study.choose_pilot import Question, natural_step
 from canon.study.choose_search import searched
 from canon.study.errors import StudyError
+from canon.study.system import motion_hamiltonian
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -122,6 +124,14 @@ class Choice:
             samples=samples,
             progress=progress,
         )
+
+    def __repr__(self) -> str:
+        from canon.study.choose_table import answer
+
+        return f"<Choice: {answer(self)}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
 
     def __str__(self) -> str:
         from canon.study.choose_table import choice_table
@@ -276,4 +286,6 @@ def _question(
             )
         integral = constants[observable]
     state = scene.state(y0) if y0 is None or isinstance(y0, str) else np.asarray(y0, dtype=np.float64)
-    return Question(scene.hamiltonian, state, {**scene.values}, span, observable, integral), scene.title
+    return Question(
+        motion_hamiltonian(scene), state, {**scene.values}, span, observable, integral
+    ), scene.title

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from canon.study.choose import Choice
     from canon.study.choose_candidate import Candidate
 
-__all__ = ["choice_table", "duration_in_words"]
+__all__ = ["answer", "choice_table", "duration_in_words"]
 
 
 MEANINGLESS = 0.1
@@ -32,10 +32,11 @@ def choice_table(choice: Choice) -> str:
     lines = aligned([head, *map(_cells, choice.candidates)], right={1, 2, 4, 5, 6})
     rule = "─" * max(map(len, lines))
     asked = f"{choice.observable} to {choice.accuracy:.2g} over t = {choice.span:.6g}"
-    return "\n".join([choice.title, f"{asked}: {_answer(choice)}", "", lines[0], rule, *lines[1:], rule])
+    return "\n".join([choice.title, f"{asked}: {answer(choice)}", "", lines[0], rule, *lines[1:], rule])
 
 
-def _answer(choice: Choice) -> str:
+def answer(choice: Choice) -> str:
+    """Return the choice in one line of words."""
     best = choice.chosen
     cost = duration_in_words(best.predicted_cost)
     if not choice.reached:

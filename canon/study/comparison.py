@@ -11,11 +11,19 @@ import numpy as np
 
 from canon.flow.method import RK4, FixedStep, Gauss, Splitting, Stepped, Taylor
 from canon.flow.propagate import is_separable
-from canon.scene.scene import Scene
 from canon.study.drift import FEWEST
+from canon.study.driven import driven
 from canon.study.errors import StudyError
 from canon.study.observed import ENERGY, observables_of
 from canon.study.rows import DriftRow, Run, drift_row, drift_rows
+from canon.study.system import (
+    motion_hamiltonian,
+    parameters_of,
+    period_of,
+    state_of,
+    time_unit_of,
+    title_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -25,6 +33,7 @@ if TYPE_CHECKING:
 
     from canon.flow.method import Method
     from canon.flow.propagate import HamiltonianSystem
+    from canon.scene.scene import Scene
 
 __all__ = ["DriftRow", "DriftStudy", "StudyError", "drift_row", "drift_study"]
 
@@ -108,7 +117,8 @@ def drift_study(
     Parameters
     ----------
     system
-        A scene or a Hamiltonian that does not depend on time.
+        A scene or a Hamiltonian. Where it depends on the time, "energy" is the energy less the work done from
+        outside, H − ∫ ∂H/∂t dt (:mod:`canon.study.driven`).
     y0
         Initial state (q, p), shape (2n,), or for a scene the name of a start; a scene's default start if
         left out.
@@ -160,12 +170,14 @@ def drift_study(
     >>> [row.drift.verdict.value for row in study.rows]
     ['bounded', 'secular']
     """
-    hamiltonian = system.hamiltonian if isinstance(system, Scene) else system
-    state, values = _state(system, y0), _parameters(system, parameters)
+    hamiltonian = motion_hamiltonian(system)
+    state, values = state_of(system, y0), parameters_of(system, parameters)
+    timed = driven(hamiltonian) if hamiltonian.t in hamiltonian.H.free_symbols else None
+    known, hamiltonian = hamiltonian, hamiltonian if timed is None else timed.hamiltonian
     chosen = tuple(methods) if methods is not None else _usual_methods(hamiltonian, values)
     if not chosen:
         raise StudyError("no method to study: name at least one")
-    known_period = period if period is not None else _period(system)
+    known_period = period if period is not None else period_of(system)
     span = until if until is not None else _span(periods, known_period)
     if not (math.isfinite(span) and span > 0.0):
         raise StudyError(f"a run over a time of {span} makes no sense: give a positive, finite duration")
@@ -175,8 +187,10 @@ def drift_study(
     kept = samples if samples is not None else _usual_samples(span, known_period)
     if kept < FEWEST:
         raise StudyError(f"{kept} samples are too few to judge growth: keep at least {FEWEST}")
-    followed = observables_of(system, hamiltonian, observables, state, values)
+    followed = observables_of(system, known, observables, state, values)
     starts = _starts(state, orbits, scatter, seed)
+    if timed is not None:
+        followed, starts = [timed.observable(each) for each in followed], timed.state(starts)
     inside = samples is None and known_period is not None and kept >= MOST_SAMPLES
     rows: list[DriftRow] = []
     for method in chosen:
@@ -197,7 +211,11 @@ def drift_study(
     if all(row.failure for row in rows):
         reasons = "; ".join(f"{row.method}: {row.failure}" for row in rows)
         raise StudyError(f"every run failed: {reasons}")
-    return DriftStudy(_title(system, y0), span, known_period, _time_unit(system), tuple(rows))
+    title = title_of(system, y0)
+    if timed is not None:
+        rows = [replace(row, final=timed.original(row.final)) if row.drift else row for row in rows]
+        title += "; energy less the work done from outside"
+    return DriftStudy(title, span, known_period, time_unit_of(system), tuple(rows))
 
 
 def _usual_methods(
@@ -228,10 +246,6 @@ def _cadence(step: float | None, period: float | None) -> int:
     return max(1, int((period or 1.0) / (step or 1.0) / SAMPLES_PER_PERIOD))
 
 
-def _period(system: Scene | HamiltonianSystem) -> float | None:
-    return system.period if isinstance(system, Scene) else None
-
-
 def _span(periods: float, period: float | None) -> float:
     if period is None:
         raise StudyError("a Hamiltonian does not tell its period: give period=, or the duration as until=")
@@ -252,32 +266,3 @@ def _usual_step(methods: Sequence[Method], period: float | None) -> float | None
 def _usual_samples(span: float, period: float | None) -> int:
     wanted = SAMPLES_PER_PERIOD * span / period if period is not None else math.inf
     return int(min(MOST_SAMPLES, max(16 * FEWEST, wanted)))
-
-
-def _state(system: Scene | HamiltonianSystem, y0: ArrayLike | str | None) -> NDArray[np.float64]:
-    if isinstance(system, Scene) and (y0 is None or isinstance(y0, str)):
-        return system.state(y0)
-    if y0 is None or isinstance(y0, str):
-        raise StudyError("a Hamiltonian has no starts of its own: give the initial state (q, p) as numbers")
-    return np.asarray(y0, dtype=np.float64)
-
-
-def _parameters(
-    system: Scene | HamiltonianSystem, parameters: Mapping[Symbol | str, float] | None
-) -> Mapping[Symbol | str, float]:
-    given = {str(name): value for name, value in (parameters or {}).items()}
-    if isinstance(system, Scene):
-        return {**system.with_parameters(**given).values}
-    return {**given}
-
-
-def _title(system: Scene | HamiltonianSystem, y0: ArrayLike | str | None) -> str:
-    if not isinstance(system, Scene):
-        return "Hamiltonian"
-    if y0 is not None and not isinstance(y0, str):
-        return system.title
-    return f"{system.title}; {system.start(y0).about}"
-
-
-def _time_unit(system: Scene | HamiltonianSystem) -> str:
-    return system.time_unit if isinstance(system, Scene) else ""
