@@ -176,3 +176,18 @@ AT_FUNCTIONS = [
 def test_derivatives_by_functions(left, right, expected):
     verdict = equal(left, right)
     assert verdict.status is expected, f"{left} = {right}: {verdict}"
+
+
+AT_EXACT_POINTS = [
+    (sign(x - Rational(123456789, 1000)) ** 2, 1, (), FAILS),
+    (sign(x / 3 - Rational(1, 9)) ** 2, 1, (), FAILS),
+    (x, 2, (Eq(x, Rational(1, 3)),), FAILS),
+    (x * 0 + y, 2, (Eq(x, Rational(1, 3)), x >= Rational(1, 3)), FAILS),
+    (x, Rational(1, 3), (x >= Rational(1, 3), x <= Rational(1, 3)), HOLDS),
+    (x, Rational(1, 3), (x >= Rational(1, 3), x < Rational(1, 2)), FAILS),
+]
+
+
+@pytest.mark.parametrize(("left", "right", "conditions", "expected"), AT_EXACT_POINTS)
+def test_points_that_no_double_holds(left, right, conditions, expected):
+    assert equal(left, sp.sympify(right), Domain(conditions)).status is expected
