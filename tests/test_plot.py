@@ -111,6 +111,7 @@ def test_window_means_and_the_fitted_line():
 
 def test_a_missing_matplotlib_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    monkeypatch.delitem(sys.modules, "canon.plot.notebook", raising=False)
     with pytest.raises(PlotError, match=r"pip install canon-mechanics\[plot\]"):
         plot_phase_portrait([])
 

@@ -216,6 +216,9 @@ class Report:
 
         return junit(self)
 
+    def __repr__(self) -> str:
+        return f"<Report {self.title!r}: {self.summary}>"
+
     def _repr_html_(self) -> str:
         from canon.exercise.page import fragment
 

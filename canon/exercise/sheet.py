@@ -118,6 +118,9 @@ class Claim:
     errors: tuple[ClaimError, ...] = ()
     file: str = ""
 
+    def __repr__(self) -> str:
+        return f"<Claim {self.id!r}: {self.kind}{', ill-formed' if self.errors else ''}>"
+
 
 @dataclass(frozen=True)
 class Sheet:
@@ -126,6 +129,9 @@ class Sheet:
     title: str
     claims: tuple[Claim, ...]
     file: str = ""
+
+    def __repr__(self) -> str:
+        return f"<Sheet {self.title!r}: {len(self.claims)} claims>"
 
     @property
     def errors(self) -> tuple[ClaimError, ...]:

@@ -51,6 +51,10 @@ class FlowJacobian:
     M: Array
     low: Array
 
+    def __repr__(self) -> str:
+        n = len(self.M)
+        return f"<FlowJacobian: {n} × {n} at {len(self.t)} times, t = {self.t[0]:g} … {self.t[-1]:g}>"
+
     @property
     def final(self) -> Array:
         """The Jacobian at the last time, shape (2n, 2n)."""

@@ -84,6 +84,11 @@ class ConstrainedLagrangian:
                     f"{g} = 0 is not affine in the velocities, so d'Alembert's principle does not cover it"
                 )
 
+    def _repr_latex_(self) -> str:
+        kept = [f"0 &= {sp.latex(f)}" for f in (*self.holonomic, *self.nonholonomic)]
+        rows = r" \\ ".join([f"L &= {sp.latex(self.lagrangian.L)}", *kept])
+        return rf"$\displaystyle \begin{{aligned}}{rows}\end{{aligned}}$"
+
     @cached_property
     def directions(self) -> sp.ImmutableDenseMatrix:
         """The matrix A of shape (constraints, n): rows ∂f/∂q and ∂g/∂q̇."""

@@ -78,6 +78,10 @@ class ImplicitTransformation:
         if len({*self.q, *self.p, *self.new_q, *self.new_p}) != 4 * n:
             raise ValueError("old and new variables need different symbols, as many of each")
 
+    def _repr_latex_(self) -> str:
+        rows = r" \\ ".join(f"0 &= {sp.latex(E)}" for E in self.equations)
+        return rf"$\displaystyle \begin{{aligned}}{rows}\end{{aligned}}$"
+
     @cached_property
     def old_jacobian(self) -> sp.ImmutableDenseMatrix:
         """The matrix A = ∂E/∂(q, p)."""

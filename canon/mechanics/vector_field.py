@@ -52,6 +52,13 @@ class VectorField:
                 f"{len(self.components)} components for {len(self.x)} coordinates; give one each"
             )
 
+    def _repr_latex_(self) -> str:
+        terms = [
+            rf"\left({sp.latex(a)}\right) \partial_{{{sp.latex(x)}}}"
+            for a, x in zip(self.components, self.x, strict=True)
+        ]
+        return "$\\displaystyle " + " + ".join(terms) + "$"
+
     def __call__(self, f: Expr) -> Expr:
         """Return X f = Σ aⁱ ∂f/∂xⁱ."""
         return sp.Add(*(a * f.diff(s) for a, s in zip(self.components, self.x, strict=True)))

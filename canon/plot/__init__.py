@@ -6,7 +6,7 @@ loaded when the first picture is asked for.
 
 from __future__ import annotations
 
-from canon.plot.energy import plot_block_means, plot_energy_error
+from canon.plot.energy import plot_block_means, plot_energy_error, plot_errors
 from canon.plot.ensemble import plot_ensemble_fan
 from canon.plot.phase import plot_phase_portrait, plot_poincare_section
 from canon.plot.scene import animate_scene, plot_scene
@@ -23,6 +23,7 @@ __all__ = [
     "plot_drift_by_step",
     "plot_energy_error",
     "plot_ensemble_fan",
+    "plot_errors",
     "plot_phase_portrait",
     "plot_poincare_section",
     "plot_scene",

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = ["draw_guides", "plot_block_means", "plot_energy_error"]
+__all__ = ["draw_guides", "plot_block_means", "plot_energy_error", "plot_errors"]
 
 GUIDES = ((0.0, "$t^0$  bounded"), (0.5, "$t^{1/2}$  round-off"), (1.0, "$t^1$  secular"))
 
@@ -36,7 +36,7 @@ def plot_energy_error(
     *,
     guides: bool = True,
 ) -> Axes:
-    """Draw |ΔE/E| against time, both logarithmic, one line a method.
+    """Draw |ΔE/E|, or the error of what else was followed, against time, both logarithmic, one line a method.
 
     The line is the largest error in each of about a hundred intervals of log t, the shade below it reaches down to
     the median. Guides show how a bounded error, round-off and a secular error rise.
@@ -65,7 +65,7 @@ def plot_energy_error(
         ends.append((float(line.largest[-1]), line.name, colour))
     logarithmic(axes)
     axes.set_xlabel(found.time)
-    axes.set_ylabel(f"largest {'relative energy error |ΔE/E|' if found.relative else 'energy error |ΔE|'}")
+    axes.set_ylabel(found.error)
     if found.title:
         axes.set_title(found.title, loc="left", fontsize="medium")
     axes.margins(x=0.0)
@@ -74,6 +74,31 @@ def plot_energy_error(
         draw_guides(axes, [(line.t, line.largest) for line in found.lines])
     label_ends(axes, ends)
     return axes
+
+
+def plot_errors(study: DriftStudy) -> list[Axes]:
+    """Draw the errors of all observables of a drift study in a new figure, one panel each, one above another.
+
+    Raises
+    ------
+    PlotError
+        Where matplotlib is not installed.
+    """
+    first = new_axes(None)
+    names = study.observables
+    figure = first.get_figure(root=True)
+    if len(names) == 1 or figure is None:
+        return [plot_energy_error(study, first)]
+    figure.clear()
+    figure.set_size_inches(8.0, 1.0 + 3.2 * len(names))
+    panels = [figure.add_subplot(len(names), 1, k + 1) for k in range(len(names))]
+    for panel, name in zip(panels, names, strict=True):
+        plot_energy_error(study.only(name), panel)
+    for panel in panels[1:]:
+        panel.set_title("")
+    for panel in panels[:-1]:
+        panel.set_xlabel("")
+    return panels
 
 
 def plot_block_means(
@@ -150,6 +175,15 @@ class _Lines:
     time: str = "time"
     relative: bool = True
     title: str = ""
+    observables: tuple[str, ...] = ("energy",)
+
+    @property
+    def error(self) -> str:
+        """What the errors are called."""
+        if self.observables == ("energy",):
+            return f"largest {'relative energy error |ΔE/E|' if self.relative else 'energy error |ΔE|'}"
+        of = f" of {self.observables[0]}" if len(self.observables) == 1 else ""
+        return f"largest {'relative error |ΔI/I|' if self.relative else 'error |ΔI|'}{of}"
 
 
 def _line(name: str, t: Array, error: Array) -> list[_Line]:
@@ -165,9 +199,14 @@ def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]
     if isinstance(of, DriftStudy):
         rows = [row for row in of.rows if row.drift is not None]
         unit = 1.0 if of.period is None else of.period
-        lines = [line for row in rows for line in _line(_name(row), row.t / unit, row.error)]
+        several_followed = len(of.observables) > 1
+        lines = [
+            line
+            for row in rows
+            for line in _line(f"{row.observable}, " * several_followed + _name(row), row.t / unit, row.error)
+        ]
         axis = "time (periods)" if of.period is not None else _time(of.time_unit)
-        return _Lines(lines, axis, all(row.relative for row in rows), of.title)
+        return _Lines(lines, axis, all(row.relative for row in rows), of.title, of.observables)
     of_study, motions = [], []
     for each in several(of):
         (of_study if isinstance(each, Result) else motions).append(each)

@@ -46,12 +46,12 @@ def new_axes(ax: Axes | None) -> Axes:
         Where matplotlib is not installed.
     """
     try:
-        from matplotlib.figure import Figure
+        from canon.plot.notebook import ShownAxes, ShownFigure
     except ImportError as missing:
         raise PlotError("pictures need matplotlib: pip install canon-mechanics[plot]") from missing
     if ax is not None:
         return ax
-    return Figure(figsize=(8.0, 5.0), layout="constrained").add_subplot()
+    return ShownFigure(figsize=(8.0, 5.0), layout="constrained").add_subplot(axes_class=ShownAxes)
 
 
 def logarithmic(axes: Axes) -> None:

@@ -61,9 +61,9 @@ def plot_work_precision(
             f"the choice keeps the error of the {chosen.observable}; draw error={chosen.observable!r}"
         )
     axes = new_axes(ax)
-    names = list(dict.fromkeys(_family(row) for row in found.rows))
-    for index, name in enumerate(names):
-        rows = [row for row in found.rows if _family(row) == name and not row.failure]
+    family = _families(found.rows)
+    for index, name in enumerate(dict.fromkeys(family.values())):
+        rows = [row for k, row in enumerate(found.rows) if family[k] == name and not row.failure]
         x = np.array(
             [row.cpu_seconds if cost == "cpu" else row.evaluations for row in rows], dtype=np.float64
         )
@@ -169,7 +169,8 @@ def _points(of: WorkPrecision | Sequence[DriftRow] | Sequence[Result], what: str
 
     found: list[_Point] = []
     if isinstance(of, WorkPrecision):
-        found = [_Point(str(row.method), row.step or 0.0, row.energy_error) for row in of.rows]
+        family = _families(of.rows)
+        found = [_Point(family[k], row.step or 0.0, row.energy_error) for k, row in enumerate(of.rows)]
     else:
         for each in of:
             if isinstance(each, DriftRow):
@@ -256,6 +257,15 @@ def _colour(index: int) -> str:
     return COLOURS[index % len(COLOURS)]
 
 
-def _family(row: WorkRow) -> str:
-    """Return the name of a method whatever its tolerance."""
-    return str(row.method).split("(")[0] if row.tolerance is not None else str(row.method)
+def _families(rows: Sequence[WorkRow]) -> dict[int, str]:
+    """Return what each run belongs to: its method whatever the tolerance, and its arithmetic where that differs."""
+    methods = [
+        str(row.method).split("(")[0] if row.tolerance is not None else str(row.method) for row in rows
+    ]
+    used: dict[str, set[str]] = {}
+    for name, row in zip(methods, rows, strict=True):
+        used.setdefault(name, set()).update({row.precision} - {""})
+    return {
+        k: f"{name}, {row.precision}" if len(used[name]) > 1 and row.precision else name
+        for k, (name, row) in enumerate(zip(methods, rows, strict=True))
+    }

@@ -118,6 +118,11 @@ class Domain:
             if not isinstance(ends, Sequence) or len(ends) != 2:
                 raise TypeError(f"the box should give {name} a pair (low, high), not {ends!r}")
 
+    def __repr__(self) -> str:
+        said = [str(condition) for condition in self.conditions]
+        said += [f"{name} in {low} … {high}" for name, (low, high) in self.box.items()]
+        return f"<Domain: {', '.join(said) or 'everywhere'}>"
+
     def points(
         self,
         symbols: Iterable[Symbol],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, replace
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -153,6 +154,9 @@ class Verdict:
             "feedback": self.feedback,
         }
 
+    def __repr__(self) -> str:
+        return f"<{self.status.name}: {_cut(self.question)}>" if self.question else f"<{self.status.name}>"
+
     def __str__(self) -> str:
         lines = [f"{self.status.name}  {self.question}".rstrip()]
         if self.certificate:
@@ -167,12 +171,20 @@ class Verdict:
             lines.append(f"  {self.feedback}")
         return "\n".join(lines)
 
-    def _repr_latex_(self) -> str:
-        word = rf"\textbf{{{self.status.name}}}"
-        if self.residual is None:
-            return f"${word}$"
-        return f"${word}\\quad {sp.latex(self.residual)}$"
+    def _repr_html_(self) -> str:
+        word, _, rest = str(self).partition("  ")
+        return f'<pre><b style="color: {_COLOURS[self.status]}">{word}</b>  {escape(rest)}</pre>'
 
+
+_COLOURS = {Status.HOLDS: "#1a7f4b", Status.FAILS: "#b3261e", Status.UNDECIDED: "#8a6100"}
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"
+
+
+LONGEST_SHOWN = 80
+"""Characters of the question that a verdict's ``repr`` shows."""
 
 LONGEST_PRINTED = 60
 """Operations of a residual that are still printed; it is kept whole in ``residual``."""

@@ -121,6 +121,9 @@ class Scene:
                 given = ", ".join(f"{c.name} = {c.value:g}" for c in self.parameters)
                 raise SceneError(f"{given} makes no sense: {condition.about}")
 
+    def __repr__(self) -> str:
+        return f"<Scene {self.name}: {self.title}>"
+
     @cached_property
     def q(self) -> tuple[Coordinate, ...]:
         """The coordinates as symbols."""

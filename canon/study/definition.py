@@ -48,6 +48,11 @@ class Study:
 
     cases: tuple[Case, ...]
 
+    def __repr__(self) -> str:
+        systems = dict.fromkeys(case.system_name for case in self.cases)
+        methods = dict.fromkeys(str(case.method) for case in self.cases)
+        return f"<Study: {len(self.cases)} cases; {', '.join(systems)}; {', '.join(methods)}>"
+
     @staticmethod
     def of(**axes: Any) -> Study:
         """Return the study of every combination.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
+from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -120,6 +121,12 @@ class Drift:
     span: float
     reason: str
     blocks: Blocks
+
+    def __repr__(self) -> str:
+        return f"<Drift: {self.verdict.value}, {self.reason}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
 
     def __str__(self) -> str:
         low, high = self.exponent_interval

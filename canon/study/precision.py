@@ -90,6 +90,10 @@ class WorkPrecision:
     span: float
     rows: tuple[WorkRow, ...]
 
+    def __repr__(self) -> str:
+        methods = dict.fromkeys(str(row.method) for row in self.rows)
+        return f"<WorkPrecision: {len(self.rows)} runs by {', '.join(methods)}; {self.title}>"
+
 
 def work_precision(
     system: Scene | HamiltonianSystem,

@@ -86,6 +86,10 @@ class DriftRow:
     observable: str = ENERGY
     orbits: tuple[Drift, ...] = ()
 
+    def __repr__(self) -> str:
+        came = self.failure if self.drift is None else self.drift.verdict.value
+        return f"<DriftRow: {self.observable} by {self.method}, {came}>"
+
 
 @dataclass(frozen=True)
 class Run:

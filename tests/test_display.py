@@ -1,0 +1,67 @@
+"""What people see of public values: a short line in a list, and more of it in a notebook."""
+
+import pytest
+from sympy import cos, sin, symbols
+
+import canon
+from canon.scene import find
+
+x = symbols("x", real=True)
+
+
+def examples():
+    """One value of every public type whose fields would fill a screen."""
+    (theta,) = canon.coordinates("theta")
+    pendulum = canon.Hamiltonian(theta.momentum**2 / 2 - cos(theta), [theta], [theta.momentum])
+    scene = find("henon-heiles")
+    methods = [canon.Splitting("verlet"), canon.RK4()]
+    motion = canon.propagate(scene.hamiltonian, scene.state(), (0, 100), method=methods[0], step=0.1)
+    claim = {"id": "c", "kind": "equality-only", "lhs": "x", "rhs": "x", "parameters": {"x": "real"}}
+    sheet = canon.Sheet("A sheet", (canon.Claim("c", "equality-only", claim),))
+    return {
+        "verdict": canon.vanishes(sin(x) ** 2 + cos(x) ** 2 - 1),
+        "domain": canon.Domain((x > 0,)),
+        "scene": scene,
+        "trajectory": motion,
+        "jacobian": canon.flow_jacobian(pendulum, [1.0, 0.0], (0, 1), method=methods[0], step=0.1),
+        "drift": canon.drift(motion.t, motion.energy_error),
+        "row": canon.drift_study(scene, methods=methods, periods=20).rows[0],
+        "choice": canon.choose(scene, None, 100.0, 1e-3, methods=methods),
+        "work": canon.work_precision(scene, None, 5.0, methods, steps=[0.1, 0.05]),
+        "study": canon.Study.of(system="kepler", method="rk4", step=[0.01, 0.02], until=10.0),
+        "claim": sheet.claims[0],
+        "sheet": sheet,
+    }
+
+
+@pytest.fixture(scope="module")
+def shown():
+    return examples()
+
+
+def test_a_line_says_what_it_is(shown):
+    for name, value in shown.items():
+        assert "\n" not in repr(value), name
+        assert len(repr(value)) < 200, name
+    assert repr(shown["verdict"]) == "<HOLDS: the expression is zero>"
+    assert repr(shown["domain"]) == "<Domain: x > 0>"
+    assert repr(shown["study"]) == "<Study: 2 cases; kepler; RK4>"
+    assert repr(shown["drift"]).startswith(f"<Drift: {shown['drift'].verdict.value}, ")
+
+
+def test_a_notebook_shows_tables_and_escapes_them(shown):
+    for name in ("verdict", "drift", "choice"):
+        page = shown[name]._repr_html_()
+        assert page.startswith("<pre>"), name
+        assert "script" not in page
+    hostile = canon.Verdict(canon.Status.FAILS, "<script>alert(1)</script>")
+    assert "<script>" not in hostile._repr_html_()
+    assert "FAILS" in hostile._repr_html_()
+
+
+def test_a_picture_shows_itself_in_a_notebook(shown):
+    from canon.plot import plot_energy_error
+
+    axes = plot_energy_error(shown["trajectory"])
+    assert axes._repr_png_().startswith(b"\x89PNG")
+    assert axes.figure._repr_png_() == axes._repr_png_()
