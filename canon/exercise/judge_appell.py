@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.judge_energy import exactly
 from canon.exercise.question import Part, Question, Same, SameEquations
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.substitution import substitute
@@ -105,7 +106,7 @@ def _slopes(reading: Reading, kinematics: _Kinematics) -> list[Expr]:
     for i, body in enumerate(reading.claim.keys["bodies"]):
         where = f"bodies[{i}]"
         if "r" in body:
-            (mass,) = _exactly(reading, f"{where}.m", body["m"], 1)
+            (mass,) = exactly(reading, f"{where}.m", body["m"], 1)
             for place in reading.inside(f"{where}.r", body["r"]):
                 a = kinematics.rate(substitute(kinematics.rate(place), kinematics.through))
                 terms.append((mass * a, a))
@@ -119,7 +120,7 @@ def _rotor(
 ) -> list[tuple[Expr, Expr]]:
     inertia = reading.inside(f"{where}.I", body["I"])
     if "angle" in body:
-        (angle,) = _exactly(reading, f"{where}.angle", body["angle"], 1)
+        (angle,) = exactly(reading, f"{where}.angle", body["angle"], 1)
         rates: Sequence[Expr] = (substitute(kinematics.rate(angle), kinematics.through),)
     else:
         rates = [substitute(w, kinematics.through) for w in reading.inside(f"{where}.omega", body["omega"])]
@@ -134,10 +135,3 @@ def _rotor(
             j, k = (i + 1) % 3, (i + 2) % 3
             torques[i] += (inertia[k] - inertia[j]) * rates[j] * rates[k]
     return list(zip(torques, angular, strict=True))
-
-
-def _exactly(reading: Reading, where: str, value: object, count: int) -> tuple[Expr, ...]:
-    found = reading.inside(where, value)
-    if len(found) != count:
-        reading.fault(where, f"{count} expression(s) should be here, not {len(found)}")
-    return found

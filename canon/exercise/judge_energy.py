@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.reading import Reading
 
-__all__ = ["generalized_force", "kinetic_energy", "shown_short"]
+__all__ = ["exactly", "generalized_force", "kinetic_energy", "shown_short"]
 
 LONGEST_REDUCED = 400
 """Operations of an answer up to which sines and cosines are gathered for display."""
@@ -71,7 +71,7 @@ def _energies(reading: Reading) -> Iterator[Expr]:
     for i, body in enumerate(cast("Sequence[Mapping[str, object]]", reading.claim.keys["bodies"])):
         where = f"bodies[{i}]"
         if "r" in body:
-            (mass,) = _several(reading, f"{where}.m", body["m"], 1)
+            (mass,) = exactly(reading, f"{where}.m", body["m"], 1)
             for place in reading.inside(f"{where}.r", body["r"]):
                 yield mass * time_derivative(place, q, t) ** 2 / 2
         if "I" in body:
@@ -81,7 +81,7 @@ def _energies(reading: Reading) -> Iterator[Expr]:
 def _of_rotation(reading: Reading, where: str, body: Mapping[str, object]) -> Expr:
     """Return ½ ω·I ω; I has one moment, three principal moments, or Ixx, Iyy, Izz, Ixy, Ixz, Iyz."""
     if "angle" in body:
-        (angle,) = _several(reading, f"{where}.angle", body["angle"], 1)
+        (angle,) = exactly(reading, f"{where}.angle", body["angle"], 1)
         rates: tuple[Expr, ...] = (time_derivative(angle, reading.symbols("q"), reading.time),)
     else:
         rates = reading.inside(f"{where}.omega", body["omega"])
@@ -161,7 +161,8 @@ def _of_potential(reading: Reading) -> Iterator[list[Expr]]:
     yield [time_derivative(V.diff(velocity(x)), q, t) - V.diff(x) for x in q]
 
 
-def _several(reading: Reading, where: str, value: object, count: int) -> tuple[Expr, ...]:
+def exactly(reading: Reading, where: str, value: object, count: int) -> tuple[Expr, ...]:
+    """Return what stands under a key, which is to be so many expressions."""
     found = reading.inside(where, value)
     if len(found) != count:
         reading.fault(where, f"{count} expression(s) should be here, not {len(found)}")

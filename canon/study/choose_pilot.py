@@ -14,6 +14,7 @@ from canon.flow.measure import AccuracyWarning
 from canon.flow.method import DOP853, FixedStep, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
 from canon.flow.solvable import SolvableSplitting
+from canon.kernel.machine import EXTENDED
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
@@ -122,13 +123,9 @@ class Question:
         """
         plain = precision in ("single", "double", "compensated")
         if (duration, plain) not in self._known:
-            setting = Setting(
-                REFERENCE if plain else FINE_REFERENCE, precision="extended" if plain else "quad"
-            )
-            try:
-                found = self.run(setting, duration, PLACES)
-            except ValueError:
-                found = self.run(replace(setting, precision="quad"), duration, PLACES)
+            digits = "extended" if plain and EXTENDED.available() else "quad"
+            reference = Setting(REFERENCE if plain else FINE_REFERENCE, precision=digits)
+            found = self.run(reference, duration, PLACES)
             self._known[duration, plain] = found.q, found.carried[: len(found.q)]
         return self._known[duration, plain]
 
@@ -189,7 +186,7 @@ def pilot(question: Question, setting: Setting, duration: float, windows: int = 
         if isinstance(setting.method, FixedStep):
             return _watched(question, setting, duration, windows)
         return _sampled(question, setting, duration)
-    except (NonFiniteStateError, ArithmeticError, ValueError) as failed:
+    except (ArithmeticError, ValueError) as failed:
         return Pilot(setting, duration, failure=str(failed))
 
 
