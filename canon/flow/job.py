@@ -97,6 +97,7 @@ class Job:
         if memory is not None:
             self.e[:, self.size * self._scalars :] = memory
         self.c = number.packed(*(np.repeat(part, number.lanes) for part in coefficients))
+        self._addresses = self.y.ctypes.data, self.e.ctypes.data, self.c.ctypes.data
         self.t0, self.h = (float(part) for part in coefficients[0][:2])
         self.watch = watch
         if watch is not None:
@@ -120,18 +121,13 @@ class Job:
         lanes = self.loop.number.lanes
         return states.reshape(self.size, self.blocks, lanes).transpose(1, 0, 2).reshape(-1, lanes)
 
-    def _by_orbit(self, numbers: Array) -> Array:
-        lanes = self.loop.number.lanes
-        return numbers.reshape(self.blocks, self.size, lanes).transpose(1, 0, 2).reshape(self.size, -1)
-
     def advance(self, first: int, steps: int) -> None:
         """Take steps, the first of which has a given number."""
         if self.watch is None:
-            self._call(self.y, self.e, first, steps, self.blocks)
+            self.loop.code.call(*self._addresses, first, steps, self.blocks)
             return
-        arrays = (self.y.ctypes.data, self.e.ctypes.data, self.c.ctypes.data)
         numbers = (first, steps, self.blocks, self.watch.cadence)
-        self.watch.code.call(self.loop.code.address, *arrays, *numbers, self.record.ctypes.data)
+        self.watch.code.call(self.loop.code.address, *self._addresses, *numbers, self.record.ctypes.data)
 
     def _call(self, y: Memory, e: Memory, first: int, steps: int, blocks: int) -> None:
         self.loop.code.call(y.ctypes.data, e.ctypes.data, self.c.ctypes.data, first, steps, blocks)
@@ -142,15 +138,36 @@ class Job:
 
     def states(self) -> tuple[Array, Array]:
         """Return the states as sums of two doubles, each of shape (2n, orbits)."""
-        high, low = (self._by_orbit(part) for part in self.loop.number.unpacked(self.y))
+        high, low = self.states_in(self.y[np.newaxis], self.e[np.newaxis])
+        return high[:, 0], low[:, 0]
+
+    def states_in(self, y: Memory, e: Memory) -> tuple[Array, Array]:
+        """Return states of which y and e are copies, each of shape (2n, times, orbits).
+
+        Parameters
+        ----------
+        y, e
+            Copies of this job's memory, one after the other along the first axis.
+        """
+        times = len(y)
+
+        def by_orbit(numbers: Array) -> Array:
+            shaped = numbers.reshape(times, self.blocks, self.size, self.loop.number.lanes)
+            return shaped.transpose(2, 0, 1, 3).reshape(self.size, times, self.orbits)
+
+        high, low = (by_orbit(part) for part in self.loop.number.unpacked(y))
         if self.loop.compensated:
-            carried, _ = self.loop.number.unpacked(self.e[:, : self.size * self._scalars].copy())
-            low = low + self._by_orbit(carried)
+            carried, _ = self.loop.number.unpacked(e[:, :, : self.size * self._scalars].copy())
+            low = low + by_orbit(carried)
         return high, low
 
     def beyond(self) -> Memory:
         """Return what an implicit method keeps beyond the state, its iterations first, shape (blocks, …)."""
-        return self.e[:, self.size * self._scalars :].copy()
+        return self.beyond_in(self.e).copy()
+
+    def beyond_in(self, e: Memory) -> Memory:
+        """Return what lies beyond the states in copies of this job's e, shape (…, blocks, …)."""
+        return e[..., self.size * self._scalars :]
 
     def lost(self, y: Memory, e: Memory, first: int, steps: int, rows: Memory | None) -> NonFiniteStateError:
         """Find the last finite state of the first orbit that was lost, halving the slice of steps.

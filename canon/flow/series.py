@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import os
 import time
@@ -18,7 +19,7 @@ from canon.flow.trajectory import Samples
 from canon.kernel.taylor import heyoka_number, taylor_integrator
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Generator, Iterable, Sequence
 
     from canon.flow.event import Prepared
     from canon.flow.method import Taylor
@@ -91,11 +92,11 @@ def taylor_motion(
     ]
     rows, beyond = [np.stack(start, axis=1).reshape(shape)], _ends(orbits)
     steps = spent = kept = stopped = 0
-    with ThreadPoolExecutor(min(os.cpu_count() or 1, len(orbits))) as pool:
+    with _side_by_side(len(orbits)) as each_in_turn:
         try:
             for begin, end in plan.slices(first):
                 part = grid[begin - first : end - first + 1]
-                made = list(pool.map(lambda orbit, part=part: orbit.advance(part, dense=dense), orbits))
+                made = list(each_in_turn(lambda orbit, part=part: orbit.advance(part, dense=dense), orbits))
                 for orbit, each in zip(orbits, made, strict=True):
                     if each.outcome is not None:
                         raise orbit.lost(each.outcome, system.rows)
@@ -128,6 +129,18 @@ def taylor_motion(
         crossings=tuple(meeting.met),
         dense=tuple(Polynomials(tuple(orbit.pieces), number) for orbit in orbits) if dense else (),
     )
+
+
+@contextlib.contextmanager
+def _side_by_side(
+    orbits: int,
+) -> Generator[Callable[[Callable[[_Orbit], _Slice], list[_Orbit]], Iterable[_Slice]]]:
+    """Yield a map over orbits: on threads where there are several, and in this one where there is one."""
+    if orbits == 1:
+        yield map
+        return
+    with ThreadPoolExecutor(min(os.cpu_count() or 1, orbits)) as pool:
+        yield pool.map
 
 
 @dataclass(frozen=True, eq=False)
