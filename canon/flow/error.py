@@ -330,8 +330,8 @@ def _e_folding(t: Array, condition: Array) -> float | None:
     if used.sum() < _FEWEST:
         return None
     times, logarithm = t[used], np.log(condition[used])
-    late = times >= times[-1] / 2
-    growth = logarithm[-1] - logarithm[late][0]
-    if growth < max(_CHAOTIC, logarithm[-1] / 3):
+    growth = np.diff(np.interp(times[-1] * np.arange(5) / 4, times, logarithm))
+    # A power of t grows in the first quarter of the time, a single close encounter in one of them.
+    if growth[2:].sum() < _CHAOTIC or growth[1:].min() < logarithm[-1] / 12:
         return None
     return float(1 / np.polyfit(times, logarithm, 1)[0])

@@ -19,7 +19,18 @@ if TYPE_CHECKING:
 
     Vector = NDArray[np.float64]
 
-__all__ = ["acceleration_function", "energy_function", "hamilton_function", "solved"]
+__all__ = [
+    "acceleration_function", "energy_function", "hamilton_function", "mass_condition_function", "solved",
+]  # fmt: skip
+
+_SINGULAR = (
+    "{name} is singular at this point, so the motion is not determined there; use other coordinates near it"
+)
+
+_FEW_UNITS = 2.0**-48
+"""With solutions larger by 2⁴⁸ than what they are made from, less than two digits of them are right."""
+
+_SMALLEST = 1e-290
 
 
 def acceleration_function(
@@ -115,11 +126,67 @@ def _velocity_function(
 def _solved(
     values: Sequence[float], lower: tuple[NDArray[np.intp], ...], n: int, right: Sequence[float] | Vector
 ) -> Vector:
-    """Solve with the symmetric matrix whose lower triangle is given."""
+    """Solve with the mass matrix whose lower triangle is given.
+
+    Raises
+    ------
+    ArithmeticError
+        It is singular, or so near to it that rounding leaves no digit of the solution.
+    """
+    matrix = _symmetric(values, lower, n)
+    found = solved(matrix, right, "the mass matrix")
+    # In units in which every M_ii is 1, a solution so much larger than the right-hand side is made of round-off.
+    units = np.sqrt(abs(np.diagonal(matrix)))
+    sizes = abs(np.asarray(right, dtype=np.float64)) / units
+    if n > 1 and (abs(found) * units).max() * _FEW_UNITS > max(sizes.max(), _SMALLEST):
+        raise ArithmeticError(_SINGULAR.format(name="the mass matrix"))
+    return found
+
+
+def _symmetric(values: Sequence[float], lower: tuple[NDArray[np.intp], ...], n: int) -> Vector:
     matrix = np.empty((n, n))
     matrix[lower] = values
     matrix.T[lower] = values
-    return solved(matrix, right, "the mass matrix")
+    return matrix
+
+
+def mass_condition_function(
+    equations: Equations, parameters: Mapping[Symbol, float]
+) -> Callable[[Sequence[float], Sequence[float], float], float]:
+    """Return a function (q, q̇, t) → κ, the condition number of the mass matrix in the units best for it.
+
+    Accelerations have about log₁₀ κ digits fewer than doubles have: their relative error is up to some κ 2⁻⁵². Masses
+    of very different size alone do no harm, as each coordinate is measured in units in which its own M_ii is 1.
+
+    Parameters
+    ----------
+    equations, parameters
+        As :func:`acceleration_function` takes them.
+
+    Examples
+    --------
+    >>> from canon import Lagrangian, coordinates
+    >>> from canon.mechanics.derivation import derivation_of_lagrangian
+    >>> x, y = coordinates("x y")
+    >>> u, v = x.dot, y.dot
+    >>> free = derivation_of_lagrangian(Lagrangian(u**2 / 2 + 8 * v**2 + 3 * u * v, [x, y]))
+    >>> round(mass_condition_function(free, {})([0.0, 0.0], [0.0, 0.0], 0.0), 9)
+    7.0
+    """
+    constants = _numbers(equations.parameters, parameters)
+    inputs = (*equations.q, *equations.velocities, equations.t, *equations.parameters)
+    evaluate = python_function(equations.graph, equations.nodes, inputs)
+    n = len(equations.q)
+    lower = np.tril_indices(n)
+
+    def condition(q: Sequence[float], v: Sequence[float], t: float) -> float:
+        matrix = _symmetric(evaluate((*q, *v, t, *constants))[: lower[0].size], lower, n)
+        units = np.sqrt(abs(np.diagonal(matrix)))
+        if not np.isfinite(matrix).all() or not units.all():
+            return float("inf")
+        return float(np.linalg.cond(matrix / units / units[:, np.newaxis]))
+
+    return condition
 
 
 def solved(matrix: Vector, right: Sequence[float] | Vector, name: str) -> Vector:
@@ -133,10 +200,7 @@ def solved(matrix: Vector, right: Sequence[float] | Vector, name: str) -> Vector
     try:
         found = cast("Vector", np.linalg.solve(matrix, right))
     except np.linalg.LinAlgError as singular:
-        raise ArithmeticError(
-            f"{name} is singular at this point, so the motion is not determined there; use other coordinates "
-            "near it"
-        ) from singular
+        raise ArithmeticError(_SINGULAR.format(name=name)) from singular
     if not np.isfinite(found).all():
         raise ArithmeticError(f"the equations with {name} hold a number that is not finite at this point")
     return found
