@@ -26,6 +26,7 @@ def examples():
         "jacobian": canon.flow_jacobian(pendulum, [1.0, 0.0], (0, 1), method=methods[0], step=0.1),
         "drift": canon.drift(motion.t, motion.energy_error),
         "row": canon.drift_study(scene, methods=methods, periods=20).rows[0],
+        "methods": canon.drift_study(scene, methods=methods, periods=20),
         "choice": canon.choose(scene, None, 100.0, 1e-3, methods=methods),
         "work": canon.work_precision(scene, None, 5.0, methods, steps=[0.1, 0.05]),
         "study": canon.Study.of(system="kepler", method="rk4", step=[0.01, 0.02], until=10.0),
@@ -50,7 +51,7 @@ def test_a_line_says_what_it_is(shown):
 
 
 def test_a_notebook_shows_tables_and_escapes_them(shown):
-    for name in ("verdict", "drift", "choice"):
+    for name in ("verdict", "drift", "choice", "methods"):
         page = shown[name]._repr_html_()
         assert page.startswith("<pre>"), name
         assert "script" not in page

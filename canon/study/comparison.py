@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
+from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -87,6 +88,17 @@ class DriftStudy:
     def observables(self) -> tuple[str, ...]:
         """What was followed."""
         return tuple(dict.fromkeys(row.observable for row in self.rows))
+
+    def __repr__(self) -> str:
+        return f"<DriftStudy: {len(self.rows)} rows; {self.title}>"
+
+    def __str__(self) -> str:
+        from canon.study.table import drift_table
+
+        return drift_table(self)
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
 
     def only(self, observable: str) -> DriftStudy:
         """Return the rows of one observable."""
