@@ -1,0 +1,152 @@
+"""Screens of changed answers: a right one always passes, a wrong one hardly ever; what they find is right."""
+
+from pathlib import Path
+
+import pytest
+import sympy as sp
+from flint import acb
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from canon.exercise.diagnosis import judged_to_hold
+from canon.exercise.feedback import diagnosis, feedback
+from canon.exercise.judge import examine
+from canon.exercise.neighbourhood import BITS, Examples, Neighbourhood
+from canon.exercise.question import Part
+from canon.exercise.reading import Reading
+from canon.exercise.rejudged import _answers
+from canon.exercise.repair import repair
+from canon.exercise.screening import screening
+from canon.exercise.sheet import Claim, read_sheet
+from canon.proof.balls import precision
+from canon.proof.domain import Domain
+
+CLAIMS = Path(__file__).parent.parent / "data" / "claims"
+KINDS = (
+    "canonicity",
+    "canonicity-time-dependent",
+    "lagrange-bracket",
+    "poisson-bracket",
+    "generating-F1",
+    "generating-F2",
+    "generating-F3",
+    "generating-F4",
+    "transformed-hamiltonian-K",
+    "constant-of-motion",
+    "lagrangian-equivalence",
+    "hamilton-equations",
+    "equality-only",
+)
+SECONDS = 6.0
+
+
+def told(kind, **keys):
+    finding = examine(Claim("a", kind, keys))
+    return feedback(finding, SECONDS) if finding.verdict.fails else "holds"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_true_claims_pass_and_most_false_ones_do_not(kind):
+    passed = {True: [], False: []}
+    for claim in read_sheet(CLAIMS / f"{kind}.json").claims:
+        reading = Reading(claim)
+        screen = screening(reading, dict(_answers(reading)))
+        if screen is not None:
+            passed[claim.expect == "holds"].append(screen.passes({}))
+    assert all(passed[True])
+    assert sum(passed[False]) <= 0.25 * len(passed[False])
+
+
+@given(st.integers(-3, 3), st.integers(-3, 3), st.fractions(1, 3, max_denominator=4))
+@settings(max_examples=25, deadline=None)
+def test_slopes_are_derivatives(a, b, c):
+    x, y = sp.symbols("x y", real=True)
+    f = sp.Function("f", real=True)
+    F = sp.sin(a * x + b * y) * f(x, y) + sp.Rational(c) * x**2 * f(x, y).diff(y)
+    with precision(BITS):
+        at = {x: acb(3) / 7, y: acb(-5) / 11}
+        place = Neighbourhood(at, Examples([F]))
+        difference = place.slope(F, x) - place.value(F.diff(x))
+        assert abs(difference) < acb(2).real ** -80
+
+
+@given(
+    st.lists(st.integers(-3, 3), min_size=3, max_size=3),
+    st.sampled_from([1, -1, 2, sp.Rational(1, 2), sp.Rational(3, 4)]),
+    st.booleans(),
+)
+@settings(max_examples=25, deadline=None)
+def test_a_lost_product_of_powers_is_found(powers, factor, with_sine):
+    m, l, g, theta = sp.symbols("m l g theta", positive=True)
+    term = factor * m ** powers[0] * l ** powers[1] * g ** powers[2] * (sp.sin(theta) if with_sine else 1)
+    rest = sp.cos(theta) * m + sp.exp(l) * g**2
+    found = repair(Part("a", rest, rest + term), Domain(), SECONDS)
+    assert found is not None
+    assert sp.expand(found.right - rest - term) == 0
+
+
+def test_a_residual_that_is_no_product_of_powers_is_not_called_one():
+    m, l = sp.symbols("m l", positive=True)
+    assert repair(Part("a", m * sp.exp(l), m * sp.exp(l) + m**2 + l**3 + 1), Domain(), 2.0) is None
+
+
+FRAME = {
+    "q": ["q"],
+    "p": ["p"],
+    "new_q": ["Q"],
+    "new_p": ["P"],
+    "parameters": {"m": "positive"},
+    "functions": {"V": ["q"], "s": ["t"]},
+    "H": "p**2/(2*m) + V(q)",
+    "map": {"Q": ["q - s(t)"], "P": ["p - m*Derivative(s(t), t)"]},
+}
+K = "P**2/(2*m) + V(Q + s(t)) + m*Q*Derivative(s(t), (t, 2))"
+
+
+@pytest.mark.parametrize(
+    ("claimed", "said"),
+    [
+        (K, "holds"),
+        (K + " + cos(t)", "holds"),
+        (K.replace("+ m*Q", "- m*Q"), "in K the sign of -Q*m*Derivative(s(t), (t, 2)) is wrong"),
+        (K.replace("(2*m)", "m"), "in K the term P**2/m should be half that"),
+        (K.split(" + m*Q")[0], "in K the term Q*m*Derivative(s(t), (t, 2)) is missing"),
+    ],
+)
+def test_the_new_hamiltonian_is_compared_term_by_term(claimed, said):
+    assert told("transformed-hamiltonian-K", **FRAME, K=claimed) == said
+
+
+def test_a_step_with_old_momenta():
+    keys = {"q": ["q"], "p": ["p"], "parameters": {"h": "real"}, "functions": {"V": ["q"]}}
+    kick = "p - h*Derivative(V(q), q)"
+    assert told("canonicity", **keys, Q=[f"q + h*({kick})"], P=[kick]) == "holds"
+    said = "in Q the new momenta P belong in place of the old ones"
+    assert told("canonicity", **keys, Q=["q + h*p"], P=[kick]) == said
+
+
+def test_a_lost_time_term_and_a_constant_that_needs_none():
+    keys = {"q": ["x"], "p": ["p"], "H": "p**2/(2*m)", "parameters": {"m": "positive"}}
+    assert told("constant-of-motion", **keys, I="m*x - p*t") == "holds"
+    said = "I grows at the constant rate k: in I the term -k*t is missing"
+    keys["H"], keys["parameters"] = "p**2/2 - k*x", {"k": "positive"}
+    assert told("constant-of-motion", **keys, I="p") == said
+    assert told("constant-of-motion", **keys, I="p - k*t") == "holds"
+
+
+def test_right_only_for_small_angles_is_said_of_truncated_answers_only():
+    keys = {"q": ["theta"], "parameters": {"l": "positive", "g": "positive"}}
+    keys["L"] = "l**2*theta_dot**2/2 + g*l*cos(theta)*sqrt(1 + sin(theta)**4)"
+    said = told("euler-lagrange", **keys, claim=["l*theta_ddot + g*theta"])
+    assert said == "right only for small theta, to second order"
+    assert "small" not in told("euler-lagrange", **keys, claim=["l*theta_ddot - g*theta"])
+
+
+def test_every_repair_told_is_judged_as_a_whole():
+    finding = examine(Claim("a", "generating-F2", {
+        "q": ["q"], "p": ["p"], "new_q": ["Q"], "new_p": ["P"], "F": "q**3*P", "parameters": {"q": "positive"},
+        "map": {"Q": ["q**3"], "P": ["p/q**2"]},
+    }))  # fmt: skip
+    found = diagnosis(finding, SECONDS)
+    assert found.sentence == "map.P[0] should be 1/3 times what it is"
+    assert judged_to_hold(found.repaired, SECONDS)
