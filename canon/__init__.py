@@ -230,13 +230,21 @@ _ROOMS = {
     "canon.study.result": ("results_of",),
     "canon.study.run": ("run_study",),
 }
+_SUBJECTS = ("exercise", "expression", "flow", "kernel", "mechanics", "plot", "proof", "scene", "study")
 _HOME = {name: room for room, names in _ROOMS.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:
     room = _HOME.get(name)
+    if room is None and name in _SUBJECTS:
+        return importlib.import_module(f"canon.{name}")
     if room is None:
-        raise AttributeError(f"canon has no public name {name!r}")
+        import difflib
+
+        close = difflib.get_close_matches(name, __all__, n=1)
+        raise AttributeError(
+            f"canon has no public name {name!r}" + (f", did you mean {close[0]}?" if close else "")
+        )
     return getattr(importlib.import_module(room), name)
 
 

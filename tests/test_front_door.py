@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 import canon
 
 
@@ -53,3 +55,16 @@ def test_a_verdict_needs_no_integrator():
     )
     assert "sympy" in loaded
     assert not {"scipy", "heyoka", "llvmlite", "matplotlib"} & loaded
+
+
+def test_a_mistyped_name_is_told_the_nearest():
+    with pytest.raises(AttributeError, match="did you mean poisson_bracket"):
+        assert canon.poison_bracket
+
+
+def test_rooms_open_when_they_are_named():
+    done = subprocess.run(
+        [sys.executable, "-c", "import canon; print(canon.scene.find('kepler').name, canon.plot.COLOURS[0])"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert done.stdout.split() == ["kepler", "#0072B2"]

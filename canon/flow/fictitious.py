@@ -83,7 +83,7 @@ def transformed_motion(
         )
     start, end = (exact(t, "t_span") for t in t_span)
     if start == end:
-        raise ValueError(f"t_span = {t_span} has no length")
+        raise ValueError(f"t_span = {t_span} has no length: give a start and another end")
     ours, larger = system_of(hamiltonian, parameters or {}), extended(hamiltonian, method)
     energy, rate = _at_start(ours, larger, state, start)
     if not rate > 0:

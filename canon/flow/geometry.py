@@ -185,7 +185,9 @@ def symplecticity_defect(M: npt.ArrayLike) -> float:
     if given.ndim != 2 or given.shape[0] != given.shape[1] or given.shape[0] % 2 or not given.size:
         raise ValueError(f"a matrix of shape {given.shape}: a Jacobian of (q, p) has shape (2n, 2n)")
     if not np.isfinite(given).all():
-        raise ValueError("the matrix has entries that are not finite")
+        raise ValueError(
+            "the matrix has entries that are not finite: the motion it belongs to has left the finite numbers"
+        )
     return float(_defect(given, 1))
 
 

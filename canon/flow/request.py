@@ -211,7 +211,7 @@ def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]
             f"several of them ({2 * n}, orbits)"
         )
     if given.dtype == np.float64 and not np.isfinite(given).all():
-        raise ValueError(f"y0 = {given} is not finite")
+        raise ValueError(f"y0 = {given} is not finite: give a state (q, p) of finite numbers")
     if given.dtype != np.float64:
         pairs = [double_pair(exact(x, "a component of y0")) for x in given.ravel().tolist()]
         high, low = (np.array(part).reshape(2 * n, -1) for part in zip(*pairs, strict=True))

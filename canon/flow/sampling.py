@@ -80,7 +80,9 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
     """
     start, end = t_span
     if start == end:
-        raise ValueError(f"t_span = ({float(start)}, {float(end)}) has no length")
+        raise ValueError(
+            f"t_span = ({float(start)}, {float(end)}) has no length: give a start and another end"
+        )
     if times is None:
         if samples is not None and (samples < 1 or samples != int(samples)):
             raise ValueError(f"samples={samples}: keep at least one state after the first")

@@ -85,7 +85,9 @@ def from_sympy_mechanics(method: Any) -> ConstrainedLagrangian | QuasiMotion:
         return _of_lagranges_method(method)
     if isinstance(method, KanesMethod):
         return _of_kanes_method(method)
-    raise TypeError(f"{type(method).__name__} is neither a LagrangesMethod nor a KanesMethod")
+    raise TypeError(
+        f"{type(method).__name__} is neither a LagrangesMethod nor a KanesMethod of sympy.physics.mechanics; give one of these"
+    )
 
 
 def _of_lagranges_method(method: LagrangesMethod) -> ConstrainedLagrangian:

@@ -58,7 +58,7 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     if what not in ("bound", "slope", "seconds"):
         raise ValueError(f"what={what!r}: there are bound, slope, seconds")
     if not results:
-        raise ValueError("there is no case to draw")
+        raise ValueError("there is no case to draw: give results of a study, results_of(file)")
     rows = list(dict.fromkeys(result.motion for result in results))
     columns = list(dict.fromkeys(result.setting for result in results))
     axes = ax if ax is not None else _sized_axes(len(rows), len(columns))

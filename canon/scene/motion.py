@@ -113,7 +113,7 @@ def run(
     array([[ 0.1,  0. , -0.1,  0. ,  0.1]])
     """
     if not periods > 0.0:
-        raise SceneError(f"periods={periods}: a motion takes some time")
+        raise SceneError(f"periods={periods}: give a positive, finite number")
     chosen = start if isinstance(start, Start) else scene.start(start)
     equation = equation_of(scene)
     times = np.linspace(0.0, periods * scene.period, samples + 1)

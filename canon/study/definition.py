@@ -122,7 +122,9 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> 
         raise StudyError(f"{where}: unknown key {unknown[0]!r}; there are {', '.join((*AXES, *LENGTHS))}")
     for name in ("system", "method"):
         if name not in table:
-            raise StudyError(f"{where}: {name!r} is missing")
+            raise StudyError(
+                f"{where}: {name!r} is missing; a study has at least system, method and a duration"
+            )
     if ("periods" in table) == ("until" in table):
         raise StudyError(f"{where}: give the duration as periods or as until, and not as both")
     if "step" in table and "steps_per_period" in table:
