@@ -4,7 +4,10 @@ import json
 
 import pytest
 
+from canon import RK4, Splitting
 from canon.cli import main
+from canon.scene import find
+from canon.study.comparison import drift_study
 
 
 def drift(*arguments):
@@ -36,6 +39,24 @@ def test_a_figure_is_written(tmp_path, capsys):
     assert drift("--method", "verlet", "--plot", str(file)) == 0
     assert file.read_bytes().startswith(b"\x89PNG")
     assert str(file) in capsys.readouterr().out
+
+
+def test_a_figure_has_a_panel_for_every_observable():
+    from canon.plot import plot_errors
+
+    study = drift_study(
+        find("kepler"),
+        methods=[Splitting("verlet"), RK4()],
+        periods=30.0,
+        observables=["energy", "integrals"],
+    )
+    panels = plot_errors(study)
+    labels = [panel.get_ylabel() for panel in panels]
+    assert labels[0] == "largest relative energy error |ΔE/E|"
+    assert labels[1] == "largest relative error |ΔI/I|"
+    assert panels[1].get_title("left") == "angular momentum"
+    assert len(panels) == len(panels[0].figure.axes) == 4
+    assert all(panel.lines for panel in panels)
 
 
 def test_a_run_that_fails_is_a_row_and_an_exit_status(capsys):
@@ -88,12 +109,21 @@ def test_scenes_are_listed(capsys):
     printed = capsys.readouterr().out
     assert "henon-heiles" in printed
     assert "double-pendulum" in printed
+    taken, others = printed.split("not taken")
+    assert "hemisphere" not in taken
+    assert "hemisphere" in others
+
+
+def test_a_scene_driven_in_time_is_taken(capsys):
+    assert main(["drift", "parametric-pendulum", "--periods", "100", "--method", "rk4"]) == 0
+    assert "energy less the work done from outside" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
         (["drift", "henon-heile"], "did you mean henon-heiles"),
+        (["drift", "hemisphere"], "canon scene hemisphere --run"),
         (["drift", "kepler", "--method", "leapfrog"], "leapfrog"),
         (["drift", "kepler", "--method", "gauss-9"], "the number of stages is 1 … 8"),
         (["drift", "simple-pendulum", "--set", "l"], "--set l: write a parameter's name"),

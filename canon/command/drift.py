@@ -108,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
         from canon.study.table import drift_table
 
         print(drift_table(study))
-    if arguments.plot and not save_figure(study.only(study.observables[0]), arguments.plot):
+    if arguments.plot and not save_figure(study, arguments.plot):
         return 2
     return 1 if any(row.failure for row in study.rows) else 0
 
@@ -128,11 +128,11 @@ def method_named(name: str) -> Method:
 
 
 def save_figure(study: DriftStudy, file: str) -> bool:
-    """Write the energy errors of a study as a figure; say so, or why not."""
-    from canon.plot import PlotError, plot_energy_error
+    """Write the errors of a study as a figure, a panel an observable; say so, or why not."""
+    from canon.plot import PlotError, plot_errors
 
     try:
-        figure = plot_energy_error(study).get_figure(root=True)
+        figure = plot_errors(study)[0].get_figure(root=True)
         if figure is not None:
             figure.savefig(file, dpi=150)
     except (PlotError, OSError, ValueError) as error:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -92,10 +92,9 @@ def plot_errors(study: DriftStudy) -> list[Axes]:
     figure.clear()
     figure.set_size_inches(8.0, 1.0 + 3.2 * len(names))
     panels = [figure.add_subplot(len(names), 1, k + 1) for k in range(len(names))]
+    figure.suptitle(study.title, fontsize="medium", x=0.02, ha="left")
     for panel, name in zip(panels, names, strict=True):
-        plot_energy_error(study.only(name), panel)
-    for panel in panels[1:]:
-        panel.set_title("")
+        plot_energy_error(replace(study.only(name), title=name), panel)
     for panel in panels[:-1]:
         panel.set_xlabel("")
     return panels
@@ -182,8 +181,7 @@ class _Lines:
         """What the errors are called."""
         if self.observables == ("energy",):
             return f"largest {'relative energy error |ΔE/E|' if self.relative else 'energy error |ΔE|'}"
-        of = f" of {self.observables[0]}" if len(self.observables) == 1 else ""
-        return f"largest {'relative error |ΔI/I|' if self.relative else 'error |ΔI|'}{of}"
+        return f"largest {'relative error |ΔI/I|' if self.relative else 'error |ΔI|'}"
 
 
 def _line(name: str, t: Array, error: Array) -> list[_Line]:
@@ -206,7 +204,9 @@ def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]
             for line in _line(f"{row.observable}, " * several_followed + _name(row), row.t / unit, row.error)
         ]
         axis = "time (periods)" if of.period is not None else _time(of.time_unit)
-        return _Lines(lines, axis, all(row.relative for row in rows), of.title, of.observables)
+        single = of.observables[0] if len(of.observables) == 1 else ""
+        title = of.title if single in ("", "energy") or of.title == single else f"{single}. {of.title}"
+        return _Lines(lines, axis, all(row.relative for row in rows), title, of.observables)
     of_study, motions = [], []
     for each in several(of):
         (of_study if isinstance(each, Result) else motions).append(each)
