@@ -81,6 +81,11 @@ def fixed_precision(name: str | int | None) -> Precision:
     ------
     ValueError
         There is no such precision, or the platform lacks the type.
+
+    Examples
+    --------
+    >>> fixed_precision(None).name, fixed_precision("single").number.mantissa
+    ('compensated', 24)
     """
     precision = FIXED.get(str(name or "compensated"))
     if precision is None:

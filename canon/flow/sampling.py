@@ -110,10 +110,24 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
 def steps_over(start: Fraction, end: Fraction, step: float | None, method: object) -> int:
     """Return in how many equal steps, none longer than the wanted one, a span is passed.
 
+    Parameters
+    ----------
+    start, end
+        First and last time.
+    step
+        The wanted size, positive in either direction of time.
+    method
+        What takes the steps, for messages.
+
     Raises
     ------
     ValueError
         The step is missing or makes no sense.
+
+    Examples
+    --------
+    >>> [steps_over(Fraction(0), Fraction(end), 0.1, "verlet") for end in (1, -1, "1.05")]
+    [10, 10, 11]
     """
     if step is None:
         raise ValueError(f"{method} takes fixed steps: give step=, in the units of time")
