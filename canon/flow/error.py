@@ -138,18 +138,19 @@ def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> E
     scale = _sizes(own)
     states = (task.states[0][:, chosen], task.states[1][:, chosen])
     task = replace(task, states=states, single=False, cadence=None, dense=False)
-    companions = _better(task, samples)
-    better = next(companions)
-    while True:
-        found, known = _companions(better.task, samples, scale)
-        away, apart = _compared(own, None if found is None else _of(found, rows, known))
+    away, apart, found, words = np.full(own.shape, np.inf), np.full(own.shape, np.nan), None, "no companion"
+    for better in _better(task, samples):
+        made, known = _companions(better.task, samples, scale)
+        if made is None:
+            continue
+        found, words = made, better.words
+        away, apart = _compared(own, made.y[rows][:, :known], made.carried[rows][:, :known])
         # Rounding shifts the companion as its neighbour was shifted, but by so much less.
-        companion_errs = np.where(np.isnan(apart), scale * better.unit, apart * (better.unit / _BESIDE))
-        finer = None if (companion_errs[:, -1] <= away[:, -1]).all() else next(companions, None)
-        if finer is None:
+        its_own = np.where(np.isnan(apart), scale * better.unit, apart * (better.unit / _BESIDE))
+        told = (its_own[:, -1] <= away[:, -1]).all()
+        away = away + its_own
+        if told:
             break
-        better = finer
-    away = away + companion_errs
     if task.system.autonomous and not any(met.after is not None for met in samples.crossings):
         change = motion.energy_change.reshape(len(motion.t), -1)[:, chosen]
         deluded = _deluded(
@@ -161,7 +162,7 @@ def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> E
     if motion.y.ndim == 2:
         away, relative, condition = away[:, :, 0], relative[:, 0], condition[:, 0]
     events = _event_errors(samples, found)
-    return ErrorEstimate(motion.t, away, relative, condition, events, better.words)
+    return ErrorEstimate(motion.t, away, relative, condition, events, words)
 
 
 def _deluded(
@@ -180,17 +181,10 @@ def _deluded(
     return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach)
 
 
-def _of(found: Samples, rows: Sequence[int], known: int) -> tuple[Array, Array]:
-    return found.y[rows][:, :known], found.carried[rows][:, :known]
-
-
-def _compared(own: Array, companion: tuple[Array, Array] | None) -> tuple[Array, Array]:
+def _compared(own: Array, y: Array, rest: Array) -> tuple[Array, Array]:
     """Return how far a motion is from its companion so far, and how far neighbours have gone apart so far."""
     m = own.shape[2]
     away, apart = np.full(own.shape, np.inf), np.full(own.shape, np.nan)
-    if companion is None:
-        return away, apart
-    y, rest = companion
     known = y.shape[1]
     missed = abs((own[:, :known] - y[:, :, :m]) - rest[:, :, :m])
     away[:, :known] = _SAFETY * np.maximum.accumulate(missed, axis=1) + np.spacing(abs(own[:, :known]))
@@ -229,7 +223,8 @@ def _better(task: Task, samples: Samples) -> Iterator[_Better]:
     """Yield companions, each more exact than the one before."""
     plan = task.plan
     if plan.h is None:
-        t = samples.t
+        # An event that has ended the motion may end the companion a little later.
+        t = plan.instants if samples.crossings and len(samples.t) < len(plan.instants) else samples.t
         ends = sorted({round(k * (len(t) - 1) / _SLICES) for k in range(1, _SLICES + 1)} - {0})
         plan = Plan(plan.start, t, ends=tuple(ends))
         given = str(task.precision or "double") if isinstance(task.method, Taylor) else "double"

@@ -155,6 +155,18 @@ def test_the_times_of_events_have_errors_too():
     assert np.isnan(estimate.condition).all()
 
 
+@pytest.mark.parametrize("how", [{}, {"method": Splitting("kahan-li-8"), "step": 0.01}])
+def test_the_time_of_an_event_that_ends_the_motion(how):
+    end = Event(x, 1, "stop")
+    motion = propagate(PENDULUM, [-1.0, 0.0], (0, 40), events=[end], **how)
+    exact = propagate(PENDULUM, [-1.0, 0.0], (0, 40), precision="quad", events=[end])
+    estimate = motion.error_estimate()
+    assert motion.stopped
+    assert estimate.events[0] < 1e-13
+    assert abs(motion.events[0].t - exact.events[0].t) <= estimate.events[0]
+    assert (abs(motion.final - exact.final) <= estimate.error[:, -1]).all()
+
+
 def test_chosen_orbits_of_an_ensemble():
     starts = np.array([np.linspace(0.1, 3, 40), np.zeros(40)])
     motion = propagate(PENDULUM, starts, (0, 10), method=Splitting("forest-ruth"), step=0.1, samples=5)
