@@ -52,6 +52,7 @@ class Worker:
     """
 
     def __init__(self) -> None:
+        self._owner = os.getpid()
         self._process: subprocess.Popen[str] | None = None
         self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
 
@@ -128,9 +129,12 @@ class Worker:
             self.stop()
 
     def stop(self) -> None:
-        """Kill the process, whatever it is doing; the next claim starts another one."""
+        """Kill the process, whatever it is doing; the next claim starts another one.
+
+        A forked child leaves the process of its parent alone.
+        """
         process, self._process = self._process, None
-        if process is None:
+        if process is None or os.getpid() != self._owner:
             return
         _kill(process)
         process.wait()

@@ -102,7 +102,7 @@ def _fresh_value(expr: sp.Basic, point: Mapping[Symbol, sp.Rational], memo: dict
         return _piecewise(expr, point, memo)
     arguments = [_value(argument, point, memo) for argument in expr.args]
     if isinstance(expr, sp.Add):
-        return _exactly(_sum(arguments), [expr], point)
+        return _exactly(_sum(arguments), [cast("Expr", expr)], point)
     if isinstance(expr, sp.Mul):
         return _product(arguments)
     if isinstance(expr, sp.Pow):
@@ -117,7 +117,7 @@ SHORT = 8
 """Terms of a sum that is added up exactly where its ball does not tell whether it is zero."""
 
 
-def _exactly(ball: acb, terms: list[sp.Basic], point: Mapping[Symbol, sp.Rational]) -> acb:
+def _exactly(ball: acb, terms: list[Expr], point: Mapping[Symbol, sp.Rational]) -> acb:
     """Return an exact ball for a short polynomial that may vanish: a ball around 1/3 − 1/3 has a radius."""
     if not ball.contains(0) or ball.is_zero():
         return ball
@@ -128,12 +128,12 @@ def _exactly(ball: acb, terms: list[sp.Basic], point: Mapping[Symbol, sp.Rationa
     return ball if None in found else acb(sum(cast("list[fmpq]", found), fmpq(0)))
 
 
-def _monomial(term: sp.Basic, point: Mapping[Symbol, sp.Rational]) -> fmpq | None:
+def _monomial(term: Expr, point: Mapping[Symbol, sp.Rational]) -> fmpq | None:
     """Return the exact value of a rational multiple of powers of symbols, None for anything else."""
     total = fmpq(1)
     for factor in sp.Mul.make_args(term):
         base, exponent = factor.as_base_exp()
-        number = point.get(cast("Symbol", base)) if isinstance(base, sp.Symbol) else base
+        number = point.get(base) if isinstance(base, sp.Symbol) else base
         if not isinstance(number, sp.Rational) or not isinstance(exponent, sp.Integer):
             return None
         if abs(int(exponent)) > SHORT or (number == 0 and exponent < 0):
@@ -219,8 +219,9 @@ def holds_at(
         return not holds_at(condition.args[0], point, known)
     if not isinstance(condition, Relational):
         raise Unmodelled(f"the condition {condition} is not modelled")
-    left, right = (_value(side, point, known) for side in condition.args)
-    difference = _exactly(left - right, [condition.args[0], -cast("Expr", condition.args[1])], point)
+    sides = cast("tuple[Expr, ...]", condition.args)
+    left, right = (_value(side, point, known) for side in sides)
+    difference = _exactly(left - right, [sides[0], -sides[1]], point)
     return _compare(condition, difference)
 
 

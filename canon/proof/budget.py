@@ -63,6 +63,7 @@ class _Worker:
     """One worker process, started when first needed and again after it was killed."""
 
     def __init__(self) -> None:
+        self._owner = os.getpid()
         self._process: subprocess.Popen[bytes] | None = None
         self._conversation: threading.Thread | None = None
         self._lock = threading.Lock()
@@ -70,31 +71,39 @@ class _Worker:
     def ask(self, exprs: Sequence[Expr], domain: Domain, seconds: float) -> list[Attempt] | str:
         """Send one request and wait for the reply, at most as long as it may take."""
         deadline = time.monotonic() + seconds + GRACE
-        request = (tuple(exprs), type(domain)(domain.conditions, dict(domain.box)), max(0.0, seconds - GRACE))
+        if not self._lock.acquire(timeout=max(0.0, seconds)):
+            return f"another thread's proof took the {seconds:.1f} s"
+        try:
+            return self._asked(exprs, domain, deadline, seconds)
+        finally:
+            self._lock.release()
+
+    def _asked(
+        self, exprs: Sequence[Expr], domain: Domain, deadline: float, seconds: float
+    ) -> list[Attempt] | str:
+        left = max(0.0, deadline - time.monotonic() - 2 * GRACE)
+        request = (tuple(exprs), type(domain)(domain.conditions, dict(domain.box)), left)
         replies: queue.SimpleQueue[object] = queue.SimpleQueue()
-        with self._lock:
-            process = self._running()
-            self._conversation = threading.Thread(
-                target=_converse, args=(process, request, replies), daemon=True
-            )
-            self._conversation.start()
-            try:
-                reply = _wait(replies, deadline)
-            except BaseException:  # an interrupt above all: nobody waits for the answer any more
-                self.stop()
-                raise
-            if reply is None:
-                self.stop()
-                return f"stopped after {seconds:.1f} s"
-            if isinstance(reply, OSError | EOFError):
-                self.stop()
-                return "the worker ended, for lack of memory or otherwise"
-            return cast("list[Attempt] | str", reply)
+        process = self._running()
+        self._conversation = threading.Thread(target=_converse, args=(process, request, replies), daemon=True)
+        self._conversation.start()
+        try:
+            reply = _wait(replies, deadline)
+        except BaseException:  # an interrupt above all: nobody waits for the answer any more
+            self.stop()
+            raise
+        if reply is None:
+            self.stop()
+            return f"stopped after {seconds:.1f} s"
+        if isinstance(reply, OSError | EOFError):
+            self.stop()
+            return "the worker ended, for lack of memory or otherwise"
+        return cast("list[Attempt] | str", reply)
 
     def stop(self) -> None:
-        """Kill the process, if there is one."""
+        """Kill the process, if there is one; a forked child leaves that of its parent alone."""
         process, self._process = self._process, None
-        if process is None:
+        if process is None or os.getpid() != self._owner:
             return
         process.kill()
         process.wait()
