@@ -22,10 +22,11 @@ from canon.exercise import (
     judge_solution,
     judge_variation,
 )
+from canon.exercise.form import faults
 from canon.exercise.manifold import EmptyDomainError
 from canon.exercise.question import Deadline, Question, Stated, decide
 from canon.exercise.reading import InvalidClaim, Reading
-from canon.exercise.sheet import Claim, ClaimError, claim_from
+from canon.exercise.sheet import Claim, ClaimError
 from canon.expression.given import given_kind
 from canon.mechanics.linear import SingularMatrixError
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
@@ -132,9 +133,10 @@ def examine(claim: Claim) -> Finding:
         As :func:`judge` does.
     """
     given_kind(claim, Claim, "what is judged", "write Claim(id, kind, keys), or ask expect(kind, …)")
-    errors = claim.errors or claim_from({**claim.keys, "id": claim.id, "kind": claim.kind}).errors
-    if errors:
-        raise InvalidClaim(errors[0])
+    if claim.errors:
+        raise InvalidClaim(claim.errors[0])
+    for key, reason in faults(claim.kind, claim.keys):  # a claim made by hand was not looked at before
+        raise InvalidClaim(ClaimError(claim.id, key, reason, file=claim.file))
     deadline = Deadline.after(claim.budget)
     reading = Reading(claim)
     answered: list[Verdict] = []
