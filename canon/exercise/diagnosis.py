@@ -10,10 +10,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from canon.exercise.manifold import EmptyDomainError
 from canon.exercise.question import Deadline, decide
-from canon.exercise.reading import InvalidClaim
-from canon.mechanics.linear import SingularMatrixError
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -23,6 +20,9 @@ if TYPE_CHECKING:
 
     from canon.exercise.question import Part
     from canon.exercise.reading import Reading
+
+_NONSENSE = (TypeError, ValueError, ArithmeticError, NotImplementedError)
+"""What a repair raises that makes no sense: a singular matrix, an empty domain, no number, an order of i."""
 
 __all__ = ["Diagnosis", "judged_to_hold", "scaled"]
 
@@ -68,7 +68,7 @@ def judged_to_hold(reading: Reading, seconds: float, held: int = 0, but: int | N
         return all(
             decide(question, deadline).holds for i, question in islice(questions, held, None) if i != but
         )
-    except (Undecided, SingularMatrixError, InvalidClaim, EmptyDomainError):
+    except (Undecided, *_NONSENSE):
         return False
 
 

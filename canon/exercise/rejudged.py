@@ -67,7 +67,7 @@ def another_reading(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
     if reading.has("map"):
         readings.insert(0, (_inverted(reading), "what is given as the map is its inverse"))
     for trial, sentence in readings:
-        if time.monotonic() < deadline and _holds(trial, deadline):
+        if time.monotonic() < deadline and _could_hold(trial) and _holds(trial, deadline):
             yield Diagnosis(sentence, trial)
 
 
