@@ -12,10 +12,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.expression.arithmetic import LONGDOUBLE
 from canon.flow.job import NonFiniteStateError
 from canon.flow.measure import jumped
 from canon.flow.method import Gauss, Taylor
@@ -140,13 +141,12 @@ def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> E
     task = replace(task, states=states, single=False, cadence=None, dense=False)
     away, apart, found, words = np.full(own.shape, np.inf), np.full(own.shape, np.nan), None, "no companion"
     for better in _better(task, samples):
-        made, known = _companions(better.task, samples, scale)
+        made, known = _companions(better, samples, scale)
         if made is None:
             continue
         found, words = made, better.words
-        away, apart = _compared(own, made.y[rows][:, :known], made.carried[rows][:, :known])
-        # Rounding shifts the companion as its neighbour was shifted, but by so much less.
-        its_own = np.where(np.isnan(apart), scale * better.unit, apart * (better.unit / _BESIDE))
+        away, (apart, rounded) = _compared(own, made.y[rows][:, :known], made.carried[rows][:, :known])
+        its_own = np.where(np.isnan(rounded), scale * better.unit, rounded)
         told = (its_own[:, -1] <= away[:, -1]).all()
         away = away + its_own
         if told:
@@ -157,6 +157,9 @@ def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> E
             task.system, replace(samples, y=samples.y[:, :, chosen]), change, away / scale, scale
         )
         away = np.where(np.maximum.accumulate(deluded, axis=0), np.inf, away)
+    if task.plan.h is not None:  # its states are those of exact times, which t has rounded
+        rates = _rates(task.system, samples.t, samples.y[:, :, chosen])
+        away = (away + rates * np.spacing(abs(samples.t))[:, np.newaxis]).astype(np.float64)
     relative = (away / scale).max(axis=0)
     condition = _growth(apart / scale)
     if motion.y.ndim == 2:
@@ -173,24 +176,34 @@ def _deluded(
     Both may have jumped over the same singularity. An error of size ε in parts of the motion's size changes H by no
     more than ε Σ |∂H/∂y| · size, to first order.
     """
-    state = dict(zip(system.inputs, (*samples.y, samples.t[:, np.newaxis]), strict=True))
-    shape = change.shape
-    nodes = (*system.force, *system.velocity)
-    slopes = system.graph.evaluate([nodes[row] for row in system.rows], state)
-    reach = sum(abs(np.broadcast_to(g, shape)) * size for g, size in zip(slopes, scale[:, 0], strict=True))
+    slopes = np.roll(_rates(system, samples.t, samples.y), len(scale) // 2, axis=0)
+    reach = (slopes * scale).sum(axis=0)
     return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach)
 
 
-def _compared(own: Array, y: Array, rest: Array) -> tuple[Array, Array]:
-    """Return how far a motion is from its companion so far, and how far neighbours have gone apart so far."""
+def _rates(system: Equations, t: Array, y: Array) -> npt.NDArray[Any]:
+    """Return the sizes of q̇ and ṗ, shape (2n, times, orbits)."""
+    nodes = (*system.velocity, *system.force)
+    wide = (part.astype(np.longdouble) for part in (*y, t[:, np.newaxis]))
+    state = dict(zip(system.inputs, wide, strict=True))
+    found = system.graph.evaluate([nodes[row] for row in system.rows], state, LONGDOUBLE)
+    sizes = np.empty(y[system.rows].shape, dtype=np.longdouble)
+    for each, x in zip(sizes, found, strict=True):
+        each[:] = np.abs(np.broadcast_to(np.asarray(x), y.shape[1:]))
+    return sizes
+
+
+def _compared(own: Array, y: Array, rest: Array) -> tuple[Array, list[Array]]:
+    """Return how far a motion is from its companion so far, and how far that is from both its neighbours."""
     m = own.shape[2]
-    away, apart = np.full(own.shape, np.inf), np.full(own.shape, np.nan)
+    away, apart = np.full(own.shape, np.inf), [np.full(own.shape, np.nan), np.full(own.shape, np.nan)]
     known = y.shape[1]
     missed = abs((own[:, :known] - y[:, :, :m]) - rest[:, :, :m])
     away[:, :known] = _SAFETY * np.maximum.accumulate(missed, axis=1) + np.spacing(abs(own[:, :known]))
-    if y.shape[2] > m:
-        distance = (y[:, :, m:] - y[:, :, :m]) + (rest[:, :, m:] - rest[:, :, :m])
-        apart[:, :known] = np.maximum.accumulate(abs(distance), axis=1)
+    for each, begin in zip(apart, range(m, y.shape[2], m), strict=False):
+        beside = slice(begin, begin + m)
+        distance = (y[:, :, beside] - y[:, :, :m]) + (rest[:, :, beside] - rest[:, :, :m])
+        each[:, :known] = np.maximum.accumulate(abs(distance), axis=1)
     return away, apart
 
 
@@ -254,20 +267,26 @@ def _wider(task: Task) -> list[str]:
     given = FIXED[task.precision_name]
     if isinstance(task.method, SolvableSplitting) or getattr(task.method, "parts", None) is not None:
         return [given.name]
-    ready = EXTENDED.available() and given.number.mantissa < EXTENDED.mantissa
+    # Extended numbers once more, as they may hold numbers that double-double does not.
+    ready = EXTENDED.available() and given.number.mantissa <= EXTENDED.mantissa
     return (
         ["extended", "double-double"] if ready and not isinstance(task.method, Gauss) else ["double-double"]
     )
 
 
-def _companions(task: Task, samples: Samples, scale: Array) -> tuple[Samples | None, int]:
-    """Return the companion, with its neighbours as further orbits where there can be any, and its samples."""
-    high, low = task.states
-    beside = high.copy()
-    beside[task.system.rows] += _BESIDE * scale[:, 0] * _directions(len(scale))[:, np.newaxis]
-    pairs = tuple(np.concatenate(parts, axis=1) for parts in ((high, beside), (low, low)))
-    both = None if task.events else replace(task, states=(pairs[0], pairs[1]))
-    for each in (both, task):
+def _companions(better: _Better, samples: Samples, scale: Array) -> tuple[Samples | None, int]:
+    """Return the companion, with two neighbours as further orbits where there can be any, and its samples.
+
+    One starts a small part of the motion's size beside it, the other so near that rounding might have put it there.
+    """
+    task, (high, low) = better.task, better.task.states
+    shifts = scale[:, 0] * _directions(len(scale))[:, np.newaxis]
+    near, far = low.copy(), low.copy()
+    near[task.system.rows] += 2 * better.unit * shifts
+    far[task.system.rows] += _BESIDE * shifts
+    pairs = np.concatenate([high] * 3, axis=1), np.concatenate([low, far, near], axis=1)
+    together = None if task.events else replace(task, states=pairs)
+    for each in (together, task):
         if each is None:
             continue
         try:
