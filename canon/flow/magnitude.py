@@ -10,6 +10,7 @@ import numpy as np
 
 from canon.expression.arithmetic import FLOAT64, multiprecision
 from canon.flow.method import Taylor
+from canon.kernel.pair_function import LARGEST_ANGLE
 
 if TYPE_CHECKING:
     from canon.flow.method import Method
@@ -44,6 +45,8 @@ def check_magnitudes(
     """
     if not is_narrow(precision):
         return
+    if precision == "double-double":
+        _check_angles(system, states[:, 0], start)
     state = states[:, 0]
     nodes = [*system.velocity, *system.force]
     point = [*state.tolist(), float(start)]
@@ -65,6 +68,19 @@ def check_magnitudes(
                 f"the rate of {name} at the start is {float(true):.3g}, but {float(found):.3g} in doubles: numbers on "
                 "the way are beyond 1e±308. Choose units in which lengths, times and masses are nearer to 1, or "
                 "precision='extended'"
+            )
+
+
+def _check_angles(system: Equations, state: Array, start: Fraction) -> None:
+    nodes = system.graph.reachable((*system.velocity, *system.force))
+    kinds = [system.graph.nodes[node] for node in nodes]
+    angles = [each.operands[0] for each in kinds if each.kind in ("sin", "cos", "tan")]
+    point = dict(zip(system.inputs, (*state.tolist(), float(start)), strict=True))
+    for value in system.graph.evaluate(angles, point, FLOAT64):
+        if abs(float(value)) > LARGEST_ANGLE:
+            raise ValueError(
+                f"an angle is {float(value):.3g} rad at the start: double-double has sines up to "
+                f"{float(LARGEST_ANGLE):.2g} rad. Take whole turns off it, or Taylor() with precision='quad'"
             )
 
 

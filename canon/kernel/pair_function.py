@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from canon.kernel.machine import MachineType
     from canon.kernel.writer import Writer
 
-__all__ = ["PAIR_FUNCTIONS", "call_pair_function"]
+__all__ = ["LARGEST_ANGLE", "PAIR_FUNCTIONS", "call_pair_function"]
 
 _SINE_TERMS, _COSINE_TERMS, _EXPONENTIAL_TERMS, _HALVINGS = 14, 15, 12, 6
-_LARGEST_ANGLE = Fraction(2**45)
+LARGEST_ANGLE = Fraction(2**45)
 """Angles beyond it have lost their place in the period: NaN."""
 
 _LARGEST_EXPONENT = 2040
@@ -107,7 +107,7 @@ def _circular(w: Writer, x: str, turned: int) -> str:
     whole = b.intrinsic("floor", b.algebra("mul", half, b.constant(Fraction(1, 2))))
     negative = b.less(b.algebra("add", whole, whole), half)
     found = base.choose(negative, w.negative(found), found)
-    known = b.less(b.intrinsic("fabs", base.high(x)), b.constant(_LARGEST_ANGLE))
+    known = b.less(b.intrinsic("fabs", base.high(x)), b.constant(LARGEST_ANGLE))
     return base.choose(known, found, base.pair(b.nan()))
 
 
