@@ -53,7 +53,7 @@ def test_a_line_says_what_it_is(shown):
 def test_a_notebook_shows_tables_and_escapes_them(shown):
     for name in ("verdict", "drift", "choice", "methods"):
         page = shown[name]._repr_html_()
-        assert page.startswith("<pre>"), name
+        assert page.startswith("<pre style="), name
         assert "script" not in page
     hostile = canon.Verdict(canon.Status.FAILS, "<script>alert(1)</script>")
     assert "<script>" not in hostile._repr_html_()

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, replace
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
+
+from canon.display import preformatted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -172,8 +173,8 @@ class Verdict:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        word, _, rest = str(self).partition("  ")
-        return f'<pre><b style="color: {_COLOURS[self.status]}">{word}</b>  {escape(rest)}</pre>'
+        word = self.status.name
+        return preformatted(str(self).removeprefix(word), lead=word, colour=_COLOURS[self.status])
 
 
 _COLOURS = {Status.HOLDS: "#1a7f4b", Status.FAILS: "#b3261e", Status.UNDECIDED: "#8a6100"}

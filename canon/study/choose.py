@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.display import preformatted
 from canon.flow.method import FixedStep, Taylor
 from canon.flow.propagate import propagate
 from canon.scene.scene import Scene, near
@@ -131,7 +131,7 @@ class Choice:
         return f"<Choice: {answer(self)}>"
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
+        return preformatted(str(self))
 
     def __str__(self) -> str:
         from canon.study.choose_table import choice_table

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.display import preformatted
 from canon.flow.method import RK4, FixedStep, Gauss, Splitting, Stepped, Taylor
 from canon.flow.propagate import is_separable
 from canon.study.drift import FEWEST
@@ -98,7 +98,7 @@ class DriftStudy:
         return drift_table(self)
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
+        return preformatted(str(self))
 
     def only(self, observable: str) -> DriftStudy:
         """Return the rows of one observable."""

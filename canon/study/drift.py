@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.display import preformatted
 from canon.study.block import WIDTH, Blocks, block_means
 from canon.study.growth import (
     Exponent,
@@ -126,7 +126,7 @@ class Drift:
         return f"<Drift: {self.verdict.value}, {self.reason}>"
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
+        return preformatted(str(self))
 
     def __str__(self) -> str:
         low, high = self.exponent_interval
