@@ -1,4 +1,4 @@
-"""446 claims of all kinds whose labels were found by another program: no verdict is wrong, few are undecided."""
+"""Over a thousand claims of all kinds whose labels were found by other programs: no verdict is wrong, few are open."""
 
 from pathlib import Path
 
@@ -7,13 +7,13 @@ import pytest
 from canon.exercise.checking import judged
 from canon.exercise.sheet import read_sheet
 
-SHEETS = sorted((Path(__file__).parents[1] / "data" / "held_out").glob("*.json"))
-UNDECIDED = {"X-EQ-20", "X-EQ-45", "X-EQ-47", "X-EQ-51", "X-HE-08a"}
+SHEETS = sorted((Path(__file__).parents[1] / "data").glob("held_out*/*.json"))
+UNDECIDED = {"X-EQ-20", "X-EQ-45", "X-EQ-47", "X-EQ-51", "X-HE-08a", "EQ-h19"}
 """What canon can't decide yet; a claim that leaves this list is progress, one that joins it is a regression."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sheet", SHEETS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("sheet", SHEETS, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_verdicts(sheet):
     claims = read_sheet(sheet).claims
     verdicts = {judgement.id: judgement.status for judgement in judged(claims)}
