@@ -60,6 +60,9 @@ class Case:
     parts
         Parts the run is made of, None for the usual number (:func:`parts_of`). Each begins anew from the exact
         state the last one ended with, be the run interrupted there or not.
+    observables
+        What is judged beside the energy: names of constants, and names with formulas
+        (:func:`canon.study.followed.observables_from`).
     """
 
     system: str | Formula
@@ -72,6 +75,7 @@ class Case:
     tolerance: float | None = None
     precision: str | None = None
     parts: int | None = None
+    observables: tuple[tuple[str, str], ...] = ()
 
     @property
     def system_name(self) -> str:
@@ -111,12 +115,15 @@ class Case:
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold of this case; floats survive exactly."""
         fields = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        fields.pop("observables")
+        observables = {"observables": dict(self.observables)} if self.observables else {}
         system = self.system.to_dict() if isinstance(self.system, Formula) else self.system
         return {
             **fields,
             "system": system,
             "method": method_to(self.method),
             "parameters": dict(self.parameters),
+            **observables,
         }
 
     def to_text(self) -> str:
@@ -133,6 +140,7 @@ class Case:
             method=method_from(given.pop("method")),
             parameters=tuple(given.pop("parameters").items()),
             start=tuple(start) if isinstance(start, list) else start,
+            observables=tuple(given.pop("observables", {}).items()),
             **given,
         )
 

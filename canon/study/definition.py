@@ -8,16 +8,19 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.method import Stepped
+from canon.flow.method import Stepped, Taylor
 from canon.scene import Scene, SceneError, find
 from canon.study.case import Case, key_of, method_from
-from canon.study.comparison import SAMPLES_PER_PERIOD
+from canon.study.comparison import ADAPTIVE_ONLY, SAMPLES_PER_PERIOD
 from canon.study.drift import FEWEST
 from canon.study.errors import StudyError
+from canon.study.followed import followed, observables_from
 from canon.study.formula import Formula, formula_from, formula_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
+
+    from canon.flow.method import Method
 
 __all__ = ["Study", "read_study"]
 
@@ -26,7 +29,7 @@ AXES = ("system", "start", "method", "step", "steps_per_period", "tolerance", "p
 FEWEST_USUAL, MOST_SAMPLES = 4096, 2**15
 """Samples of a run unless asked for: about 16 a period, within these limits."""
 
-LENGTHS = ("periods", "until", "samples", "parts", "parameters")
+LENGTHS = ("periods", "until", "samples", "parts", "parameters", "observables")
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,8 @@ class Study:
             ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
             of values (a state is a list in that list; steps are for methods of fixed step, tolerances for
             the others); ``parameters``: a value or a list of values each; ``periods`` or ``until``,
-            ``samples`` and ``parts`` hold for all cases.
+            ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
+            ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these.
 
         Raises
         ------
@@ -190,11 +194,19 @@ def _case(
         parameters=parameters,
         step=float(step) if stepped else None,
         tolerance=None if stepped else chosen["tolerance"],
-        precision=chosen["precision"] if stepped else None,
+        precision=_precision(method, chosen["precision"]),
         parts=int(table["parts"]) if "parts" in table else None,
+        observables=observables_from(table.get("observables", ())),
     )
     _check(case)
     return case
+
+
+def _precision(method: Method, wanted: Any) -> Any:
+    """Return the arithmetic a method takes: of those meant for fixed steps, the others take none."""
+    if isinstance(method, Stepped):
+        return wanted
+    return wanted if isinstance(method, Taylor) and wanted in ADAPTIVE_ONLY else None
 
 
 def _period(system: str | Formula, parameters: tuple[tuple[str, float], ...]) -> float | None:
@@ -237,6 +249,7 @@ def _check(case: Case) -> None:
         if len(case.start) != 2 * n:
             raise ValueError(f"{case.system}: a start needs {2 * n} numbers (q, p), not {list(case.start)}")
     key_of(case)  # names of starts are looked up
+    followed(case)
 
 
 def _listed(value: Any) -> list[Any]:

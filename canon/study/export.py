@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +31,10 @@ TEXTS = ("key", "state", "system", "start", "method", "precision", "verdict", "r
 
 INPUTS = ("key", "system", "start", "method", "step", "tolerance", "precision", "span", "samples")
 """Columns that say which case it is: coordinates of a dataset, to choose and to group by."""
+
+
+OF_OBSERVABLES = ("verdict", "bound", "slope", "slope_error", "detection_limit", "exponent", "walk")
+"""What there is a column for of each observable beside the energy: ``NAME verdict`` and so on."""
 
 
 class ExportError(ImportError):
@@ -111,10 +116,10 @@ def dataset_of(store: Store) -> xarray.Dataset:
     variables: dict[str, Any] = {}
     for name in _columns(rows):
         values = [row.get(name) for row in rows]
-        if name in TEXTS:
-            variables[name] = ("case", [value or "" for value in values])
+        if _is_text(name):
+            variables[_plain(name)] = ("case", [value or "" for value in values])
         elif name != "final":
-            variables[name.replace(" ", "_")] = (
+            variables[_plain(name)] = (
                 "case",
                 [math.nan if v is None else float(v) for v in values],
             )
@@ -138,6 +143,7 @@ def _row(result: Result) -> dict[str, Any]:
     numbers.pop("means", None)
     numbers.pop("curve", None)
     low, high = numbers.pop("exponent_interval", (None, None))
+    others = numbers.pop("observables", {})
     start = json.dumps(list(case.start)) if isinstance(case.start, tuple) else case.start
     return {
         "key": result.key,
@@ -154,11 +160,21 @@ def _row(result: Result) -> dict[str, Any]:
         **numbers,
         "exponent_low": low,
         "exponent_high": high,
+        **{f"{name} {part}": found[part] for name, found in others.items() for part in OF_OBSERVABLES},
         "seconds": result.seconds,
         "done": result.done,
         "failure": result.failure,
         "inputs": json.dumps({**case.to_dict(), "versions": dict(result.versions)}, ensure_ascii=False),
     }
+
+
+def _plain(name: str) -> str:
+    """Return a name in the letters that NetCDF files of version 3 have."""
+    return re.sub(r"[^0-9A-Za-z_]+", "_", name)
+
+
+def _is_text(name: str) -> bool:
+    return name in TEXTS or name.endswith(" verdict")
 
 
 def _columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -174,7 +190,7 @@ def _cell(value: Any) -> Any:
 
 
 def _arrow_type(name: str, pyarrow: Any) -> Any:
-    if name in TEXTS:
+    if _is_text(name):
         return pyarrow.string()
     if name == "final":
         return pyarrow.list_(pyarrow.float64())

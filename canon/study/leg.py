@@ -11,7 +11,7 @@ import json
 import math
 import time
 import warnings
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -19,24 +19,21 @@ import numpy as np
 
 from canon.flow.measure import AccuracyWarning
 from canon.flow.method import FixedStep, TimeTransformed
-from canon.flow.precision import unit_round_off
 from canon.flow.propagate import propagate
 from canon.flow.sampling import steps_over
 from canon.study.case import parts_of
-from canon.study.drift import drift
-from canon.study.envelope import envelope_of
+from canon.study.followed import followed
 from canon.study.instants import is_resolved, scattered
+from canon.study.judged import judged_energy, judged_observable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from canon.flow.trajectory import Trajectory
     from canon.study.case import Case
+    from canon.study.observed import Observable
 
 __all__ = ["Checkpoint", "FailedRun", "Outcome", "advance", "started"]
-
-CURVE = 64
-"""Points of the curve of |ΔE| that is kept of a run."""
 
 FEWEST_A_PERIOD = 8.0
 """Samples in a period that are enough to see what happens in it, where the period is known."""
@@ -77,6 +74,8 @@ class Checkpoint:
         Cost so far; the processor time is that of the steps and of keeping samples.
     step, precision
         As the run has them.
+    changes
+        The samples of what is followed beside the energy, by name.
     even
         Whether the samples stand at equal distances (:mod:`canon.study.instants`).
     """
@@ -92,6 +91,7 @@ class Checkpoint:
     seconds: float = 0.0
     step: float | None = None
     precision: str = ""
+    changes: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
     even: bool = True
 
     def to_text(self) -> str:
@@ -104,6 +104,7 @@ class Checkpoint:
         fields: dict[str, Any] = json.loads(text)
         for name in ("state", "carried", "t", "change"):
             fields[name] = tuple(fields[name])
+        fields["changes"] = {name: tuple(x) for name, x in fields["changes"].items()}
         return Checkpoint(**fields)
 
 
@@ -164,7 +165,7 @@ def advance(case: Case, reached: Checkpoint | None = None, seconds: float = math
             spent = point.seconds
             if point.part < end and time.monotonic() - now >= seconds:
                 return point
-        return Outcome(_numbers(point), point.seconds)
+        return Outcome(_numbers(case, point), point.seconds)
     except (ArithmeticError, ValueError, RuntimeError) as error:
         raise FailedRun(str(error), spent) from error
 
@@ -175,8 +176,12 @@ def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
         point = replace(point, even=_evenly(case))
     found = _part(case, point, end)
     before = point.change[-1] if point.change else 0.0
-    change = tuple((before + found.energy_change).tolist())
     first = 0 if point.part == 0 else 1  # the first sample of a part is the last one of the part before
+    change = tuple((before + found.energy_change).tolist())
+    changes = {
+        name: (*(done := point.changes.get(name, ())), *((done[-1] if done else 0.0) + new[first:]).tolist())
+        for name, new in found.changes.items()
+    }
     return replace(
         point,
         part=point.part + 1,
@@ -185,6 +190,7 @@ def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
         energy=float(found.energy[0]) if point.part == 0 else point.energy,
         t=point.t + tuple(found.t[first:].tolist()),
         change=point.change + change[first:],
+        changes=changes,
         steps=point.steps + found.steps,
         evaluations=point.evaluations + found.evaluations,
         seconds=point.seconds + found.cpu_seconds,
@@ -204,7 +210,7 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
         ends = np.linspace(0.0, case.span, end + 1)
         span, step = (Fraction(ends[point.part]), Fraction(ends[point.part + 1])), case.step
     times = None if point.even else _between(span, samples, seed=point.part)
-    return _run(case, state, span, step, samples, times)
+    return _run(case, state, span, step, samples, times, followed(case))
 
 
 def _run(
@@ -214,6 +220,7 @@ def _run(
     step: float | None,
     samples: int,
     times: Sequence[float] | None = None,
+    along: Sequence[Observable] = (),
 ) -> Trajectory:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
@@ -228,6 +235,7 @@ def _run(
             parameters={**case.values},
             samples=samples if times is None else None,
             times=times,
+            observables={of.name: of.expression for of in along if of.expression is not None},
         )
     if not found.autonomous:
         raise ValueError("H depends on t, so its change is no error")
@@ -268,33 +276,19 @@ def _whole_steps(case: Case, part: int, end: int) -> tuple[tuple[Fraction, Fract
     return (first * h, last * h), float(h)
 
 
-def _numbers(point: Checkpoint) -> dict[str, Any]:
+def _numbers(case: Case, point: Checkpoint) -> dict[str, Any]:
     """Judge a run that reached its end."""
-    relative = point.energy != 0.0
-    scale = abs(point.energy) if relative else 1.0
-    t, error = np.array(point.t), np.array(point.change) / scale
-    unit = unit_round_off(point.precision)
-    roundoff = unit * math.sqrt(point.steps) if relative else None
-    found = drift(t, error, roundoff=roundoff, resolution=unit)
-    curve = envelope_of(t, error, CURVE)
+    t = np.array(point.t)
+    energy = judged_energy(t, np.array(point.change), point.energy, point.steps, point.precision)
+    others = {
+        of.name: judged_observable(t, point.changes[of.name], of, point.precision) for of in followed(case)
+    }
     return {
-        "verdict": found.verdict.value,
-        "reason": found.reason,
-        "bound": found.bound,
-        "slope": found.slope,
-        "slope_error": found.slope_error,
-        "amplitude_slope": found.amplitude_slope,
-        "amplitude_slope_error": found.amplitude_slope_error,
-        "exponent": found.exponent,
-        "exponent_interval": list(found.exponent_interval),
-        "detection_limit": found.detection_limit,
-        "walk": found.walk,
-        "relative": relative,
+        **energy,
         "step": point.step,
         "steps": point.steps,
         "evaluations": point.evaluations,
         "precision": point.precision,
         "final": list(point.state),
-        "means": {"t": found.blocks.t.tolist(), "mean": found.blocks.mean.tolist()},
-        "curve": {} if curve is None else {name: x.tolist() for name, x in curve.items()},
+        **({"observables": others} if others else {}),
     }
