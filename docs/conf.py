@@ -35,7 +35,7 @@ extensions = [
 ]
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build", "README.md"]
+exclude_patterns = ["_build", "_templates", "README.md"]
 
 nb_execution_mode = "force"  # a cached page would not know that canon has changed
 nb_execution_raise_on_error = True
@@ -43,6 +43,7 @@ nb_execution_timeout = 300
 nb_merge_streams = True
 
 autosummary_generate = True
+templates_path = ["_templates"]  # a page a name: how it is imported, all its members
 autodoc_typehints = "none"  # the numpydoc sections say it in words, the signatures in types
 autodoc_member_order = "bysource"
 napoleon_numpy_docstring = True
@@ -94,9 +95,10 @@ def command_line() -> str:
     lines = [
         "# The command line",
         "",
-        "What `canon --help` and the help of each command print, written when the pages are built.",
+        "Written when the pages are built. `python -m canon` is the same as `canon`.",
+        "",
     ]
-    lines += ["`python -m canon` is the same as `canon`.", "", *_console("canon")]
+    lines += _console("canon")
     for name in COMMANDS:
         lines += [f"## canon {name}", "", *_console(f"canon {name}")]
         for action in re.findall(r"^    (\w+)  +\S", help_of(name).partition("  action\n")[2], re.MULTILINE):

@@ -5,5 +5,5 @@ import os
 from hypothesis import settings
 
 settings.register_profile("ci", derandomize=True, deadline=None)
-if os.environ.get("CI"):
-    settings.load_profile("ci")
+settings.register_profile("here", deadline=None)  # a busy machine proves nothing against a law
+settings.load_profile("ci" if os.environ.get("CI") else "here")
