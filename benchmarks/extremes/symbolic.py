@@ -302,9 +302,9 @@ def _large() -> Iterator[Row]:
         f: sp.Expr = x
         for _ in range(2000):
             f = sp.sin(f, evaluate=False)
-        return f, f + 1
+        return f, sp.Integer(1)
 
-    yield claim("nesting-2000", "sin sin … sin x 2000 deep, against itself plus 1", "fails", deep, budget=5.0)
+    yield claim("nesting-2000", "sin sin … sin x 2000 deep, against 1", "fails", deep, budget=5.0)
 
     def swell() -> tuple[sp.Expr, sp.Expr]:
         f: sp.Expr = x
@@ -389,14 +389,14 @@ def _maps() -> Iterator[Row]:
             whole = whole.then(kick).then(drift)
         return judged(whole.is_canonical(budget=20.0), "fails" if off else "holds")
 
-    for times in (4, 12):
+    for times in (4, 8):
         yield Row(
             f"standard-map-{times}", f"Chirikov's standard map composed {times} times",
             lambda times=times: composed(times), limit=60.0,
         )  # fmt: skip
     yield Row(
-        "standard-map-12-twin", "the same, each kick off by 1e-40 q p",
-        lambda: composed(12, Rational(1, 10**40)), limit=60.0,
+        "standard-map-8-twin", "the same, each kick off by 1e-40 q p",
+        lambda: composed(8, Rational(1, 10**40)), limit=60.0,
     )  # fmt: skip
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 __all__ = [
+    "antisymmetric",
     "lagrange_bracket",
     "lagrange_matrix",
     "lie_bracket",
@@ -116,7 +117,7 @@ def poisson_matrix(functions: Sequence[Expr], q: Sequence[Symbol], p: Sequence[S
     [ 0, 1],
     [-1, 0]])
     """
-    return _antisymmetric(len(functions), lambda i, j: poisson_bracket(functions[i], functions[j], q, p))
+    return antisymmetric(len(functions), lambda i, j: poisson_bracket(functions[i], functions[j], q, p))
 
 
 def lagrange_matrix(variables: Sequence[Symbol], q: Sequence[Expr], p: Sequence[Expr]) -> sp.Matrix:
@@ -131,7 +132,7 @@ def lagrange_matrix(variables: Sequence[Symbol], q: Sequence[Expr], p: Sequence[
     [ 0, 2],
     [-2, 0]])
     """
-    return _antisymmetric(len(variables), lambda i, j: lagrange_bracket(variables[i], variables[j], q, p))
+    return antisymmetric(len(variables), lambda i, j: lagrange_bracket(variables[i], variables[j], q, p))
 
 
 def symplectic_unit(n: int) -> sp.ImmutableDenseMatrix:
@@ -148,7 +149,8 @@ def symplectic_unit(n: int) -> sp.ImmutableDenseMatrix:
     return sp.ImmutableDenseMatrix(rows)
 
 
-def _antisymmetric(size: int, entry: Callable[[int, int], Expr]) -> sp.Matrix:
+def antisymmetric(size: int, entry: Callable[[int, int], Expr]) -> sp.Matrix:
+    """Return the antisymmetric matrix of which a function gives the entries above the diagonal."""
     matrix = sp.zeros(size, size)
     for i in range(size):
         for j in range(i + 1, size):

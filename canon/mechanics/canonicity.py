@@ -14,7 +14,7 @@ from canon.mechanics.substitution import entry
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from canon.mechanics.transformation import CanonicalTransformation, Test
 
@@ -25,14 +25,15 @@ def residuals(T: CanonicalTransformation, by: Test, c: Expr) -> Iterator[tuple[s
     """Yield what is asked, in the words of the test, and the expression that must vanish."""
     match by:
         case "poisson":
-            return _brackets(T.poisson_brackets, _names(T, "QP"), c, "{{{}, {}}}")
+            return _brackets(T.poisson_bracket_of, _names(T, "QP"), c, "{{{}, {}}}")
         case "lagrange":
-            return _brackets(T.lagrange_brackets, [str(z) for z in T.variables], c, "[{}, {}]")
+            brackets = T.lagrange_brackets
+            return _brackets(lambda i, j: entry(brackets, i, j), [str(z) for z in T.variables], c, "[{}, {}]")
         case "symplectic":
             J = symplectic_unit(len(T.q))
-            return _brackets(
-                T.jacobian * J * T.jacobian.T, _names(T, "QP"), c, "the entry ({}, {}) of M J Mᵀ"
-            )
+            whole = T.jacobian * J * T.jacobian.T
+            said = "the entry ({}, {}) of M J Mᵀ"
+            return _brackets(lambda i, j: entry(whole, i, j), _names(T, "QP"), c, said)
         case "bilinear":
             return _coefficients(T, c)
         case "contact":
@@ -67,12 +68,15 @@ def disagreement(verdicts: Mapping[str, Verdict]) -> Verdict:
     return replace(agreed, evidence=evidence, seconds=seconds)
 
 
-def _brackets(matrix: sp.MatrixBase, names: list[str], c: Expr, written: str) -> Iterator[tuple[str, Expr]]:
+def _brackets(
+    bracket: Callable[[int, int], Expr], names: list[str], c: Expr, written: str
+) -> Iterator[tuple[str, Expr]]:
+    """Yield bracket by bracket, each built when it is asked about: the budget may end before."""
     n = len(names) // 2
     for i in range(2 * n):
         for j in range(i + 1, 2 * n):
             due = c if j == i + n else sp.S.Zero
-            yield f"{written.format(names[i], names[j])} = {due}", entry(matrix, i, j) - due
+            yield f"{written.format(names[i], names[j])} = {due}", bracket(i, j) - due
 
 
 def _coefficients(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]]:

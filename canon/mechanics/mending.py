@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import time
+from itertools import product
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.mechanics.substitution import entry, exchanged
+from canon.mechanics.substitution import exchanged
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
@@ -22,7 +24,9 @@ __all__ = ["constant_value", "mending"]
 _PLACES = (sp.S.Zero, sp.S.One, sp.Rational(1, 2), sp.Rational(-1, 3))
 
 
-def constant_value(f: Expr, variables: Sequence[Symbol], t: Symbol, domain: Domain) -> Expr | None:
+def constant_value(
+    f: Expr, variables: Sequence[Symbol], t: Symbol, domain: Domain, budget: float = 10.0
+) -> Expr | None:
     """Return the constant that f equals on the domain, free of the variables and of t; None if there is none.
 
     Candidates come from simple points; one is returned only after its equality with f was proved.
@@ -41,13 +45,14 @@ def constant_value(f: Expr, variables: Sequence[Symbol], t: Symbol, domain: Doma
     free = {u: sp.Dummy(real=True) for u in _arbitrary(f, {*variables, t})}
     plain = exchanged(f, free)
     tried: set[Expr] = set()
+    deadline = time.monotonic() + budget
     for place in _PLACES:
         candidate = exchanged(plain, dict.fromkeys((*moving, *free.values()), place))
         if candidate.has(sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity) or candidate in tried:
             continue
         tried.add(candidate)
         candidate = _short(candidate)
-        verdict = vanishes(f - candidate, domain)
+        verdict = vanishes(f - candidate, domain, min(10.0, deadline - time.monotonic()))
         if verdict.holds:
             return candidate
     return None
@@ -59,24 +64,21 @@ def _arbitrary(f: Expr, moving: set[Symbol]) -> list[Expr]:
     return [cast("Expr", u) for u in found if u.free_symbols & moving]
 
 
-def mending(T: CanonicalTransformation, c: Expr) -> str:
-    """Return one sentence that says how to mend the map, or nothing where that is not simple."""
-    n = len(T.q)
-    brackets = T.poisson_brackets
-    constants = {
-        (i, j): constant_value(entry(brackets, i, n + j), T.variables, T.t, T.domain)
-        for i in range(n)
-        for j in range(n)
-    }
+def mending(T: CanonicalTransformation, c: Expr, seconds: float = 10.0) -> str:
+    """Return one sentence that says how to mend the map, or nothing where that is not simple or takes too long."""
+    n, deadline = len(T.q), time.monotonic() + seconds
     if n == 1:
-        return _of_one_pair(constants[0, 0], c)
-    if any(
-        not _vanishes(entry(brackets, a + i, a + j), T.domain)
-        for a in (0, n)
-        for i in range(n)
-        for j in range(i)
-    ):
-        return ""
+        value = constant_value(T.poisson_bracket_of(0, 1), T.variables, T.t, T.domain, seconds)
+        return _of_one_pair(value, c)
+    for a, b in ((first + i, first + j) for first in (0, n) for i in range(n) for j in range(i)):
+        if time.monotonic() > deadline or not _vanishes(T.poisson_bracket_of(a, b), T.domain):
+            return ""
+    constants: dict[tuple[int, int], Expr | None] = {}
+    for i, j in product(range(n), repeat=2):
+        left = deadline - time.monotonic()
+        if left < 0:
+            return ""
+        constants[i, j] = constant_value(T.poisson_bracket_of(i, n + j), T.variables, T.t, T.domain, left)
     partners = {i: [j for j in range(n) if constants[i, j] != 0] for i in range(n)}
     if any(len(js) != 1 or constants[i, js[0]] is None for i, js in partners.items()):
         return ""

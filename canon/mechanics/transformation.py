@@ -8,6 +8,7 @@ Analytical Dynamics, ch. XI).
 
 from __future__ import annotations
 
+import time as clock
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
@@ -15,9 +16,9 @@ from typing import TYPE_CHECKING, Literal
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_expression, given_kind, given_symbols
+from canon.expression.given import given_expression, given_kind, given_seconds, given_symbols
 from canon.expression.symbol import time
-from canon.mechanics.bracket import lagrange_matrix, poisson_matrix
+from canon.mechanics.bracket import antisymmetric, lagrange_matrix
 from canon.mechanics.canonicity import disagreement, residuals
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import solve
@@ -111,7 +112,14 @@ class CanonicalTransformation:
     @cached_property
     def poisson_brackets(self) -> sp.ImmutableDenseMatrix:
         """The brackets of the new variables, {Q, P} = M J Mᵀ, of shape (2n, 2n)."""
-        return sp.ImmutableDenseMatrix(poisson_matrix(self.images, self.q, self.p))
+        return sp.ImmutableDenseMatrix(antisymmetric(2 * len(self.q), self.poisson_bracket_of))
+
+    def poisson_bracket_of(self, i: int, j: int) -> Expr:
+        """Return the Poisson bracket of the i-th and the j-th of the new variables (Q, P)."""
+        M, n = self.jacobian, len(self.q)
+        return sp.Add(
+            *(entry(M, i, k) * entry(M, j, n + k) - entry(M, i, n + k) * entry(M, j, k) for k in range(n))
+        )
 
     @cached_property
     def lagrange_brackets(self) -> sp.ImmutableDenseMatrix:
@@ -183,10 +191,13 @@ class CanonicalTransformation:
         if c is None:
             return self._without_valence(budget)
         question = f"the map is canonical{'' if c == 1 else f' with valence {c}'}"
+        deadline = clock.monotonic() + given_seconds(budget)
         test = by or ("poisson" if self.jacobian.has(*self.variables) else "symplectic")
-        verdict = all_vanish(residuals(self, test, c), question, self.domain, budget)
+        left = deadline - clock.monotonic()
+        verdict = all_vanish(residuals(self, test, c), question, self.domain, left)
         if verdict.fails:
-            return replace(verdict, feedback=mending(self, c) or verdict.feedback)
+            left = deadline - clock.monotonic()
+            return replace(verdict, feedback=mending(self, c, left) or verdict.feedback)
         if verdict.holds and by == "contact":
             F = self.contact_function(c)
             found = "an exact differential, not integrated in closed form" if F is None else str(F)

@@ -70,7 +70,7 @@ def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: fl
     start, domain, budget = time.monotonic(), as_domain(domain), given_seconds(budget)
     if isinstance(expr, sp.MatrixBase):
         return _matrix_vanishes(expr, domain, start, budget).about("the matrix is zero")
-    verdict = _decide(_exact(expr), sp.Integer(0), domain, start + budget)
+    verdict = _decide(expr, sp.Integer(0), domain, start + budget)
     return replace(verdict, question="the expression is zero", seconds=time.monotonic() - start)
 
 
@@ -98,7 +98,7 @@ def equal(
         if a.shape != b.shape:
             raise ValueError(f"matrices of shapes {a.shape} and {b.shape} cannot be compared entry by entry")
         return _matrix_vanishes(a - b, domain, start, budget).about("the matrices are equal")
-    verdict = _decide(_exact(a), _exact(b), domain, start + budget)
+    verdict = _decide(a, b, domain, start + budget)
     return replace(verdict, question="the expressions are equal", seconds=time.monotonic() - start)
 
 
@@ -169,11 +169,16 @@ def _exact(expr: object) -> Expr:
     return evaluated(expr) if found.has(sp.Derivative, sp.Subs) else expr
 
 
-def _decide(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
+def _decide(left: object, right: object, domain: Domain, deadline: float) -> Verdict:
+    too_deep = Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "the expression is nested too deeply"),))
     try:
-        return _climb(left, right, domain, deadline)
+        a, b = _exact(left), _exact(right)
     except RecursionError:
-        return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "the expression is nested too deeply"),))
+        return too_deep
+    try:
+        return _climb(a, b, domain, deadline)
+    except RecursionError:
+        return too_deep
     except REFUSALS as reason:
         said = f"no value could be given to a part of the expression or domain: {reason}"
         return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", said),))
