@@ -10,20 +10,23 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.manifold import Branch, on_manifold
+from canon.exercise.manifold import Branch, EmptyDomainError, inhabited, on_manifold
 from canon.exercise.question import Deadline, Part, Same, decide
 from canon.expression.symbol import time_derivative, velocity
-from canon.mechanics.frobenius import Pfaffian
+from canon.mechanics.frobenius import Pfaffian, curl
 from canon.mechanics.linear import eliminate
 from canon.mechanics.substitution import exchanged, substitute
+from canon.proof.domain import Domain
+from canon.proof.generic import is_analytic
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from canon.proof.domain import Domain
+__all__ = ["KINKED", "ConstraintSystem"]
 
-__all__ = ["ConstraintSystem"]
+KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside)
+"""Functions that are made of pieces: one that is not zero at one point may vanish on a whole piece."""
 
 
 @dataclass(frozen=True)
@@ -69,10 +72,7 @@ class ConstraintSystem:
     def branches(self) -> list[Branch]:
         """The positions and velocities that are allowed."""
         v = tuple(velocity(x) for x in self.q)
-        found = on_manifold((*self.positions, *self.rates), self.domain, keep=(self.t,), prefer=v)
-        if not found:
-            raise Undecided("no position and velocity was found that satisfies the constraints")
-        return found
+        return inhabited(on_manifold((*self.positions, *self.rates), self.domain, keep=(self.t,), prefer=v))
 
     @cached_property
     def forms(self) -> Pfaffian:
@@ -92,13 +92,49 @@ class ConstraintSystem:
     def integrable(self) -> Verdict:
         """Whether the constraints together restrict positions only: dω(X, Y) = 0 on allowed displacements."""
         if not self.velocities:
+            self._check_not_empty()
             return Verdict(Status.HOLDS, "the constraints are integrable", "structure")
         if not self.affine.holds:
             return self._curved
-        if self.positions:
-            self.rank(self.forms.forms)  # refuses where it is another off the constraints
-        values = [value for _, row in self.forms.curvatures for value in row]
-        return self.all_vanish("the constraints are integrable", values)
+        self.check_consistent()
+        branches = self.branches
+        verdicts = (
+            decide(
+                Same(tuple(Part("dω on allowed displacements", c) for c in self._curvatures(b)), b.domain),
+                self.deadline,
+            )
+            for b in branches
+        )
+        return all_hold(verdicts, "the constraints are integrable")
+
+    def _curvatures(self, branch: Branch) -> Iterator[Expr]:
+        """Yield dω(X, Y) where the constraints hold, for a basis of the displacements that are allowed there.
+
+        The basis belongs to the forms on the branch: off it another pivot may divide by what vanishes there.
+        """
+        forms, z = self.forms.forms, self.forms.z
+        here = sp.Matrix([[substitute(a, branch.values) for a in row] for row in forms])
+        allowed = eliminate(here, domain=branch.domain).null_directions
+        yield sp.S.Zero  # where nothing moves, nothing is curved
+        for X, Y in combinations(allowed, 2):
+            for form in forms:
+                yield substitute(curl(form, z, X, Y), branch.values)
+
+    def _check_not_empty(self) -> None:
+        """Refuse positions of which it is proved that there are none; arbitrary functions may stay unsolved."""
+        try:
+            inhabited(on_manifold(self.positions, self.domain, keep=(self.t,)))
+        except Undecided:
+            return
+
+    def check_consistent(self) -> None:
+        """Refuse constraints such as ẋ = 0, ẋ = z, that contradict each other off positions they do not name."""
+        whole = self.forms.forms
+        if self.rank(whole) != self.rank([row[:-1] for row in whole]):
+            raise Undecided(
+                "the constraints contradict each other, or restrict positions by what they say together; "
+                "write that as a constraint too"
+            )
 
     @property
     def _curved(self) -> Verdict:
@@ -120,6 +156,10 @@ class ConstraintSystem:
     def rank(self, rows: Sequence[Sequence[Expr]]) -> int:
         """Return the rank of some rows, the same off the constraints and on them."""
         matrix = sp.Matrix([list(row) for row in rows])
+        if matrix.has(*KINKED) and not is_analytic(matrix.flat(), self.domain):
+            raise Undecided(
+                "the constraints hold functions with pieces, whose rank may differ from piece to piece"
+            )
         ranks = {eliminate(matrix, domain=self.domain).rank}
         for branch in self.branches if self.positions else ():
             here = matrix.applyfunc(lambda f, b=branch: substitute(f, b.values))
@@ -139,14 +179,21 @@ class ConstraintSystem:
             self._check_regular()
         if not verdict.holds or not moving:
             return verdict
-        sides = [
-            decide(Same((Part("∂/∂t", h.diff(self.t), through=b.values),), b.domain), self.deadline)
-            for h in moving
-            for b in on_manifold([*self.positions, h], self.domain, keep=(self.t,))
-        ]
+        sides = [side for h in moving for side in self._moves(h)]
         if any(side.fails for side in sides):
             return next(side for side in sides if side.fails)
         raise Undecided("whether the inequality depends on the time was not decided")
+
+    def _moves(self, h: Expr) -> Iterator[Verdict]:
+        """Yield whether ∂h/∂t vanishes at the edge h = 0, as far as the other inequalities leave it bare."""
+        others = [sp.Gt(other, 0) for other in self.inequalities if other != h]
+        try:
+            seen = Domain((*self.domain.conditions, *(c for c in others if c != sp.true)), self.domain.box)
+            edge = on_manifold([*self.positions, h], seen, keep=(self.t,))
+        except EmptyDomainError:
+            return
+        for b in edge:
+            yield decide(Same((Part("∂/∂t", h.diff(self.t), through=b.values),), b.domain), self.deadline)
 
     def _check_regular(self) -> None:
         """Refuse constraints such as (x − t)² = 0, whose derivatives vanish where they hold."""
@@ -178,6 +225,7 @@ class ConstraintSystem:
             raise Undecided("degrees of freedom are counted for constraints affine in the velocities")
         if not self.rates:
             return len(self.q)
+        self.check_consistent()
         if counting == "velocities":
             return len(self.q) - self.rank([row[:-1] for row in self.forms.forms])
         return len(self.q) - self._restrictions()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.manifold import on_manifold
+from canon.exercise.manifold import check_whole, inhabited, on_manifold
 from canon.exercise.question import Part, Question, Same
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.substitution import exchanged, substitute
@@ -36,7 +36,8 @@ def kinetic_energy(reading: Reading) -> Iterator[Question]:
     held = reading.equations("constraints") if reading.has("constraints") else ()
     velocities = tuple(velocity(x) for x in q)
     rates = tuple(time_derivative(f, q, t) for f in held if not f.has(*velocities))
-    for branch in on_manifold((*held, *rates), reading.domain, keep=(t,), prefer=velocities):
+    check_whole(held, velocities, reading.domain)
+    for branch in inhabited(on_manifold((*held, *rates), reading.domain, keep=(t,), prefer=velocities)):
         here = substitute(right, branch.values)
         part = Part("T", claimed, here, branch.values, "T")
         yield Same((part,), branch.domain, lambda here=here: shown_short(here))
@@ -73,9 +74,17 @@ def _energies(reading: Reading) -> Iterator[Expr]:
         if "r" in body:
             (mass,) = exactly(reading, f"{where}.m", body["m"], 1)
             for place in reading.inside(f"{where}.r", body["r"]):
+                _check_position(reading, f"{where}.r", place)
                 yield mass * time_derivative(place, q, t) ** 2 / 2
         if "I" in body:
             yield _of_rotation(reading, where, body)
+
+
+def _check_position(reading: Reading, where: str, place: Expr) -> None:
+    if place.has(sp.I):
+        reading.fault(where, "should be real components, not a complex number")
+    if place.has(*(f(x) for x in reading.symbols("q") for f in (velocity, acceleration))):
+        reading.fault(where, "a position depends on coordinates and time only")
 
 
 def _of_rotation(reading: Reading, where: str, body: Mapping[str, object]) -> Expr:
@@ -85,6 +94,8 @@ def _of_rotation(reading: Reading, where: str, body: Mapping[str, object]) -> Ex
         rates: tuple[Expr, ...] = (time_derivative(angle, reading.symbols("q"), reading.time),)
     else:
         rates = reading.inside(f"{where}.omega", body["omega"])
+    if any(w.has(sp.I, *(acceleration(x) for x in reading.symbols("q"))) for w in rates):
+        reading.fault(where, "an angular velocity is real and depends on q, q̇ and the time only")
     inertia = reading.inside(f"{where}.I", body["I"])
     if len(inertia) == 6 and len(rates) == 3:
         xx, yy, zz, xy, xz, yz = inertia
@@ -98,7 +109,7 @@ def _of_rotation(reading: Reading, where: str, body: Mapping[str, object]) -> Ex
 
 
 def _of_forces(reading: Reading) -> Iterator[list[Expr]]:
-    q, t = reading.symbols("q"), reading.time
+    q = reading.symbols("q")
     given = cast("Sequence[Mapping[str, object]]", reading.claim.keys.get("forces", []))
     for i, force in enumerate(given):
         first, second = next(
@@ -115,8 +126,8 @@ def _of_forces(reading: Reading) -> Iterator[list[Expr]]:
             if any(s.has(*(velocity(x) for x in q)) for row in slopes for s in row):
                 reading.fault(f"forces[{i}].omega", "should be affine in the velocities")
         else:
-            if any(time_derivative(r, q, t).has(*(acceleration(x) for x in q)) for r in along):
-                reading.fault(f"forces[{i}].{second}", "a position depends on coordinates and time only")
+            for r in along:
+                _check_position(reading, f"forces[{i}].{second}", r)
             slopes = [[r.diff(x) for r in along] for x in q]
         yield [sp.Add(*(F * s for F, s in zip(strengths, row, strict=True))) for row in slopes]
 
@@ -158,6 +169,8 @@ def _of_potential(reading: Reading) -> Iterator[list[Expr]]:
     if not reading.has("V"):
         return
     q, t, V = reading.symbols("q"), reading.time, reading.expression("V")
+    if V.has(*(acceleration(x) for x in q)):
+        reading.fault("V", "a potential depends on coordinates, velocities and time only")
     yield [time_derivative(V.diff(velocity(x)), q, t) - V.diff(x) for x in q]
 
 

@@ -8,6 +8,7 @@ lie in its closure: constraints are split into factors first.
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
@@ -15,19 +16,23 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.tree import symbols_of
+from canon.expression.symbol import Coordinate
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
+from canon.proof.generic import proved_sign
+from canon.proof.prove import is_empty
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["Branch", "EmptyDomainError", "on_manifold", "transported"]
+__all__ = ["Branch", "EmptyDomainError", "check_whole", "inhabited", "on_manifold", "transported"]
 
 MAX_BRANCHES = 16
+_NO_POINT = "no point satisfies the constraints, assumptions and conditions"
 
 
 class EmptyDomainError(ValueError):
@@ -57,6 +62,8 @@ class _Solution:
     values: tuple[Expr, ...]
     conditions: tuple[Expr, ...]
     cost: tuple[int, int]
+    everywhere: bool = True
+    """Whether what it is divided by vanishes nowhere."""
 
 
 def on_manifold(
@@ -95,8 +102,62 @@ def on_manifold(
         if len(branches) > MAX_BRANCHES:
             raise Undecided(f"the constraints have more than {MAX_BRANCHES} branches; split the claim")
     if not branches:
-        raise EmptyDomainError("no point satisfies the constraints, assumptions and conditions")
+        raise EmptyDomainError(_NO_POINT)
     return branches
+
+
+def inhabited(branches: Iterable[Branch]) -> list[Branch]:
+    """Return the branches without those of which it is proved that they hold no point.
+
+    Raises
+    ------
+    EmptyDomainError
+        Where none is left.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y", real=True)
+    >>> inhabited(on_manifold([x**2 + y**2 + 1], Domain()))
+    Traceback (most recent call last):
+        ...
+    canon.exercise.manifold.EmptyDomainError: no point satisfies the constraints, assumptions and conditions
+    """
+    found = [
+        b
+        for b in branches
+        if next(b.domain.points((), 1), None) is not None or not is_empty(b.domain, time.monotonic() + 0.5)
+    ]
+    if not found:
+        raise EmptyDomainError(_NO_POINT)
+    return found
+
+
+def check_whole(constraints: Sequence[Expr], velocities: Sequence[Symbol], domain: Domain) -> None:
+    """Refuse constraints on velocities that hold as well wherever something among the coordinates vanishes.
+
+    y (ẋ − ẏ) = 0 allows every velocity where y = 0: that is a part of the manifold as large as the other.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> x, y = coordinates("x y")
+    >>> check_whole([y * (x.dot - y.dot)], [x.dot, y.dot], Domain())
+    Traceback (most recent call last):
+        ...
+    canon.proof.verdict.Undecided: the constraint holds for all velocities where y = 0; divide by it, or exclude that in the domain
+    """
+    for g in constraints:
+        for factor, _ in sp.factor_list(sp.numer(sp.together(g)))[1] if g.has(*velocities) else ():
+            able = not factor.has(*velocities) and any(isinstance(s, Coordinate) for s in symbols_of(factor))
+            if (
+                able
+                and proved_sign(factor, domain) not in ("+", "-")
+                and sp.Ne(factor, 0) not in domain.conditions
+            ):
+                raise Undecided(
+                    f"the constraint holds for all velocities where {factor} = 0; "
+                    "divide by it, or exclude that in the domain"
+                )
 
 
 def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
@@ -142,6 +203,8 @@ def _restricted(
     branch: Branch, constraint: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]
 ) -> Iterator[Branch]:
     here = substitute(constraint, branch.values)
+    if here.is_nonzero:
+        return
     if here == 0 or vanishes(here, branch.domain, budget=1.0).holds:
         yield branch
         return
@@ -149,11 +212,16 @@ def _restricted(
         solution = min(_solutions(factor, keep, prefer), key=lambda s: s.cost, default=None)
         if solution is None:
             raise Undecided(f"{factor} = 0 could not be solved for any of its symbols in closed form")
+        found = False
         for value in solution.values:
             try:
-                yield branch.and_then(solution.symbol, value, solution.conditions)
+                part = branch.and_then(solution.symbol, value, solution.conditions)
             except EmptyDomainError:
                 continue
+            found = True
+            yield part
+        if not found and not solution.everywhere:  # k x² + y² = 0 with k > 0 holds at x = y = 0
+            raise Undecided(f"{factor} = 0 holds at singular points at most, which are not looked into")
 
 
 def _factors(expression: Expr, prefer: Sequence[Symbol]) -> list[Expr]:
@@ -189,18 +257,23 @@ def _of_polynomial(poly: sp.Poly, symbol: Symbol, wanted: int) -> _Solution | No
     lead = terms[top]
     generic = 0 if lead.is_nonzero or lead.is_positive or lead.is_negative else 2
     size = int(sp.count_ops(lead))
+    certain = generic == 0
     if top == 1:
-        return _Solution(symbol, (-terms.get(0, sp.S.Zero) / lead,), (), (generic, 10 * wanted + size))
+        return _Solution(
+            symbol, (-terms.get(0, sp.S.Zero) / lead,), (), (generic, 10 * wanted + size), certain
+        )
     if set(terms) <= {0, top}:
         power = -terms.get(0, sp.S.Zero) / lead
         if symbol.is_positive:
-            return _Solution(symbol, (power ** sp.Rational(1, top),), (), (generic + 1, 10 * wanted + size))
+            return _Solution(
+                symbol, (power ** sp.Rational(1, top),), (), (generic + 1, 10 * wanted + size), certain
+            )
         if top == 2:
             root = sp.sqrt(power)
-            return _Solution(symbol, (root, -root), (power,), (generic + 4, 10 * wanted + size))
+            return _Solution(symbol, (root, -root), (power,), (generic + 4, 10 * wanted + size), certain)
     if top == 2:
         b, c = terms.get(1, sp.S.Zero), terms.get(0, sp.S.Zero)
         discriminant = b**2 - 4 * lead * c
         roots = tuple((-b + sign * sp.sqrt(discriminant)) / (2 * lead) for sign in (1, -1))
-        return _Solution(symbol, roots, (discriminant,), (generic + 5, 10 * wanted + size))
+        return _Solution(symbol, roots, (discriminant,), (generic + 5, 10 * wanted + size), certain)
     return None

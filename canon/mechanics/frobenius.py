@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from canon.mechanics.constraint import ConstrainedLagrangian
     from canon.proof.verdict import Verdict
 
-__all__ = ["Pfaffian", "integrals", "is_integrable", "pfaffian", "positional_freedom"]
+__all__ = ["Pfaffian", "curl", "integrals", "is_integrable", "pfaffian", "positional_freedom"]
 
 Row = tuple[Expr, ...]
 
@@ -61,7 +61,7 @@ class Pfaffian:
         """For each pair of allowed displacements the values dωₐ(X, Y), one a constraint."""
         pairs = combinations(range(len(self.allowed)), 2)
         return tuple(
-            ((i, j), tuple(_curl(form, self.z, self.allowed[i], self.allowed[j]) for form in self.forms))
+            ((i, j), tuple(curl(form, self.z, self.allowed[i], self.allowed[j]) for form in self.forms))
             for i, j in pairs
         )
 
@@ -189,8 +189,15 @@ def positional_freedom(constrained: ConstrainedLagrangian, domain: Domain | None
     return len(constrained.lagrangian.q) - restricted
 
 
-def _curl(form: Row, z: Sequence[Symbol], X: Row, Y: Row) -> Expr:
-    """Return dω(X, Y) = Σ (∂ᵢaⱼ − ∂ⱼaᵢ) Xᵢ Yⱼ."""
+def curl(form: Row, z: Sequence[Symbol], X: Row, Y: Row) -> Expr:
+    """Return dω(X, Y) = Σ (∂ᵢaⱼ − ∂ⱼaᵢ) Xᵢ Yⱼ.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y")
+    >>> curl((-y, x), (x, y), (sp.S.One, sp.S.Zero), (sp.S.Zero, sp.S.One))
+    2
+    """
     pairs = combinations(range(len(z)), 2)
     return sp.Add(
         *((form[j].diff(z[i]) - form[i].diff(z[j])) * (X[i] * Y[j] - X[j] * Y[i]) for i, j in pairs)
