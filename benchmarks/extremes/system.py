@@ -33,7 +33,7 @@ def motion(method=None, precision="double"):
     (q,) = coordinates("q")
     p = q.momentum
     pendulum = Hamiltonian(p**2/2 - sp.cos(q), [q], [p])
-    return propagate(pendulum, (1.25, 0.5), 100.0, method or Splitting(4), step=0.05, precision=precision)
+    return propagate(pendulum, (1.25, 0.5), 100.0, method or Splitting("blanes-moan-4"), step=0.05, precision=precision)
 def bits(found):
     return np.ascontiguousarray(np.asarray(found.q, float)).tobytes().hex()[-32:]
 """
@@ -85,7 +85,7 @@ def _move(k: int) -> str:
 
     (q,) = coordinates("q")
     pendulum = Hamiltonian(q.momentum**2 / 2 - sp.cos(q), [q], [q.momentum])
-    found = propagate(pendulum, (1.0 + k / 100, 0.5), 50.0, Splitting(4), step=0.05)
+    found = propagate(pendulum, (1.0 + k / 100, 0.5), 50.0, Splitting("blanes-moan-4"), step=0.05)
     return hashlib.sha256(np.ascontiguousarray(found.q).tobytes()).hexdigest()
 
 
@@ -186,7 +186,7 @@ def _ended() -> Iterator[Row]:
         script = USES + (
             "motion()\nprint('ready', flush=True)\n"
             "(q,) = coordinates('q')\n"
-            "try:\n    propagate(Hamiltonian(q.momentum**2/2 - sp.cos(q), [q], [q.momentum]), (1.25, 0.5), 1e8, Splitting(4), step=0.01, samples=3)\n"
+            "try:\n    propagate(Hamiltonian(q.momentum**2/2 - sp.cos(q), [q], [q.momentum]), (1.25, 0.5), 1e8, Splitting("verlet"), step=0.01, samples=3)\n"
             "except BaseException as e:\n    print(type(e).__name__, flush=True)\n"
             "print(*proof(), flush=True)\n"
         )
@@ -415,7 +415,7 @@ def kepler(method, precision):
 def all_bits():
     found = []
     for run in (motion, kepler):
-        for method in (Splitting(2), Splitting(8), Gauss(2), RK4()):
+        for method in (Splitting("verlet"), Splitting("kahan-li-8"), Gauss(2), RK4()):
             for precision in ("double", "double-double"):
                 try:
                     found.append(bits(run(method, precision)))

@@ -91,6 +91,31 @@ class Meeting:
         """Return whether the motion starts where some event's function is exactly zero."""
         return any(self._value(event, t, high[:, 0], low[:, 0]) == 0 for event in self.events)
 
+    def check_domain(self, t: Array, y: Array) -> None:
+        """Make sure that every event's function is finite along samples y of shape (2n, times).
+
+        heyoka looks for no zeros in a step in which a function is not finite.
+
+        Raises
+        ------
+        NonFiniteStateError
+            One is not: the motion has left its domain, and zeros may have been missed.
+        """
+        values = dict(zip(self.system.inputs, (*y, t), strict=True))
+        with np.errstate(all="ignore"):
+            found = self.system.graph.evaluate([event.value for event in self.events], values)
+        for event, value in zip(self.events, found, strict=True):
+            lost = ~np.isfinite(np.broadcast_to(value, t.shape))
+            if lost.any():
+                first = int(np.argmax(lost))
+                state = y[self.system.rows, first]
+                raise NonFiniteStateError(
+                    f"the function of {event.event} is not finite at {described(float(t[first]), state)}: it left its "
+                    "own domain there, and its zeros may have been missed",
+                    float(t[first]),
+                    state,
+                )
+
     def check_left(self, event: Prepared, changed: Any, t: Any, after: Any) -> None:
         """Make sure that a motion has left an event's zero to the side to which it was sent.
 

@@ -227,7 +227,10 @@ def _check_start(
     point = states if narrow else states.astype(np.longdouble) + low
     values = dict(zip(system.inputs, (*point, point.dtype.type(float(start))), strict=True))
     nodes = [system.hamiltonian, *system.velocity, *system.force]
-    found = system.graph.evaluate(nodes, values, FLOAT64 if narrow else LONGDOUBLE)
+    try:
+        found = system.graph.evaluate(nodes, values, FLOAT64 if narrow else LONGDOUBLE)
+    except OverflowError as large:
+        raise ValueError("a constant or a parameter of H is beyond 1e308: choose other units") from large
     finite = np.logical_and.reduce([np.isfinite(np.broadcast_to(x, states.shape[1:])) for x in found])
     if not finite.all():
         wrong = states[system.rows, np.argmin(finite)]

@@ -86,6 +86,8 @@ def taylor_motion(
     t = plan.instants[first : first + y.shape[1]]
     if course.stopped:
         t = np.append(t[: y.shape[1] - 1], meeting.met[-1].t)
+    if events:
+        meeting.check_domain(t, y[:, :, 0])
     return Samples(
         t=t,
         y=y,
