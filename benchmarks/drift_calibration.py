@@ -15,9 +15,12 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from canon.study.drift import Drift, Growth, drift
 from canon.study.growth import slope_of, walk_of
