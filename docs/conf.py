@@ -73,19 +73,32 @@ SUBJECTS = {
     "scene": "Scenes",
     "study": "Drift, cost and choice",
     "exercise": "Judging answers",
+    "plot": "Pictures",
 }
 
 
 def public_names() -> str:
-    """Return the page that lists every name of the front door by room, each with a page of its own."""
+    """Return the page that lists every name of the front door, of scenes and of pictures, each with its own page."""
     by_room: dict[str, list[str]] = {}
     for module, names in _ROOMS.items():
         by_room.setdefault(module.split(".")[1], []).extend(f"{module}.{name}" for name in names)
-    lines = ["# Every public name", "", "Written from `canon/__init__.py` when the pages are built.", ""]
+    for room, named in (
+        ("scene", ("find", "names", "Scene")),
+        ("plot", importlib.import_module("canon.plot").__all__),
+    ):
+        found = [getattr(importlib.import_module(f"canon.{room}"), name) for name in named]
+        by_room[room] = [f"{each.__module__}.{each.__name__}" for each in found if callable(each)]
+    lines = [
+        "# Every public name",
+        "",
+        "Written from `canon/__init__.py` when the pages are built. Scenes and",
+    ]
+    lines += ["pictures are imported from `canon.scene` and `canon.plot`, everything else from `canon`.", ""]
     for room, names in sorted(by_room.items(), key=lambda item: list(SUBJECTS).index(item[0])):
-        lines += [f"## {SUBJECTS[room]}", "", f"{importlib.import_module(f'canon.{room}').__doc__}", ""]
+        about = (importlib.import_module(f"canon.{room}").__doc__ or "").splitlines()[0]
+        lines += [f"## {SUBJECTS[room]}", "", about, ""]
         lines += ["```{eval-rst}", ".. autosummary::", "   :toctree: generated", ""]
-        lines += [f"   {name}" for name in sorted(names, key=lambda name: name.rsplit(".", 1)[1].lower())]
+        lines += [f"   ~{name}" for name in sorted(names, key=lambda name: name.rsplit(".", 1)[1].lower())]
         lines += ["```", ""]
     return "\n".join(lines)
 
