@@ -54,7 +54,7 @@ def main(arguments: list[str]) -> int:
     }
     tools = ", ".join(f"{name} {version(name)}" for name in ("sympy", "numpy", "scipy", "heyoka", "llvmlite"))
     where = f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
-    PAGE.write_text(page(done, where), encoding="utf-8")
+    PAGE.write_bytes(page(done, where).encode("utf-8", "backslashreplace"))
     for part in PARTS:
         print(f"{part}: {summary(done[part])}")
     return int(any(pieces[0]["kind"] in BAD for found in done.values() for _, pieces in found))

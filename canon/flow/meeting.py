@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Meeting"]
 
+_ROUNDING = 2.0**-9
+"""What part of the motion on leaving a zero rounding may make up."""
+
 
 class Meeting:
     """Events of one orbit as heyoka's, and the crossings it tells of.
@@ -115,6 +118,28 @@ class Meeting:
                     float(t[first]),
                     state,
                 )
+
+    def crossed(
+        self, handled: Sequence[Prepared], t: Any, part: float, before: Any, after: Any
+    ) -> Prepared | None:
+        """Meet the first of the other events whose function changes its sign from one state to the next, if any.
+
+        Rounding may have put the first state a little beyond the zero already.
+        """
+        near = part * _ROUNDING
+        for event in self.events:
+            known = any(met.event is event.event and abs(met.t - float(t)) <= near for met in self.met[-9:])
+            if known or any(event is other for other in handled):
+                continue
+            old, new = (self._value(event, float(t), *_parts(state)) for state in (before, after))
+            if old * new < 0 or (new != 0 and abs(old) < abs(new) * _ROUNDING):
+                if not event.event.counts(new > 0):
+                    continue
+                changed = None if event.jump is None else self._changed(event.jump, float(t), before)
+                self.met_state = before if changed is None else changed
+                self._meet(event, float(t), before, self.forward if new > 0 else -self.forward, changed)
+                return event
+        return None
 
     def check_left(self, event: Prepared, changed: Any, t: Any, after: Any) -> None:
         """Make sure that a motion has left an event's zero to the side to which it was sent.

@@ -66,12 +66,12 @@ class Orbit:
             if event is None:
                 failure = outcome
                 break
-            if event.jump is None:
+            handled = [event] if event.jump is None else self._at_the_same_time(event)
+            if handled[-1].event.action == "stop":
                 rows.append(self.integrator.state.copy())
                 stopped = True
                 break
-            self.integrator.state[:] = self.meeting.met_state
-            steps_taken, found = self.leave(left, event, dense=dense)
+            steps_taken, found = self.leave(left, handled, dense=dense)
             steps += steps_taken
             rows += found
             left = left[len(found) :]
@@ -82,7 +82,30 @@ class Orbit:
             failure = None
         return Slice(made, steps, time.thread_time() - started, failure, stopped)
 
-    def leave(self, left: list[Any], event: Prepared | None, *, dense: bool) -> tuple[int, list[Any]]:
+    def _at_the_same_time(self, event: Prepared) -> list[Prepared]:
+        """Change the state as an event does, then as every other does that would be met on leaving its zero.
+
+        heyoka tells of one event that changes the state; another at the same instant, as in a corner between two
+        walls, would be passed unseen.
+        """
+        own, handled = self.integrator, [event]
+        own.state[:] = self.meeting.met_state
+        while True:
+            before, clock = own.state.copy(), own.dtime
+            self.free.state[:], self.free.dtime = before, clock
+            _, natural = self.free.step(self.span)
+            self.free.state[:], self.free.dtime = before, clock
+            part = natural * type(natural)(_SMALL_PART)
+            self.free.propagate_until(own.time + part)
+            found = self.meeting.crossed(handled, own.time, abs(float(part)), before, self.free.state)
+            if found is None:
+                return handled
+            handled.append(found)
+            own.state[:] = self.meeting.met_state
+            if found.event.action == "stop":
+                return handled
+
+    def leave(self, left: list[Any], events: Sequence[Prepared], *, dense: bool) -> tuple[int, list[Any]]:
         """Move off an event's zero, by a small part of a step that looks for no events.
 
         heyoka takes a zero at the very beginning of a step for others of the step too.
@@ -96,8 +119,9 @@ class Orbit:
         at_once = [before for t in left if t == own.time]
         near = [t for t in left if t != own.time and (t - end) * self.meeting.forward < 0]
         steps, found, _ = self._towards(free, [*near, end], dense=dense)
-        if event is not None:
-            self.meeting.check_left(event, before, own.time, free.state)
+        for event in events:
+            if event.jump is not None:
+                self.meeting.check_left(event, before, own.time, free.state)
         own.state[:], own.dtime = free.state, free.dtime
         if self.meeting.terminal:
             own.reset_cooldowns()

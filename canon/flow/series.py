@@ -77,7 +77,7 @@ def taylor_motion(
             orbit.integrator.state[:], orbit.integrator.dtime = state, clock
     compiled = time.perf_counter() - compiling
     if events and so_far is None and meeting.at_zero(float(plan.instants[0]), *states):
-        orbits[0].leave([], None, dense=dense)
+        orbits[0].leave([], (), dense=dense)
     course = _Course(orbits, meeting, [_stacked(states, number)], ends_of(orbits))
     course.follow(grid, plan, first, progress, system.rows, dense=dense)
     found = np.concatenate(course.rows).transpose(1, 0, 2)
