@@ -36,7 +36,7 @@ def plot_energy_error(
     *,
     guides: bool = True,
 ) -> Axes:
-    """Draw |ΔE/E|, or the error of what else was followed, against time, both logarithmic, one line a method.
+    """Draw ``|ΔE/E|``, or the error of what else was followed, against time, both logarithmic, one line a method.
 
     The line is the largest error in each of about a hundred intervals of log t, the shade below it reaches down to
     the median. Guides show how a bounded error, round-off and a secular error rise.

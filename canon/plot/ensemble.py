@@ -21,7 +21,7 @@ FAN = ((0.0, 1.0, 0.12), (0.05, 0.95, 0.2), (0.25, 0.75, 0.3))
 
 
 def plot_ensemble_fan(of: Trajectory, ax: Axes | None = None, *, intervals: int = 60) -> Axes:
-    """Draw how |ΔE/E| spreads over the orbits of an ensemble: the median, and shades between quantiles.
+    """Draw how ``|ΔE/E|`` spreads over the orbits of an ensemble: the median, and shades between quantiles.
 
     Of each orbit the largest error in each interval of log t counts.
 

@@ -35,7 +35,7 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     ax
         Where to draw; a new figure, as large as the table needs, if left out.
     what
-        ``"bound"`` for the largest |ΔE/E|, ``"slope"`` for the drift's size per unit of time, ``"seconds"`` for
+        ``"bound"`` for the largest ``|ΔE/E|``, ``"slope"`` for the drift's size per unit of time, ``"seconds"`` for
         the processor time.
 
     Raises

@@ -106,7 +106,7 @@ def plot_drift_by_step(
     ax
         Where to draw; a new figure if left out.
     what
-        ``"bound"`` for the largest |ΔE/E|, ``"slope"`` for the drift per unit of time (not of work–precision
+        ``"bound"`` for the largest ``|ΔE/E|``, ``"slope"`` for the drift per unit of time (not of work–precision
         runs, which are too short for one).
 
     Raises
