@@ -67,7 +67,7 @@ def driven(hamiltonian: HamiltonianSystem) -> Driven:
     >>> (x,) = coordinates("x")
     >>> shaken = Hamiltonian(x.momentum**2 / 2 - x * time, [x], [x.momentum])
     >>> driven(shaken).hamiltonian.H
-    p_tau + p_x**2/2 - tau*x
+    p_tau - tau*x + p_x**2/2
     """
     import sympy as sp
 

@@ -134,6 +134,24 @@ def test_scaling_the_error_scales_the_answer_and_keeps_the_verdict():
     assert other.exponent == one.exponent
 
 
+def test_a_walk_that_round_off_explains_is_round_off_and_a_larger_one_is_not():
+    """Known round-off leaves fewer walks undecided, none that is far larger is called so."""
+    walks = [1e-13 * series.walk(np.random.default_rng(seed)) for seed in range(60)]
+
+    def verdicts(roundoff):
+        return [drift(TIMES, error, roundoff=roundoff).verdict for error in walks]
+
+    unknown, known = verdicts(None).count(Growth.ROUND_OFF), verdicts(1e-13).count(Growth.ROUND_OFF)
+    assert known >= max(unknown, 57)
+    assert Growth.ROUND_OFF not in verdicts(1e-16)
+
+
+def test_noise_that_returns_is_bounded_whatever_round_off_is_expected():
+    noises = [1e-14 * series.remembering(np.random.default_rng(seed), 0.01) for seed in range(40)]
+    found = [drift(TIMES, error[: TIMES.size], roundoff=1e-14).verdict for error in noises]
+    assert found.count(Growth.BOUNDED) >= 38
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 def test_a_failed_run_is_never_data(bad):
     error = np.zeros_like(TIMES)
