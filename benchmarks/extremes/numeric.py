@@ -24,7 +24,13 @@ if TYPE_CHECKING:
 def rows() -> Iterator[Row]:
     """Yield them all."""
     for part in (
-        numeric_encounters, numeric_scales, numeric_stiff, numeric_chaos, numeric_long, numeric_constraints,
-        numeric_events, numeric_refusals,
-    ):  # fmt: skip
+        numeric_encounters,
+        numeric_scales,
+        numeric_stiff,
+        numeric_chaos,
+        numeric_long,
+        numeric_constraints,
+        numeric_events,
+        numeric_refusals,
+    ):
         yield from part.rows()

@@ -25,31 +25,71 @@ GAP = sp.Symbol("epsilon", positive=True)
 def rows() -> Iterator[Row]:
     """Yield the rows."""
     for name, gap in (("1e12", 4e-12), ("1e6", 4e-6)):
-        yield Row(f"mass-matrix-{name}", f"a mass matrix of condition {name}: accelerations, against exact fractions",
-                  partial(near_singular, gap), {"NumPy": partial(by_numpy, gap)})  # fmt: skip
-    yield Row("mass-matrix-1e16", "a mass matrix of condition 1e16: no digit is left",
-              lambda: refused(lambda: accelerations(2.0**-52), ArithmeticError, holds="singular"),
-              {"NumPy": partial(by_numpy, 2.0**-52)})  # fmt: skip
-    yield Row("mass-matrix-singular", "a singular mass matrix that rounding makes regular, (ẋ + 0.3 ẏ)²/2",
-              lambda: refused(singular, ArithmeticError, holds="singular"), {"NumPy": singular_by_numpy})  # fmt: skip
+        yield Row(
+            f"mass-matrix-{name}",
+            f"a mass matrix of condition {name}: accelerations, against exact fractions",
+            partial(near_singular, gap),
+            {"NumPy": partial(by_numpy, gap)},
+        )
+    yield Row(
+        "mass-matrix-1e16",
+        "a mass matrix of condition 1e16: no digit is left",
+        lambda: refused(lambda: accelerations(2.0**-52), ArithmeticError, holds="singular"),
+        {"NumPy": partial(by_numpy, 2.0**-52)},
+    )
+    yield Row(
+        "mass-matrix-singular",
+        "a singular mass matrix that rounding makes regular, (ẋ + 0.3 ẏ)²/2",
+        lambda: refused(singular, ArithmeticError, holds="singular"),
+        {"NumPy": singular_by_numpy},
+    )
     yield Row("mass-ratio-1e100", "masses 1 and 1e100: well conditioned in units that suit", mass_ratio)
-    yield Row("constraint-violated", "a pendulum in x, y starts 1e-3 off its circle, with a velocity along the rod", violated)
-    yield Row("constraint-unreachable", "a point from which x² + y² + 1 = 0 is to be reached", lambda: refused(unreachable, ArithmeticError))
-    yield Row("constraint-redundant", "the circle said twice, x² + y² = 1 and (x² + y²)² = 1", lambda: refused(
-        redundant, DependentConstraintsError, ValueError, holds="depend"))  # fmt: skip
+    yield Row(
+        "constraint-violated",
+        "a pendulum in x, y starts 1e-3 off its circle, with a velocity along the rod",
+        violated,
+    )
+    yield Row(
+        "constraint-unreachable",
+        "a point from which x² + y² + 1 = 0 is to be reached",
+        lambda: refused(unreachable, ArithmeticError),
+    )
+    yield Row(
+        "constraint-redundant",
+        "the circle said twice, x² + y² = 1 and (x² + y²)² = 1",
+        lambda: refused(redundant, DependentConstraintsError, ValueError, holds="depend"),
+    )
     for name, gap in (("1e-6", 1e-6), ("1e-14", 1e-14)):
-        yield Row(f"constraint-nearly-dependent-{name}", f"two planes at an angle of {name} to each other: multipliers and accelerations",
-                  partial(nearly_dependent, gap))  # fmt: skip
-    yield Row("constraint-singular-point", "the constraint x y = 0 at x = y = 0, where its gradient vanishes",
-              lambda: refused(at_singular_point, ArithmeticError, holds="singular"))  # fmt: skip
-    yield Row("constrained-long", "a pendulum in x, y under its constraint, 10⁵ steps of RK4 with projection: stays on the circle, "
-              "energy beside that of the angle's equation", partial(long_run, projected=True), limit=120)  # fmt: skip
-    yield Row("constrained-long-drifting", "the same without projection: the drift is seen in the residual", partial(long_run, projected=False), limit=120)
+        yield Row(
+            f"constraint-nearly-dependent-{name}",
+            f"two planes at an angle of {name} to each other: multipliers and accelerations",
+            partial(nearly_dependent, gap),
+        )
+    yield Row(
+        "constraint-singular-point",
+        "the constraint x y = 0 at x = y = 0, where its gradient vanishes",
+        lambda: refused(at_singular_point, ArithmeticError, holds="singular"),
+    )
+    yield Row(
+        "constrained-long",
+        "a pendulum in x, y under its constraint, 10⁵ steps of RK4 with projection: stays on the circle, "
+        "energy beside that of the angle's equation",
+        partial(long_run, projected=True),
+        limit=120,
+    )
+    yield Row(
+        "constrained-long-drifting",
+        "the same without projection: the drift is seen in the residual",
+        partial(long_run, projected=False),
+        limit=120,
+    )
 
 
 def equations() -> object:
     u, v = x.dot, y.dot
-    return derivation_of_lagrangian(Lagrangian((u**2 + 2 * u * v + (1 + GAP) * v**2) / 2 - x**2 / 2 - y**2, [x, y]))
+    return derivation_of_lagrangian(
+        Lagrangian((u**2 + 2 * u * v + (1 + GAP) * v**2) / 2 - x**2 / 2 - y**2, [x, y])
+    )
 
 
 def accelerations(gap: float) -> np.ndarray:
@@ -98,7 +138,11 @@ def mass_ratio() -> Outcome:
     made = derivation_of_lagrangian(Lagrangian(x.dot**2 / 2 + m * y.dot**2 / 2 - x**2 / 2 - y, [x, y]))
     found = acceleration_function(made, {m: 1e100})([0.5, 0.0], [0.0, 0.0], 0.0)
     condition = mass_condition_function(made, {m: 1e100})([0.5, 0.0], [0.0, 0.0], 0.0)
-    return Outcome(f"condition {condition:g}", float(max(abs(found[0] + 0.5) * 2, abs(found[1] * 1e100 + 1))), condition * 2.0**-52)
+    return Outcome(
+        f"condition {condition:g}",
+        float(max(abs(found[0] + 0.5) * 2, abs(found[1] * 1e100 + 1))),
+        condition * 2.0**-52,
+    )
 
 
 def hung(*constraints: sp.Expr) -> object:
@@ -113,7 +157,11 @@ def violated() -> Outcome:
     q, v = motion.projected(*start, 0.0)
     after = [float(abs(part).max()) for part in motion.residual(q, v, 0.0)]
     error = float(max(abs(q - [0.6, -0.8]).max(), abs(v).max()))
-    return Outcome(f"residuals {before[0]:.1e}, {before[1]:.1e} before projection, {after[0]:.1e}, {after[1]:.1e} after", error, 1e-15)
+    return Outcome(
+        f"residuals {before[0]:.1e}, {before[1]:.1e} before projection, {after[0]:.1e}, {after[1]:.1e} after",
+        error,
+        1e-15,
+    )
 
 
 def unreachable() -> object:
@@ -135,7 +183,9 @@ def nearly_dependent(gap: float) -> Outcome:
         return Outcome(f"{type(error).__name__}: {error}"[:180], refused=True)
     # On z = −x and y = 0: z̈ = −ẍ = −5, ÿ = 0.
     error = float(abs(found - [5.0, 0.0, -5.0]).max() / 5)
-    return Outcome(f"accelerations {found.round(6)}, multipliers {forces.round(3)}", error, 4 * 2.0**-52 / gap)
+    return Outcome(
+        f"accelerations {found.round(6)}, multipliers {forces.round(3)}", error, 4 * 2.0**-52 / gap
+    )
 
 
 def at_singular_point() -> object:
@@ -164,9 +214,15 @@ def long_run(*, projected: bool) -> Outcome:
     values, rates = motion.residual(state[:2], state[2:], 0.0)
     (theta,) = coordinates("theta")
     H = Hamiltonian(theta.momentum**2 / 2 - 10 * sp.cos(theta), [theta], [theta.momentum])
-    angle = propagate(H, [sp.atan2(sp.Rational(6, 10), sp.Rational(8, 10)), 0], (0, h * steps), method=Splitting("kahan-li-8"), step=1e-2).final[0]
+    angle = propagate(
+        H,
+        [sp.atan2(sp.Rational(6, 10), sp.Rational(8, 10)), 0],
+        (0, h * steps),
+        method=Splitting("kahan-li-8"),
+        step=1e-2,
+    ).final[0]
     error = float(abs(state[:2] - [np.sin(angle), -np.cos(angle)]).max())
     off = float(max(abs(values).max(), abs(rates).max()))
     # RK4's own error, from its half-step twin: 1/15 of what doubling the step changes; what is stated is the residual.
     words = f"off the constraint by {off:.1e}; place wrong by {error:.1e} after {steps} steps"
-    return Outcome(words, right=off < 1e-14 if projected else 1e-14 < off)
+    return Outcome(words, right=(off < 1e-14) == projected)

@@ -10,19 +10,34 @@ import sympy as sp
 from mpmath import mp, mpf
 
 from canon import (
-    DOP853, Event, Gauss, Hamiltonian, NonFiniteStateError, Splitting, TimeTransformed, WisdomHolman,
-    coordinates, propagate,
-)  # fmt: skip
+    DOP853,
+    Event,
+    Gauss,
+    Hamiltonian,
+    NonFiniteStateError,
+    Splitting,
+    TimeTransformed,
+    WisdomHolman,
+    coordinates,
+    propagate,
+)
 from extremes.numeric_tools import (
-    Problem, by_taylor, motion_row, plain, rebound_installed, with_warnings,
-)  # fmt: skip
+    Problem,
+    by_taylor,
+    motion_row,
+    plain,
+    rebound_installed,
+    with_warnings,
+)
 from extremes.row import Outcome, Row, refused
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 x, y = coordinates("x y")
-KEPLER = Hamiltonian((x.momentum**2 + y.momentum**2) / 2 - 1 / sp.sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum])
+KEPLER = Hamiltonian(
+    (x.momentum**2 + y.momentum**2) / 2 - 1 / sp.sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum]
+)
 LOGARITHMIC = TimeTransformed(Splitting("kahan-li-8"))
 
 
@@ -30,59 +45,101 @@ def rows() -> Iterator[Row]:
     """Yield the rows."""
     for gap, name in ((0.1, "0.9"), (0.01, "0.99"), (1e-6, "0.999999"), (1e-12, "1-1e-12")):
         yield motion_row(
-            f"kepler-{name}-transformed", f"Kepler's motion, e = {name}, 16 revolutions from the pericentre; time-"
-            "transformed splitting of order 8 (closed form, 60 digits)", partial(kepler, gap, 100.0),
-            {"method": LOGARITHMIC, "step": 0.05 * gap}, extra=with_rebound(partial(kepler, gap, 100.0)),
-        )  # fmt: skip
+            f"kepler-{name}-transformed",
+            f"Kepler's motion, e = {name}, 16 revolutions from the pericentre; time-"
+            "transformed splitting of order 8 (closed form, 60 digits)",
+            partial(kepler, gap, 100.0),
+            {"method": LOGARITHMIC, "step": 0.05 * gap},
+            extra=with_rebound(partial(kepler, gap, 100.0)),
+        )
     for gap, name in ((0.01, "0.99"), (1e-6, "0.999999")):
         yield motion_row(
-            f"kepler-{name}-taylor", f"the same, e = {name}, Taylor()", partial(kepler, gap, 100.0), {}, others=()
+            f"kepler-{name}-taylor",
+            f"the same, e = {name}, Taylor()",
+            partial(kepler, gap, 100.0),
+            {},
+            others=(),
         )
     yield Row(
-        "kepler-1-1e-12-taylor", "the same, e = 1 − 1e-12, Taylor(): derivatives of order 20 are beyond 1e308",
+        "kepler-1-1e-12-taylor",
+        "the same, e = 1 − 1e-12, Taylor(): derivatives of order 20 are beyond 1e308",
         lambda: refused(lambda: run(kepler(1e-12, 100.0)), ValueError, holds="time scale"),
-    )  # fmt: skip
+    )
     yield motion_row(
-        "kepler-1-1e-12-extended", "the same with precision='extended', whose exponents suffice, one revolution",
-        partial(kepler, 1e-12, 6.5), {"precision": "extended"}, others=(), limit=120,
-    )  # fmt: skip
+        "kepler-1-1e-12-extended",
+        "the same with precision='extended', whose exponents suffice, one revolution",
+        partial(kepler, 1e-12, 6.5),
+        {"precision": "extended"},
+        others=(),
+        limit=120,
+    )
     yield motion_row(
-        "kepler-apocentre", "e = 1 − 2.5e-13 from the apocentre, once through the pericentre, time-transformed",
-        partial(from_apocentre, 7e-7), {"method": LOGARITHMIC, "step": 0.01},
-    )  # fmt: skip
+        "kepler-apocentre",
+        "e = 1 − 2.5e-13 from the apocentre, once through the pericentre, time-transformed",
+        partial(from_apocentre, 7e-7),
+        {"method": LOGARITHMIC, "step": 0.01},
+    )
     yield Row(
-        "kepler-apocentre-taylor", "the same, Taylor(): heyoka's derivatives overflow at the pericentre",
+        "kepler-apocentre-taylor",
+        "the same, Taylor(): heyoka's derivatives overflow at the pericentre",
         lambda: refused(lambda: run(from_apocentre(7e-7)), NonFiniteStateError, holds="collision"),
-    )  # fmt: skip
+    )
     yield motion_row(
-        "kepler-0.999999-solvable", "e = 0.999999 by Kepler steps (Wisdom and Holman's map, no planets), 16 revolutions",
-        partial(kepler, 1e-6, 100.0), {"method": WisdomHolman(), "step": 0.5}, others=(),
-    )  # fmt: skip
+        "kepler-0.999999-solvable",
+        "e = 0.999999 by Kepler steps (Wisdom and Holman's map, no planets), 16 revolutions",
+        partial(kepler, 1e-6, 100.0),
+        {"method": WisdomHolman(), "step": 0.5},
+        others=(),
+    )
     yield motion_row(
-        "kepler-0.999999-coarse", "e = 0.999999, Gauss(6) in steps of 0.01: 10⁷ times too long at the pericentre",
-        partial(kepler, 1e-6, 10.0), {"method": Gauss(6), "step": 0.01}, others=(),
-    )  # fmt: skip
+        "kepler-0.999999-coarse",
+        "e = 0.999999, Gauss(6) in steps of 0.01: 10⁷ times too long at the pericentre",
+        partial(kepler, 1e-6, 10.0),
+        {"method": Gauss(6), "step": 0.01},
+        others=(),
+    )
     yield Row(
-        "collision-taylor", "a body falls straight into the centre, Taylor() up to t = 2; the collision is at π/√8 = 1.11",
+        "collision-taylor",
+        "a body falls straight into the centre, Taylor() up to t = 2; the collision is at π/√8 = 1.11",
         lambda: refused(lambda: run(fall(2.0)), NonFiniteStateError, holds="t = 1.1107207"),
         {"SciPy DOP853": lambda: passed_through("DOP853"), "heyoka": through_heyoka},
-    )  # fmt: skip
+    )
     yield Row("collision-verlet", "the same, Verlet in steps of 0.01", fixed_through_collision)
-    yield Row("collision-dop853", "the same, canon's DOP853()", lambda: refused(
-        lambda: run(fall(2.0), method=DOP853()), NonFiniteStateError, holds="collision"))  # fmt: skip
-    yield Row("collision-event", "the same, stopped at r = 1e-6 by an event (time in closed form)", stopped_before_collision)
+    yield Row(
+        "collision-dop853",
+        "the same, canon's DOP853()",
+        lambda: refused(lambda: run(fall(2.0), method=DOP853()), NonFiniteStateError, holds="collision"),
+    )
+    yield Row(
+        "collision-event",
+        "the same, stopped at r = 1e-6 by an event (time in closed form)",
+        stopped_before_collision,
+    )
     yield motion_row(
-        "flyby-1e-9", "a parabolic passage of the centre at a distance of 1e-9, time-transformed, |t| < 2",
-        flyby, {"method": LOGARITHMIC, "step": 0.01}, limit=90,
-    )  # fmt: skip
+        "flyby-1e-9",
+        "a parabolic passage of the centre at a distance of 1e-9, time-transformed, |t| < 2",
+        flyby,
+        {"method": LOGARITHMIC, "step": 0.01},
+        limit=90,
+    )
     yield motion_row(
-        "pythagorean", "Burrau's problem: masses 3, 4, 5 from rest, to t = 60, encounters at 4e-4, Taylor()",
-        lambda: three_bodies(60.0), {}, samples=60, extra=burrau_rebound(), limit=120,
-    )  # fmt: skip
+        "pythagorean",
+        "Burrau's problem: masses 3, 4, 5 from rest, to t = 60, encounters at 4e-4, Taylor()",
+        lambda: three_bodies(60.0),
+        {},
+        samples=60,
+        extra=burrau_rebound(),
+        limit=120,
+    )
     yield motion_row(
-        "pythagorean-transformed", "the same to t = 20, time-transformed splitting of order 8",
-        lambda: three_bodies(20.0), {"method": LOGARITHMIC, "step": 5e-3}, samples=20, others=(), limit=120,
-    )  # fmt: skip
+        "pythagorean-transformed",
+        "the same to t = 20, time-transformed splitting of order 8",
+        lambda: three_bodies(20.0),
+        {"method": LOGARITHMIC, "step": 5e-3},
+        samples=20,
+        others=(),
+        limit=120,
+    )
 
 
 def run(given: Problem, **how: object) -> object:
@@ -150,7 +207,11 @@ def through_heyoka() -> Outcome:
     integrator = hy.taylor_adaptive([(a, u), (b, v), (u, -a * r3), (v, -b * r3)], [1.0, 0.0, 0.0, 0.0])
     outcome = integrator.propagate_until(2.0, max_steps=100_000)[0]
     words = f"{str(outcome).split('.')[-1]} at t = {integrator.time:.9g}"
-    return Outcome(words, right=False) if outcome == hy.taylor_outcome.time_limit else Outcome(words, refused=True)
+    return (
+        Outcome(words, right=False)
+        if outcome == hy.taylor_outcome.time_limit
+        else Outcome(words, refused=True)
+    )
 
 
 def fixed_through_collision() -> Outcome:

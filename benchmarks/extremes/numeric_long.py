@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
@@ -10,7 +11,7 @@ import numpy as np
 import sympy as sp
 from mpmath import mp, mpf
 
-from canon import Hamiltonian, RK4, Splitting, coordinates, propagate
+from canon import RK4, Hamiltonian, Splitting, coordinates, propagate
 from extremes.numeric_tools import Problem, by_taylor, motion_row, outcome_of, plain, rebound_installed
 from extremes.row import Outcome, Row
 
@@ -23,42 +24,101 @@ OSCILLATOR = Hamiltonian(x.momentum**2 / 2 + x**2 / 2, [x], [x.momentum])
 
 def rows() -> Iterator[Row]:
     """Yield the rows."""
-    yield Row("steps-1e9", "10⁹ steps of Verlet, h = 2⁻⁶, an oscillator (the discrete motion in closed form, its phase to 60 digits)",
-              billion, {"plain Python": loop_in_numbers}, limit=150)  # fmt: skip
+    yield Row(
+        "steps-1e9",
+        "10⁹ steps of Verlet, h = 2⁻⁶, an oscillator (the discrete motion in closed form, its "
+        "phase to 60 digits)",
+        billion,
+        {"plain Python": loop_in_numbers},
+        limit=150,
+    )
     yield Row("steps-1e8-resumed", "10⁸ steps at once and in two halves: the same bits?", resumed, limit=60)
-    yield Row("clock-1e6-of-0.1", "10⁶ steps of 0.1: the time is t0 + n h, exactly rounded", clock, {"t += h": clock_plainly})
-    yield motion_row("clock-1e15", "a driven oscillator from t0 = 1e15, where doubles are 1/8 apart, to t0 + 100, h = 1/64",
-                     late, {"method": Splitting("kahan-li-8"), "step": 1 / 64})  # fmt: skip
+    yield Row(
+        "clock-1e6-of-0.1",
+        "10⁶ steps of 0.1: the time is t0 + n h, exactly rounded",
+        clock,
+        {"t += h": clock_plainly},
+    )
+    yield motion_row(
+        "clock-1e15",
+        "a driven oscillator from t0 = 1e15, where doubles are 1/8 apart, to t0 + 100, h = 1/64",
+        late,
+        {"method": Splitting("kahan-li-8"), "step": 1 / 64},
+    )
     for precision in ("double", "compensated"):
         yield motion_row(
-            f"step-1e-8-{precision}", f"10⁷ steps of 1e-8, Verlet in {precision} (closed form)", partial(oscillator, 0.1),
-            {"method": Splitting("verlet"), "step": 1e-8, "precision": precision}, others=(), limit=90,
-        )  # fmt: skip
-    yield motion_row("oscillator-1e6-periods", "an oscillator over 10⁶ periods, splitting of order 8, h = 0.2", partial(oscillator, 2e6 * float(np.pi)),
-                     {"method": Splitting("kahan-li-8"), "step": 0.2}, others=(), limit=150)  # fmt: skip
-    yield motion_row("rk4-1e5-periods", "an oscillator over 10⁵ periods, RK4, h = 0.05: the energy decays", partial(oscillator, 2e5 * float(np.pi)),
-                     {"method": RK4(), "step": 0.05}, others=(), limit=150)  # fmt: skip
-    yield Row("bodies-200", "200 bodies in a Plummer-like ball, 600 degrees of freedom, softened by 0.05, t = 0 … 0.1 in 20 steps of order 4",
-              many_bodies, {"rebound IAS15": bodies_by_rebound} if rebound_installed() else {}, limit=300)  # fmt: skip
-    yield Row("lattice-4096", "Fermi, Pasta, Ulam and Tsingou, α = 0.25, N = 4096, 1000 steps of order 4", partial(lattice, 4096, 0.25), limit=200)
-    yield Row("lattice-4096-linear", "the same chain without α: its normal modes in closed form", partial(lattice, 4096, 0.0), limit=200)
-    yield Row("ensemble-1e6", "10⁶ pendulums side by side, 100 steps of order 8; the error of 50 of them estimated", ensemble,
-              {"SciPy DOP853": ensemble_by_scipy}, limit=120, memory=8.0)  # fmt: skip
+            f"step-1e-8-{precision}",
+            f"10⁷ steps of 1e-8, Verlet in {precision} (closed form)",
+            partial(oscillator, 0.1),
+            {"method": Splitting("verlet"), "step": 1e-8, "precision": precision},
+            others=(),
+            limit=90,
+        )
+    yield motion_row(
+        "oscillator-1e5-periods",
+        "an oscillator over 10⁵ periods, splitting of order 8, h = 0.2",
+        partial(oscillator, 2e5 * float(np.pi)),
+        {"method": Splitting("kahan-li-8"), "step": 0.2},
+        others=(),
+        limit=150,
+    )
+    yield motion_row(
+        "rk4-2e4-periods",
+        "an oscillator over 2·10⁴ periods, RK4, h = 0.05: the energy decays",
+        partial(oscillator, 4e4 * float(np.pi)),
+        {"method": RK4(), "step": 0.05},
+        others=(),
+        limit=150,
+    )
+    yield Row(
+        "bodies-200",
+        "200 bodies in a Plummer-like ball, 600 degrees of freedom, softened by 0.05, t = 0 … 0.1 "
+        "in 20 steps of order 4",
+        many_bodies,
+        {"rebound IAS15": bodies_by_rebound} if rebound_installed() else {},
+        limit=300,
+    )
+    yield Row(
+        "lattice-4096",
+        "Fermi, Pasta, Ulam and Tsingou, α = 0.25, N = 4096, 1000 steps of order 4",
+        partial(lattice, 4096, 0.25),
+        limit=200,
+    )
+    yield Row(
+        "lattice-4096-linear",
+        "the same chain without α: its normal modes in closed form",
+        partial(lattice, 4096, 0.0),
+        limit=200,
+    )
+    yield Row(
+        "ensemble-1e6",
+        "10⁶ pendulums side by side, 100 steps of order 8; the error of 50 of them estimated",
+        ensemble,
+        {"SciPy DOP853": ensemble_by_scipy},
+        limit=120,
+        memory=8.0,
+    )
 
 
 def billion() -> Outcome:
     n, h = 10**9, Fraction(1, 64)
-    motion = propagate(OSCILLATOR, [1.0, 0.0], (0, float(n * h)), method=Splitting("verlet"), step=float(h), samples=4)
+    motion = propagate(
+        OSCILLATOR, [1.0, 0.0], (0, float(n * h)), method=Splitting("verlet"), step=float(h), samples=4
+    )
     with mp.workdps(60):
         # Kick–drift–kick or drift–kick–drift: the discrete motion turns by the angle 2 asin(h/2) a step.
         angle = 2 * mp.asin(mpf(1) / 128)
-        turned = [[mp.cos(k * angle), mp.sin(k * angle)] for k in (n,)][0]
+        turned = mp.cos(n * angle), mp.sin(n * angle)
         measure = mp.sqrt(1 - mpf(1) / 128**2)
         q, p = (mpf(float(v)) for v in motion.final)
         # x stays on cos(nθ); the momentum's factor is √(1 − h²/4), or its inverse, as drifts or kicks come first.
-        error = float(min(abs(q - turned[0]) + abs(abs(p) - abs(turned[1]) * f) for f in (measure, 1 / measure)))
+        error = float(
+            min(abs(q - turned[0]) + abs(abs(p) - abs(turned[1]) * f) for f in (measure, 1 / measure))
+        )
     exact = motion.t[-1] == float(n * h) and motion.steps == n
-    words = f"{motion.steps} steps, t exact: {exact}, {motion.cpu_seconds:.2f} s of processor, energy error {abs(motion.energy_error).max():.1e}"
+    energy = abs(motion.energy_error).max()
+    spent = f"{motion.cpu_seconds:.2f} s of processor"
+    words = f"{motion.steps} steps, t exact: {exact}, {spent}, energy error {energy:.1e}"
     # Compensated round-off: one unit a step would be 2⁻⁵² √n; carried along it stays near 2⁻⁵².
     return Outcome(words, error, 2.0**-52 * n**0.5 if exact else 0.0)
 
@@ -84,7 +144,9 @@ def resumed() -> Outcome:
 
 
 def clock() -> Outcome:
-    motion = propagate(OSCILLATOR, [1.0, 0.0], (0, 100_000), method=Splitting("verlet"), step=0.1, samples=1000)
+    motion = propagate(
+        OSCILLATOR, [1.0, 0.0], (0, 100_000), method=Splitting("verlet"), step=0.1, samples=1000
+    )
     true = [float(Fraction(k, 10)) for k in range(0, 10**6 + 1, 1000)]
     error = float(abs(motion.t - true).max())
     return Outcome(f"largest error of the time {error:g}", error, 0.0)
@@ -98,7 +160,11 @@ def clock_plainly() -> Outcome:
 
 
 def late() -> Problem:
-    H = Hamiltonian(x.momentum**2 / 2 + x**2 / 2 - x * sp.sin(sp.Rational(1, 2) * sp.Symbol("t", real=True)), [x], [x.momentum])
+    H = Hamiltonian(
+        x.momentum**2 / 2 + x**2 / 2 - x * sp.sin(sp.Rational(1, 2) * sp.Symbol("t", real=True)),
+        [x],
+        [x.momentum],
+    )
     t0 = 1e15
 
     def truth(t: np.ndarray) -> np.ndarray:
@@ -110,7 +176,9 @@ def late() -> Problem:
             for s in t:
                 s = mpf(float(s))
                 c, d = mp.cos(s - s0), mp.sin(s - s0)
-                found.append([mpf(4) / 3 * mp.sin(s / 2) + a * c + b * d, mpf(2) / 3 * mp.cos(s / 2) - a * d + b * c])
+                found.append(
+                    [mpf(4) / 3 * mp.sin(s / 2) + a * c + b * d, mpf(2) / 3 * mp.cos(s / 2) - a * d + b * c]
+                )
             return np.array(found, dtype=object).T
 
     return Problem(H, (0.0, 0.0), (t0, t0 + 100), truth)
@@ -134,9 +202,12 @@ def _ball(count: int) -> tuple[Hamiltonian, np.ndarray]:
     kinetic = sp.Add(*[c**2 / (2 * m) for c in p])
     pairs = [
         -(m**2) / sp.sqrt(sp.Add(*[(q[3 * i + k] - q[3 * j + k]) ** 2 for k in range(3)], soft))
-        for i in range(count) for j in range(i)
-    ]  # fmt: skip
-    return Hamiltonian(sp.Add(kinetic, *pairs), q, p), np.concatenate([places.ravel(), speeds.ravel() / count])
+        for i in range(count)
+        for j in range(i)
+    ]
+    return Hamiltonian(sp.Add(kinetic, *pairs), q, p), np.concatenate(
+        [places.ravel(), speeds.ravel() / count]
+    )
 
 
 def many_bodies() -> Outcome:
@@ -159,7 +230,9 @@ def _numpy_ball(start: np.ndarray, until: float) -> np.ndarray:
             if b:
                 d = q[:, None] - q[None]
                 w = 1 / (np.sum(d * d, axis=2) + np.longdouble(1) / 400) ** 1.5 / n
-                v = v - h * (np.longdouble(b.numerator) / np.longdouble(b.denominator)) * np.einsum("ij,ijk->ik", w, d)
+                v = v - h * (np.longdouble(b.numerator) / np.longdouble(b.denominator)) * np.einsum(
+                    "ij,ijk->ik", w, d
+                )
     return np.concatenate([q.ravel(), v.ravel() / n])
 
 
@@ -181,7 +254,7 @@ def lattice(n: int, alpha: float) -> Outcome:
     q = coordinates(" ".join(f"q{i}" for i in range(n)))
     p = [c.momentum for c in q]
     ends = [sp.S.Zero, *q, sp.S.Zero]
-    stretch = [b - a for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    stretch = [b - a for a, b in itertools.pairwise(ends)]
     a = sp.Rational(alpha)
     V = [r**2 / 2 + a * r**3 / 3 for r in stretch]
     H = Hamiltonian(sp.Add(*[c**2 / 2 for c in p], *V), q, p)
@@ -189,15 +262,18 @@ def lattice(n: int, alpha: float) -> Outcome:
     start = np.concatenate([np.sin(modes) + np.sin(500 * modes) * 0.01, np.zeros(n)])
     motion = propagate(H, start, (0, 100), method=Splitting("mclachlan-4"), step=0.1, samples=2)
     if alpha:
-        return outcome_of(motion, np.stack([_numpy_chain(start, n, alpha, t) for t in motion.t], axis=1))
+        return outcome_of(motion, np.stack([_numpy_chain(start, alpha, t) for t in motion.t], axis=1))
     from scipy.fft import dst, idst
 
     q0, omega = dst(start[:n].astype(np.longdouble), type=1), 2 * np.sin(modes / 2)
-    truth = [np.concatenate([idst(q0 * np.cos(omega * t), type=1), idst(-q0 * omega * np.sin(omega * t), type=1)]) for t in motion.t]
+    truth = [
+        np.concatenate([idst(q0 * np.cos(omega * t), type=1), idst(-q0 * omega * np.sin(omega * t), type=1)])
+        for t in motion.t
+    ]
     return outcome_of(motion, np.stack(truth, axis=1))
 
 
-def _numpy_chain(start: np.ndarray, n: int, alpha: float, until: float) -> np.ndarray:
+def _numpy_chain(start: np.ndarray, alpha: float, until: float) -> np.ndarray:
     q, p = (half.astype(np.longdouble) for half in np.split(start, 2))
     scheme = Splitting("kahan-li-8").scheme
     steps = round(until / 0.1)
@@ -206,7 +282,12 @@ def _numpy_chain(start: np.ndarray, n: int, alpha: float, until: float) -> np.nd
         for a, b in zip(scheme.a, (*scheme.b, 0), strict=True):
             q = q + h * (np.longdouble(a.numerator) / np.longdouble(a.denominator)) * p
             r = np.diff(np.concatenate([[0], q, [0]]))
-            p = p + h * (np.longdouble(b.numerator) / np.longdouble(b.denominator)) * np.diff(r + alpha * r * r) if b else p
+            p = (
+                p
+                + h * (np.longdouble(b.numerator) / np.longdouble(b.denominator)) * np.diff(r + alpha * r * r)
+                if b
+                else p
+            )
     return np.concatenate([q, p])
 
 
@@ -224,7 +305,12 @@ def ensemble() -> Outcome:
     missed = abs(motion.y[:, :, chosen] - truth).astype(float)
     # The estimate is to bound each of them: the largest ratio tells.
     ratio = float((missed / estimate.error).max())
-    return Outcome(f"error of 50 orbits up to {missed.max():.1e}, estimated {estimate.error.max():.1e}; {motion.cpu_seconds:.1f} s", ratio, 1.0)
+    return Outcome(
+        f"error of 50 orbits up to {missed.max():.1e}, estimated {estimate.error.max():.1e}; "
+        f"{motion.cpu_seconds:.1f} s",
+        ratio,
+        1.0,
+    )
 
 
 def ensemble_by_scipy() -> Outcome:
@@ -233,6 +319,12 @@ def ensemble_by_scipy() -> Outcome:
     _, starts = _pendulums()
     some = starts[:, ::100]
     n = some.shape[1]
-    found = solve_ivp(lambda _t, s: np.concatenate([s[n:], -np.sin(s[:n])]), (0, 10), some.ravel(), method="DOP853", rtol=1e-12, atol=1e-12)
+    found = solve_ivp(
+        lambda _t, s: np.concatenate([s[n:], -np.sin(s[:n])]),
+        (0, 10),
+        some.ravel(),
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-12,
+    )
     return Outcome(f"10⁴ of them as one system: {found.nfev} evaluations", None)
-

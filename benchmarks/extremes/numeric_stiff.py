@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 from mpmath import mp, mpf
 
-from canon import Gauss, Hamiltonian, NonFiniteStateError, RK4, Splitting, coordinates, propagate
+from canon import RK4, Gauss, Hamiltonian, NonFiniteStateError, Splitting, coordinates, propagate
 from extremes.numeric_tools import Problem, by_taylor, motion_row
 from extremes.row import Row, refused
 
@@ -26,43 +26,91 @@ def rows() -> Iterator[Row]:
     for name, momentum in (("below", 2 - 2.5e-13), ("above", 2 + 2.5e-13), ("on", 2.0)):
         for kind, how in (("taylor", {}), ("split", {"method": SPLIT, "step": 0.1})):
             yield motion_row(
-                f"separatrix-{name}-{kind}", f"a pendulum with p = {momentum!r} at the bottom, {name} the separatrix, t = 0 … 60, {kind}",
-                partial(swing, 0.0, momentum, 60.0), how, others=("SciPy DOP853", "heyoka") if kind == "taylor" else (),
-            )  # fmt: skip
-    yield motion_row("upright", "a pendulum at rest at the double nearest to π, t = 0 … 60", partial(swing, float(np.pi), 0.0, 60.0), {})
+                f"separatrix-{name}-{kind}",
+                f"a pendulum with p = {momentum!r} at the bottom, {name} the separatrix, t = 0 … 60, {kind}",
+                partial(swing, 0.0, momentum, 60.0),
+                how,
+                others=("SciPy DOP853", "heyoka") if kind == "taylor" else (),
+            )
+    yield motion_row(
+        "upright",
+        "a pendulum at rest at the double nearest to π, t = 0 … 60",
+        partial(swing, float(np.pi), 0.0, 60.0),
+        {},
+    )
     for kind, how in (
-        ("taylor", {}), ("split", {"method": SPLIT, "step": 5e-6}), ("gauss", {"method": Gauss(6), "step": 2e-5}),
+        ("taylor", {}),
+        ("split", {"method": SPLIT, "step": 5e-6}),
+        ("gauss", {"method": Gauss(6), "step": 2e-5}),
         ("gauss-coarse", {"method": Gauss(2), "step": 1e-3}),
-    ):  # fmt: skip
+    ):
         yield motion_row(
-            f"stiff-spring-{kind}", f"a spring pendulum with k = 1e10 (ω = 1e5), t = 0 … 1, {kind}", stiff, how,
-            others=("SciPy DOP853", "heyoka") if kind == "taylor" else (), limit=120,
-        )  # fmt: skip
+            f"stiff-spring-{kind}",
+            f"a spring pendulum with k = 1e10 (ω = 1e5), t = 0 … 1, {kind}",
+            stiff,
+            how,
+            others=("SciPy DOP853", "heyoka") if kind == "taylor" else (),
+            limit=120,
+        )
     yield Row(
-        "step-beyond-stability", "an oscillator, Verlet with h ω = 2.01 over 10⁴ steps: the limit is 2",
-        lambda: refused(lambda: propagate(OSCILLATOR, [1.0, 0.0], (0, 20100), method=Splitting("verlet"), step=2.01).final, NonFiniteStateError),
-    )  # fmt: skip
+        "step-beyond-stability",
+        "an oscillator, Verlet with h ω = 2.01 over 10⁴ steps: the limit is 2",
+        lambda: refused(
+            lambda: (
+                propagate(OSCILLATOR, [1.0, 0.0], (0, 20100), method=Splitting("verlet"), step=2.01).final
+            ),
+            NonFiniteStateError,
+        ),
+    )
     for name, h in (("2.001", 2.001), ("1.999", 1.999), ("1.5", 1.5)):
         yield motion_row(
-            f"step-{name}", f"an oscillator, Verlet with h ω = {name} over 200 steps (closed form)",
-            partial(oscillator, 200 * h), {"method": Splitting("verlet"), "step": h}, others=(),
-        )  # fmt: skip
-    yield motion_row("rk4-unstable", "an oscillator, RK4 with h ω = 2.9 (limit 2.83), 60 steps", partial(oscillator, 174.0),
-                     {"method": RK4(), "step": 2.9}, others=())  # fmt: skip
+            f"step-{name}",
+            f"an oscillator, Verlet with h ω = {name} over 200 steps (closed form)",
+            partial(oscillator, 200 * h),
+            {"method": Splitting("verlet"), "step": h},
+            others=(),
+        )
     yield motion_row(
-        "resonant-step", "Hénon and Heiles, E = 1/12, Verlet with h ω = 2π/3, a third-order resonance of the step, 200 steps",
-        henon, {"method": Splitting("verlet"), "step": 2 * float(np.pi) / 3}, others=(),
-    )  # fmt: skip
+        "rk4-unstable",
+        "an oscillator, RK4 with h ω = 2.9 (limit 2.83), 60 steps",
+        partial(oscillator, 174.0),
+        {"method": RK4(), "step": 2.9},
+        others=(),
+    )
+    yield motion_row(
+        "resonant-step",
+        "Hénon and Heiles, E = 1/12, Verlet with h ω = 2π/3, a third-order resonance of the step, 200 steps",
+        henon,
+        {"method": Splitting("verlet"), "step": 2 * float(np.pi) / 3},
+        others=(),
+    )
     for momentum in (0.0, 1e-3, 1e-8):
         for kind, how in (("taylor", {}), ("gauss", {"method": Gauss(6), "step": 0.01})):
             yield motion_row(
-                f"pole-{momentum:g}-{kind}", f"a spherical pendulum in θ, φ with p_φ = {momentum:g}: past the pole, {kind} "
-                "(truth in Taylor, 40 digits)", partial(sphere, momentum), how,
-                others=("SciPy DOP853", "heyoka") if kind == "taylor" else (), limit=90,
-            )  # fmt: skip
-    yield Row("pole-start", "a spherical pendulum that starts at the pole, sin θ = 0", lambda: refused(
-        lambda: propagate(sphere(0.0).hamiltonian, [0.0, 0.0, 1.0, 0.0], (0, 1)).final, ValueError, holds="not finite"))  # fmt: skip
-    yield motion_row("polar-kepler", "Kepler's motion in r, φ with L = 1e-4 from r = 1: turning at r = 5e-9", polar, {}, limit=90)
+                f"pole-{momentum:g}-{kind}",
+                f"a spherical pendulum in θ, φ with p_φ = {momentum:g}: past the pole, {kind} "
+                "(truth in Taylor, 40 digits)",
+                partial(sphere, momentum),
+                how,
+                others=("SciPy DOP853", "heyoka") if kind == "taylor" else (),
+                limit=90,
+            )
+    yield Row(
+        "pole-start",
+        "a spherical pendulum that starts at the pole, sin θ = 0",
+        lambda: refused(
+            lambda: propagate(sphere(0.0).hamiltonian, [0.0, 0.0, 1.0, 0.0], (0, 1)).final,
+            ValueError,
+            holds="not finite",
+        ),
+    )
+    yield motion_row(
+        "polar-kepler",
+        "Kepler's motion in r, φ with L = 1e-4 from r = 1: turning at r = 5e-9",
+        polar,
+        {},
+        limit=90,
+    )
 
 
 OSCILLATOR = Hamiltonian(x.momentum**2 / 2 + x**2 / 2, [x], [x.momentum])
@@ -98,7 +146,9 @@ def henon() -> Problem:
 
 
 def sphere(momentum: float) -> Problem:
-    H = Hamiltonian(x.momentum**2 / 2 + y.momentum**2 / (2 * sp.sin(x) ** 2) - sp.cos(x), [x, y], [x.momentum, y.momentum])
+    H = Hamiltonian(
+        x.momentum**2 / 2 + y.momentum**2 / (2 * sp.sin(x) ** 2) - sp.cos(x), [x, y], [x.momentum, y.momentum]
+    )
     start = (0.5, 0.0, 0.0, momentum)
     return Problem(H, start, (0.0, 20.0), by_taylor(H, start, 40))
 

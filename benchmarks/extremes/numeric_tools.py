@@ -89,7 +89,12 @@ def outcome_of(motion: Any, truth: np.ndarray, warning: str = "") -> Outcome:
     error = missed(motion.y, truth)
     words = str(estimate).split("; by ")[0]
     said = shown((f"warning: {warning}; " if warning else "") + words, 320)
-    return Outcome(said, float(error[last]), float(stated[last]), refused=last < len(means) - 1 and error[last] <= stated[last])
+    return Outcome(
+        said,
+        float(error[last]),
+        float(stated[last]),
+        refused=last < len(means) - 1 and error[last] <= stated[last],
+    )
 
 
 def motion_row(
@@ -146,7 +151,10 @@ def dop853(given: Problem, samples: int, tolerance: float = 1e-12) -> Outcome:
         y0 = [float(v) for v in given.y0]
         found = solve_ivp(f, given.span, y0, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=t)
     if not found.success:
-        return Outcome(shown(f"stops at t = {found.t[-1] if len(found.t) else given.span[0]:g}: {found.message}"), refused=True)
+        return Outcome(
+            shown(f"stops at t = {found.t[-1] if len(found.t) else given.span[0]:g}: {found.message}"),
+            refused=True,
+        )
     return plain(found.y, given.truth(t), f"{found.nfev} evaluations, success")
 
 
@@ -156,7 +164,10 @@ def heyoka(given: Problem, samples: int) -> Outcome:
 
     state, rates = gradients(given)
     names = {s: hy.expression(f"v{i}") for i, s in enumerate(state)}
-    pairs = [(names[s], hy.from_sympy(sp.sympify(r), {**names, given.hamiltonian.t: hy.time})) for s, r in zip(state, rates, strict=True)]
+    pairs = [
+        (names[s], hy.from_sympy(sp.sympify(r), {**names, given.hamiltonian.t: hy.time}))
+        for s, r in zip(state, rates, strict=True)
+    ]
     integrator = hy.taylor_adaptive(pairs, [float(v) for v in given.y0], time=float(given.span[0]))
     t = np.linspace(*given.span, samples + 1)
     outcome, _, _, steps, _, found = integrator.propagate_grid(t)
