@@ -48,7 +48,9 @@ def test_wider_exponents_hold_them(length):
 def test_angles_whose_sines_double_double_does_not_have():
     pendulum = Hamiltonian(x.momentum**2 / 2 - sp.cos(x), [x], [x.momentum])
     with pytest.raises(ValueError, match="double-double has sines up to"):
-        propagate(pendulum, [1e16, 0], (0, 1), method=Splitting("verlet"), step=0.1, precision="double-double")
+        propagate(
+            pendulum, [1e16, 0], (0, 1), method=Splitting("verlet"), step=0.1, precision="double-double"
+        )
 
 
 def test_a_time_scale_whose_twentieth_power_is_no_double():
