@@ -10,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import ctypes.util
 import functools
+import os
 import sys
 import threading
 import time
@@ -24,6 +25,12 @@ if TYPE_CHECKING:
 __all__ = ["MachineCode", "compiled", "simd_bytes"]
 
 _COMPILING = threading.Lock()
+if hasattr(
+    os, "register_at_fork"
+):  # a child of a fork in the middle of a compilation would wait for it for ever
+    os.register_at_fork(
+        before=_COMPILING.acquire, after_in_parent=_COMPILING.release, after_in_child=_COMPILING.release
+    )
 
 _LARGE = 200_000
 """Above this size of a module the search for parallel scalars (SLP) takes longer than it saves."""

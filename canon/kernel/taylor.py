@@ -58,6 +58,11 @@ def heyoka_number(precision: str | int) -> Callable[[Fraction], Any]:
     if precision == "extended":
         return LONGDOUBLE.number
     if precision == "quad":
+        if not hasattr(hy, "real128"):
+            raise ValueError(
+                f"heyoka {hy.__version__} was built without quad precision here; install a newer one, or take 34 "
+                "decimal digits"
+            )
         return lambda value: hy.real128(_decimal(value, 40))
     if not isinstance(precision, int) or not 16 <= precision <= 1000:
         raise ValueError(
