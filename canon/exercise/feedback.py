@@ -18,9 +18,9 @@ from canon.exercise.convention import convention, variable_valence
 from canon.exercise.derived_part import new_hamiltonian_part, second_lagrangian_part, time_term
 from canon.exercise.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.question import Part, Same, SameEquations, Stated
-from canon.exercise.rejudged import another_gauge, another_reading, one_change, only_where
+from canon.exercise.rejudged import another_gauge, another_reading, one_change, only_where, right_where
 from canon.exercise.repair import Screen, repairs
-from canon.exercise.tree import replaced
+from canon.exercise.tree import replaced, symbols_of
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.substitution import substitute
 from canon.proof.vanish import vanishes
@@ -29,7 +29,7 @@ from canon.proof.verdict import Undecided
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from sympy import Expr
+    from sympy import Expr, Symbol
 
     from canon.exercise.judge import Finding
     from canon.exercise.reading import Reading
@@ -119,6 +119,7 @@ def _diagnoses(finding: Finding, deadline: float) -> Iterator[Diagnosis]:
     yield from right_to_an_order(parts, domain, deadline)
     yield from variable_valence(reading)
     yield from another_gauge(reading, deadline)
+    yield from right_where(reading, deadline)
     if two_answers:
         yield from _part_by_part(reading, (second_lagrangian_part(reading),), domain, deadline, [()])
 
@@ -163,17 +164,32 @@ def corrected(finding: Finding) -> str:
 
 def _on_the_motion(question: SameEquations) -> tuple[Part, ...]:
     """Return each equation as it was written, as what should vanish with the right accelerations put in."""
-    if len(question.right) != len(question.unknowns):
-        return ()
-    try:
-        motion = solved(question.right, question.unknowns, question.domain)
-    except (SingularMatrixError, Undecided):
+    motion = _motion(question, question.unknowns) or _motion(question, _velocities(question))
+    if motion is None:
         return ()
     through = {name: substitute(value, motion) for name, value in question.through.items()} | motion
     return tuple(
         Part(f"equation {i + 1}", e, through=through, key=f"claim[{i}]")
         for i, e in enumerate(question.written)
     )
+
+
+def _motion(question: SameEquations, unknowns: Sequence[Symbol]) -> dict[Symbol, Expr] | None:
+    """Return what the right equations determine, None where it is not all the unknowns."""
+    if len(question.right) != len(unknowns):
+        return None
+    try:
+        return solved(question.right, unknowns, question.domain)
+    except (SingularMatrixError, Undecided):
+        return None
+
+
+def _velocities(question: SameEquations) -> list[Symbol]:
+    """Return the velocities that equations without accelerations bind."""
+    if any(f.has(*question.unknowns) for f in question.right):
+        return []
+    names = {u.name.replace("_ddot", "_dot") for u in question.unknowns}
+    return [s for s in symbols_of(*question.right) if s.name in names]
 
 
 def _hints(question: Same | SameEquations) -> list[tuple[Expr, ...]]:

@@ -58,7 +58,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
     lagrangian = lagrangian_of(reading)
     L, velocities = lagrangian.L, tuple(velocity(c) for c in ignorable)
     absent = tuple(Part(f"∂L/∂{c} of the ignorable coordinate {c}", L.diff(c)) for c in ignorable)
-    yield Same(absent, reading.domain)
+    yield Same(absent, reading.domain, said=_not_ignorable)
     yield Regular(
         sp.Matrix([[L.diff(a, b) for b in velocities] for a in velocities]),
         "the Hessian in the ignorable velocities",
@@ -91,6 +91,10 @@ def routhian(reading: Reading) -> Iterator[Question]:
             written,
             through,
         )
+
+
+def _not_ignorable(part: Part) -> str:
+    return f"{part.name.rpartition(' ')[2]} is not ignorable: L depends on it"
 
 
 def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:

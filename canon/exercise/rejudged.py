@@ -13,7 +13,7 @@ import sympy as sp
 from canon.exercise.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.screening import screening
-from canon.exercise.tree import replaced
+from canon.exercise.tree import arguments, replaced
 from canon.exercise.variants import Change, common_slips, slipped, times, variants
 from canon.expression.symbol import velocity
 
@@ -22,9 +22,11 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-__all__ = ["another_gauge", "another_reading", "one_change", "only_where"]
+__all__ = ["another_gauge", "another_reading", "one_change", "only_where", "right_where"]
 
 TRIAL_SECONDS = 0.25
+MOST_DIVIDING = 16
+_BOUNDS = (sp.exp(-1), 1, -1, 3 * sp.pi / 2, sp.pi, sp.pi / 2, -sp.pi / 2, -sp.pi)
 _ANSWERS: Mapping[str, tuple[str, ...]] = {
     "gibbs-appell": ("S",),
     "hamilton-equations": ("solution",),
@@ -101,12 +103,45 @@ def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
     variables = {
         name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
     }
+    if reading.claim.kind == "equality-only" and len(assumed) < 2:
+        return  # at one point two functions may meet by chance
     for name in [n for n in assumed if n not in variables and n in reading.scope.names][:8]:
         if time.monotonic() > deadline:
             return
         trial = replace(reading, at=MappingProxyType({reading.scope.names[name]: sp.S.One}))
         if _could_hold(trial) and _holds(trial, deadline):
             yield Diagnosis(f"right only for {name} = 1", trial)
+
+
+def right_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+    """Yield a condition under which the claim does hold: the sign of a denominator, of a difference, a bound."""
+    expressions = [f for _, f in _answers(reading)]
+    for g in _dividing(expressions):
+        for sign in (">", "<"):
+            if time.monotonic() > deadline:
+                return
+            domain = reading.claim.keys.get("domain", [])
+            conditions = [*(domain if isinstance(domain, list) else [domain]), f"{g} {sign} 0"]
+            trial = _read_anew(reading, reading.claim.kind, {**reading.claim.keys, "domain": conditions})
+            if _could_hold(trial) and _holds(trial, deadline):
+                yield Diagnosis(f"right where {g} {sign} 0, but not on the whole domain", trial)
+
+
+def _dividing(expressions: Sequence[Expr]) -> list[Expr]:
+    """Return what may divide the domain into a part where a claim holds and one where it does not."""
+    found: dict[Expr, None] = {}
+    for f in expressions:
+        for node in sp.preorder_traversal(f):
+            if isinstance(node, sp.Pow) and node.exp.is_negative and node.base.is_Add:
+                found[node.base] = None
+            elif isinstance(node, sp.Abs | sp.sign):
+                found[arguments(node)[0]] = None
+            elif isinstance(node, sp.Max | sp.Min) and len(arguments(node)) == 2:
+                found[arguments(node)[0] - arguments(node)[1]] = None
+    symbols = sorted({s for f in expressions for s in f.free_symbols}, key=str)
+    if len(symbols) <= 2:
+        found |= {s - bound: None for s in symbols for bound in _BOUNDS}
+    return list(found)[:MOST_DIVIDING]
 
 
 def one_change(

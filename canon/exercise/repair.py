@@ -22,7 +22,7 @@ from sympy.core.function import AppliedUndef
 
 from canon.exercise.monomial import Monomials
 from canon.exercise.tree import symbols_of
-from canon.exercise.variants import Change, times, variants
+from canon.exercise.variants import Change, of_one_coefficient, times, variants
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.vanish import vanishes
 
@@ -179,6 +179,7 @@ def _as_sums(expression: Expr) -> Iterator[Sequence[Expr]]:
     """Yield the terms as written, then those of the expanded expression."""
     written = sp.Add.make_args(expression)
     yield written
+    yield list(of_one_coefficient(expression))
     if sp.count_ops(expression) < 300:
         expanded = sp.Add.make_args(sp.expand(expression))
         if set(expanded) != set(written):

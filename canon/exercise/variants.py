@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
-__all__ = ["Change", "common_slips", "slipped", "times", "variants"]
+__all__ = ["Change", "common_slips", "of_one_coefficient", "slipped", "times", "variants"]
 
 _FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
 _FAMILIES = (
@@ -25,6 +25,7 @@ _FAMILIES = (
 _TWINS = {f: tuple(g for g in family if g is not f) for family in _FAMILIES for f in family}
 MOST_FUNCTIONS = 6
 MOST_SWAPPED = 6
+MOST_ALIKE = 6
 _SHIFTS = (sp.S.One, sp.S.NegativeOne)
 _CONSTANTS = (sp.pi, -sp.pi, sp.pi / 2, -sp.pi / 2)
 
@@ -74,7 +75,7 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     def multiplied_by_functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, functions)
 
-    first = (_signs, _functions, _factors, _exponents, exchanged, _by_another, multiplied)
+    first = (_signs, _functions, _factors, _together, _exponents, exchanged, _by_another, multiplied)
     for edits in (*first, _dropped, _swapped, _shifted, multiplied_by_functions):
         yield from _one_place(expression, edits)
     if not expression.is_Add:
@@ -166,6 +167,33 @@ def _factors(node: Expr) -> Iterator[tuple[Expr, Change]]:
         for term in arguments(node):
             for factor in _FACTORS:
                 yield node + (factor - 1) * term, Change("the term {} should be {} that", term, times(factor))
+
+
+def _together(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """The terms that share a coefficient, which were one bracket: SymPy distributes numbers over sums."""
+    for terms in of_one_coefficient(node):
+        yield node - 2 * terms, Change("the sign of {} is wrong", terms)
+        for factor in _FACTORS:
+            yield node + (factor - 1) * terms, Change("the term {} should be {} that", terms, times(factor))
+
+
+def of_one_coefficient(f: Expr) -> Iterator[Expr]:
+    """Yield the parts of a sum whose terms have the same number in front, where there are several.
+
+    Examples
+    --------
+    >>> x, y, z = sp.symbols("x y z")
+    >>> list(of_one_coefficient((x + y) / 2 - z))
+    [x/2 + y/2]
+    """
+    groups: dict[Expr, list[Expr]] = {}
+    terms = arguments(f) if f.is_Add else ()
+    for term in terms:
+        groups.setdefault(term.as_coeff_Mul()[0], []).append(term)
+    yield from (sp.Add(*group) for group in groups.values() if 2 <= len(group) < len(terms))
+    for group in groups.values():
+        if 2 < len(group) <= MOST_ALIKE:
+            yield from (a + b for a, b in combinations(group, 2))
 
 
 def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:

@@ -26,7 +26,16 @@ if TYPE_CHECKING:
     from sympy import Basic, Expr
     from sympy.core.relational import Relational
 
-__all__ = ["EVERYWHERE", "Domain", "as_domain", "declared_complex", "linear", "parts_of", "said_of"]
+__all__ = [
+    "EVERYWHERE",
+    "Domain",
+    "as_domain",
+    "declared_complex",
+    "isolated",
+    "linear",
+    "parts_of",
+    "said_of",
+]
 
 
 def _declared(named: Basic) -> Mapping[str, bool]:
@@ -76,6 +85,33 @@ def linear(condition: Relational) -> bool:
     return not any(gap.diff(s).free_symbols for s in free_symbols(gap))
 
 
+def isolated(condition: Boolean) -> Boolean:
+    """Write a linear bound on one symbol with the symbol alone on the left, others as they are.
+
+    Examples
+    --------
+    >>> from sympy import pi, symbols
+    >>> x, y = symbols("x y", real=True)
+    >>> isolated(pi - 2*x >= 0), isolated(x - y > 0)
+    (x <= pi/2, x - y > 0)
+    """
+    if not isinstance(condition, Lt | Le | Gt | Ge):
+        return condition
+    gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
+    symbols = free_symbols(gap)
+    if len(symbols) != 1 or condition.lhs in symbols:
+        return condition
+    (symbol,) = symbols
+    slope = gap.diff(symbol)
+    if slope.free_symbols or not (slope.is_positive or slope.is_negative):
+        return condition
+    relation = type(condition) if slope.is_positive else _REVERSED[type(condition)]
+    return cast("Boolean", relation(symbol, -gap.subs(symbol, 0) / slope))
+
+
+_REVERSED = {Lt: Gt, Le: Ge, Gt: Lt, Ge: Le}
+
+
 @dataclass(frozen=True)
 class Domain:
     """Conditions that hold beside the symbols' own assumptions.
@@ -110,6 +146,7 @@ class Domain:
                 raise TypeError(
                     f"a condition should be one of SymPy's, such as x > 0 or Ne(x, 0), not {condition!r}"
                 )
+        object.__setattr__(self, "conditions", tuple(map(isolated, self.conditions)))
         for name, ends in box.items():
             if not isinstance(name, Symbol):
                 raise TypeError(
