@@ -31,6 +31,7 @@ def test_lines_are_json_with_the_choice_first(capsys):
     assert lines[0]["span"] == 500.0
 
 
+@pytest.mark.slow
 def test_what_nothing_keeps_is_an_exit_status(capsys):
     arguments = ["choose", "henon-heiles", "--accuracy", "1e-17", "--periods", "300", "--method", "rk4"]
     assert main(arguments) == 1

@@ -167,6 +167,7 @@ def test_shares_that_make_no_sense(share, capsys):
     assert "should be K/N, such as 3/16" in said(capsys)[1]
 
 
+@pytest.mark.slow
 def test_two_worker_processes(small, capsys):
     code = "import sys; from canon.cli import main; sys.exit(main(sys.argv[1:]))"
     command = [sys.executable, "-c", code, "study", "run", str(small), "--jobs", "2"]

@@ -61,6 +61,7 @@ def kill_after(program, lines, seconds=0.0):
     return seen == lines and status == -signal.SIGKILL
 
 
+@pytest.mark.slow
 def test_killed_inside_a_run_of_every_method_it_ends_the_same(tmp_path, uninterrupted):
     store = Store(tmp_path / "killed.sqlite")
     draw = random.Random(1)
@@ -106,6 +107,7 @@ def test_progress_tells_how_much_of_a_run_is_done(tmp_path):
     assert [status.begun for status in seen] == ([1] * 15 + [0]) * 2
 
 
+@pytest.mark.slow
 def test_two_processes_on_one_study(tmp_path, uninterrupted):
     path = tmp_path / "shared.sqlite"
     both = [begin(path) for _ in range(2)]
@@ -133,6 +135,7 @@ except StoreError as error:
 """
 
 
+@pytest.mark.slow
 def test_a_disk_that_fills_up_in_mid_study(tmp_path, uninterrupted):
     """A limit on the size of files stands in for a full disk."""
     path = tmp_path / "full.sqlite"

@@ -65,6 +65,7 @@ def test_the_residual_of_a_constraint_is_an_observable():
             [1.0, 0.0, 0.0, 1.0],
             methods=[Taylor()],
             until=200.0,
+            samples=4096,
             parameters={"k": stiffness},
             observables={"residual": residual},
         ).rows[0]

@@ -72,6 +72,7 @@ def test_what_is_finished_is_not_run_again(uninterrupted, monkeypatch, tmp_path)
         run_study(Study((replace(SHORT.cases[0], samples=600),)), tmp_path / "new.sqlite")
 
 
+@pytest.mark.slow
 def test_a_process_pool_gives_the_same_and_survives_a_killed_worker(tmp_path, uninterrupted):
     store = Store(tmp_path / "pool.sqlite")
     spawn = multiprocessing.get_context("spawn")

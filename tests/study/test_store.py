@@ -65,6 +65,7 @@ for i in range(40):
 """
 
 
+@pytest.mark.slow
 def test_two_processes_on_one_new_file(tmp_path):
     path = tmp_path / "shared.sqlite"
     writers = [subprocess.Popen([sys.executable, "-c", WRITER, str(path), name]) for name in "ab"]
