@@ -11,7 +11,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.manifold import Branch, EmptyDomainError, inhabited, on_manifold
-from canon.exercise.question import Deadline, Part, Same, decide
+from canon.exercise.question import KINKED, Deadline, Part, Same, decide
 from canon.expression.symbol import time_derivative, velocity
 from canon.mechanics.frobenius import Pfaffian, curl
 from canon.mechanics.linear import eliminate
@@ -23,10 +23,7 @@ from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-__all__ = ["KINKED", "ConstraintSystem"]
-
-KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside)
-"""Functions that are made of pieces: one that is not zero at one point may vanish on a whole piece."""
+__all__ = ["ConstraintSystem"]
 
 
 @dataclass(frozen=True)

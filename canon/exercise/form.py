@@ -148,8 +148,10 @@ def _bracket(value: Any) -> bool:
 def _body(value: Any) -> bool:
     if not _table(value) or not set(value) <= {"m", "r", "I", "angle", "omega"}:
         return False
-    point, rotor = {"m", "r"} <= set(value), "I" in value and bool({"angle", "omega"} & set(value))
-    return (point or rotor) and all(_texts(item) for item in value.values())
+    if ("m" in value) != ("r" in value) or {"angle", "omega"} <= set(value):
+        return False
+    point, rotor = "m" in value, bool({"angle", "omega"} & set(value))
+    return (point or rotor) and rotor == ("I" in value) and all(_texts(item) for item in value.values())
 
 
 def _force(value: Any) -> bool:

@@ -8,13 +8,14 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.question import Differ, Part, Question, Same
+from canon.exercise.question import KINKED, Differ, Part, Question, Same
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.lagrangian import Lagrangian
+from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from canon.exercise.reading import Reading
 
@@ -30,12 +31,21 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
         for i, I in enumerate(reading.expressions(key)):
             if I.has(*(s for s in _accelerations(reading) if s not in rates)):
                 reading.fault(f"{key}[{i}]", "should depend on the state and the time only")
+            _check_continuous(I, tuple(rates))
             rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
             if key == "conserved":
                 yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
             else:
                 why = f"{I} is conserved: its rate vanishes on every motion"
                 yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
+
+
+def _check_continuous(I: Expr, state: Sequence[Symbol]) -> None:
+    """Refuse quantities such as |x|/x, whose rate vanishes where it exists and which jump all the same."""
+    kinked = [part for part in I.atoms(*KINKED) if part.has(*state)]
+    jumps = any(isinstance(part, sp.sign | sp.Piecewise | sp.Heaviside) for part in kinked)
+    if jumps or (kinked and any(e.exp.is_negative and e.has(*state) for e in I.atoms(sp.Pow))):
+        raise Undecided(f"{I} may jump, which its rate does not show")
 
 
 def motion_of(reading: Reading) -> dict[Symbol, Expr]:

@@ -17,7 +17,7 @@ from sympy.core.function import AppliedUndef
 from canon.exercise.judge_canonical import canonical_parts, rules_of
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.question import Part, Question, Regular, Same, Stated
-from canon.expression.symbol import velocity
+from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.bracket import lagrange_bracket, poisson_bracket
 from canon.mechanics.substitution import exchanged
 from canon.proof.verdict import Status, Verdict
@@ -49,6 +49,7 @@ def invariance(reading: Reading) -> Iterator[Question]:
     for key in ("p",) if reading.has("F") else ("p", "P"):
         if not reading.has(key):
             reading.fault(key, f"missing; a map of phase space is needed for {subject}")
+    _check_free_of_rates(reading)
     if reading.has("F"):
         yield from _generated(reading)
         return
@@ -64,6 +65,15 @@ def invariance(reading: Reading) -> Iterator[Question]:
         yield Same(_lagrange_parts(Q, P, q, p), reading.domain, _no_answer, is_instead)
     else:
         yield from _hamiltonian_form(reading, Q, P, q, p)
+
+
+def _check_free_of_rates(reading: Reading) -> None:
+    """Refuse maps of phase space that hold velocities: these are no variables of it."""
+    q = (*reading.symbols("q"), *(reading.symbols("new_q") if reading.has("F") else ()))
+    rates = [f(x) for x in q for f in (velocity, acceleration)]
+    for key in ("F",) if reading.has("F") else ("Q", "P"):
+        if reading.has(key) and any(f.has(*rates) for f in reading.expressions(key)):
+            reading.fault(key, "a map of phase space depends on coordinates, momenta and time only")
 
 
 def _hamiltonian_form(
@@ -142,7 +152,7 @@ def _point_transformation(reading: Reading) -> Question:
     if not reading.has("Q"):
         reading.fault("Q", "missing; give the new coordinates as functions of the old ones")
     q, Q = reading.symbols("q"), reading.expressions("Q", like="q")
-    if any(f.has(*(velocity(x) for x in q)) for f in Q):
+    if any(f.has(*(rate(x) for x in q for rate in (velocity, acceleration))) for f in Q):
         why = "new coordinates that hold velocities are no point transformation: the equations get third derivatives"
         return Verdict(Status.FAILS, "a point transformation", "structure", feedback=why)
     jacobian = sp.Matrix([[f.diff(x) for x in q] for f in Q])

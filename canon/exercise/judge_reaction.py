@@ -16,13 +16,14 @@ from canon.exercise.affine import solved
 from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.judge_constrained import is_one_of, jets_of, with_jets
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.manifold import Branch, EmptyDomainError, on_manifold
+from canon.exercise.manifold import Branch, EmptyDomainError, check_whole, inhabited, on_manifold
 from canon.exercise.question import Deadline, Part, Question, Same, Stated, decide
 from canon.exercise.tree import replaced, symbols_of
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import substitute
 from canon.proof.generic import proved_sign
+from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -98,8 +99,10 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
     for motion in _motions(reading, (contact, *others), multipliers, (leaves,)):
         force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
         claimed = motion.seen(leaves)
-        if claimed == 0:
+        if claimed == 0 or vanishes(claimed, motion.branch.domain, budget=1.0).holds:
             reading.fault("leaves", "holds all along the contact")
+        if claimed.is_nonzero or proved_sign(claimed, motion.branch.domain) in ("+", "-"):
+            reading.fault("leaves", "holds nowhere along the contact")
         verdict = _same_zeros(force, claimed, motion.branch, reading.symbols("q"), deadline)
         yield Stated(verdict, lambda force=force: f"the reaction {shown_short(sp.factor_terms(force))} = 0")
 
@@ -143,7 +146,8 @@ def _motions(
     held_at, integrals = (tuple(replaced(f, jets) for f in some) for some in (held_at, integrals))
     directions = directions.applyfunc(lambda f: replaced(f, jets))
     domain = with_jets(reading.domain, jets)
-    for branch in _with_integrals(on_manifold(held_at, domain, (t,), v), integrals, v, t):
+    check_whole([replaced(f, jets) for f in constraints], v, domain)
+    for branch in inhabited(_with_integrals(on_manifold(held_at, domain, (t,), v), integrals, v, t)):
         here = [substitute(replaced(e, jets), branch.values) for e in system]
         motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions, jets)
         _check_constant(reading, rates, motion)

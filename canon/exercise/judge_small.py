@@ -6,17 +6,19 @@ small quantities, all of them are of one order. The two sides must be quotients 
 
 from __future__ import annotations
 
+from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judge_energy import shown_short
+from canon.exercise.manifold import transported
 from canon.exercise.question import Deadline, Part, Question, Same, SameEquations, Stated, decide
-from canon.exercise.tree import arguments
+from canon.exercise.tree import arguments, symbols_of
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.substitution import substitute
+from canon.mechanics.substitution import exchanged, substitute
 from canon.proof.domain import Domain
 from canon.proof.generic import proved_sign
 from canon.proof.vanish import vanishes
@@ -84,7 +86,10 @@ def linearisation(reading: Reading) -> Iterator[Question]:
         reading.fault("equilibrium", "should be given by parameters only")
     forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
     equations = Lagrangian(reading.expression("L"), q, reading.time, forces).equations
-    domain = Domain(tuple(c for c in reading.domain.conditions if not c.has(*q)), reading.domain.box)
+    moving = tuple(r(x) for x in q for r in (velocity, acceleration))
+    given = Domain(tuple(c for c in reading.domain.conditions if not c.has(*moving)), reading.domain.box)
+    domain = transported(given, place)  # the place satisfies what is assumed of the coordinates
+    _check_real(place, domain)
     rates = [r(x) for x in q for r in (velocity, acceleration)]
     still = {**place, **dict.fromkeys(rates, sp.S.Zero)}
     parts = tuple(
@@ -104,6 +109,20 @@ def linearisation(reading: Reading) -> Iterator[Question]:
     written = reading.equations("claim")
     unknowns = tuple(acceleration(x) for x in q)
     yield SameEquations(written, linear, unknowns, domain, lambda: tuple(map(shown_short, linear)), written)
+    bends = tuple(
+        Part(f"equation {i} beyond first order", e.diff(a, b))
+        for i, e in enumerate(written, 1)
+        for a, b in combinations_with_replacement((*q, *rates), 2)
+    )
+    yield Same(bends, domain, None, lambda part: f"{part.name}: a claimed equation is not linear")
+
+
+def _check_real(place: Mapping[Symbol, Expr], domain: Domain) -> None:
+    """Refuse a place such as arccos 2, which is an equilibrium of nothing that is real."""
+    values = [value for value in place.values() if not value.is_real]
+    points = list(domain.points(symbols_of(*values), 12)) if values else []
+    if values and all(any(abs(sp.im(sp.N(exchanged(f, p), 30))) > 1e-9 for f in values) for p in points):
+        raise Undecided("no values of the parameters were found for which the place is real")
 
 
 def _linear(

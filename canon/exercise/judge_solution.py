@@ -14,10 +14,13 @@ from canon.exercise.judge_conserved import motion_of
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.judge_invariance import is_instead
 from canon.exercise.manifold import transported
-from canon.exercise.question import Part, Question, Regular, Same, fails
+from canon.exercise.question import KINKED, Part, Question, Regular, Same, fails
+from canon.exercise.tree import arguments
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
+from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
+from canon.proof.generic import proved_sign
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -46,6 +49,7 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
             reading.fault(f"solution.{x}", f"should depend on {t}, parameters and constants only")
     motion: dict[Symbol, Expr] = {}
     for x, value in table.items():
+        _check_smooth(value, t, reading.domain)
         motion[x] = value
         if _second_order(reading):
             motion |= {velocity(x): value.diff(t), acceleration(x): value.diff(t, 2)}
@@ -56,6 +60,32 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
     if reading.has("constants"):
         values = [motion[x] for x in _ordered(state)]
         yield from _general(reading, values, domain)
+
+
+def _check_smooth(value: Expr, t: Symbol, domain: Domain) -> None:
+    """Refuse motions with a kink, such as √(t² − 2t + 1): beside it they may satisfy equations, at it they do not."""
+    for part in sp.preorder_traversal(value):
+        if not isinstance(part, Expr) or not part.has(t):
+            continue
+        kink = isinstance(part, KINKED)
+        if isinstance(part, sp.Abs):
+            kink = proved_sign(arguments(part)[0], domain) not in ("+", "-")
+        elif isinstance(part, sp.Pow) and part.exp.is_integer is not True and part.base.has(t):
+            kink = _touches_zero(part.base, t, domain)
+        if kink:
+            raise Undecided(f"{part} may have a kink, where no motion satisfies equations; narrow the domain")
+
+
+def _touches_zero(base: Expr, t: Symbol, domain: Domain) -> bool:
+    """Whether a radicand may come down to zero and rise again, as 1 − cos t does."""
+    sign = proved_sign(base, domain)
+    if sign == "+":
+        return False
+    try:
+        factors = sp.Poly(base, *base.free_symbols, domain="QQ").factor_list()[1]
+    except sp.PolynomialError:
+        return sign != ""
+    return any(count > 1 and factor.has(t) for factor, count in factors)
 
 
 def _of_rates(reading: Reading) -> Iterator[Question]:
@@ -169,7 +199,12 @@ def _initial_rates(reading: Reading, q: Sequence[Symbol], rates: Mapping[Symbol,
 def _general(reading: Reading, values: Sequence[Expr], domain: Domain) -> Iterator[Question]:
     """As many constants as the state has variables, and the state depends regularly on them."""
     constants = reading.symbols("constants")
-    if reading.has("equations"):
+    foreign = [c for c in constants if any(f.has(c) for f in _given(reading))]
+    if foreign:
+        why = f"{foreign[0]} stands in the equations; it is no constant of integration"
+        yield fails("the constants of integration", why)
+        return
+    if _second_order(reading):
         values = _of_the_order(reading, values)
     if len(constants) != len(values):
         why = f"the general solution has {len(values)} constants, not {len(constants)}"
@@ -184,9 +219,24 @@ def _general(reading: Reading, values: Sequence[Expr], domain: Domain) -> Iterat
 
 
 def _of_the_order(reading: Reading, values: Sequence[Expr]) -> Sequence[Expr]:
-    """Return the part of the state that given equations leave free: positions only, where they are of first order."""
-    q, equations = reading.symbols("q"), reading.equations("equations")
+    """Return the part of the state that the equations leave free: positions only, where they are of first order."""
+    q, equations = reading.symbols("q"), [e for _, e in _equations(reading, {})]
     second = [x for x in q if any(e.has(acceleration(x)) for e in equations)]
-    if len(equations) != len(q) or second not in ([], list(q)):
+    highest = [(acceleration if second else velocity)(x) for x in q]
+    slopes = sp.Matrix([[e.diff(u) for u in highest] for e in equations])
+    square = len(equations) == len(q) and second in ([], list(q)) and not slopes.has(*highest)
+    if not square or not is_regular(slopes, reading.domain).holds:
         raise Undecided("how many constants the general solution of these equations has was not decided")
     return values if second else values[: len(q)]
+
+
+def _given(reading: Reading) -> Iterator[Expr]:
+    """Yield what the equations of motion are made of."""
+    for key in ("L", "H"):
+        if reading.has(key):
+            yield reading.expression(key)
+    for key in ("X", "Qnc"):
+        if reading.has(key):
+            yield from reading.expressions(key)
+    if reading.has("equations"):
+        yield from reading.equations("equations")

@@ -9,7 +9,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judge_invariance import is_instead
 from canon.exercise.question import Part, Question, Same, fails
-from canon.expression.symbol import Coordinate, time_derivative, velocity
+from canon.expression.symbol import Coordinate, acceleration, time_derivative, velocity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -22,6 +22,8 @@ __all__ = ["differential", "variation"]
 def variation(reading: Reading) -> Iterator[Question]:
     """δL + Σ Q δq = d(boundary)/dt + integrand, the integrand free of δq̇."""
     q, t, L = reading.symbols("q"), reading.time, reading.expression("L")
+    if L.has(*(acceleration(x) for x in q)):
+        reading.fault("L", "a Lagrangian depends on coordinates, velocities and time only")
     forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
     deltas = tuple(Coordinate(f"delta_{x}", real=True) for x in q)
     extended = reading.with_names({d.name: d for d in deltas})

@@ -144,7 +144,7 @@ def check_whole(constraints: Sequence[Expr], velocities: Sequence[Symbol], domai
     >>> check_whole([y * (x.dot - y.dot)], [x.dot, y.dot], Domain())
     Traceback (most recent call last):
         ...
-    canon.proof.verdict.Undecided: the constraint holds for all velocities where y = 0; divide by it, or exclude that in the domain
+    canon.proof.verdict.Undecided: the constraint holds for all velocities where y = 0; ...
     """
     for g in constraints:
         for factor, _ in sp.factor_list(sp.numer(sp.together(g)))[1] if g.has(*velocities) else ():

@@ -15,6 +15,7 @@ from canon.expression.symbol import Momentum
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.equations import equivalent_equations, without_solution
+from canon.proof.generic import is_analytic
 from canon.proof.vanish import equal, vanishes
 from canon.proof.verdict import Status, Undecided, Verdict
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from canon.proof.domain import Domain
 
 __all__ = [
+    "KINKED",
     "Answer",
     "Deadline",
     "Differ",
@@ -38,6 +40,9 @@ __all__ = [
     "opposite",
     "wrong_variables",
 ]
+
+KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside)
+"""Functions that are made of pieces: one that is not zero at one point may vanish on a whole piece."""
 
 Answer: TypeAlias = "Callable[[], object]"
 """Finds the right answer; called only where a claim fails."""
@@ -228,6 +233,8 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return _same_equations(claimed, right, unknowns, domain, deadline)
         case Regular(matrix, name, domain, singular_is):
             verdict = is_regular(matrix, domain, name)
+            if verdict.holds and matrix.has(*KINKED) and not is_analytic(matrix.flat(), domain):
+                raise Undecided(f"{name} has pieces, and may be singular on one of them")
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
 
 

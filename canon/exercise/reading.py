@@ -51,6 +51,8 @@ _NAME_KEYS = (
     "quasi",
     "constants",
 )
+_COMPLEX = {("positive-real", "variables")}
+"""Names of complex variables: of a real one |s|² is s², and would pass for a polynomial."""
 
 
 class InvalidClaim(ValueError):
@@ -130,7 +132,9 @@ class Reading:
                     continue
                 if name in names:
                     self.fault(key, f"{name} is declared twice")
-                names[name] = _MAKERS.get(key, Symbol)(name, **self._assumptions(name))
+                real = (self.claim.kind, key) not in _COMPLEX
+                said = self._assumptions(name) if real else {"complex": True}
+                names[name] = _MAKERS.get(key, Symbol)(name, **said)
         functions = {name: tuple(_as_list(args)) for name, args in keys.get("functions", {}).items()}
         for name in keys.get("parameters", {}):
             if name not in functions and name != self.time.name and not _is_rate(name, names):
