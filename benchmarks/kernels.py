@@ -11,10 +11,12 @@ import itertools
 import shutil
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy as sp
@@ -27,7 +29,14 @@ from canon.flow.precision import FIXED
 from canon.kernel.scheme import SCHEMES
 from canon.kernel.structure import equations
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from canon.kernel.loop import Loop
+    from canon.kernel.structure import Equations
+
 REPEATS = 7
+ORBITS = 10_000
 
 FORCES = {
     "Kepler": """
@@ -158,16 +167,6 @@ def c_function(case: Case, folder: Path) -> ctypes._CFuncPtr | None:
     return ctypes.CDLL(str(library)).run
 
 
-def seconds_a_step(call, steps: int) -> float:
-    """The median processor time of a step."""
-    found = []
-    for _ in range(REPEATS):
-        begun = time.thread_time()
-        call(steps)
-        found.append((time.thread_time() - begun) / steps)
-    return statistics.median(found)
-
-
 def enough_steps(call) -> int:
     """Steps that take about 30 ms."""
     steps = 64
@@ -188,40 +187,124 @@ def _aligned(values: np.ndarray) -> np.ndarray:
 
 
 def measure(case: Case, scheme: str, folder: Path) -> str:
-    """One row of the table."""
-    a, b = ([float(x) * case.step for x in half] for half in (SCHEMES[scheme].a, SCHEMES[scheme].b))
-    n, row = len(case.q), f"{case.name:14} {scheme:12}"
-    c_run = c_function(case, folder)
+    """One row of the table: the loops and C take turns."""
+    c_call = c_caller(case, scheme, folder)
     begun = time.perf_counter()
     system = equations(case.H, case.q, tuple(s.momentum for s in case.q), t, {})
     derived = time.perf_counter() - begun
-    coefficients = np.array([0.0, case.step, *(x for pair in zip(a, b, strict=False) for x in pair), a[-1]])
-    times, ends = {}, {}
+    coefficients, compiled, calls = coefficients_of(case, scheme), 0.0, {}
     for precision in ("double", "compensated"):
         loop = compiled_loop(system, Splitting(scheme), FIXED[precision])
+        compiled = loop.code.seconds
 
-        def call(steps, loop=loop):
+        def call(steps: int, loop: Loop = loop) -> np.ndarray:
             y, e = case.start.copy(), np.zeros(loop.carry)
             loop.code.call(y.ctypes.data, e.ctypes.data, coefficients.ctypes.data, 0, steps, 1)
             return y
 
-        times[precision], ends[precision] = seconds_a_step(call, enough_steps(call)), call(100)
-        compiled = loop.code.seconds
-    row += f" derived {derived:6.3f} s, compiled {compiled:6.3f} s "
-    if c_run is None:
-        return row + " ".join(f"{name} {1e9 * value:9.1f} ns" for name, value in times.items())
-    arrays = np.array(a), np.array(b)
+        calls[precision] = call
+    if c_call is not None:
+        calls["C"] = c_call
+    steps = {name: enough_steps(call) for name, call in calls.items()}
+    times: dict[str, list[float]] = {name: [] for name in calls}
+    for _ in range(REPEATS):
+        for name, call in calls.items():
+            begun = time.thread_time()
+            call(steps[name])
+            times[name].append((time.thread_time() - begun) / steps[name])
+    median = {name: statistics.median(found) for name, found in times.items()}
+    row = f"{case.name:14} {scheme:12} derived {derived:6.3f} s, compiled {compiled:6.3f} s "
+    if c_call is None:
+        return row + " ".join(f"{name} {1e9 * value:9.1f} ns" for name, value in median.items())
+    ratios = " ".join(f"{name} {median[name] / median['C']:5.2f} × C" for name in ("double", "compensated"))
+    agree = abs(c_call(100) - calls["double"](100)).max()
+    return row + f"C {1e9 * median['C']:10.1f} ns a step; {ratios}; difference after 100 steps {agree:.1e}"
 
-    def c_call(steps):
+
+def ensemble(case: Case, scheme: str, folder: Path) -> str:
+    """Time a step of each of 10⁴ orbits side by side on one processor, beside C's step of one orbit."""
+    c_call = c_caller(case, scheme, folder)
+    if c_call is None:
+        return f"{case.name:14} {scheme:12} no C compiler"
+    system = equations(case.H, case.q, tuple(s.momentum for s in case.q), t, {})
+    begun = time.process_time()
+    calls = {name: _many(system, case, scheme, name) for name in ("double", "compensated", "double-double")}
+    spent = time.process_time() - begun
+    times: dict[str, list[float]] = {name: [] for name in ("C", *calls)}
+    steps = enough_steps(c_call)
+    many = max(1, steps // ORBITS + 1)
+    for _ in range(REPEATS):
+        begun = time.thread_time()
+        c_call(steps)
+        times["C"].append((time.thread_time() - begun) / steps)
+        for name, call in calls.items():
+            times[name].append(call(many) / many / ORBITS)
+    median = {name: statistics.median(found) for name, found in times.items()}
+    ratios = " ".join(f"{name} {median[name] / median['C']:6.3f} × C" for name in calls)
+    return f"{case.name:14} {scheme:12} C {1e9 * median['C']:8.1f} ns a step; {ratios}; compiled in {spent:.2f} s"
+
+
+def _many(system: Equations, case: Case, scheme: str, precision: str) -> Callable[[int], float]:
+    """Return what takes steps of 10⁴ equal orbits and tells the processor time."""
+    loop = compiled_loop(system, Splitting(scheme), FIXED[precision], ORBITS)
+    lanes, pair = loop.number.lanes, 1 + loop.number.pair
+    blocks = -(-ORBITS // lanes)
+    start = np.zeros((blocks, len(case.start), pair, lanes))
+    start[:, :, 0] = case.start[:, np.newaxis]
+    exact = coefficients_of(case, scheme)
+    coefficients = np.zeros((len(exact), pair, lanes))
+    coefficients[:, 0] = exact[:, np.newaxis]
+
+    def call(steps: int) -> float:
+        y, e = start.copy(), np.zeros(blocks * loop.carry * pair * lanes)
+        begun = time.thread_time()
+        loop.code.call(y.ctypes.data, e.ctypes.data, coefficients.ctypes.data, 0, steps, blocks)
+        return time.thread_time() - begun
+
+    return call
+
+
+def coefficients_of(case: Case, scheme: str) -> np.ndarray:
+    """Return what the loops read: t0, h, and the drifts and kicks in turn."""
+    a, b = ([float(x) * case.step for x in half] for half in (SCHEMES[scheme].a, SCHEMES[scheme].b))
+    return np.array([0.0, case.step, *(x for pair in zip(a, b, strict=False) for x in pair), a[-1]])
+
+
+def c_caller(case: Case, scheme: str, folder: Path) -> Callable[[int], np.ndarray] | None:
+    """Return what runs the hand-written loop and returns the state it ends in."""
+    c_run, n = c_function(case, folder), len(case.q)
+    if c_run is None:
+        return None
+    a, b = (np.array([float(x) * case.step for x in half]) for half in (SCHEMES[scheme].a, SCHEMES[scheme].b))
+
+    def call(steps: int) -> np.ndarray:
         q, p = _aligned(case.start[:n]), _aligned(case.start[n:])
-        pointers = (ctypes.c_void_p(x.ctypes.data) for x in (q, p, *arrays))
+        pointers = (ctypes.c_void_p(x.ctypes.data) for x in (q, p, a, b))
         c_run(*pointers, ctypes.c_int(len(b)), ctypes.c_long(steps))
         return np.concatenate([q, p])
 
-    c_time = seconds_a_step(c_call, enough_steps(c_call))
-    agree = abs(c_call(100) - ends["double"]).max()
-    ratios = " ".join(f"{name} {value / c_time:5.2f} × C" for name, value in times.items())
-    return row + f"C {1e9 * c_time:10.1f} ns a step; {ratios}; difference after 100 steps {agree:.1e}"
+    return call
+
+
+COLD = """
+import time
+import sympy as sp
+import llvmlite.binding, numpy
+import canon.flow.task
+from canon import Hamiltonian, Splitting, coordinates, propagate
+begun = time.process_time()
+x, y = coordinates("x y")
+H = Hamiltonian((x.momentum**2 + y.momentum**2) / 2 - 1 / sp.sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum])
+propagate(H, [0.4, 0, 0, 2], (0, 0.01), method=Splitting("kahan-li-8"), step=0.01, samples=1)
+print(time.process_time() - begun)
+"""
+
+
+def cold_start() -> float:
+    """Return the processor time from a Hamiltonian to its first step in a fresh process, after imports."""
+    here = Path(__file__).parent.parent
+    done = subprocess.run([sys.executable, "-c", COLD], capture_output=True, text=True, check=True, cwd=here)
+    return float(done.stdout)
 
 
 def main() -> None:
@@ -236,6 +319,11 @@ def main() -> None:
         for case in cases:
             for scheme in ("verlet", "kahan-li-8"):
                 print(measure(case, scheme, Path(folder)), flush=True)
+        print(f"\nper orbit of {ORBITS} side by side on one processor:")
+        for case in (kepler(), henon_heiles(), fput(32)):
+            for scheme in ("verlet", "kahan-li-8"):
+                print(ensemble(case, scheme, Path(folder)), flush=True)
+    print(f"\nfrom H to the first step in a fresh process, after imports: {cold_start():.3f} s")
 
 
 if __name__ == "__main__":
