@@ -7,7 +7,7 @@ small quantities, all of them are of one order. The two sides must be quotients 
 from __future__ import annotations
 
 from itertools import combinations_with_replacement
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -203,7 +203,11 @@ def _check_analytic(f: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> No
             bad = part.exp.has(*moving) and not part.base.is_positive
             bad = bad or proved_sign(substitute(part.base, place), domain) != "+"
         elif isinstance(part, sp.Pow) and part.exp.is_negative:
-            bad = vanishes(substitute(part.base, place), domain, budget=0.5).holds
+            bad = not vanishes(substitute(part.base, place), domain, budget=0.5).fails
+        elif isinstance(part, sp.tan | sp.sec | sp.cot | sp.csc):
+            below = sp.cos if isinstance(part, sp.tan | sp.sec) else sp.sin
+            there = substitute(arguments(part)[0], place)
+            bad = not vanishes(cast("Expr", below(there)), domain, budget=0.5).fails
         elif isinstance(part, sp.log):
             bad = proved_sign(substitute(arguments(part)[0], place), domain) != "+"
         elif isinstance(part, sp.asin | sp.acos | sp.atanh | sp.acosh | sp.acot | sp.acoth):
