@@ -5,7 +5,7 @@ python benchmarks/extremes.py numeric kepler         # rows of a part whose name
 python benchmarks/extremes.py --fresh                # all of them anew
 python benchmarks/extremes.py --page                 # the page from what is there
 
-Every row runs in a process of its own. What is done is kept in out/extremes.json, so an interrupted run goes on where
+Every row runs in a process of its own. What is done is kept in out/extremes, so an interrupted run goes on where
 it stopped. Ends with status 1 where canon hung, crashed or was silently wrong.
 """
 
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import platform
 import sys
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from extremes.row import Row
 
 HERE = Path(__file__).parent
-KEPT = HERE.parent / "out" / "extremes.json"
+KEPT = HERE.parent / "out" / "extremes"
 PAGE = HERE.parent / "docs" / "extremes.md"
 BAD = {"hang", "crash", "wrong"}
 
@@ -43,11 +44,12 @@ def main(arguments: list[str]) -> int:
         return 0
     said = parsed(arguments)
     parts = {part: rows_of(part) for part in ([said.part] if said.part else PARTS)}
-    kept: dict[str, Any] = json.loads(KEPT.read_text()) if KEPT.exists() else {}
+    kept = kept_rows()
     if not said.page:
         anew = said.fresh or bool(said.text)
         wanted = [(part, row) for part, rows in parts.items() for row in rows if said.text in row.name]
-        run_all([(part, row) for part, row in wanted if anew or key(part, row) not in kept], kept, said.jobs)
+        run_all([(part, row) for part, row in wanted if anew or key(part, row) not in kept], said.jobs)
+        kept = kept_rows()
     done = {
         part: [(row, kept[key(part, row)]) for row in rows_of(part) if key(part, row) in kept]
         for part in PARTS
@@ -76,13 +78,12 @@ def key(part: str, row: Row) -> str:
     return f"{part}/{row.name}"
 
 
-def run_all(wanted: list[tuple[str, Row]], kept: dict[str, Any], jobs: int) -> None:
-    KEPT.parent.mkdir(exist_ok=True)
+def run_all(wanted: list[tuple[str, Row]], jobs: int) -> None:
     with ThreadPoolExecutor(jobs) as pool:
         futures = {pool.submit(run_row, part, row): key(part, row) for part, row in wanted}
         for count, future in enumerate(as_completed(futures), 1):
             name, pieces = futures[future], future.result()
-            keep(kept, name, pieces)
+            keep(name, pieces)
             for piece in pieces:
                 error, estimate = (
                     f"{piece[k]:.1e}" if piece[k] is not None else "–" for k in ("error", "estimate")
@@ -94,14 +95,19 @@ def run_all(wanted: list[tuple[str, Row]], kept: dict[str, Any], jobs: int) -> N
                 )
 
 
-def keep(kept: dict[str, Any], name: str, pieces: list[dict[str, Any]]) -> None:
-    """Add a row to the file, with what another run has written there meanwhile."""
-    kept[name] = pieces
-    if KEPT.exists():
-        kept |= {other: found for other, found in json.loads(KEPT.read_text()).items() if other not in kept}
-    fresh = KEPT.with_suffix(".new")
-    fresh.write_text(json.dumps(kept, indent=1))
-    fresh.replace(KEPT)
+def kept_rows() -> dict[str, Any]:
+    """Return what earlier and other runs have done, by part and row."""
+    found = {f"{path.parent.name}/{path.stem}": path for path in KEPT.glob("*/*.json")}
+    return {name: json.loads(path.read_text()) for name, path in found.items()}
+
+
+def keep(name: str, pieces: list[dict[str, Any]]) -> None:
+    """Write a row into a file of its own, so that several runs at once do not disturb each other."""
+    path = KEPT / f"{name}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = path.with_suffix(f".{os.getpid()}")
+    fresh.write_text(json.dumps(pieces, indent=1))
+    fresh.replace(path)
 
 
 if __name__ == "__main__":
