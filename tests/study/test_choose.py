@@ -9,9 +9,11 @@ import pytest
 import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates
+from canon.command.drift import method_named
 from canon.scene import find
+from canon.study.choose_candidate import candidate_methods
 from canon.study.choose_law import expected_error
-from canon.study.choose_pilot import Pilot, Setting, pilot
+from canon.study.choose_pilot import Pilot, Question, Setting, pilot
 from canon.study.choose_tolerance import tolerance_at
 from canon.study.errors import StudyError
 from tests.study import series
@@ -89,6 +91,31 @@ def test_the_choice_is_the_cheapest_candidate_that_keeps_the_accuracy():
     able = [each for each in choice.candidates if each.keeps]
     assert choice.predicted_cost == min(each.predicted_cost for each in able)
     assert len({str(each.method) for each in choice.candidates}) > 10
+
+
+DISTURBED = ("wisdom-holman", "saba-4", "aba-8-6-4", "aba-10-6-4")
+
+
+@pytest.mark.parametrize(
+    ("name", "disturbed"),
+    [("outer-solar-system", True), ("henon-heiles", True), ("kepler", False), ("simple-pendulum", False)],
+)
+def test_splittings_by_solvable_parts_are_candidates_where_something_disturbs_them(name, disturbed):
+    """Kepler's motion is known and nothing disturbs it; of a pendulum only T(p) is quadratic."""
+    scene = find(name)
+    names = {
+        str(method)
+        for method in candidate_methods(Question(scene.hamiltonian, scene.state(), scene.values, 1.0))
+    }
+    assert names & set(DISTURBED) == (set(DISTURBED) if disturbed else set())
+
+
+def test_planets_are_cheaper_by_their_keplerian_motions():
+    scene = find("outer-solar-system")
+    methods = [Splitting("srkn-6b"), *(method_named(name) for name in DISTURBED[:3])]
+    choice = choose(scene, None, 300.0 * scene.period, 1e-6, methods=methods)
+    assert str(choice.method) in DISTURBED
+    assert pilot(choice.question, choice.chosen.setting, choice.span).bound <= 1e-6
 
 
 def test_steps_follow_the_order_of_the_method():
