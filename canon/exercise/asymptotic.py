@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -125,7 +125,7 @@ def _order(residual: Expr, claimed: Expr, epsilon: Symbol, domain: Domain) -> in
 def _order_at(f: Expr, epsilon: Symbol, point: Mapping[Symbol, sp.Rational]) -> int | None:
     try:
         with precision(BITS):
-            at = [value(f, {**point, epsilon: sp.Rational(1, 2**k)}) for k in (60, 61)]
+            at = [value(f, {**point, epsilon: _halved(k)}) for k in (60, 61)]
             if any(z.contains(0) for z in at):
                 return None
             ratio = float(abs(at[0] / at[1]).log().mid()) / math.log(2)
@@ -133,6 +133,10 @@ def _order_at(f: Expr, epsilon: Symbol, point: Mapping[Symbol, sp.Rational]) -> 
         return None
     order = round(ratio)
     return order if abs(ratio - order) < 1e-6 else None
+
+
+def _halved(times: int) -> sp.Rational:
+    return cast("sp.Rational", sp.Rational(1, 2**times))
 
 
 def _vanishes_to(f: Expr, epsilon: Symbol, order: int, domain: Domain) -> bool:

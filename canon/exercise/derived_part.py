@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.exercise.reading import Reading
+    from canon.proof.domain import Domain
 
 __all__ = ["new_hamiltonian_part", "second_lagrangian_part", "time_term"]
 
@@ -49,8 +50,7 @@ def new_hamiltonian_part(reading: Reading) -> Iterator[Part]:
     images, n = [there[s] for s in names], len(q)
     map_ = CanonicalTransformation(q, p, images[:n], images[n:], t, domain)
     form = rate_form(map_)
-    R = _of_polynomials(form, map_.variables)
-    R = potential(form, map_.variables, domain, budget=SECONDS) if R is None else R
+    R = _integrated(form, map_.variables, domain)
     if R is None:
         return
     if reading.has("inverse_map"):
@@ -66,6 +66,11 @@ def new_hamiltonian_part(reading: Reading) -> Iterator[Part]:
 
 def _all(reading: Reading) -> list[Symbol]:
     return [s for key in ("new_q", "new_p") for s in reading.symbols(key)]
+
+
+def _integrated(form: Sequence[Expr], z: Sequence[Symbol], domain: Domain) -> Expr | None:
+    found = _of_polynomials(form, z)
+    return potential(form, z, domain, budget=SECONDS) if found is None else found
 
 
 def _of_polynomials(form: Sequence[Expr], z: Sequence[Symbol]) -> Expr | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import acb
@@ -81,7 +81,9 @@ class Monomials:
             return {}
         found: dict[Symbol | None, dict[sp.Basic, acb]] = {}
         for s in (None, *free):
-            memo = self._memo({x: 2 * v if x == s else v for x, v in self._point.items()}, 0)
+            memo = self._memo(
+                {x: cast("sp.Rational", 2 * v) if x == s else v for x, v in self._point.items()}, 0
+            )
             if memo is None:
                 return {}
             found[s] = memo
@@ -104,7 +106,7 @@ class Monomials:
         part = self._part
         whole = sp.Tuple(part.claimed, part.right, *part.through.values())
         found = whole.atoms(AppliedUndef, sp.Derivative, sp.Function) - whole.atoms(*_KINKED)
-        functions = [a for a in found if isinstance(a, Expr)]
+        functions: list[Expr] = list(found)
         factors = sorted(
             [*part.through, *functions], key=lambda f: (not part.claimed.has(f), not f.is_Symbol, str(f))
         )[:MOST_FACTORS]
@@ -126,7 +128,7 @@ class Monomials:
 
 def _forgettable(factor: Expr, part: Part) -> bool:
     """Whether a factor is one that a person may have lost: short, and no acceleration."""
-    powers = factor.as_powers_dict()
+    powers = cast("dict[Expr, Expr]", factor.as_powers_dict())
     if factor.is_Number or factor.has(*part.determined) or _divides_by_motion(factor):
         return False
     exponents = [e if e.is_Number else sp.S.One for base, e in powers.items() if not base.is_Number]
@@ -135,9 +137,8 @@ def _forgettable(factor: Expr, part: Part) -> bool:
 
 def _divides_by_motion(term: Expr) -> bool:
     """Whether a velocity or acceleration is in a denominator, or under a root."""
-    return any(
-        isinstance(base, Rate) and not (e.is_Integer and e > 0) for base, e in term.as_powers_dict().items()
-    )
+    powers = cast("dict[Expr, Expr]", term.as_powers_dict())
+    return any(isinstance(base, Rate) and not (e.is_Integer and e > 0) for base, e in powers.items())
 
 
 def _powers(values: Mapping[Symbol | None, acb]) -> Expr | None:

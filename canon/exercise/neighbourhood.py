@@ -6,13 +6,14 @@ candidate at once. What passes is proved elsewhere: nothing is ever decided here
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import acb, arb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef, Derivative, Subs
 
+from canon.exercise.tree import arguments, replaced
 from canon.proof.balls import value
 
 if TYPE_CHECKING:
@@ -55,18 +56,19 @@ class Examples:
 
     def _example(self, unknown: Expr) -> Expr:
         if isinstance(unknown, Subs):
-            points = dict(zip(unknown.variables, unknown.point, strict=True))
-            return self._example(unknown.expr).xreplace(points)
+            inner, variables, points = cast("tuple[Expr, tuple[Expr, ...], tuple[Expr, ...]]", unknown.args)
+            return replaced(self._example(inner), dict(zip(variables, points, strict=True)))
         if isinstance(unknown, AppliedUndef):
             places, polynomial = self._polynomials[unknown.func]
-            return polynomial.xreplace(dict(zip(places, unknown.args, strict=True)))
-        inner, *by = unknown.args
+            return replaced(polynomial, dict(zip(places, arguments(unknown), strict=True)))
+        inner, *rest = arguments(unknown)
+        by = cast("list[tuple[Symbol, int]]", rest)
         if isinstance(inner, AppliedUndef) and _by_places(inner, [s for s, _ in by]):
             places, polynomial = self._polynomials[inner.func]
-            slope = polynomial.diff(*((places[inner.args.index(s)], n) for s, n in by))
-            return slope.xreplace(dict(zip(places, inner.args, strict=True)))
+            slope = polynomial.diff(*((places[arguments(inner).index(s)], n) for s, n in by))
+            return replaced(slope, dict(zip(places, arguments(inner), strict=True)))
         for node in inner.atoms(AppliedUndef):
-            inner = inner.xreplace({node: self._example(node)})
+            inner = replaced(inner, {node: self._example(node)})
         return inner.diff(*by)
 
 
@@ -114,7 +116,8 @@ class Neighbourhood:
         """Return the value of an expression, a step along a symbol away if one is given."""
         memo = self._memos.get(along)
         if memo is None:
-            memo = self._memos[along] = dict(self.point)
+            memo = dict[sp.Basic, acb](self.point.items())
+            self._memos[along] = memo
             if along is not None:
                 memo[along] = self.point[along] + STEP
         for unknown in self.examples.unknowns(f):

@@ -13,7 +13,7 @@ import sympy as sp
 from canon.exercise.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.screening import screening
-from canon.exercise.tree import arguments, replaced
+from canon.exercise.tree import arguments, replaced, symbols_of
 from canon.exercise.variants import Change, common_slips, slipped, times, variants
 from canon.expression.symbol import velocity
 
@@ -138,7 +138,7 @@ def _dividing(expressions: Sequence[Expr]) -> list[Expr]:
                 found[arguments(node)[0]] = None
             elif isinstance(node, sp.Max | sp.Min) and len(arguments(node)) == 2:
                 found[arguments(node)[0] - arguments(node)[1]] = None
-    symbols = sorted({s for f in expressions for s in f.free_symbols}, key=str)
+    symbols = symbols_of(*expressions)
     if len(symbols) <= 2:
         found |= {s - bound: None for s in symbols for bound in _BOUNDS}
     return list(found)[:MOST_DIVIDING]
@@ -207,7 +207,9 @@ def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[
         old = reading.symbols(letter)
         step = {z: answers[f"{there}[{i}]"] for i, z in enumerate(old)}
         images = {f"{here}[{i}]": answers[f"{here}[{i}]"] for i in range(len(old))}
-        staggered = {key: f.subs(step, simultaneous=True) for key, f in images.items() if f.has(*old)}
+        staggered = {
+            key: f.subs(list(step.items()), simultaneous=True) for key, f in images.items() if f.has(*old)
+        }
         names = "the new momenta P" if letter == "p" else "the new coordinates Q"
         for key in staggered if len(images) > 1 else ():
             yield {key: staggered[key]}, f"in {key} {names} belong in place of the old ones"

@@ -68,9 +68,7 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, symbols)
 
-    functions = sorted((f for f in expression.atoms(sp.Function) if _TWINS.get(f.func)), key=str)[
-        :MOST_FUNCTIONS
-    ]
+    functions = sorted((f for f in expression.atoms(sp.Function) if _twins(f)), key=str)[:MOST_FUNCTIONS]
 
     def multiplied_by_functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, functions)
@@ -250,9 +248,10 @@ def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Ch
 def _by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
     """The derivative by another argument of the function."""
     if isinstance(node, sp.Derivative) and len(node.variables) == 1:
-        for other in symbols_of(*(a for a in arguments(node.expr) if a.is_Symbol)):
+        f = arguments(node)[0]
+        for other in symbols_of(*(a for a in arguments(f) if a.is_Symbol)):
             if other != node.variables[0]:
-                right = sp.Derivative(node.expr, other)
+                right = sp.Derivative(f, other)
                 yield right, Change("{} should be {}", node, right)
 
 
