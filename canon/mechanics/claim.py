@@ -51,7 +51,7 @@ def all_vanish(
                 yield Verdict(
                     Status.UNDECIDED,
                     part,
-                    evidence=(Evidence("budget", f"{budget} s were spent before {part}"),),
+                    evidence=(Evidence("budget", f"{budget:.1f} s were spent before {part}"),),
                 )
                 return
             verdict = vanishes(expression, domain, left)
