@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.manifold import Branch, EmptyDomainError, inhabited, on_manifold
+from canon.exercise.manifold import Branch, EmptyDomainError, check_not_empty, inhabited, on_manifold
 from canon.exercise.question import KINKED, Deadline, Part, Same, decide
 from canon.expression.symbol import time_derivative, velocity
 from canon.mechanics.frobenius import Pfaffian, curl
@@ -89,7 +89,7 @@ class ConstraintSystem:
     def integrable(self) -> Verdict:
         """Whether the constraints together restrict positions only: dω(X, Y) = 0 on allowed displacements."""
         if not self.velocities:
-            self._check_not_empty()
+            check_not_empty(self.positions, self.q, self.t, self.domain)
             return Verdict(Status.HOLDS, "the constraints are integrable", "structure")
         if not self.affine.holds:
             return self._curved
@@ -116,13 +116,6 @@ class ConstraintSystem:
         for X, Y in combinations(allowed, 2):
             for form in forms:
                 yield substitute(curl(form, z, X, Y), branch.values)
-
-    def _check_not_empty(self) -> None:
-        """Refuse positions of which it is proved that there are none; arbitrary functions may stay unsolved."""
-        try:
-            inhabited(on_manifold(self.positions, self.domain, keep=(self.t,)))
-        except Undecided:
-            return
 
     def check_consistent(self) -> None:
         """Refuse constraints such as ẋ = 0, ẋ = z, that contradict each other off positions they do not name."""

@@ -16,7 +16,14 @@ from canon.exercise.affine import solved
 from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.judge_constrained import is_one_of, jets_of, with_jets
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.manifold import Branch, EmptyDomainError, check_whole, inhabited, on_manifold
+from canon.exercise.manifold import (
+    Branch,
+    EmptyDomainError,
+    check_not_empty,
+    check_whole,
+    inhabited,
+    on_manifold,
+)
 from canon.exercise.question import Deadline, Part, Question, Same, Stated, decide
 from canon.exercise.tree import replaced, symbols_of
 from canon.expression.symbol import acceleration, time_derivative, velocity
@@ -65,6 +72,7 @@ def reaction(reading: Reading) -> Iterator[Question]:
     if len(multipliers) != len(constraints):
         reading.fault("multipliers", f"{len(multipliers)} multipliers for {len(constraints)} constraints")
     if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
+        check_not_empty(constraints, q, reading.time, reading.domain)
         yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
         return
     values = reading.table("values") if reading.has("values") else {}
@@ -146,7 +154,7 @@ def _motions(
     held_at, integrals = (tuple(replaced(f, jets) for f in some) for some in (held_at, integrals))
     directions = directions.applyfunc(lambda f: replaced(f, jets))
     domain = with_jets(reading.domain, jets)
-    check_whole([replaced(f, jets) for f in constraints], v, domain)
+    check_whole([*(replaced(f, jets) for f in constraints), *integrals], v, domain)
     for branch in inhabited(_with_integrals(on_manifold(held_at, domain, (t,), v), integrals, v, t)):
         here = [substitute(replaced(e, jets), branch.values) for e in system]
         motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions, jets)

@@ -27,6 +27,8 @@ from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from sympy.logic.boolalg import Boolean
+
     from canon.exercise.reading import Reading
 
 __all__ = ["first_order", "linearisation"]
@@ -153,7 +155,7 @@ def _same_to_order(
 ) -> tuple[Verdict, int]:
     """Tell whether f − g = o(εⁿ), and at which order it fails first."""
     epsilon = sp.Dummy("epsilon", real=True)
-    domain = Domain(tuple(c for c in domain.conditions if not c.has(*small)), domain.box)
+    domain = _domain_near(small, domain)
     above, below = _quotient(f - g, small, epsilon, domain)
     start, lowest = _order_of(below, epsilon, domain, deadline)
     verdicts: list[Verdict] = []
@@ -167,6 +169,20 @@ def _same_to_order(
             ), k - start
         verdicts.append(verdict)
     return all_hold(verdicts), order
+
+
+def _domain_near(small: Sequence[Symbol], domain: Domain) -> Domain:
+    """Return the domain of the others where what is small goes to zero: a > λ leaves a ≥ 0."""
+    conditions: list[Boolean] = []
+    for c in domain.conditions:
+        if not c.has(*small):
+            conditions.append(c)
+        elif isinstance(c, sp.Gt | sp.Lt | sp.Ge | sp.Le):
+            gap = substitute(cast("Expr", c.gts) - cast("Expr", c.lts), dict.fromkeys(small, sp.S.Zero))
+            conditions.append(sp.Ge(gap, 0))
+    if sp.false in conditions:
+        raise Undecided(f"the domain keeps {', '.join(map(str, small))} away from zero")
+    return Domain(tuple(c for c in conditions if c is not sp.true), domain.box)
 
 
 def _power_of(small: Sequence[Symbol], k: int) -> Expr:

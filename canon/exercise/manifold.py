@@ -16,7 +16,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.tree import symbols_of
-from canon.expression.symbol import Coordinate
+from canon.expression.symbol import velocity
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
 from canon.proof.generic import proved_sign
@@ -29,7 +29,15 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["Branch", "EmptyDomainError", "check_whole", "inhabited", "on_manifold", "transported"]
+__all__ = [
+    "Branch",
+    "EmptyDomainError",
+    "check_not_empty",
+    "check_whole",
+    "inhabited",
+    "on_manifold",
+    "transported",
+]
 
 MAX_BRANCHES = 16
 _NO_POINT = "no point satisfies the constraints, assumptions and conditions"
@@ -132,8 +140,27 @@ def inhabited(branches: Iterable[Branch]) -> list[Branch]:
     return found
 
 
+def check_not_empty(constraints: Sequence[Expr], q: Sequence[Symbol], t: Symbol, domain: Domain) -> None:
+    """Refuse positions of which it is proved that there are none; arbitrary functions may stay unsolved.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> (x,) = coordinates("x")
+    >>> check_not_empty([x, x - 1], [x], sp.Symbol("t", real=True), Domain())
+    Traceback (most recent call last):
+        ...
+    canon.exercise.manifold.EmptyDomainError: no point satisfies the constraints, assumptions and conditions
+    """
+    rates = [velocity(x) for x in q]
+    try:
+        inhabited(on_manifold([f for f in constraints if not f.has(*rates)], domain, keep=(t,)))
+    except Undecided:
+        return
+
+
 def check_whole(constraints: Sequence[Expr], velocities: Sequence[Symbol], domain: Domain) -> None:
-    """Refuse constraints on velocities that hold as well wherever something among the coordinates vanishes.
+    """Refuse constraints on velocities that hold as well wherever something without velocities vanishes.
 
     y (ẋ − ẏ) = 0 allows every velocity where y = 0: that is a part of the manifold as large as the other.
 
@@ -148,9 +175,9 @@ def check_whole(constraints: Sequence[Expr], velocities: Sequence[Symbol], domai
     """
     for g in constraints:
         for factor, _ in sp.factor_list(sp.numer(sp.together(g)))[1] if g.has(*velocities) else ():
-            able = not factor.has(*velocities) and any(isinstance(s, Coordinate) for s in symbols_of(factor))
             if (
-                able
+                not factor.has(*velocities)
+                and factor.is_nonzero is not True
                 and proved_sign(factor, domain) not in ("+", "-")
                 and sp.Ne(factor, 0) not in domain.conditions
             ):
