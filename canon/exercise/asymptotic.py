@@ -142,7 +142,7 @@ def _halved(times: int) -> sp.Rational:
 def _vanishes_to(f: Expr, epsilon: Symbol, order: int, domain: Domain) -> bool:
     """Whether the first coefficients of a function analytic at ε = 0 are proved to vanish."""
     for k in range(order):
-        coefficient = sp.sympify(f).diff(epsilon, k).subs(epsilon, 0)
+        coefficient = f.diff(epsilon, k).subs(epsilon, 0)
         if coefficient.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
             return False
         if coefficient != 0 and not vanishes(coefficient, domain, budget=0.3).holds:

@@ -139,7 +139,7 @@ class Domain:
         box: Any = self.box
         if isinstance(conditions, str) or not isinstance(conditions, Iterable):
             raise TypeError(f"the conditions should be a tuple, as in Domain((x > 0,)), not {conditions!r}")
-        sorted_out = (sympify(c) if isinstance(c, bool) else c for c in conditions)
+        sorted_out = (sympify(c, strict=True) if isinstance(c, bool) else c for c in conditions)
         object.__setattr__(self, "conditions", tuple(sorted_out))
         for condition in cast("tuple[Any, ...]", self.conditions):
             if not isinstance(condition, Boolean):

@@ -74,7 +74,7 @@ def test_files_that_cannot_be_read(tmp_path):
         ({"kind": 3}, "key kind", "missing"),
         ({"kind": None}, "key kind", "missing"),
         ({"lsh": "1"}, "key lsh", "is lhs meant"),
-        ({"lhs": ["1"]}, "key lhs", "should be an expression"),
+        ({"lhs": ["1", "2"]}, "key lhs", "should be an expression"),
         ({"lhs": True}, "key lhs", "should be an expression"),
         ({"lhs": None}, "key lhs", "should be an expression"),
         ({"parameters": {"x": "big"}}, "key parameters", "assumption"),
