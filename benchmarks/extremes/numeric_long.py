@@ -72,8 +72,7 @@ def rows() -> Iterator[Row]:
     )
     yield Row(
         "bodies-200",
-        "200 bodies in a disc, 400 degrees of freedom, softened by 0.05, t = 0 … 0.1 "
-        "in 20 steps of order 4",
+        "200 bodies in a disc, 400 degrees of freedom, softened by 0.05, t = 0 … 0.1 in 20 steps of order 4",
         many_bodies,
         {"rebound IAS15": bodies_by_rebound} if rebound_installed() else {},
         limit=400,
