@@ -133,3 +133,47 @@ def test_latex_that_lost_its_backslashes_is_refused(spelt):
     eaten = sheet_from(f'{claim}"{spelt}"'.encode(), toml=True)
     assert "single quotes" in str(eaten.errors[0])
     assert not sheet_from(f"{claim}'{spelt}'".encode(), toml=True).errors
+
+
+EMPTY = [(x < 1, x > 2), (sp.Eq(x, 1), sp.Eq(x, 2)), (x < 0, x + y > 0, y < 0), (False,)]
+NOT_EMPTY = [(x <= 1, x >= 1), (x < 2, x > 1), (sp.Eq(x, 1), sp.Eq(y, 2)), (x < 0, x + y > 0), (True,)]
+
+
+@pytest.mark.parametrize("conditions", EMPTY)
+def test_a_verdict_about_no_point_says_so(conditions):
+    assert "no point" in canon.vanishes(x + 2 * y + 7, Domain(conditions)).assumed[0]
+
+
+@pytest.mark.parametrize("conditions", NOT_EMPTY)
+def test_a_verdict_about_some_points_does_not(conditions):
+    assert canon.vanishes(x**2 + y**2 + 7, Domain(conditions)).fails
+    assert not canon.vanishes(sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1, Domain(conditions)).assumed
+
+
+@pytest.mark.parametrize(("domain", "said"), [(["x < 1", "x > 2"], "no point"), (["x < 2", "x > 1"], "")])
+def test_a_claim_about_no_point_is_invalid(domain, said):
+    keys = {"lhs": "x", "rhs": "x + 1", "parameters": {"x": "real"}, "domain": domain}
+    claim = Claim("a", "equality-only", keys)
+    if said:
+        with pytest.raises(canon.InvalidClaim, match=said):
+            canon.judge(claim)
+    else:
+        assert canon.judge(claim).fails
+
+
+def test_what_is_nested_too_deeply_is_undecided():
+    f = x
+    for _ in range(3000):
+        f = sp.sin(f, evaluate=False)
+    verdict = canon.equal(f, sp.Integer(1), budget=5.0)
+    assert verdict.undecided
+    assert "deep" in verdict.evidence[0].text
+
+
+def test_a_map_of_many_degrees_of_freedom_that_fails_is_told_within_its_budget():
+    q, p = sp.symbols("q0:8", real=True), sp.symbols("p0:8", real=True)
+    Q = [a + sp.sin(sp.Add(*p)) for a in q]
+    P = [b + a * q[0] for a, b in zip(q, p, strict=True)]
+    verdict = CanonicalTransformation(q, p, Q, P).is_canonical(budget=10.0)
+    assert verdict.fails
+    assert verdict.seconds < 10.0
