@@ -233,9 +233,19 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return _same_equations(claimed, right, unknowns, domain, deadline)
         case Regular(matrix, name, domain, singular_is):
             verdict = is_regular(matrix, domain, name)
-            if verdict.holds and matrix.has(*KINKED) and not is_analytic(matrix.flat(), domain):
+            if verdict.holds and matrix.has(*KINKED) and not _without_pieces(matrix, domain):
                 raise Undecided(f"{name} has pieces, and may be singular on one of them")
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
+
+
+def _without_pieces(matrix: sp.MatrixBase, domain: Domain) -> bool:
+    """Whether entries are analytic where signs said in the domain are known, as in |q| where q > 0."""
+    bounds = [
+        c for c in domain.conditions if isinstance(c, sp.Gt) and c.rhs == 0 and isinstance(c.lhs, Symbol)
+    ]
+    positive = {c.lhs: sp.Dummy(c.lhs.name, positive=True) for c in bounds}
+    entries = [substitute(entry, positive) for entry in matrix.flat()]
+    return is_analytic(entries, domain)
 
 
 def _all_vanish(

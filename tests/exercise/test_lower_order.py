@@ -51,3 +51,10 @@ def test_one_expression_may_stand_in_a_list():
     assert judge(Claim("a", "bilinear-covariant", keys)).holds
     keys["claim"] = ["d_p*delta_q - d_q*delta_p"]
     assert judge(Claim("a", "bilinear-covariant", keys)).fails
+
+
+@pytest.mark.parametrize(("domain", "holds"), [(["q > 0"], True), (["Ne(q, 0)"], False)])
+def test_pieces_that_the_domain_leaves_out_are_no_obstacle(domain, holds):
+    names = {"q": ["q"], "p": ["p"], "new_q": ["Q"], "new_p": ["P"]}
+    keys = {**names, "F": "(q + Abs(q))*P", "map": {"Q": ["q + Abs(q)"], "P": ["p/2"]}, "domain": domain}
+    assert judge(Claim("a", "generating-F2", keys)).holds is holds
