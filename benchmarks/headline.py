@@ -194,9 +194,12 @@ def main() -> None:
             STORED.parent.mkdir(exist_ok=True)
             STORED.write_text(json.dumps(stored, ensure_ascii=False, indent=1), encoding="utf-8")
     stored = json.loads(STORED.read_text(encoding="utf-8"))
+    lines = list[str]()
     for name, problem in PROBLEMS.items():
         if name in stored:
-            print(stored[f"{name} run"], *table(problem, stored[name]), sep="\n")
+            lines += [stored[f"{name} run"], *table(problem, stored[name])]
+    print(*lines, sep="\n")
+    STORED.with_suffix(".txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
     draw(stored)
 
 

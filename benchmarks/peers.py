@@ -226,15 +226,11 @@ def rebound_methods(problem: Problem) -> Iterator[Contender]:
 
     def simulation(integrator: str, **settings: Any) -> Any:
         sim = rebound.Simulation()
-        sim.G = values["G"] if planets else values["mu"]
+        # In units where G = 1, which WHFast512 asks for.
+        gravity = values["G"] if planets else values["mu"]
         for m, x, u in zip(masses, places[0], places[1], strict=True):
-            sim.add(
-                m=m,
-                x=x[0],
-                y=x[1],
-                z=x[2],
-                **dict(zip(("vx", "vy", "vz"), u / (m if planets else 1.0), strict=True)),
-            )
+            v = u / (m if planets else 1.0)
+            sim.add(m=gravity * m, x=x[0], y=x[1], z=x[2], vx=v[0], vy=v[1], vz=v[2])
         sim.move_to_com()
         sim.integrator = integrator
         for name, value in settings.items():
@@ -396,7 +392,7 @@ def search(problem: Problem, contender: Contender) -> None:
             error = problem.error(found) if found.shape[-1] == INSTANTS + 1 else np.inf
             if contender.library in DEAR[:2]:
                 error *= PERIODS / DEAR_PERIODS
-        except ArithmeticError:
+        except (ArithmeticError, RuntimeError):
             continue
         while wanted and error <= wanted[0]:
             contender.chosen[wanted.pop(0)] = setting
