@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["judgements"]
 
-FEEDBACK_SECONDS = 1.0
+FEEDBACK_SECONDS = 1.4
 REFUSALS = (TypeError, ValueError, ArithmeticError, NotImplementedError)
 """What SymPy raises when it meets what it can't build, such as a comparison of infinities or a nonsensical repair."""
 
