@@ -72,6 +72,8 @@ class _Solution:
     cost: tuple[int, int]
     everywhere: bool = True
     """Whether what it is divided by vanishes nowhere."""
+    quotient: tuple[Expr, Expr] | None = None
+    """Numerator and denominator, where it is linear in the symbol."""
 
 
 def on_manifold(
@@ -239,6 +241,8 @@ def _restricted(
         solution = min(_solutions(factor, keep, prefer), key=lambda s: s.cost, default=None)
         if solution is None:
             raise Undecided(f"{factor} = 0 could not be solved for any of its symbols in closed form")
+        if _leaves_a_handle(solution, branch.domain):
+            raise Undecided(f"{factor} = 0 holds at singular points too, which are not looked into")
         found = False
         for value in solution.values:
             try:
@@ -249,6 +253,13 @@ def _restricted(
             yield part
         if not found and not solution.everywhere:  # k x² + y² = 0 with k > 0 holds at x = y = 0
             raise Undecided(f"{factor} = 0 holds at singular points at most, which are not looked into")
+
+
+def _leaves_a_handle(solution: _Solution, domain: Domain) -> bool:
+    """Whether x² z = y² was solved for z ≥ 0: x = y = 0 allows every z, and z < 0 is no limit of the graph."""
+    if solution.everywhere or solution.quotient is None:
+        return False
+    return all(f != 0 and proved_sign(f, domain) in ("0+", "0-") for f in solution.quotient)
 
 
 def _factors(expression: Expr, prefer: Sequence[Symbol]) -> list[Expr]:
@@ -286,9 +297,9 @@ def _of_polynomial(poly: sp.Poly, symbol: Symbol, wanted: int) -> _Solution | No
     size = int(sp.count_ops(lead))
     certain = generic == 0
     if top == 1:
-        return _Solution(
-            symbol, (-terms.get(0, sp.S.Zero) / lead,), (), (generic, 10 * wanted + size), certain
-        )
+        rest = terms.get(0, sp.S.Zero)
+        cost = (generic, 10 * wanted + size)
+        return _Solution(symbol, (-rest / lead,), (), cost, certain, (rest, lead))
     if set(terms) <= {0, top}:
         power = -terms.get(0, sp.S.Zero) / lead
         if symbol.is_positive:

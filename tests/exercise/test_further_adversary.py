@@ -116,6 +116,35 @@ def test_a_constraint_that_holds_for_all_velocities_somewhere(constraint, expect
 
 
 @pytest.mark.parametrize(
+    ("k", "expected"), [("real", "undecided"), ("nonzero", "holds"), ("positive", "holds")]
+)
+def test_a_factor_that_may_be_zero(k, expected):
+    keys = {**TWO, "parameters": {"m": "positive", "k": k}}
+    assert said("kinetic-energy", **keys, T="m*y_dot**2/2", constraints=["k*(x_dot - y_dot)"]) == expected
+
+
+@pytest.mark.parametrize(("constraint", "expected"), [
+    ("x**2*z = y**2", "undecided"),  # at x = y = 0 every z is allowed
+    ("(1 + x**2)*z = y**2 + 1", "holds"),
+    ("(1 + x**2)*z = -y**2 - 1", "fails"),
+])  # fmt: skip
+def test_points_that_a_graph_misses(constraint, expected):
+    keys = {"q": ["x", "y", "z", "u"], "bodies": [{"m": "1", "r": ["u"]}]}
+    assert said("kinetic-energy", **keys, T="u_dot**2*Abs(z)/z/2", constraints=[constraint]) == expected
+
+
+@pytest.mark.parametrize(("constraints", "expected"), [
+    (["x", "x - 1"], "invalid"),
+    (["x**2 + 1"], "invalid"),
+    (["x", "y - 1"], "holds"),
+    (["x**2 - 1"], "holds"),
+])  # fmt: skip
+def test_the_rest_as_a_force_of_constraints_that_no_point_satisfies(constraints, expected):
+    keys = {"q": ["x", "y"], "L": "(x_dot**2 + y_dot**2)/2", "multipliers": ["u", "v"][: len(constraints)]}
+    assert said("reaction", **keys, constraints=constraints, force=["x_ddot", "y_ddot"]) == expected
+
+
+@pytest.mark.parametrize(
     "body",
     [
         {"I": "1", "angle": "x", "r": ["x"]},  # r without m
@@ -302,6 +331,18 @@ def test_hidden_poles(exact, claim, expected):
         assert (abs(near - mp.mpf(claim)) < mp.mpf("1e-8")) == (expected == "holds")
     else:
         assert abs(abs(near) - 1) < mp.mpf("1e-8")
+
+
+@pytest.mark.parametrize(("exact", "claim", "domain", "expected"), [
+    ("Abs(a)*e", "a*e", ["a > e"], "holds"),  # a > e > 0 for every e leaves a ≥ 0
+    ("Abs(a)*e", "-a*e", ["a > e"], "fails"),
+    ("Abs(a)*e", "a*e", ["a < 1"], "fails"),
+    ("sin(e)", "e", ["e > 1"], "undecided"),  # not small
+    ("sin(e)", "e", ["e < 1"], "holds"),
+])  # fmt: skip
+def test_conditions_on_what_is_small(exact, claim, domain, expected):
+    keys = {"exact": [exact], "claim": [claim], "small": ["e"], "parameters": declared("e:positive a:real")}
+    assert said("first-order", **keys, domain=domain) == expected
 
 
 # --- positive real --------------------------------------------------------------------------------
