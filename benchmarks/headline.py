@@ -17,12 +17,15 @@ from dataclasses import dataclass
 from datetime import date
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from canon import DOP853, RK4, SABA, Gauss, Splitting, Taylor, TimeTransformed, WisdomHolman, propagate
 from canon.scene import find
+
+if TYPE_CHECKING:
+    from canon.scene.scene import Scene
 
 STORED = Path(__file__).parent / "results" / "headline.json"
 FIGURE = Path(__file__).parent.parent / "docs" / "figures" / "headline.png"
@@ -55,8 +58,8 @@ YEARS = 1e6
 PLANETS = (
     Case("canon: SABA(10,6,4), 16 steps a period", SABA("10-6-4"), 16, YEARS, 0.5),
     Case("canon: Wisdom–Holman, corrector 17, 40 steps", WisdomHolman(corrector=17), 40, YEARS, 0.0),
-    Case("canon: Kahan–Li 8, 100 steps", Splitting("kahan-li-8"), 100, YEARS / 4, 0.5),
-    Case("heyoka: Taylor", Taylor(), None, YEARS, 0.5),
+    Case("canon: Kahan–Li 8, 100 steps", Splitting("kahan-li-8"), 100, YEARS / 10, 0.5),
+    Case("heyoka: Taylor", Taylor(), None, YEARS / 4, 0.5),
     Case("Verlet, 100 steps", Splitting("verlet"), 100, YEARS, 0.0),
     Case("RK4, 100 steps", RK4(), 100, YEARS, 1.0),
     Case("SciPy: DOP853, 1e-12", DOP853(1e-12), None, YEARS / 500, 1.0),
@@ -87,11 +90,27 @@ PROBLEMS = {
 }
 
 
+def at_rest(scene: Scene) -> np.ndarray:
+    """Return a start whose centre of mass rests at the origin, where there are several bodies.
+
+    Otherwise it moves thousands of astronomical units off in a million years, and all places lose digits.
+    """
+    y0 = scene.state()
+    masses = np.array(
+        [value for name, value in scene.values.items() if name.startswith("m") and name != "mu"]
+    )
+    if len(masses) == 0:
+        return y0
+    x, p = y0.reshape(2, len(masses), -1)
+    share = masses[:, np.newaxis] / masses.sum()
+    return np.concatenate([(x - (share * x).sum(axis=0)).ravel(), (p - share * p.sum(axis=0)).ravel()])
+
+
 def run(problem: Problem, case: Case) -> dict[str, Any]:
     """Carry one case out."""
     scene = find(problem.scene)
     unit, period = problem.spans()
-    start, end = scene.starts[0], case.periods * unit
+    start, end = at_rest(scene), case.periods * unit
     keywords: dict[str, Any] = {}
     if case.steps:
         keywords |= {"step": period / case.steps * (1 + 1e-9), "precision": "compensated"}
@@ -102,7 +121,7 @@ def run(problem: Problem, case: Case) -> dict[str, Any]:
         keywords |= {"times": np.geomspace(unit, end, INSTANTS + 1)[:-1]}
     motion = propagate(
         scene.hamiltonian,
-        [*start.q, *start.p],
+        start,
         (0.0, end),
         method=case.method,
         parameters=scene.values,

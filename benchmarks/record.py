@@ -25,6 +25,8 @@ BENCHMARKS = {
     "minimal": "Only what is asked for",
     "classroom": "A class of two hundred",
     "kernels": "Compiled loops, beside a C program",
+    "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
+    "headline": "A million years of planets, ten million periods of Kepler's ellipse",
     "planets": "The planets, by methods for small perturbations",
     "scale_out": "Studies on two processes",
     "drift_calibration": "The drift statistics on series of known growth",
