@@ -88,7 +88,7 @@ def test_bounds_the_error_of_kepler_s_motion(method, how):
     assert estimate.lyapunov_time is None
 
 
-@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-12])
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, pytest.param(1e-12, marks=pytest.mark.slow)])
 def test_bounds_it_where_the_motion_nearly_collides(gap):
     start = kepler_start(gap)
     method = TimeTransformed(Splitting("kahan-li-8"))
@@ -122,12 +122,12 @@ def test_chaos_is_said():
         [a, b],
         [a.momentum, b.momentum],
     )
-    motion = propagate(double, [2.0, 2.5, 0.0, 0.0], (0, 150), samples=150)
+    motion = propagate(double, [2.0, 2.5, 0.0, 0.0], (0, 110), samples=110)
     estimate = motion.error_estimate()
     assert 1.5 < estimate.lyapunov_time < 6
-    assert 60 < estimate.meaningful_until < 160
+    assert 40 < estimate.meaningful_until < 110
     assert "this single trajectory means nothing" in str(estimate)
-    truth = propagate(double, [2.0, 2.5, 0.0, 0.0], (0, 150), samples=150, precision="quad")
+    truth = propagate(double, [2.0, 2.5, 0.0, 0.0], (0, 110), samples=110, precision="quad")
     with_meaning = motion.t < estimate.meaningful_until
     error = abs(motion.y - truth.y - truth.carried)
     assert (error <= estimate.error)[:, with_meaning].all()
