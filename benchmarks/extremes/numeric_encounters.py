@@ -51,6 +51,7 @@ def rows() -> Iterator[Row]:
             partial(kepler, gap, 100.0),
             {"method": LOGARITHMIC, "step": 0.05 * gap},
             extra=with_rebound(partial(kepler, gap, 100.0)),
+            limit=150.0,
         )
     for gap, name in ((0.01, "0.99"), (1e-6, "0.999999")):
         yield motion_row(
