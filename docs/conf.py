@@ -35,7 +35,6 @@ extensions = [
 ]
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-suppress_warnings = ["toc.empty_glob"]  # docs/extremes.md is written by a benchmark; a checkout may lack it
 exclude_patterns = ["_build", "_templates", "README.md"]
 
 nb_execution_mode = "force"  # a cached page would not know that canon has changed
