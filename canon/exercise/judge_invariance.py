@@ -16,11 +16,11 @@ from sympy.core.function import AppliedUndef
 
 from canon.exercise.judge_canonical import canonical_parts, rules_of
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.question import Part, Question, Regular, Same, Stated
+from canon.exercise.question import KINKED, Part, Question, Regular, Same, Stated, without_pieces
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.bracket import lagrange_bracket, poisson_bracket
 from canon.mechanics.substitution import exchanged
-from canon.proof.verdict import Status, Verdict
+from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -156,6 +156,8 @@ def _point_transformation(reading: Reading) -> Question:
         why = "new coordinates that hold velocities are no point transformation: the equations get third derivatives"
         return Verdict(Status.FAILS, "a point transformation", "structure", feedback=why)
     jacobian = sp.Matrix([[f.diff(x) for x in q] for f in Q])
+    if jacobian.has(*KINKED) and not without_pieces(jacobian, reading.domain):
+        raise Undecided("∂Q/∂q has pieces, and may be singular on one of them")
     return Regular(jacobian, "∂Q/∂q", reading.domain, "∂Q/∂q is singular: Q are no coordinates")
 
 

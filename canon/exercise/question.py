@@ -38,6 +38,7 @@ __all__ = [
     "decide",
     "fails",
     "opposite",
+    "without_pieces",
     "wrong_variables",
 ]
 
@@ -233,12 +234,10 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return _same_equations(claimed, right, unknowns, domain, deadline)
         case Regular(matrix, name, domain, singular_is):
             verdict = is_regular(matrix, domain, name)
-            if verdict.holds and matrix.has(*KINKED) and not _without_pieces(matrix, domain):
-                raise Undecided(f"{name} has pieces, and may be singular on one of them")
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
 
 
-def _without_pieces(matrix: sp.MatrixBase, domain: Domain) -> bool:
+def without_pieces(matrix: sp.MatrixBase, domain: Domain) -> bool:
     """Whether entries are analytic where signs said in the domain are known, as in |q| where q > 0."""
     bounds = [
         c for c in domain.conditions if isinstance(c, sp.Gt) and c.rhs == 0 and isinstance(c.lhs, Symbol)
