@@ -33,7 +33,9 @@ def motion(method=None, precision="double"):
     (q,) = coordinates("q")
     p = q.momentum
     pendulum = Hamiltonian(p**2/2 - sp.cos(q), [q], [p])
-    return propagate(pendulum, (1.25, 0.5), (0.0, 100.0), method=method or Splitting("blanes-moan-4"), step=None if isinstance(method, Taylor) else 0.05, precision=precision)
+    step = None if isinstance(method, Taylor) else 0.05
+    method = method or Splitting("blanes-moan-4")
+    return propagate(pendulum, (1.25, 0.5), (0.0, 100.0), method=method, step=step, precision=precision)
 def bits(found):
     return hashlib.sha256(np.ascontiguousarray(np.asarray(found.q, float)).tobytes()).hexdigest()[:32]
 """
@@ -180,7 +182,8 @@ def _ended() -> Iterator[Row]:
             "s = sp.symbols('s0:9', real=True)\n"
             "from canon import Domain\nfrom canon.proof.budget import prove_in_worker\n"
             "hard = sp.Add(*(sp.sin(sp.Add(*s)*k)*sp.sqrt(sp.Add(*s[:k])) for k in range(1, 9)))**9 - 1\n"
-            "try:\n    prove_in_worker([hard], Domain(), 60.0)\nexcept KeyboardInterrupt:\n    print('stopped', flush=True)\n"
+            "try:\n    prove_in_worker([hard], Domain(), 60.0)\nexcept KeyboardInterrupt:\n    "
+            "print('stopped', flush=True)\n"
             "print(*proof(), flush=True)\n"
         )
         return _interrupted(script, "stopped", "holds fails")
@@ -189,7 +192,8 @@ def _ended() -> Iterator[Row]:
         script = USES + (
             "motion()\nprint('ready', flush=True)\n"
             "(q,) = coordinates('q')\n"
-            "try:\n    propagate(Hamiltonian(q.momentum**2/2 - sp.cos(q), [q], [q.momentum]), (1.25, 0.5), (0.0, 1e8), method=Splitting('verlet'), step=0.01, samples=3)\n"
+            "try:\n    propagate(Hamiltonian(q.momentum**2/2 - sp.cos(q), [q], [q.momentum]), (1.25, 0.5), "
+            "(0.0, 1e8), method=Splitting('verlet'), step=0.01, samples=3)\n"
             "except BaseException as e:\n    print(type(e).__name__, flush=True)\n"
             "print(*proof(), flush=True)\n"
         )
@@ -210,7 +214,8 @@ def _ended() -> Iterator[Row]:
             hard = (
                 "s = sp.symbols('s0:9', real=True)\nfrom canon import Domain\n"
                 "from canon.proof.budget import prove_in_worker\n"
-                "prove_in_worker([sp.Add(*(sp.sin(sp.Add(*s)*k)*sp.sqrt(sp.Add(*s[:k])) for k in range(1, 9)))**9 - 1], Domain(), 60.0)"
+                "prove_in_worker([sp.Add(*(sp.sin(sp.Add(*s)*k)*sp.sqrt(sp.Add(*s[:k])) for k in range(1, "
+                "9)))**9 - 1], Domain(), 60.0)"
             )
             client.execute_interactive(USES, timeout=60, output_hook=lambda _: None)
             asked = client.execute(hard)
@@ -266,7 +271,8 @@ def _ended() -> Iterator[Row]:
             "import resource, os\nproof()\nused = int(open('/proc/self/statm').read().split()[0])*4096\n"
             "resource.setrlimit(resource.RLIMIT_AS, (used + 300*2**20,)*2)\n"
             "s = sp.symbols('s0:12', real=True)\n"
-            "print(vanishes(sp.expand(sp.Add(*s)**4) - sp.Add(*s)**4 + sp.sin(sp.Add(*s))**40 - (1-sp.cos(sp.Add(*s))**2)**20, budget=10.0).status.value)",
+            "print(vanishes(sp.expand(sp.Add(*s)**4) - sp.Add(*s)**4 + sp.sin(sp.Add(*s))**40 - "
+            "(1-sp.cos(sp.Add(*s))**2)**20, budget=10.0).status.value)",
             "holds|undecided",
         ),
         limit=120.0,
@@ -323,8 +329,10 @@ def _surroundings() -> Iterator[Row]:
         limit=120.0,
     )
     yield Row("ascii-only", "LC_ALL=C, standard output in ASCII", lambda: ran(
-        "from canon import Claim, judge\nv = str(judge(Claim('a', 'lie-bracket', {'x': ['x'], 'X': ['x'], 'Y': ['1'], 'claim': ['1']})))\nprint(v.split()[0])",
-        "FAILS", env={"LC_ALL": "C", "PYTHONIOENCODING": "ascii:backslashreplace", "PYTHONUTF8": "0"}), limit=120.0)  # fmt: skip
+        "from canon import Claim, judge\nv = str(judge(Claim('a', 'lie-bracket', {'x': ['x'], 'X': ['x'], "
+        "'Y': ['1'], 'claim': ['1']})))\nprint(v.split()[0])",
+        "FAILS", 
+        env={"LC_ALL": "C", "PYTHONIOENCODING": "ascii:backslashreplace", "PYTHONUTF8": "0"}), limit=120.0)  # fmt: skip
     yield Row("cli-ascii", "canon check where the terminal knows ASCII only", _check_in_ascii, limit=120.0)
     yield Row(
         "locale-comma",
@@ -334,10 +342,12 @@ def _surroundings() -> Iterator[Row]:
     )
     yield Row("digits-limit", "int_max_str_digits of 640", lambda: ran(
         "import sys\nsys.set_int_max_str_digits(640)\nx = sp.Symbol('x', real=True)\n"
-        "print(vanishes((x + 1)*10**3000 - x*10**3000 - 10**3000).status.value, vanishes(x*10**3000 - x).status.value)",
+        "print(vanishes((x + 1)*10**3000 - x*10**3000 - 10**3000).status.value, vanishes(x*10**3000 - "
+        "x).status.value)",
         "holds fails"), limit=120.0)  # fmt: skip
     yield Row("recursion-limit", "a recursion limit of 200", lambda: ran(
-        "import sys\nproof()\nsys.setrecursionlimit(200)\nx = sp.Symbol('x', real=True)\nprint(vanishes(sp.sin(x)**2 + sp.cos(x)**2 - 1).status.value)",
+        "import sys\nproof()\nsys.setrecursionlimit(200)\nx = sp.Symbol('x', "
+        "real=True)\nprint(vanishes(sp.sin(x)**2 + sp.cos(x)**2 - 1).status.value)",
         "holds|undecided"), limit=120.0)  # fmt: skip
     yield Row(
         "no-file-descriptors",
@@ -357,7 +367,8 @@ def _check_in_ascii() -> Outcome:
     with tempfile.TemporaryDirectory() as folder:
         sheet = Path(folder, "s.json")
         sheet.write_text(
-            '{"claims": [{"id": "θ", "kind": "equality-only", "lhs": "θ", "rhs": "2*θ", "parameters": {"theta": "real"}}]}',
+            '{"claims": [{"id": "θ", "kind": "equality-only", "lhs": "θ", "rhs": "2*θ", '
+            '"parameters": {"theta": "real"}}]}',
             encoding="utf-8",
         )
         done = subprocess.run(
@@ -383,7 +394,8 @@ def _with_commas() -> Outcome:
         script = (
             "import locale\nbefore = bits(motion())\nlocale.setlocale(locale.LC_ALL, 'de_DE.UTF-8')\n"
             "assert locale.localeconv()['decimal_point'] == ','\n"
-            "import ctypes\nassert b',' in (lambda b: (ctypes.CDLL(None).snprintf(b, 20, b'%.1f', ctypes.c_double(1.5)), b.value)[1])(ctypes.create_string_buffer(20))\n"
+            "import ctypes\nassert b',' in (lambda b: (ctypes.CDLL(None).snprintf(b, 20, b'%.1f', "
+            "ctypes.c_double(1.5)), b.value)[1])(ctypes.create_string_buffer(20))\n"
             "x = sp.Symbol('x', real=True)\nfound = vanishes(x - sp.Rational(3, 2))\n"
             "print(*proof(), bits(motion()) == before, found.counterexample.left)"
         )
@@ -393,7 +405,8 @@ def _with_commas() -> Outcome:
 def _processors() -> Iterator[Row]:
     yield Row(
         "x86-64-targets",
-        "pendulum and Kepler by splitting, Gauss and Runge–Kutta methods, doubles and double-doubles, compiled for the host, "
+        "pendulum and Kepler by splitting, Gauss and Runge–Kutta methods, doubles and double-doubles, "
+        "compiled for the host, "
         "AVX2 without AVX-512 and FMA, and baseline x86-64: bit for bit",
         _targets, limit=300.0,
     )  # fmt: skip
@@ -436,7 +449,9 @@ def _targets() -> Outcome:
         "target('haswell', '+avx2,-fma,-avx512f')\navx2 = all_bits()\n"
         "target('x86-64', '')\nL.simd_bytes = lambda: 16\nbase = all_bits()\n"
         "ran = sum(len(b) == 32 for b in host)\n"
-        "print(ran, 'of', len(host), 'ran;', sum(a == b for a, b in zip(host, avx2)), 'alike with AVX2,', sum(a == b for a, b in zip(host, base)), 'with baseline', 'SAME' if host == avx2 == base and ran > 8 else 'DIFFERENT', [h for h in host if len(h) != 32][:1])"
+        "print(ran, 'of', len(host), 'ran;', sum(a == b for a, b in zip(host, avx2)), 'alike with AVX2,', "
+        "sum(a == b for a, b in zip(host, base)), 'with baseline', 'SAME' if host == avx2 == base and ran > "
+        "8 else 'DIFFERENT', [h for h in host if len(h) != 32][:1])"
     )
     return ran(script, "SAME", timeout=290)
 
@@ -462,14 +477,17 @@ def _aarch64() -> Outcome:
         "    here = sum(text.count(w) for w in ('fmadd', 'fmla', 'fmsub', 'fnmsub', 'fmls', 'fnmadd'))\n"
         "    fused += here; bad += here and 'llvm.fma' not in ir\n"
         "asked = sum(ir.count('llvm.fma') for ir in kept)\n"
-        "print(len(kept), 'modules,', lines, 'lines of aarch64,', fused, 'fused operations,', asked, 'asked for,', x87, 'of x87 numbers left out,', bad, 'modules with fused operations that did not ask', 'BAD' if bad or x87 or not kept else 'GOOD')"
+        "print(len(kept), 'modules,', lines, 'lines of aarch64,', fused, 'fused operations,', asked, 'asked "
+        "for,', x87, 'of x87 numbers left out,', bad, 'modules with fused operations that did not ask', "
+        "'BAD' if bad or x87 or not kept else 'GOOD')"
     )
     return ran(script, "GOOD", timeout=190)
 
 
 def _versions() -> Iterator[Row]:
     for variable, said in (
-        ("CANON_OLDEST_PYTHON", "the oldest supported dependencies"), ("CANON_NEWEST_PYTHON", "the newest Python and dependencies")
+        ("CANON_OLDEST_PYTHON", "the oldest supported dependencies"),
+        ("CANON_NEWEST_PYTHON", "the newest Python and dependencies"),
     ):  # fmt: skip
         yield Row(
             variable.removeprefix("CANON_").removesuffix("_PYTHON").lower(),
@@ -485,6 +503,7 @@ def _of_versions(variable: str) -> Outcome:
     return ran(
         "import sys, importlib.metadata as m\n"
         "names = ('sympy', 'numpy', 'scipy', 'heyoka', 'llvmlite', 'python-flint', 'lark')\n"
-        "print(*proof(), motion().q.shape[1] > 1, motion(Taylor()).q.shape[1] > 1, 'Python', sys.version.split()[0], *(f'{n} {m.version(n)}' for n in names))",
+        "print(*proof(), motion().q.shape[1] > 1, motion(Taylor()).q.shape[1] > 1, 'Python', "
+        "sys.version.split()[0], *(f'{n} {m.version(n)}' for n in names))",
         "holds fails True True", python=python, timeout=190,
     )  # fmt: skip
