@@ -331,7 +331,7 @@ def _surroundings() -> Iterator[Row]:
     yield Row("ascii-only", "LC_ALL=C, standard output in ASCII", lambda: ran(
         "from canon import Claim, judge\nv = str(judge(Claim('a', 'lie-bracket', {'x': ['x'], 'X': ['x'], "
         "'Y': ['1'], 'claim': ['1']})))\nprint(v.split()[0])",
-        "FAILS", 
+        "FAILS",
         env={"LC_ALL": "C", "PYTHONIOENCODING": "ascii:backslashreplace", "PYTHONUTF8": "0"}), limit=120.0)  # fmt: skip
     yield Row("cli-ascii", "canon check where the terminal knows ASCII only", _check_in_ascii, limit=120.0)
     yield Row(
