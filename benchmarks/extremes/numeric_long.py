@@ -81,13 +81,13 @@ def rows() -> Iterator[Row]:
         "lattice-4096",
         "Fermi, Pasta, Ulam and Tsingou, α = 0.25, N = 4096, 1000 steps of order 4",
         partial(lattice, 4096, 0.25),
-        limit=200,
+        limit=400,
     )
     yield Row(
         "lattice-4096-linear",
         "the same chain without α: its normal modes in closed form",
         partial(lattice, 4096, 0.0),
-        limit=200,
+        limit=400,
     )
     yield Row(
         "ensemble-1e6",

@@ -284,7 +284,9 @@ def _companions(better: _Better, samples: Samples, scale: Array) -> tuple[Sample
     near, far = low.copy(), low.copy()
     near[task.system.rows] += 2 * better.unit * shifts
     far[task.system.rows] += _BESIDE * shifts
-    pairs = np.concatenate([high] * 3, axis=1), np.concatenate([low, far, near], axis=1)
+    highs = [high, high + far, high + near]
+    lows = [low, (high - highs[1]) + far, (high - highs[2]) + near]
+    pairs = np.concatenate(highs, axis=1), np.concatenate(lows, axis=1)
     together = None if task.events else replace(task, states=pairs)
     for each in (together, task):
         if each is None:
