@@ -173,7 +173,7 @@ def draw(stored: dict[str, Any]) -> None:
         guide = np.array([1e2, problem.span])
         ax.loglog(guide, 6e-18 * np.sqrt(guide), color="0.6", lw=1)
         ax.annotate("√t", (guide[1], 6e-18 * np.sqrt(guide[1])), color="0.4", ha="right", va="top")
-        ax.set(title=problem.title, xlabel=f"time, {problem.unit}", ylim=(3e-17, 1e3))
+        ax.set(title=problem.title, xlabel=f"time, {problem.unit}", ylim=(3e-17, 1e9))
         ax.grid(visible=True, which="major", alpha=0.3)
         ax.legend(
             fontsize=7.5, loc="upper left", title="method (CPU time of the whole span)", title_fontsize=7.5
