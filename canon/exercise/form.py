@@ -6,6 +6,7 @@ What is found here costs time in proportion to the sheet, whatever stands in it.
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Mapping
 from decimal import Decimal
 from itertools import islice
@@ -134,7 +135,12 @@ def _fits(value: Any, shape: Shape) -> bool:
 def _interval(value: Any) -> bool:
     if not isinstance(value, list) or len(value) != 2:
         return False
-    return all(_number(end) for end in value) and value[0] < value[1]
+    return all(_number(end) or _float(end) for end in value) and value[0] < value[1]
+
+
+def _float(value: Any) -> bool:
+    """Whether this is a finite float, as a hint given from Python may be; sheets have decimals."""
+    return isinstance(value, float) and math.isfinite(value)
 
 
 def _bracket(value: Any) -> bool:
