@@ -239,10 +239,9 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
 
 def without_pieces(matrix: sp.MatrixBase, domain: Domain) -> bool:
     """Whether entries are analytic where signs said in the domain are known, as in |q| where q > 0."""
-    bounds = [
-        c for c in domain.conditions if isinstance(c, sp.Gt) and c.rhs == 0 and isinstance(c.lhs, Symbol)
-    ]
-    positive = {c.lhs: sp.Dummy(c.lhs.name, positive=True) for c in bounds}
+    bounds = [c for c in domain.conditions if isinstance(c, sp.Gt) and c.rhs == 0]
+    named = [s for c in bounds if isinstance(s := c.lhs, Symbol)]
+    positive: dict[Symbol, Expr] = {s: sp.Dummy(s.name, positive=True) for s in named}
     entries = [substitute(entry, positive) for entry in matrix.flat()]
     return is_analytic(entries, domain)
 

@@ -86,7 +86,8 @@ def from_sympy_mechanics(method: Any) -> ConstrainedLagrangian | QuasiMotion:
     if isinstance(method, KanesMethod):
         return _of_kanes_method(method)
     raise TypeError(
-        f"{type(method).__name__} is neither a LagrangesMethod nor a KanesMethod of sympy.physics.mechanics; give one of these"
+        f"{type(method).__name__} is neither a LagrangesMethod nor a KanesMethod of sympy.physics.mechanics; "
+        "give one of these"
     )
 
 
