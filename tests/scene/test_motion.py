@@ -196,7 +196,7 @@ def test_starts_are_put_onto_the_constraints():
 
 def test_refused_questions():
     scene = find("henon-heiles")
-    with pytest.raises(SceneError, match="a motion takes some time"):
+    with pytest.raises(SceneError, match="give a positive, finite number"):
         run(scene, periods=0.0)
     with pytest.raises(SceneError, match="no start 'regularr'"):
         run(scene, "regularr")
