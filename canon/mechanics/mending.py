@@ -10,6 +10,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.mechanics.jacobian import is_large
 from canon.mechanics.substitution import exchanged
 from canon.proof.vanish import vanishes
 
@@ -66,6 +67,8 @@ def _arbitrary(f: Expr, moving: set[Symbol]) -> list[Expr]:
 
 def mending(T: CanonicalTransformation, c: Expr, seconds: float = 10.0) -> str:
     """Return one sentence that says how to mend the map, or nothing where that is not simple or takes too long."""
+    if is_large(T.images):
+        return ""
     n, deadline = len(T.q), time.monotonic() + seconds
     if n == 1:
         value = constant_value(T.poisson_bracket_of(0, 1), T.variables, T.t, T.domain, seconds)

@@ -21,6 +21,7 @@ from canon.expression.symbol import time
 from canon.mechanics.bracket import antisymmetric, lagrange_matrix
 from canon.mechanics.canonicity import disagreement, residuals
 from canon.mechanics.claim import all_vanish
+from canon.mechanics.jacobian import jacobian
 from canon.mechanics.linear import solve
 from canon.mechanics.mending import constant_value, mending
 from canon.mechanics.potential import potential
@@ -107,7 +108,7 @@ class CanonicalTransformation:
     @cached_property
     def jacobian(self) -> sp.ImmutableDenseMatrix:
         """The Jacobian M = ∂(Q, P)/∂(q, p), of shape (2n, 2n)."""
-        return sp.ImmutableDenseMatrix([[f.diff(z) for z in self.variables] for f in self.images])
+        return sp.ImmutableDenseMatrix(jacobian(self.images, self.variables))
 
     @cached_property
     def poisson_brackets(self) -> sp.ImmutableDenseMatrix:

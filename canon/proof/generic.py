@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["is_analytic", "proved_sign"]
 
-SECONDS = 0.3
+SECONDS = 0.5
 """Time for the sign of one expression."""
 
 ENTIRE = (sp.Add, sp.Mul, sp.exp, sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc, sp.sinh, sp.cosh, sp.tanh)
