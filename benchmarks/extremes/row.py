@@ -110,5 +110,5 @@ def refused(run: Callable[[], Any], *errors: type[BaseException], holds: str = "
 
 def shown(text: object, width: int = 200) -> str:
     """Return a text as one line that fits a cell of a table."""
-    line = " ".join(str(text).split()).replace("|", "¦")
+    line = " ".join(str(text).split()).replace("|", "¦").replace("\0", r"\0")
     return line if len(line) <= width else line[: width - 1] + "…"
