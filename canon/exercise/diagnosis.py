@@ -11,6 +11,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from canon.exercise.question import Deadline, decide
+from canon.proof.prove import REFUSALS
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
 
     from canon.exercise.question import Part
     from canon.exercise.reading import Reading
-
-_NONSENSE = (TypeError, ValueError, ArithmeticError, NotImplementedError)
-"""What a repair raises that makes no sense: a singular matrix, an empty domain, no number, an order of i."""
 
 __all__ = ["Diagnosis", "judged_to_hold", "scaled"]
 
@@ -68,7 +66,7 @@ def judged_to_hold(reading: Reading, seconds: float, held: int = 0, but: int | N
         return all(
             decide(question, deadline).holds for i, question in islice(questions, held, None) if i != but
         )
-    except (Undecided, *_NONSENSE):
+    except (Undecided, *REFUSALS):  # what a repair that makes no sense raises: a singular matrix, an empty domain
         return False
 
 

@@ -11,6 +11,7 @@ from canon.exercise.feedback import corrected, feedback
 from canon.exercise.judge import InvalidClaim, examine
 from canon.exercise.report import MAX_SHOWN, Judgement, invalid
 from canon.exercise.steps import steps
+from canon.proof.prove import REFUSALS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["judgements"]
 
 FEEDBACK_SECONDS = 1.4
-REFUSALS = (TypeError, ValueError, ArithmeticError, NotImplementedError)
-"""What SymPy raises when it meets what it can't build, such as a comparison of infinities or a nonsensical repair."""
+"""Wall time for the search of a diagnosis, so that a false claim is answered within two seconds."""
 
 
 def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
