@@ -66,10 +66,7 @@ def judged_to_hold(reading: Reading, seconds: float, held: int = 0, but: int | N
         return all(
             decide(question, deadline).holds for i, question in islice(questions, held, None) if i != but
         )
-    except (
-        Undecided,
-        *REFUSALS,
-    ):  # what a repair that makes no sense raises: a singular matrix, an empty domain
+    except (Undecided, *REFUSALS):  # a repair may make no sense: a singular matrix, an empty domain
         return False
 
 
