@@ -4,7 +4,7 @@ For each problem, contender and accuracy: the cheapest setting tried (steps a pe
 max |ΔE/E| at 3137 instants below it, and the processor time a period of a run that keeps the last state only: the
 median of runs that take turns. Others are installed into an environment of their own; canon needs none of them::
 
-    pip install rebound galpy pyhamsys diffrax numbalsoda
+    pip install rebound galpy pyhamsys diffrax numbalsoda    # the last needs a Fortran compiler
     python benchmarks/peers.py --store
 
 Without ``--run`` or ``--store`` the stored table is printed.
@@ -367,9 +367,36 @@ def diffrax_methods(problem: Problem) -> Iterator[Contender]:
     yield Contender("diffrax Dopri8", [1e-6, 1e-8, 1e-10, 1e-12, 1e-14], run)
 
 
+def numbalsoda_methods(problem: Problem) -> Iterator[Contender]:
+    import numba
+    import numbalsoda
+
+    u = sp.IndexedBase("u")
+    size = len(problem.y0)
+    places = {s: u[i] for i, s in enumerate((*problem.q, *problem.p))}
+    rates = numba.njit(sp.lambdify(u, tuple(r.xreplace(places) for r in problem.rates), "math", cse=True))
+
+    @numba.cfunc(numbalsoda.lsoda_sig)
+    def right_side(_t: float, state: Array, rate: Array, _data: Array) -> None:
+        found = rates(state)
+        for i in range(size):
+            rate[i] = found[i]
+
+    solvers: dict[str, Any] = {"lsoda": numbalsoda.lsoda, "dop853": numbalsoda.dop853}
+    for name, solver in solvers.items():
+
+        def run(setting: float, instants: int, solver: Any = solver) -> Run:
+            at = np.linspace(0, problem.span, instants + 1)
+            keywords = {"rtol": setting, "atol": setting, "mxstep": 10**8}
+            spent, (found, done) = timed(lambda: solver(right_side.address, problem.y0, at, **keywords))
+            return spent, found.T if done else np.full((size, instants + 1), np.nan)
+
+        yield Contender(f"numbalsoda {name}", TOLERANCES, run)
+
+
 PEERS: dict[str, Callable[[Problem], Iterator[Contender]]] = {
     "heyoka": heyoka_methods, "rebound": rebound_methods, "galpy": galpy_methods, "diffrax": diffrax_methods,
-    "pyhamsys": pyhamsys_methods, "scipy": scipy_methods,
+    "pyhamsys": pyhamsys_methods, "scipy": scipy_methods, "numbalsoda": numbalsoda_methods,
 }  # fmt: skip
 PROBLEMS = {
     "kepler": ("Kepler, e = 0.6", "kepler", 0, 10),
