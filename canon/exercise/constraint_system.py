@@ -131,7 +131,8 @@ class ConstraintSystem:
         """A set of velocities that is not flat belongs to no equation f(q, t) = 0, whose rate is affine."""
         if len(self.velocities) > 1 or self.positions:
             raise Undecided(
-                "constraints that are not affine in the velocities are decided only one at a time"
+                "constraints that are not affine in the velocities are decided only one at a time; "
+                "make a claim of each"
             )
         [g] = list(self.velocities)
         v = [velocity(x) for x in self.q]
@@ -141,21 +142,27 @@ class ConstraintSystem:
             flat = decide(Same((part,), domain), self.deadline)
             if flat.fails:
                 return flat
-        raise Undecided("the constraint is not affine in the velocities, and was not proved to be curved")
+        raise Undecided(
+            "the constraint is not affine in the velocities, and was not proved to be curved; "
+            "say the signs of its parameters, or solve it for a velocity"
+        )
 
     def rank(self, rows: Sequence[Sequence[Expr]]) -> int:
         """Return the rank of some rows, the same off the constraints and on them."""
         matrix = sp.Matrix([list(row) for row in rows])
         if matrix.has(*KINKED) and not is_analytic(matrix.flat(), self.domain):
             raise Undecided(
-                "the constraints hold functions with pieces, whose rank may differ from piece to piece"
+                "the constraints hold functions with pieces, whose rank may differ from piece to piece; "
+                "narrow the domain to one piece"
             )
         ranks = {eliminate(matrix, domain=self.domain).rank}
         for branch in self.branches if self.positions else ():
             here = matrix.applyfunc(lambda f, b=branch: substitute(f, b.values))
             ranks.add(eliminate(here, domain=branch.domain).rank)
         if len(ranks) > 1:
-            raise Undecided("the constraints become dependent where they hold")
+            raise Undecided(
+                "the constraints become dependent where they hold; leave one out, or narrow the domain"
+            )
         return ranks.pop()
 
     @cached_property
@@ -172,7 +179,7 @@ class ConstraintSystem:
         sides = [side for h in moving for side in self._moves(h)]
         if any(side.fails for side in sides):
             return next(side for side in sides if side.fails)
-        raise Undecided("whether the inequality depends on the time was not decided")
+        raise Undecided("whether the inequality depends on the time was not decided; narrow the domain")
 
     def _moves(self, h: Expr) -> Iterator[Verdict]:
         """Yield whether ∂h/∂t vanishes at the edge h = 0, as far as the other inequalities leave it bare."""
@@ -194,7 +201,8 @@ class ConstraintSystem:
                 here = slopes.applyfunc(lambda f, b=branch: substitute(f, b.values))
                 if eliminate(here, domain=branch.domain).rank < eliminate(slopes, domain=self.domain).rank:
                     raise Undecided(
-                        "the derivatives of the constraints vanish or become dependent where they hold"
+                        "the derivatives of the constraints vanish or become dependent where they hold; "
+                        "write each without a power, as x − t = 0 instead of (x − t)² = 0"
                     )
 
     def all_vanish(self, name: str, expressions: Sequence[Expr]) -> Verdict:
@@ -212,7 +220,10 @@ class ConstraintSystem:
     def freedom(self, counting: str) -> int:
         """Return the number of independent virtual displacements, or of positions that can be reached."""
         if not self.affine.holds:
-            raise Undecided("degrees of freedom are counted for constraints affine in the velocities")
+            raise Undecided(
+                "degrees of freedom are counted for constraints affine in the velocities; "
+                "write these so, if they can be"
+            )
         if not self.rates:
             return len(self.q)
         self.check_consistent()
@@ -226,7 +237,8 @@ class ConstraintSystem:
             return whole
         if self.integrable.undecided or self.positions:
             raise Undecided(
-                "which combinations of the constraints are integrable was not decided; eliminate positions"
+                "which combinations of the constraints are integrable was not decided; "
+                "eliminate positions with those that hold no velocities"
             )
         return len(self.forms.holonomic_part.forms)
 

@@ -45,7 +45,7 @@ def _check_continuous(I: Expr, state: Sequence[Symbol]) -> None:
     kinked = [part for part in I.atoms(*KINKED) if part.has(*state)]
     jumps = any(isinstance(part, sp.sign | sp.Piecewise | sp.Heaviside) for part in kinked)
     if jumps or (kinked and any(e.exp.is_negative and e.has(*state) for e in I.atoms(sp.Pow))):
-        raise Undecided(f"{I} may jump, which its rate does not show")
+        raise Undecided(f"{I} may jump, which its rate does not show; narrow the domain to where it does not")
 
 
 def motion_of(reading: Reading) -> dict[Symbol, Expr]:

@@ -14,6 +14,7 @@ from canon.exercise.judge_lagrangian import lagrangian_of
 from canon.exercise.manifold import on_manifold
 from canon.exercise.question import Part, Question, Same, SameEquations
 from canon.exercise.tree import replaced
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.substitution import substitute
@@ -65,7 +66,10 @@ def _on_every_motion(
     """Accelerations and multipliers solve  M q̈ + b = Aᵀ λ  and  d(held)/dt = 0;  claims hold on the manifold."""
     q, t, multipliers = reading.symbols("q"), reading.time, reading.symbols("multipliers")
     if len(multipliers) != directions.rows:
-        reading.fault("multipliers", f"{len(multipliers)} multipliers for {directions.rows} constraints")
+        reading.fault(
+            "multipliers",
+            f"{counted(len(multipliers), 'multiplier')} for {counted(directions.rows, 'constraint')}",
+        )
     lagrangian = lagrangian_of(reading)
     unknowns = (*(acceleration(x) for x in q), *multipliers)
     reactions = directions.T * sp.Matrix(multipliers)

@@ -15,6 +15,7 @@ from sympy import Expr
 
 from canon.exercise.constraint_system import ConstraintSystem
 from canon.exercise.question import Deadline, Question, Stated, fails, opposite
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
@@ -72,7 +73,7 @@ def degrees_of_freedom(reading: Reading) -> Iterator[Question]:
         return
     n, m = len(constraints.q), len(constraints.q) - right
     what = f"constraint{'s' * (m != 1)}" + (" on positions" if counting == "positions" else "")
-    why = f"{n} coordinates less {m} independent {what} leave {right}, not {claimed}"
+    why = f"{counted(n, 'coordinate')} less {m} independent {what} leave {right}, not {claimed}"
     names = {"velocities": "independent virtual displacements", "positions": "positions that can be reached"}
     other = next(key for key in names if key != counting)
     try:

@@ -97,7 +97,10 @@ def _judged(above: sp.Poly, below: sp.Poly, s: Symbol, domain: Domain, *, negate
     proved = _never(above, below, domain) if negated else _always(above, below, domain)
     if proved:
         return Verdict(Status.HOLDS, certificate="exact")
-    raise Undecided(f"no counterexample at {POINTS} values of the parameters, and no proof for all of them")
+    raise Undecided(
+        f"no counterexample at {POINTS} values of the parameters, and no proof for all of them; "
+        "say their signs, or give some of them as numbers"
+    )
 
 
 def _refuted(point: Mapping[Symbol, Rational], fault: _Fault | None, s: str) -> Verdict:

@@ -26,6 +26,7 @@ from canon.exercise.manifold import (
 )
 from canon.exercise.question import Deadline, Part, Question, Same, Stated, decide
 from canon.exercise.tree import replaced, symbols_of
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import substitute
@@ -70,7 +71,10 @@ def reaction(reading: Reading) -> Iterator[Question]:
     q, multipliers = reading.symbols("q"), reading.symbols("multipliers")
     constraints = reading.equations("constraints")
     if len(multipliers) != len(constraints):
-        reading.fault("multipliers", f"{len(multipliers)} multipliers for {len(constraints)} constraints")
+        reading.fault(
+            "multipliers",
+            f"{counted(len(multipliers), 'multiplier')} for {counted(len(constraints), 'constraint')}",
+        )
     if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
         check_not_empty(constraints, q, reading.time, reading.domain)
         yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
@@ -188,7 +192,10 @@ def _check_constant(reading: Reading, rates: Sequence[Expr], motion: _Motion) ->
                 f"integrals[{i}]", "is not constant along the motion, so no whole motion satisfies it"
             )
         if kept.undecided:
-            raise Undecided(f"whether integrals[{i}] is constant along the motion was not decided")
+            raise Undecided(
+                f"whether integrals[{i}] is constant along the motion was not decided; "
+                "give a larger budget, or narrow the domain"
+            )
 
 
 def _answer(parts: Sequence[Part]) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from canon.exercise.judge_energy import shown_short
 from canon.exercise.manifold import transported
 from canon.exercise.question import Deadline, Part, Question, Same, SameEquations, Stated, decide
 from canon.exercise.tree import arguments, symbols_of
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import exchanged, substitute
@@ -44,7 +45,7 @@ def first_order(reading: Reading) -> Iterator[Question]:
     if not exact:
         reading.fault("exact", "at least one expression is needed")
     if len(exact) != len(claimed):
-        reading.fault("claim", f"{len(claimed)} expressions for the {len(exact)} under exact")
+        reading.fault("claim", f"{counted(len(claimed), 'expression')} for the {len(exact)} under exact")
     order = int(reading.claim.keys.get("order", 1))
     if order != reading.claim.keys.get("order", 1) or not -MOST_ORDERS <= order <= MOST_ORDERS:
         reading.fault("order", f"should be a whole number from -{MOST_ORDERS} to {MOST_ORDERS}")
@@ -124,7 +125,9 @@ def _check_real(place: Mapping[Symbol, Expr], domain: Domain) -> None:
     values = [value for value in place.values() if not value.is_real]
     points = list(domain.points(symbols_of(*values), 12)) if values else []
     if values and all(any(abs(sp.im(sp.N(exchanged(f, p), 30))) > 1e-9 for f in values) for p in points):
-        raise Undecided("no values of the parameters were found for which the place is real")
+        raise Undecided(
+            "no values of the parameters were found for which the place is real; state them in the domain"
+        )
 
 
 def _linear(
@@ -135,7 +138,9 @@ def _linear(
     _check_analytic(equation, still, Domain())
     terms = [substitute(equation.diff(s), still) * s for s in (*q, *rates)]
     if any(term.has(sp.nan, sp.zoo, sp.oo, -sp.oo) for term in terms):
-        raise Undecided("the equations have no derivative at the equilibrium")
+        raise Undecided(
+            "the equations have no derivative at the equilibrium, so they are not linearised there"
+        )
     return sp.Add(*terms)
 
 
@@ -181,7 +186,10 @@ def _domain_near(small: Sequence[Symbol], domain: Domain) -> Domain:
             gap = substitute(cast("Expr", c.gts) - cast("Expr", c.lts), dict.fromkeys(small, sp.S.Zero))
             conditions.append(sp.Ge(gap, 0))
     if sp.false in conditions:
-        raise Undecided(f"the domain keeps {', '.join(map(str, small))} away from zero")
+        raise Undecided(
+            f"the domain keeps {', '.join(map(str, small))} away from zero, "
+            "where the claim is made; leave that condition out"
+        )
     return Domain(tuple(c for c in conditions if c is not sp.true), domain.box)
 
 
@@ -229,7 +237,9 @@ def _check_analytic(f: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> No
         elif isinstance(part, sp.asin | sp.acos | sp.atanh | sp.acosh | sp.acot | sp.acoth):
             bad = substitute(arguments(part)[0], place) != 0 or isinstance(part, sp.acosh | sp.acot)
         if bad:
-            raise Undecided(f"{part} is not certainly analytic there, so it has no expansion that is proved")
+            raise Undecided(
+                f"{part} is not certainly analytic there, so no expansion of it is proved; narrow the domain"
+            )
 
 
 def _order_of(f: Expr, epsilon: Symbol, domain: Domain, deadline: Deadline) -> tuple[int, Expr]:
@@ -241,13 +251,17 @@ def _order_of(f: Expr, epsilon: Symbol, domain: Domain, deadline: Deadline) -> t
             return k, coefficient
         if verdict.undecided:
             break
-    raise Undecided("the order of a denominator in the small quantity was not decided")
+    raise Undecided(
+        "the order of a denominator in the small quantity was not decided; say the signs of the parameters"
+    )
 
 
 def _coefficient(f: Expr, epsilon: Symbol, k: int) -> Expr:
     found = substitute(f.diff(epsilon, k), {epsilon: sp.S.Zero}) / sp.factorial(k)
     if found.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise Undecided(f"the coefficient of order {k} is not finite")
+        raise Undecided(
+            f"the coefficient of order {k} is not finite, so this is no expansion in whole powers"
+        )
     return found
 
 

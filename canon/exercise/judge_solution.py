@@ -16,6 +16,7 @@ from canon.exercise.judge_invariance import is_instead
 from canon.exercise.manifold import transported
 from canon.exercise.question import KINKED, Part, Question, Regular, Same, fails
 from canon.exercise.tree import arguments
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import is_regular
@@ -164,7 +165,9 @@ def _initial(reading: Reading, motion: Mapping[Symbol, Expr], t: Symbol) -> Iter
             reading.fault(f"initial.{name}", f"should be one of {', '.join(map(str, known))}")
         there = substitute(known[symbol], {t: start})
         if there.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-            raise Undecided(f"{symbol} at {t} = {start} is a limit, which is not taken")
+            raise Undecided(
+                f"{symbol} at {t} = {start} is a limit, which is not taken; claim the solution at another time"
+            )
         parts.append(Part(f"{name} at {t} = {start}", there, wanted))
     yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
 
@@ -207,7 +210,7 @@ def _general(reading: Reading, values: Sequence[Expr], domain: Domain) -> Iterat
     if _second_order(reading):
         values = _of_the_order(reading, values)
     if len(constants) != len(values):
-        why = f"the general solution has {len(values)} constants, not {len(constants)}"
+        why = f"the general solution has {counted(len(values), 'constant')}, not {len(constants)}"
         yield fails("the number of constants", why)
         return
     yield Regular(
@@ -226,7 +229,10 @@ def _of_the_order(reading: Reading, values: Sequence[Expr]) -> Sequence[Expr]:
     slopes = sp.Matrix([[e.diff(u) for u in highest] for e in equations])
     square = len(equations) == len(q) and second in ([], list(q)) and not slopes.has(*highest)
     if not square or not is_regular(slopes, reading.domain).holds:
-        raise Undecided("how many constants the general solution of these equations has was not decided")
+        raise Undecided(
+            "how many constants the general solution of these equations has was not decided; "
+            "solve them for the highest derivatives"
+        )
     return values if second else values[: len(q)]
 
 

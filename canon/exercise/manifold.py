@@ -212,7 +212,9 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
     except TypeError as error:  # SymPy does not compare numbers that are not real
         raise EmptyDomainError(f"a value that should be real is not ({error})") from error
     if sp.false in conditions:
-        raise EmptyDomainError("no point satisfies the assumptions and conditions")
+        raise EmptyDomainError(
+            "no point satisfies the assumptions and conditions; they contradict each other"
+        )
     kept = {symbol: ends for symbol, ends in domain.box.items() if symbol not in values}
     kept_conditions = dict.fromkeys(c for c in conditions if c is not sp.true)
     return Domain(tuple(kept_conditions), kept)
@@ -240,9 +242,15 @@ def _restricted(
     for factor in _factors(here, prefer):
         solution = min(_solutions(factor, keep, prefer), key=lambda s: s.cost, default=None)
         if solution is None:
-            raise Undecided(f"{factor} = 0 could not be solved for any of its symbols in closed form")
+            raise Undecided(
+                f"{factor} = 0 could not be solved for any of its symbols in closed form; "
+                "write the constraint solved for one of them"
+            )
         if _leaves_a_handle(solution, branch.domain):
-            raise Undecided(f"{factor} = 0 holds at singular points too, which are not looked into")
+            raise Undecided(
+                f"{factor} = 0 holds at singular points too, which are not looked into; "
+                "exclude them in the domain"
+            )
         found = False
         for value in solution.values:
             try:
@@ -252,7 +260,10 @@ def _restricted(
             found = True
             yield part
         if not found and not solution.everywhere:  # k x² + y² = 0 with k > 0 holds at x = y = 0
-            raise Undecided(f"{factor} = 0 holds at singular points at most, which are not looked into")
+            raise Undecided(
+                f"{factor} = 0 holds at singular points at most, which are not looked into; "
+                "write what holds there as equations of their own"
+            )
 
 
 def _leaves_a_handle(solution: _Solution, domain: Domain) -> bool:

@@ -14,6 +14,7 @@ from canon.exercise.kinds import COMMON, KINDS, Shape
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.report import printable
 from canon.exercise.style import PAGE_STYLE, STYLE
+from canon.expression.given import counted
 from canon.expression.language import Scope
 from canon.expression.mathml import formula
 
@@ -91,7 +92,7 @@ def _body(report: Report) -> Element:
     main = Element("main", {"class": "canon"})
     _put(main, "h1", report.title or "Judged claims")
     counts = _put(main, "p", kind="counts")
-    _put(counts, "span", f"{len(report)} claims")
+    _put(counts, "span", f"{counted(len(report), 'claim')}")
     for status, number in report.counts.items():
         _put(counts, "span", f"{number} {_VERDICTS[status]}", status)
     seconds = sum(judgement.seconds for judgement in report)

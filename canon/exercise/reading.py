@@ -14,6 +14,7 @@ from sympy import Expr, Rational, Symbol
 from canon.exercise.form import ASSUMPTIONS
 from canon.exercise.kinds import KINDS, Shape
 from canon.exercise.sheet import Claim, ClaimError
+from canon.expression.given import counted
 from canon.expression.language import (
     LanguageError,
     Scope,
@@ -219,7 +220,11 @@ class Reading:
         """Return coordinates and momenta, as many of each."""
         coordinates, momenta = self.symbols(q), self.symbols(p)
         if len(coordinates) != len(momenta):
-            self.fault(p, f"{len(momenta)} momenta for {len(coordinates)} coordinates")
+            self.fault(
+                p,
+                f"{counted(len(momenta), 'momentum', 'momenta')} "
+                f"for {counted(len(coordinates), 'coordinate')}",
+            )
         return coordinates, momenta
 
     def expression(self, key: str, default: Expr | None = None) -> Expr:
@@ -278,7 +283,8 @@ class Reading:
         if like and len(found) != len(_as_list(self.claim.keys[like])):
             self.fault(
                 key,
-                f"{len(found)} expressions for the {len(_as_list(self.claim.keys[like]))} names of {like}",
+                f"{counted(len(found), 'expression')} for the "
+                f"{len(_as_list(self.claim.keys[like]))} names of {like}",
             )
         return found
 

@@ -7,6 +7,8 @@ import re
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from canon.expression.given import counted
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
@@ -192,7 +194,7 @@ class Report:
         """One line: how many of each."""
         counts = ", ".join(f"{number} {status}" for status, number in self.counts.items())
         seconds = sum(judgement.seconds for judgement in self.judgements)
-        return f"{len(self.judgements)} claims: {counts or 'none'} ({seconds:.1f} s)"
+        return f"{counted(len(self.judgements), 'claim')}: {counts or 'none'} ({seconds:.1f} s)"
 
     def json_lines(self) -> str:
         """Return one JSON object a line."""

@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from canon.exercise.form import MAX_DIGITS, faults
-from canon.expression.given import given_kind
+from canon.expression.given import counted, given_kind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -131,7 +131,7 @@ class Sheet:
     file: str = ""
 
     def __repr__(self) -> str:
-        return f"<Sheet {self.title!r}: {len(self.claims)} claims>"
+        return f"<Sheet {self.title!r}: {counted(len(self.claims), 'claim')}>"
 
     @property
     def errors(self) -> tuple[ClaimError, ...]:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["all_of", "given_expression", "given_kind", "given_seconds", "given_symbols"]
+__all__ = ["all_of", "counted", "given_expression", "given_kind", "given_seconds", "given_symbols"]
 
 Kind = TypeVar("Kind")
 
@@ -164,10 +164,26 @@ def all_of(x: Any, count: int, name: str, of: str) -> Sequence[Any]:
             f"{name} should be a list with one entry for each of {count} {of}, not {_described(x)}"
         )
     if len(x) != count:
-        raise ValueError(
-            f"{name} has {len(x)} {'entry' if len(x) == 1 else 'entries'} for {count} {of}; give one each"
-        )
+        raise ValueError(f"{name} has {counted(len(x), 'entry', 'entries')} for {count} {of}; give one each")
     return x
+
+
+def counted(number: int, one: str, many: str = "") -> str:
+    """Return a number of things in words: ``1 momentum``, ``2 momenta``.
+
+    Parameters
+    ----------
+    number
+        How many there are.
+    one, many
+        What one of them is called, and several; one with an s unless given.
+
+    Examples
+    --------
+    >>> counted(1, "momentum", "momenta"), counted(0, "step")
+    ('1 momentum', '0 steps')
+    """
+    return f"{number} {one if number == 1 else many or f'{one}s'}"
 
 
 def _not_an_expression(f: Any, name: str) -> str:

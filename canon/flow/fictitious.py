@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.expression.given import counted
 from canon.flow.compiled import compiled_loop
 from canon.flow.fixed import fixed_steps
 from canon.flow.measure import measured
@@ -79,7 +80,8 @@ def transformed_motion(
     state = [exact(x, "a component of y0") for x in np.asarray(y0).tolist()]
     if len(state) != 2 * n:
         raise ValueError(
-            f"y0 has {len(state)} components; {n} coordinates and {n} momenta make a state (q, p)"
+            f"y0 has {counted(len(state), 'component')}; {counted(n, 'coordinate')} "
+            f"and {counted(n, 'momentum', 'momenta')} make a state (q, p)"
         )
     start, end = (exact(t, "t_span") for t in t_span)
     if start == end:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.expression.given import counted
 from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
 from canon.flow.request import task_of
@@ -53,7 +54,9 @@ class FlowJacobian:
 
     def __repr__(self) -> str:
         n = len(self.M)
-        return f"<FlowJacobian: {n} × {n} at {len(self.t)} times, t = {self.t[0]:g} … {self.t[-1]:g}>"
+        return (
+            f"<FlowJacobian: {n} × {n} at {counted(len(self.t), 'time')}, t = {self.t[0]:g} … {self.t[-1]:g}>"
+        )
 
     @property
     def final(self) -> Array:

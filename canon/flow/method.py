@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from canon.expression.given import counted
 from canon.flow.solvable import SolvableSplitting
 from canon.kernel.gauss import HIGHEST_STAGES
 from canon.kernel.order import order
@@ -96,7 +97,7 @@ class Splitting:
         return f"Splitting(a={a}, b={b}{parts})"
 
     def __str__(self) -> str:
-        name = self.scheme.name or f"splitting, order {self.order}, {self.stages} stages"
+        name = self.scheme.name or f"splitting, order {self.order}, {counted(self.stages, 'stage')}"
         return f"{name}, own parts" if self.parts else name
 
     @cached_property
@@ -121,7 +122,8 @@ def _own_scheme(a: Sequence[Coefficient], b: Sequence[Coefficient]) -> Scheme:
         drifts.append(Fraction(0))
     if len(drifts) != len(kicks) + 1 or not kicks:
         raise ValueError(
-            f"{len(drifts)} drifts and {len(kicks)} kicks: they alternate, so give as many or one drift more"
+            f"{counted(len(drifts), 'drift')} and {counted(len(kicks), 'kick')}: "
+            "they alternate, so give as many or one drift more"
         )
     for letter, half in (("a", drifts), ("b", kicks)):
         if abs(sum(half) - 1) > Fraction(1, 10**12):

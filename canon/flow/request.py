@@ -10,6 +10,7 @@ import numpy as np
 from sympy import Symbol
 
 from canon.expression.arithmetic import FLOAT64, LONGDOUBLE
+from canon.expression.given import counted
 from canon.flow.event import Event, prepared
 from canon.flow.fixed import planned
 from canon.flow.magnitude import check_magnitudes, is_narrow
@@ -207,7 +208,8 @@ def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]
     given = np.asarray(y0)
     if given.ndim not in (1, 2) or given.shape[0] != 2 * n or not given.size:
         raise ValueError(
-            f"y0 has shape {given.shape}; {n} coordinates and {n} momenta make a state (q, p) of shape ({2 * n},), "
+            f"y0 has shape {given.shape}; {counted(n, 'coordinate')} and "
+            f"{counted(n, 'momentum', 'momenta')} make a state (q, p) of shape ({2 * n},), "
             f"several of them ({2 * n}, orbits)"
         )
     if given.dtype == np.float64 and not np.isfinite(given).all():

@@ -181,6 +181,8 @@ def loop_of(system: Equations, method: SolvableSplitting, precision: Precision) 
 def _kept(system: Equations, method: SolvableSplitting, *, compensated: bool) -> Loop:
     part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
     if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:
-        raise UnsolvableError("the bodies have different numbers of coordinates")
+        raise UnsolvableError(
+            "the bodies have different numbers of coordinates; give each as many, or name two parts"
+        )
     chosen = corrector(method.scheme, method.corrector) if method.corrector else None
     return solvable_loop(part, len(system.q), method.scheme, chosen, compensated=compensated)

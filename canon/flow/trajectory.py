@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from canon.expression.given import counted
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -180,8 +182,9 @@ class Trajectory:
 
     def __repr__(self) -> str:
         return (
-            f"Trajectory({len(self.q)} degrees of freedom, t = {self.t[0]:g} … {self.t[-1]:g}, "
-            f"{len(self.t)} samples, {self.method}, {self.steps} steps, {self.cpu_seconds:.3g} s)"
+            f"Trajectory({counted(len(self.q), 'degree')} of freedom, t = {self.t[0]:g} … {self.t[-1]:g}, "
+            f"{counted(len(self.t), 'sample')}, {self.method}, "
+            f"{counted(self.steps, 'step')}, {self.cpu_seconds:.3g} s)"
         )
 
     @property

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import sympy as sp
 
+from canon.expression.given import counted
 from canon.expression.graph import Graph
 from canon.expression.symbol import time
 from canon.flow.job import NonFiniteStateError
@@ -58,7 +59,8 @@ class Field:
         """Return n of the 2n variables (q, p)."""
         if len(self.x) % 2:
             raise ValueError(
-                f"the field has {len(self.x)} variables, which can't be coordinates and momenta (q, p)"
+                f"the field has {counted(len(self.x), 'variable')}, "
+                "which can't be coordinates and momenta (q, p)"
             )
         return len(self.x) // 2
 
@@ -67,7 +69,8 @@ class Field:
         given = np.array([float(exact(value, "a component of the state")) for value in y])
         if given.shape != (len(self.x),):
             raise ValueError(
-                f"{given.size} numbers given for the state ({', '.join(map(str, self.x))}): give one each"
+                f"{counted(given.size, 'number')} given for the "
+                f"state ({', '.join(map(str, self.x))}): give one each"
             )
         return given
 

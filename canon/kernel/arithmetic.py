@@ -5,6 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from canon.expression.given import counted
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -34,7 +36,9 @@ class Arithmetic:
         """Return a constant with a value for each lane."""
         kind = self.writer.number
         if len(values) != kind.lanes:
-            raise ValueError(f"{len(values)} numbers for {kind.lanes} lanes")
+            raise ValueError(
+                f"{counted(len(values), 'number')} for {counted(kind.lanes, 'lane')}; give one each"
+            )
         if kind.lanes == 1:
             return kind.literal(values[0])
         one = self.writer.side_by_side(1).number

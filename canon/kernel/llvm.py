@@ -130,8 +130,12 @@ def _address(name: str) -> int:
     try:
         function = getattr(library, name)
     except AttributeError:
-        raise OSError(f"the C maths library of this platform has no function {name!r}") from None
+        raise OSError(
+            f"the C maths library of this platform has no function {name!r}; use Taylor() or DOP853()"
+        ) from None
     address = ctypes.cast(function, ctypes.c_void_p).value
     if address is None:
-        raise OSError(f"the C maths library of this platform gives no address for {name!r}")
+        raise OSError(
+            f"the C maths library of this platform gives no address for {name!r}; use Taylor() or DOP853()"
+        )
     return address

@@ -120,7 +120,9 @@ class MachineType:
         with np.errstate(over="ignore"):
             nearest = float(value) if self.scalar == "double" else float(np.float32(float(value)))
         if not math.isfinite(nearest):
-            raise OverflowError(f"the constant {float(value):g} is too large for {self.scalar} numbers")
+            raise OverflowError(
+                f"the constant {float(value):g} is too large for {self.scalar} numbers; choose other units"
+            )
         return f"0x{struct.unpack('<Q', struct.pack('<d', nearest))[0]:016X}"
 
 

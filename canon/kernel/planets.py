@@ -183,7 +183,8 @@ def _quadratic(system: Equations, part: Any) -> Quadratic:
         c.is_number for c in polynomial.coeffs()
     ):
         raise UnsolvableError(
-            f"H₀ = {part} is a polynomial, but not of second degree in (q, p) with constant coefficients"
+            f"H₀ = {part} is a polynomial, but not of second degree in (q, p) with constant coefficients; "
+            "name other parts"
         )
     n, size = len(system.q), len(variables)
     hessian = [[Fraction(0)] * size for _ in range(size)]
@@ -204,20 +205,23 @@ def _centres(system: Equations, part: Any) -> Centres:
     read = terms_of(system, part)
     if read.pairs or read.others or not read.centres:
         raise UnsolvableError(
-            f"H₀ = {part} is not Σ |p|²/2m − k/|q|, motion about centres at the origin, nor quadratic in (q, p)"
+            f"H₀ = {part} is not Σ |p|²/2m − k/|q|, motion about centres at the origin, nor quadratic in (q, p); "
+            "name other parts"
         )
     bodies, attractions = [], []
     for centre in read.centres:
         if centre.strength <= 0:
             raise UnsolvableError(
-                f"the centre at {centre.axes} repels (−k/r with k = {float(centre.strength):g}): k is to be positive"
+                f"the centre at {centre.axes} repels (−k/r with k = {float(centre.strength):g}): k is to be positive; "
+                "name other parts"
             )
         bodies.append(tuple(system.q.index(x) for x in centre.axes))
         attractions.append(centre.strength)
     covered = [i for body in bodies for i in body]
     if sorted(covered) != list(range(len(system.q))):
         raise UnsolvableError(
-            "H₀ has to move every coordinate about one centre: some q are without, or in two of them"
+            "H₀ has to move every coordinate about one centre: some q are without, or in two of them; "
+            "name other parts"
         )
     masses = [read.mass_of(body) for body in bodies]
     return Centres(tuple(bodies), tuple(masses), tuple(attractions), _remainder(system, part))
@@ -231,7 +235,9 @@ def _planets(read: Terms) -> Planets:
         )
     bodies = sorted({body for pair in read.pairs for body in (pair.first, pair.second)})
     if sorted(i for body in bodies for i in body) != list(range(len(read.system.q))):
-        raise UnsolvableError("the attractions of pairs do not group the coordinates into bodies")
+        raise UnsolvableError(
+            "the attractions of pairs do not group the coordinates into bodies; name two parts, parts=(H0, H1)"
+        )
     star = max(bodies, key=read.mass_of)  # the first of equals
     places = [star, *(body for body in bodies if body != star)]
     strength = {frozenset((pair.first, pair.second)): pair.strength for pair in read.pairs}
@@ -239,6 +245,7 @@ def _planets(read: Terms) -> Planets:
     for i, row in enumerate(table[1:], start=1):
         if sum(row[:i]) <= 0:
             raise UnsolvableError(
-                f"body {i} is not attracted by the star and the bodies before it: no Kepler motion"
+                f"body {i} is not attracted by the star and the bodies before it: no Kepler motion; "
+                "name two parts, parts=(H0, H1)"
             )
     return Planets(tuple(places), tuple(map(read.mass_of, places)), table)

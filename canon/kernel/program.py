@@ -106,7 +106,10 @@ def exact_value(graph: Graph, node: int) -> Fraction:
         return value
     found = graph.evaluate([node], {}, multiprecision(_CONSTANT_DIGITS))[0]
     if not hasattr(found, "man_exp"):
-        raise ValueError(f"the constant {graph.to_sympy(node)} is not a real number")
+        raise ValueError(
+            f"the constant {graph.to_sympy(node)} is not a real number; "
+            "H has real values, so write it with real constants"
+        )
     mantissa, exponent = found.man_exp  # of the absolute value
     size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     return -size if found < 0 else size

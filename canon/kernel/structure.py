@@ -205,10 +205,10 @@ def exact(value: Any, what: str) -> Fraction:
         graph = Graph()
         node = graph.from_sympy(value)
         if graph.symbols(node):
-            raise ValueError(f"{what} = {value} is no number")
+            raise ValueError(f"{what} = {value} is no number; give one, such as 9.81 or Rational(1, 10)")
         return exact_value(graph, node)
     if isinstance(value, bool):
-        raise ValueError(f"{what} = {value} is no number")
+        raise ValueError(f"{what} = {value} is no number; give one, such as 9.81 or Rational(1, 10)")
     try:
         return (
             Fraction(value)

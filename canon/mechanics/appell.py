@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_expression
+from canon.expression.given import counted, given_expression
 from canon.expression.symbol import time
 from canon.mechanics.body import bodies_of
 from canon.mechanics.quasi_velocity import Kinematics, solved_for
@@ -79,7 +79,10 @@ class GibbsAppell:
         given = as_tuple(forces or (sp.S.Zero,) * len(q))
         object.__setattr__(self, "Q", tuple(self.kinematics.plain(force) for force in given))
         if len(self.Q) != len(self.q):
-            raise ValueError(f"{len(self.Q)} generalized forces for {len(self.q)} coordinates; give one each")
+            raise ValueError(
+                f"{counted(len(self.Q), 'generalized force')} for "
+                f"{counted(len(self.q), 'coordinate')}; give one each"
+            )
 
     @property
     def q(self) -> tuple[Symbol, ...]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_expression, given_symbols
+from canon.expression.given import counted, given_expression, given_symbols
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.substitution import as_tuple, entry
 
@@ -100,7 +100,9 @@ def curl(form: Sequence[Expr], x: Sequence[Symbol]) -> sp.Matrix:
     """Return the antisymmetric matrix ∂aᵢ/∂xⱼ − ∂aⱼ/∂xᵢ, which vanishes where Σ aᵢ dxᵢ is closed."""
     n = len(x)
     if len(form) != n:
-        raise ValueError(f"{len(form)} coefficients for {n} variables; a form has one for each")
+        raise ValueError(
+            f"{counted(len(form), 'coefficient')} for {counted(n, 'variable')}; a form has one for each"
+        )
     matrix = sp.zeros(n, n)
     for i in range(n):
         for j in range(i + 1, n):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_expression, given_kind
+from canon.expression.given import counted, given_expression, given_kind
 from canon.expression.symbol import time, velocity
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_all
@@ -135,7 +135,9 @@ class RigidBody:
     ) -> None:
         matrix = inertia if isinstance(inertia, sp.MatrixBase) else sp.diag(*as_tuple(inertia))
         if matrix.shape != (3, 3) or matrix != matrix.T:
-            raise ValueError(f"the inertia {matrix.tolist()} is no symmetric 3×3 matrix nor three moments")
+            raise ValueError(
+                f"the inertia {matrix.tolist()} is neither a symmetric 3×3 matrix nor three principal moments"
+            )
         if (rotation is None) == (omega is None):
             raise ValueError("say how the body turns by rotation or by omega, and not by both")
         object.__setattr__(self, "m", given_expression(m, "m"))
@@ -146,7 +148,7 @@ class RigidBody:
         object.__setattr__(self, "omega", None if omega is None else as_tuple(omega))
         if self.omega is not None and len(self.omega) != 3:
             raise ValueError(
-                f"{len(self.omega)} components of the angular velocity; in space there are three"
+                f"{counted(len(self.omega), 'component')} of the angular velocity; in space there are three"
             )
 
     def angular_velocity(self, kinematics: Kinematics) -> tuple[Expr, ...]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from canon.expression.given import counted
 from canon.expression.pythagoras import without_squares
 from canon.expression.symbol import velocity
 from canon.expression.translation import NotModelledError
@@ -132,7 +133,9 @@ def channels(reader: Reader, bodies: Sequence[Body], field: Sequence[Expr] = ())
     zero = reader.graph.zero
     for body in bodies:
         if len(body.r) not in (0, len(field)) and field:
-            raise ValueError(f"a field of {len(field)} components acts on a position of {len(body.r)}")
+            raise ValueError(
+                f"a field of {counted(len(field), 'component')} acts on a position of {len(body.r)}"
+            )
         mass = reader.node(body.m)
         loads = [reader.node(sp.sympify(g, strict=True)) for g in field] if body.r else []
         for k, place in enumerate(body.r):

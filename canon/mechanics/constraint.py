@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_kind
+from canon.expression.given import counted, given_kind
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.dependence import check_independent
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain
@@ -162,7 +162,10 @@ class ConstrainedLagrangian:
         """Return Lagrange's equations with these symbols as multipliers, then the constraints, each = 0."""
         A, multipliers = self.directions, coordinate_symbols(multipliers)
         if len(multipliers) != A.rows:
-            raise ValueError(f"{len(multipliers)} multipliers for {A.rows} constraints; each needs one")
+            raise ValueError(
+                f"{counted(len(multipliers), 'multiplier')} for "
+                f"{counted(A.rows, 'constraint')}; each needs one"
+            )
         with_reactions = (
             sp.Add(equation, *(-entry(A, a, i) * factor for a, factor in enumerate(multipliers)))
             for i, equation in enumerate(self.lagrangian.equations)

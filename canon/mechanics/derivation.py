@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.expression.given import counted
 from canon.expression.graph import Graph
 from canon.expression.shared import shared_to_sympy
 from canon.expression.sums import opposite, signed_product
@@ -153,7 +154,10 @@ def derivation(
 def _add_given(terms: list[list[int]], reader: Reader, V: Expr, forces: Sequence[Expr] | None) -> None:
     """Append −∂V/∂q and the given forces to the terms of each coordinate."""
     if forces is not None and len(forces) != len(terms):
-        raise ValueError(f"{len(forces)} generalized forces for {len(terms)} coordinates; give one each")
+        raise ValueError(
+            f"{counted(len(forces), 'generalized force')} for "
+            f"{counted(len(terms), 'coordinate')}; give one each"
+        )
     for i, a in enumerate(reader.graph.gradient(reader.given(V), reader.q)):
         terms[i].append(reader.graph.negative(a))
     for i, Q in enumerate(forces or ()):

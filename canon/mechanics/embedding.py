@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain_places
@@ -116,7 +117,8 @@ def eliminated(
     dependent = coordinate_symbols(dependent)
     if len(dependent) != len(constrained.holonomic):
         raise ValueError(
-            f"{len(constrained.holonomic)} constraints determine as many coordinates, not {len(dependent)}"
+            f"{counted(len(constrained.holonomic), 'constraint')} cannot determine "
+            f"{counted(len(dependent), 'coordinate')}; name as many as there are constraints"
         )
     matrix = sp.Matrix([[f.diff(s) for s in dependent] for f in constrained.holonomic])
     if matrix.has(*dependent):

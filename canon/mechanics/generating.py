@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_expression, given_kind, given_symbols
+from canon.expression.given import counted, given_expression, given_kind, given_symbols
 from canon.expression.symbol import time
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import is_regular
@@ -131,7 +131,8 @@ class GeneratingFunction:
         variables = (*self.q, *self.p, *self.new_q, *self.new_p)
         if len(variables) != 4 * n or len(set(variables)) < 4 * n:
             raise ValueError(
-                f"a generating function of {n} degrees of freedom needs {4 * n} different symbols, "
+                f"a generating function of {counted(n, 'degree')} "
+                f"of freedom needs {4 * n} different symbols, "
                 f"got {variables}"
             )
         foreign = self.F.free_symbols & (set(variables) - {*self.old, *self.new})

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_kind
+from canon.expression.given import counted, given_kind
 from canon.expression.symbol import momentum, time, velocity
 from canon.mechanics.bracket import poisson_bracket
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_all, plain_places
@@ -66,7 +66,8 @@ class Hamiltonian:
             raise ValueError("no coordinates given; a system moves in at least one")
         if len(self.q) != len(self.p):
             raise ValueError(
-                f"{len(self.q)} coordinates and {len(self.p)} momenta; each coordinate needs one"
+                f"{counted(len(self.q), 'coordinate')} and "
+                f"{counted(len(self.p), 'momentum', 'momenta')}; each coordinate needs one"
             )
         if len({*self.q, *self.p}) < 2 * len(self.q):
             raise ValueError(f"the variables {(*self.q, *self.p)} are not all different")
@@ -106,7 +107,9 @@ class Hamiltonian:
         domain = as_domain(domain)
         claimed = plain_all((*q_dot, *p_dot), (*self.q, *self.p), self.t)
         if len(claimed) != 2 * len(self.q):
-            raise ValueError(f"{len(claimed)} rates given for {2 * len(self.q)} canonical variables")
+            raise ValueError(
+                f"{counted(len(claimed), 'rate')} given for {2 * len(self.q)} canonical variables"
+            )
         return all_hold(
             (
                 vanishes(claim - rate, domain).about(f"d{z}/dt = {claim}")
@@ -211,7 +214,10 @@ def legendre(
         )
     momenta = coordinate_symbols(p) if p is not None else tuple(momentum(q) for q in lagrangian.q)
     if len(momenta) != len(lagrangian.q):
-        raise ValueError(f"{len(momenta)} momenta for {len(lagrangian.q)} coordinates; each needs one")
+        raise ValueError(
+            f"{counted(len(momenta), 'momentum', 'momenta')} for "
+            f"{counted(len(lagrangian.q), 'coordinate')}; each needs one"
+        )
     H = eliminate_velocities(
         lagrangian.L, lagrangian.velocities, momenta, as_domain(domain), "L", "velocities"
     )

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_expression, given_kind, given_symbols
+from canon.expression.given import counted, given_expression, given_kind, given_symbols
 from canon.expression.symbol import time
 from canon.mechanics.bracket import symplectic_unit
 from canon.mechanics.claim import all_vanish
@@ -73,7 +73,8 @@ class ImplicitTransformation:
         n = len(self.q)
         if len(self.equations) != 2 * n:
             raise ValueError(
-                f"{len(self.equations)} equations for a map of {2 * n} variables; give as many as variables"
+                f"{counted(len(self.equations), 'equation')} for a "
+                f"map of {2 * n} variables; give as many as variables"
             )
         if len({*self.q, *self.p, *self.new_q, *self.new_p}) != 4 * n:
             raise ValueError("old and new variables need different symbols, as many of each")

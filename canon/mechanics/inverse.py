@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_kind, given_symbols
+from canon.expression.given import counted, given_kind, given_symbols
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.inversion import Inversion, solve_system
 from canon.mechanics.substitution import substitute
@@ -57,7 +57,8 @@ def inverse_transformation(
     new_q, new_p = given_symbols(new_q, "new_q"), given_symbols(new_p, "new_p")
     if not len(new_q) == len(new_p) == len(T.q):
         raise ValueError(
-            f"{len(new_q)} new_q and {len(new_p)} new_p for {len(T.q)} degrees of freedom; give one each"
+            f"{len(new_q)} new_q and {len(new_p)} new_p for "
+            f"{counted(len(T.q), 'degree')} of freedom; give one each"
         )
     meaning = dict(zip((*new_q, *new_p), T.images, strict=True))
     if len(set(meaning)) < 2 * len(T.q) or set(meaning) & set(T.variables):

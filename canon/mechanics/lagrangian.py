@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time, time_derivative, velocity
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain
 from canon.mechanics.linear import SingularMatrixError, solve
@@ -78,7 +79,8 @@ class Lagrangian:
         object.__setattr__(self, "forces", tuple(expressions[1:]))
         if self.forces and len(self.forces) != len(symbols):
             raise ValueError(
-                f"{len(self.forces)} generalized forces for {len(symbols)} coordinates; give one each, "
+                f"{counted(len(self.forces), 'generalized force')} for "
+                f"{counted(len(symbols), 'coordinate')}; give one each, "
                 "0 where there is none"
             )
         found = [str(acceleration(s)) for s in symbols if self.L.has(acceleration(s))]

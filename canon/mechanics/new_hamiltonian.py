@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_expression, given_kind
+from canon.expression.given import counted, given_expression, given_kind
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.potential import potential
@@ -136,7 +136,9 @@ def is_new_hamiltonian(
     T = transformation
     domain = as_domain(domain, T.domain)
     if len(images) != 2 * len(T.q):
-        raise ValueError(f"{len(images)} symbols for the {2 * len(T.q)} new variables; give (*Q, *P)")
+        raise ValueError(
+            f"{counted(len(images), 'symbol')} for the {2 * len(T.q)} new variables; give (*Q, *P)"
+        )
     carried = substitute(
         given_expression(after, "the Hamiltonian after the map"), dict(zip(images, T.images, strict=True))
     )

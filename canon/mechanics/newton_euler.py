@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time
 from canon.mechanics.appell import cross
 from canon.mechanics.body import Particle, RigidBody
@@ -142,7 +143,8 @@ class NewtonEuler:
             dimension = len(self.bodies[load.body].r)
             if load.force and len(load.force) != dimension:
                 raise ValueError(
-                    f"a force of {len(load.force)} components on body {load.body}, whose position has {dimension}"
+                    f"a force of {counted(len(load.force), 'component')} "
+                    f"on body {load.body}, whose position has {dimension}"
                 )
 
     @cached_property

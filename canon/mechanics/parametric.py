@@ -84,7 +84,8 @@ class ParametricGeneratingFunction:
         """
         if self.F is None:
             raise ValueError(
-                "the contact form of this map was not integrated in closed form, so F has no formula"
+                "the contact form of this map was not integrated in closed form, so F has no formula; "
+                "choose another type of generating function"
             )
         unknowns = list(start)
         known = {s: sp.Float(value, 30) for s, value in values.items()}

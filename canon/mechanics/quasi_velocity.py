@@ -15,6 +15,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.expression.given import counted
 from canon.expression.symbol import Rate, acceleration, time, velocity
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.dynamicsymbols import coordinate, coordinate_symbols, needs_plain, plain
@@ -80,7 +81,8 @@ class Kinematics:
         object.__setattr__(self, "q_dot", rates)
         if len(self.q_dot) != len(self.q):
             raise ValueError(
-                f"{len(self.q_dot)} rates for {len(self.q)} coordinates; give q̇ of each as a function of u"
+                f"{counted(len(self.q_dot), 'rate')} for {counted(len(self.q), 'coordinate')}; "
+                "give q̇ of each as a function of u"
             )
 
     @cached_property

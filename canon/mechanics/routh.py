@@ -15,7 +15,7 @@ import numpy as np
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_kind
+from canon.expression.given import counted, given_kind
 from canon.expression.symbol import momentum, velocity
 from canon.mechanics.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.ignorable import ignorable_coordinates, is_ignorable
@@ -227,7 +227,10 @@ def routhian(
             )
     p = coordinate_symbols(momenta) if momenta is not None else tuple(momentum(s) for s in ignored)
     if len(p) != len(ignored):
-        raise ValueError(f"{len(p)} momenta for {len(ignored)} ignorable coordinates; each needs one")
+        raise ValueError(
+            f"{counted(len(p), 'momentum', 'momenta')} for "
+            f"{counted(len(ignored), 'ignorable coordinate')}; each needs one"
+        )
     rest = tuple(s for s in lagrangian.q if s not in ignored)
     pairs = dict(zip(lagrangian.q, lagrangian.forces, strict=False))
     forces = tuple(pairs[s] for s in rest) if pairs else ()

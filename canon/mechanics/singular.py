@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import counted
 from canon.expression.symbol import momentum
 from canon.mechanics.dynamicsymbols import coordinate_symbols
 from canon.mechanics.legendre import LegendreError, eliminate_velocities
@@ -65,7 +66,7 @@ class Singularity:
         n = len(self.q)
         if self.rank == n:
             return f"L is regular: its Hessian has the rank {n}, every velocity follows from the momenta"
-        lines = [f"L is singular: its Hessian has the rank {self.rank} for {n} coordinates"]
+        lines = [f"L is singular: its Hessian has the rank {self.rank} for {counted(n, 'coordinate')}"]
         lines += [f"  primary constraint: {c} = 0" for c in self.primary_constraints]
         lines += [
             f"  without accelerations: {c} = 0"
@@ -155,7 +156,8 @@ def _by_elimination(
             if all(vanishes(claim, domain).holds for claim in claims):
                 return primary, _simplest(H, domain)
     raise ValueError(
-        f"L is singular (its Hessian has the rank {rank} for {n} coordinates), and its primary constraints were not "
+        f"L is singular (its Hessian has the rank {rank} for {counted(n, 'coordinate')}), "
+        "and its primary constraints were not "
         "found in closed form on this domain; narrow it with conditions that choose the branch, such as the sign of "
         "a velocity"
     )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import counted
 from canon.mechanics.implicit import ImplicitTransformation
 from canon.mechanics.substitution import substitute
 from canon.mechanics.transformation import CanonicalTransformation
@@ -57,7 +58,10 @@ def splitting_step(
             f"{H.H} is not T(p) + V(q), so it has no drifts and kicks; take runge_kutta_step or midpoint_step"
         )
     if len(kicks) - len(drifts) not in (0, 1):
-        raise ValueError(f"{len(kicks)} kicks and {len(drifts)} drifts do not alternate, a kick first")
+        raise ValueError(
+            f"{counted(len(kicks), 'kick')} and "
+            f"{counted(len(drifts), 'drift')} do not alternate, a kick first"
+        )
     q: list[Expr] = list(H.q)
     p: list[Expr] = list(H.p)
     for i, b in enumerate(kicks):
@@ -98,7 +102,8 @@ def runge_kutta_step(
     for row in A:
         if len(row) != len(stages):
             raise ValueError(
-                f"row {len(stages) + 1} of an explicit tableau needs {len(stages)} coefficients, not {len(row)}"
+                f"row {len(stages) + 1} of an explicit tableau needs "
+                f"{counted(len(stages), 'coefficient')}, not {len(row)}"
             )
         moved = _moved(z, h, row, stages)
         stages.append([substitute(f, dict(zip(z, moved, strict=True))) for f in H.vector_field])

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Literal
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_expression, given_kind, given_seconds, given_symbols
+from canon.expression.given import counted, given_expression, given_kind, given_seconds, given_symbols
 from canon.expression.symbol import time
 from canon.mechanics.bracket import antisymmetric, lagrange_matrix
 from canon.mechanics.canonicity import disagreement, residuals
@@ -236,7 +236,8 @@ class CanonicalTransformation:
         given_kind(following, CanonicalTransformation, "what follows")
         if len(following.q) != len(self.q):
             raise ValueError(
-                f"a map of {len(self.q)} degrees of freedom cannot precede one of {len(following.q)}"
+                f"a map of {counted(len(self.q), 'degree')} of "
+                f"freedom cannot precede one of {len(following.q)}"
             )
         here = dict(zip(following.variables, self.images, strict=True))
         if following.t != self.t:
@@ -294,7 +295,8 @@ def point_transformation(
     old, momenta, new = given_symbols(q, "q"), given_symbols(p, "p"), as_tuple(Q)
     if not len(old) == len(momenta) == len(new):
         raise ValueError(
-            f"{len(old)} coordinates, {len(momenta)} momenta, {len(new)} new coordinates; give as many of each"
+            f"{counted(len(old), 'coordinate')}, {counted(len(momenta), 'momentum', 'momenta')}, "
+            f"{counted(len(new), 'new coordinate')}; give as many of each"
         )
     if any(f.has(*momenta) for f in new):
         raise ValueError("the new coordinates of a point transformation depend on q and t only, not on p")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.given import given_symbols
+from canon.expression.given import counted, given_symbols
 from canon.mechanics.bracket import lie_bracket
 from canon.mechanics.substitution import as_tuple
 
@@ -49,7 +49,8 @@ class VectorField:
         object.__setattr__(self, "x", given_symbols(x, "x"))
         if len(self.components) != len(self.x):
             raise ValueError(
-                f"{len(self.components)} components for {len(self.x)} coordinates; give one each"
+                f"{counted(len(self.components), 'component')} for "
+                f"{counted(len(self.x), 'coordinate')}; give one each"
             )
 
     def _repr_latex_(self) -> str:

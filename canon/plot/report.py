@@ -7,6 +7,7 @@ import io
 from html import escape
 from typing import TYPE_CHECKING
 
+from canon.expression.given import counted
 from canon.plot.energy import plot_block_means, plot_energy_error
 from canon.plot.study import plot_study_heatmap
 from canon.plot.style import LINES
@@ -104,7 +105,7 @@ def _summary(results: Sequence[Result]) -> Iterator[str]:
     for versions in dict.fromkeys(tuple(result.versions.items()) for result in results if result.versions):
         count = sum(tuple(result.versions.items()) == versions for result in results)
         named = ", ".join(f"{name} {number}" for name, number in versions)
-        yield f"<p>{count} cases computed with {escape(named)}.</p>"
+        yield f"<p>{counted(count, 'case')} computed with {escape(named)}.</p>"
     failed = [result for result in results if result.state is State.FAILED]
     if failed:
         yield "<h2>What failed, and why</h2><ul>"
@@ -184,7 +185,7 @@ def _figure(axes: Axes, about: str) -> str:
     """Return the figure of Axes as an image inside the page; what it shows is said in words as well."""
     figure, written = axes.get_figure(root=True), io.BytesIO()
     if figure is None:
-        raise ValueError("the Axes belong to no figure")
+        raise ValueError("the Axes belong to no figure; make them with plt.subplots()")
     figure.savefig(written, format="svg", bbox_inches="tight", metadata={"Date": None})
     data = base64.b64encode(written.getvalue()).decode("ascii")
     return f'<img alt="{escape(about, quote=True)}" src="data:image/svg+xml;base64,{data}">'

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.expression.given import counted
 from canon.plot.style import GREY, PlotError, new_axes
 from canon.study.result import State
 
@@ -77,7 +78,7 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     _name(axes, rows, columns)
     count = {state: sum(result.state is state for result in results) for state in State}
     told = ", ".join(f"{number} {state.value}" for state, number in count.items() if number)
-    axes.set_title(f"{len(results)} cases: {told}", loc="left", fontsize="medium")
+    axes.set_title(f"{counted(len(results), 'case')}: {told}", loc="left", fontsize="medium")
     return axes
 
 
@@ -97,7 +98,7 @@ def _colour(axes: Axes, values: np.ndarray, what: str) -> None:
     image = axes.imshow(values, norm=norm, cmap="viridis_r", aspect="auto", interpolation="nearest")
     figure = axes.get_figure(root=True)
     if figure is None:
-        raise PlotError("the Axes belong to no figure")
+        raise PlotError("the Axes belong to no figure; make them with plt.subplots()")
     label = {
         "bound": "largest |ΔE/E|",
         "slope": "|drift of ΔE/E| per unit of time",

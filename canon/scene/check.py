@@ -192,7 +192,7 @@ def _met(scene: Scene, solution: Solution, about: str) -> Check:
     seen = motion.observed(quantity)[1:]
     known = np.broadcast_to(np.asarray(solution.value(scene.values, t), dtype=np.float64), t.shape)
     if not np.isfinite(known).all():
-        raise SceneError(f"{scene.name}: {solution.name} is not finite with these parameters")
+        raise SceneError(f"{scene.name}: {solution.name} is not finite with these parameters; choose others")
     scale = float(np.abs(known).max())
     size = scale if scale > 0.0 else 1.0
     of = "relative to its largest value" if scale > 0.0 else "in its own units"

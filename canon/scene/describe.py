@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from canon.expression.given import counted
 from canon.scene.parts import multiplier
 
 if TYPE_CHECKING:
@@ -109,7 +110,7 @@ def _equations(scene: Scene) -> Iterator[Section]:
     yield Section(
         "Lagrange's equations with multipliers",
         tuple(Formula(None, e) for e in with_reactions),
-        f"{len(scene.q)} coordinates, {len(constraints)} constraints on the velocities",
+        f"{counted(len(scene.q), 'coordinate')}, {counted(len(constraints), 'constraint')} on the velocities",
     )
 
 

@@ -42,7 +42,10 @@ def on_the_section(name: str, about: str, energy: float, y: float, p_y: float) -
     """
     left = 2.0 * energy - p_y**2 - y**2 + 2.0 * y**3 / 3.0
     if left < 0.0:
-        raise ValueError(f"y = {y:g}, p_y = {p_y:g} lie outside the section of energy {energy:g}")
+        raise ValueError(
+            f"y = {y:g}, p_y = {p_y:g} lie outside the section of energy {energy:g}; "
+            "take a point nearer to the origin, or a larger energy"
+        )
     return Start(name, about, q=(0.0, y), p=(math.sqrt(left), p_y))
 
 

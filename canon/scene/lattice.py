@@ -73,7 +73,7 @@ def toda(masses: int, starts: tuple[Start, ...], name: str = "") -> Scene:
     ['total momentum', 'cubic integral', 'tr L^4/4']
     """
     if masses < 3:
-        raise SceneError(f"a ring of {masses} masses: three at least make a ring")
+        raise SceneError(f"three masses at least make a ring, not {masses}")
     powers = [k for k in range(1, masses + 1) if k != 2]  # tr L²/2 is the energy
 
     def integral(power: int) -> Integral:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.display import preformatted
+from canon.expression.given import counted
 from canon.flow.method import RK4, FixedStep, Gauss, Splitting, Stepped, Taylor
 from canon.flow.propagate import is_separable
 from canon.study.drift import FEWEST
@@ -90,7 +91,7 @@ class DriftStudy:
         return tuple(dict.fromkeys(row.observable for row in self.rows))
 
     def __repr__(self) -> str:
-        return f"<DriftStudy: {len(self.rows)} rows; {self.title}>"
+        return f"<DriftStudy: {counted(len(self.rows), 'row')}; {self.title}>"
 
     def __str__(self) -> str:
         from canon.study.table import drift_table

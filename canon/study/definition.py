@@ -8,6 +8,7 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from canon.expression.given import counted
 from canon.flow.method import Stepped, Taylor
 from canon.scene import Scene, SceneError, find
 from canon.study.case import Case, key_of, method_from
@@ -54,7 +55,7 @@ class Study:
     def __repr__(self) -> str:
         systems = dict.fromkeys(case.system_name for case in self.cases)
         methods = dict.fromkeys(str(case.method) for case in self.cases)
-        return f"<Study: {len(self.cases)} cases; {', '.join(systems)}; {', '.join(methods)}>"
+        return f"<Study: {counted(len(self.cases), 'case')}; {', '.join(systems)}; {', '.join(methods)}>"
 
     @staticmethod
     def of(**axes: Any) -> Study:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from canon.expression.given import counted
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
@@ -60,7 +61,8 @@ class Formula:
     def __post_init__(self) -> None:
         if not self.q or len(self.q) != len(self.p):
             raise StudyError(
-                f"{self.name}: {len(self.q)} coordinates and {len(self.p)} momenta; each coordinate needs one"
+                f"{self.name}: {counted(len(self.q), 'coordinate')} and "
+                f"{counted(len(self.p), 'momentum', 'momenta')}; each coordinate needs one"
             )
         names = (*self.q, *self.p, *(name for name, _ in self.parameters))
         twice = sorted({name for name in names if names.count(name) > 1})

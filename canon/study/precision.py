@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.expression.given import counted
 from canon.flow.method import Stepped, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
 from canon.scene.scene import Scene
@@ -92,7 +93,7 @@ class WorkPrecision:
 
     def __repr__(self) -> str:
         methods = dict.fromkeys(str(row.method) for row in self.rows)
-        return f"<WorkPrecision: {len(self.rows)} runs by {', '.join(methods)}; {self.title}>"
+        return f"<WorkPrecision: {counted(len(self.rows), 'run')} by {', '.join(methods)}; {self.title}>"
 
 
 def work_precision(
@@ -148,7 +149,7 @@ def work_precision(
     4
     """
     if repetitions < 1:
-        raise StudyError("run each method at least once")
+        raise StudyError(f"repetitions = {repetitions}: run each method at least once")
     given_steps, given_tolerances = tuple(steps), tuple(tolerances)
     several = (precision,) if precision is None or isinstance(precision, str) else tuple(precision)
     cases = [

@@ -134,9 +134,9 @@ def test_a_body_about_a_fixed_point_by_its_centre():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: RigidBody(m, (), (I1, I1), omega=(0, 0, 0)), "no symmetric 3×3 matrix"),
+        (lambda: RigidBody(m, (), (I1, I1), omega=(0, 0, 0)), "a symmetric 3×3 matrix"),
         (lambda: RigidBody(m, (), (I1, I1, I3)), "say how the body turns"),
-        (lambda: RigidBody(m, (), (I1, I1, I3), omega=(0,)), "1 components of the angular velocity"),
+        (lambda: RigidBody(m, (), (I1, I1, I3), omega=(0,)), "1 component of the angular velocity"),
     ],
 )
 def test_refusals(make, words):

@@ -196,7 +196,7 @@ def test_potentials_and_forces_enter():
     for node, bias in zip(equations.f, expected.bias, strict=True):
         assert vanishes(equations.graph.to_sympy(node) + bias).holds
     assert vanishes(equations.graph.to_sympy(equations.f[0]) - expected.bias[0]).fails
-    with pytest.raises(ValueError, match="1 generalized forces for 4"):
+    with pytest.raises(ValueError, match="1 generalized force for 4"):
         derivation(bodies, q, V, forces=[0])
     with pytest.raises(ValueError, match="a field of 2 components"):
         derivation(bodies, q, V, field=(0, -1))

@@ -152,7 +152,7 @@ def test_conserved_quantities_have_no_rate():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: Hamiltonian(x, (x, y), (x.momentum,)), "2 coordinates and 1 momenta"),
+        (lambda: Hamiltonian(x, (x, y), (x.momentum,)), "2 coordinates and 1 momentum"),
         (lambda: Hamiltonian(x, (x,), (x,)), "not all different"),
         (lambda: legendre(Lagrangian(x.dot**2, [x]), p=[x.momentum, y.momentum]), "2 momenta for 1"),
     ],

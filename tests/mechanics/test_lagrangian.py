@@ -200,7 +200,7 @@ def test_a_mass_matrix_singular_by_an_identity_is_found():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: Lagrangian(theta.dot**2, [theta, phi], forces=[0]), "1 generalized forces for 2"),
+        (lambda: Lagrangian(theta.dot**2, [theta, phi], forces=[0]), "1 generalized force for 2"),
         (lambda: Lagrangian(theta.ddot * theta, [theta]), "accelerations theta_ddot"),
         (lambda: Lagrangian(theta.dot**2, ["theta"]), "is no coordinate"),
     ],

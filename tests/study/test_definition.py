@@ -154,7 +154,7 @@ PLAIN = "method='rk4'\nstep=0.1\nuntil=50\n"
         ("[system.a]\nH='p_q**2/2 + k*q'\nq='q'\n[[study]]\n", r"a, H: column 12: .*k.*declare it"),
         ("[system.a]\nH='__import__(\"os\")'\nq='q'\n[[study]]\n", "system a, H: column"),
         ("[system.a]\nH='p**2'\nq='q'\np='q'\n[[study]]\n", "'q' is declared twice"),
-        ("[system.a]\nH='p**2'\nq='q r'\np='p'\n[[study]]\n", "2 coordinates and 1 momenta"),
+        ("[system.a]\nH='p**2'\nq='q r'\np='p'\n[[study]]\n", "2 coordinates and 1 momentum"),
         (
             "[system.a]\nH='p_q**2'\nq='q'\nstarts={x=[1.0]}\n[[study]]\n",
             r"the start 'x' needs 2 finite numbers",
