@@ -261,6 +261,8 @@ def rebound_methods(problem: Problem) -> Iterator[Contender]:
                     lambda t=problem.span * k / instants: sim.integrate(t, exact_finish_time=exact)
                 )
                 spent += more
+                if spent > PATIENCE:
+                    raise RuntimeError(f"{name} in {setting} steps a period doesn't come to an end")
                 sim.synchronize()
                 energies.append(energy(sim))
             return spent, np.array(energies)
