@@ -1,4 +1,4 @@
-"""The command line: ``canon check``, ``choose``, ``drift``, ``scene``, ``study``, ``tour``.
+"""The command line: ``canon check``, ``choose``, ``completion``, ``drift``, ``scene``, ``study``, ``tour``.
 
 Every command is a module of :mod:`canon.command` with ``DESCRIPTION``, ``EXAMPLES``, ``add_arguments(parser)``
 and ``run(arguments) -> exit status``; only the one that is asked for is imported.
@@ -13,19 +13,13 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from canon.command import COMMANDS
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["main"]
+__all__ = ["COMMANDS", "main"]
 
-COMMANDS = {
-    "check": "judge sheets of claims about mechanics: right or wrong, and where",
-    "choose": "find the cheapest method, step and precision for a wanted accuracy",
-    "drift": "run long and measure how the errors of a method grow",
-    "scene": "list ready systems; show one's equations, run it, draw it",
-    "study": "run, resume, export and report studies of many cases, on one machine or many",
-    "tour": "judge bundled answers and run a bundled system, in less than half a minute",
-}
 EXAMPLES = """\
 examples:
   canon tour                                        see what canon does

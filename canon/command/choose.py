@@ -6,6 +6,8 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
+from canon.command.motion import add_duration, add_scene, list_scenes, methods_given, scene_given
+
 if TYPE_CHECKING:
     import argparse
 
@@ -37,20 +39,14 @@ exit status: 0 the accuracy is expected to be kept, 1 nothing keeps it, 2 bad us
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command reads."""
-    parser.add_argument("scene", metavar="SCENE", help="a scene by name; 'list' names those to take")
+    add_scene(parser, "a scene by name; 'list' names those to take")
     parser.add_argument(
         "--accuracy", metavar="EPS", type=float, default=1e-8, help="largest relative error allowed (1e-8)"
     )
-    length = parser.add_mutually_exclusive_group()
-    length.add_argument(
-        "--periods", metavar="N", type=float, default=1000.0, help="duration in periods (1000)"
-    )
-    length.add_argument("--until", metavar="T", type=float, help="duration in units of time")
+    add_duration(parser)
     parser.add_argument(
         "--observable", metavar="NAME", default="energy", help="energy, position, or a constant of the scene"
     )
-    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a parameter")
-    parser.add_argument("--start", metavar="NAME", help="the initial state, by its name in the scene")
     parser.add_argument(
         "--method",
         metavar="NAME",
@@ -64,17 +60,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Choose, print the table or lines, return the exit status."""
-    from canon.command.drift import list_scenes
-    from canon.command.setting import setting
-    from canon.scene import SceneError, find
+    from canon.scene import SceneError
     from canon.study.errors import StudyError
 
     if arguments.scene == "list":
         list_scenes()
         return 0
     try:
-        scene = find(arguments.scene).with_parameters(**dict(map(setting, arguments.set)))
-        choice = _choice(scene, arguments)
+        choice = _choice(scene_given(arguments), arguments)
     except (SceneError, StudyError, ValueError) as error:
         print(f"canon choose: {error}", file=sys.stderr)
         return 2
@@ -88,11 +81,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _choice(scene: Scene, arguments: argparse.Namespace) -> Choice:
-    from canon.command.drift import method_named
     from canon.command.progress import Progress
     from canon.study.choose import choose
 
-    methods = [method_named(name) for name in arguments.method] if arguments.method else None
     span = arguments.until if arguments.until is not None else arguments.periods * scene.period
     with Progress() as progress:
         return choose(
@@ -101,7 +92,7 @@ def _choice(scene: Scene, arguments: argparse.Namespace) -> Choice:
             span,
             arguments.accuracy,
             arguments.observable,
-            methods=methods,
+            methods=methods_given(arguments),
             progress=lambda _, done: progress("pilot runs", done),
         )
 

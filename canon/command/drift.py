@@ -5,17 +5,16 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+from canon.command.motion import add_duration, add_scene, list_scenes, methods_given, scene_given
 from canon.command.progress import Progress
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
 
-    from canon.flow.method import Method
     from canon.scene.scene import Scene
     from canon.study.comparison import DriftRow, DriftStudy
 
-__all__ = ["DESCRIPTION", "EXAMPLES", "Progress", "add_arguments", "list_scenes", "method_named", "run"]
+__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run", "save_figure"]
 
 DESCRIPTION = """\
 Integrate a scene with several methods and tell how the error of its energy, or of whatever else should stay constant,
@@ -49,9 +48,7 @@ exit status: 0 every run finished, 1 a run failed, 2 bad usage
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command reads."""
-    parser.add_argument("scene", metavar="SCENE", help="a scene by name; 'list' names those to take")
-    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a parameter")
-    parser.add_argument("--start", metavar="NAME", help="the initial state, by its name in the scene")
+    add_scene(parser, "a scene by name; 'list' names those to take")
     parser.add_argument(
         "--method", metavar="NAME", action="append", help="may be repeated; the usual four unless given"
     )
@@ -59,11 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--step", metavar="H", type=float, help="of the fixed-step methods; a fiftieth of the period"
     )
     parser.add_argument("--tolerance", metavar="EPS", type=float, help="of the adaptive methods")
-    length = parser.add_mutually_exclusive_group()
-    length.add_argument(
-        "--periods", metavar="N", type=float, default=1000.0, help="duration in periods (1000)"
-    )
-    length.add_argument("--until", metavar="T", type=float, help="duration in units of time")
+    add_duration(parser)
     precisions = ["single", "double", "compensated", "extended", "double-double", "quad"]
     parser.add_argument(
         "--precision",
@@ -88,17 +81,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the study, print its table or lines, return the exit status."""
-    from canon.command.setting import setting
-    from canon.scene import SceneError, find
+    from canon.scene import SceneError
     from canon.study.comparison import StudyError
 
     if arguments.scene == "list":
         list_scenes()
         return 0
     try:
-        scene = find(arguments.scene).with_parameters(**dict(map(setting, arguments.set)))
-        methods = [method_named(name) for name in arguments.method] if arguments.method else None
-        study = _study(scene, methods, arguments)
+        study = _study(scene_given(arguments), arguments)
     except (SceneError, StudyError, ValueError) as error:
         print(f"canon drift: {error}", file=sys.stderr)
         return 2
@@ -111,20 +101,6 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plot and not save_figure(study, arguments.plot):
         return 2
     return 1 if any(row.failure for row in study.rows) else 0
-
-
-def method_named(name: str) -> Method:
-    """Return the method of that name on the command line.
-
-    Examples
-    --------
-    >>> method_named("kahan-li-8"), method_named("rk4"), method_named("gauss-6")
-    (Splitting('kahan-li-8'), RK4(), Gauss(stages=6))
-    """
-    from canon.study.case import method_from
-
-    kind, _, stages = name.partition("-")
-    return method_from({"gauss": int(stages)} if kind.lower() == "gauss" and stages.isdecimal() else name)
 
 
 def save_figure(study: DriftStudy, file: str) -> bool:
@@ -142,14 +118,14 @@ def save_figure(study: DriftStudy, file: str) -> bool:
     return True
 
 
-def _study(scene: Scene, methods: Sequence[Method] | None, arguments: argparse.Namespace) -> DriftStudy:
+def _study(scene: Scene, arguments: argparse.Namespace) -> DriftStudy:
     from canon.study.comparison import drift_study
 
     with Progress() as progress:
         return drift_study(
             scene,
             arguments.start,
-            methods=methods,
+            methods=methods_given(arguments),
             step=arguments.step,
             tolerance=arguments.tolerance,
             periods=arguments.periods,
@@ -161,23 +137,6 @@ def _study(scene: Scene, methods: Sequence[Method] | None, arguments: argparse.N
             seed=arguments.seed,
             progress=progress,
         )
-
-
-def list_scenes() -> None:
-    """Print every scene a Hamiltonian describes, with its starts and parameters, and name the others."""
-    from canon.scene import SCENES
-
-    taken = [scene for scene in SCENES if scene.is_free]
-    width = max(len(scene.name) for scene in taken)
-    for scene in taken:
-        print(f"{scene.name:{width}}  {scene.title}")
-        print(f"{'':{width}}  starts: {', '.join(start.name for start in scene.starts)}")
-        if scene.parameters:
-            constants = (f"{c.name} = {c.value:g} {c.unit}".strip() for c in scene.parameters)
-            print(f"{'':{width}}  parameters: {', '.join(constants)}")
-    others = ", ".join(scene.name for scene in SCENES if not scene.is_free)
-    print(f"\nnot taken, for their constraints or forces without potential: {others}")
-    print("'canon scene NAME --run' runs these and checks what is known of them")
 
 
 def _print_lines(study: DriftStudy) -> None:

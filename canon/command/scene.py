@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+from canon.command.motion import add_scene, scene_given
+
 if TYPE_CHECKING:
     import argparse
 
@@ -37,11 +39,7 @@ _MANY = 8
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command reads."""
-    parser.add_argument(
-        "scene", metavar="SCENE", nargs="?", help="a scene by name; all are listed without it"
-    )
-    parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[], help="change a parameter")
-    parser.add_argument("--start", metavar="NAME", help="the initial state, by its name in the scene")
+    add_scene(parser, "a scene by name; all are listed without it", needed=False)
     parser.add_argument("--latex", action="store_true", help="formulas in LaTeX")
     parser.add_argument("--all", action="store_true", help="show long formulas too")
     parser.add_argument(
@@ -65,14 +63,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Show, run and draw what was asked for; return the exit status."""
-    from canon.command.setting import setting
-    from canon.scene import SceneError, find
+    from canon.scene import SceneError
 
     if arguments.scene in (None, "list"):
         _list()
         return 0
     try:
-        scene = find(arguments.scene).with_parameters(**dict(map(setting, arguments.set)))
+        scene = scene_given(arguments)
         scene.start(arguments.start)
         if not (arguments.integrate or arguments.plot or arguments.animate):
             _show(scene, arguments)

@@ -57,20 +57,19 @@ FORMATS = {".csv": "CSV", ".parquet": "Parquet", ".nc": "NetCDF"}
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command reads."""
     actions = parser.add_subparsers(metavar="action", dest="action", required=True)
-    run_ = actions.add_parser("run", help="run the cases of a study file that are not finished")
+    run_ = _action(actions, "run", "run the cases of a study file that are not finished")
     run_.add_argument("study", metavar="STUDY.toml", type=Path, help="the study")
     run_.add_argument("--store", metavar="FILE", type=Path, help="keep the results here (STUDY.sqlite)")
     run_.add_argument("--share", metavar="K/N", type=_share, help="only the K-th of N shares of the cases")
-    run_.add_argument("--retry", action="store_true", help="run failed cases again")
-    resume = actions.add_parser("resume", help="run the pending cases of a results file")
-    resume.add_argument("--retry", action="store_true", help="run failed cases again")
-    status = actions.add_parser("status", help="tell how far a study is, and why cases failed")
-    export = actions.add_parser("export", help="write all cases as a table: .csv, .parquet or .nc (NetCDF)")
-    report = actions.add_parser("report", help="write one HTML page with the figures inside")
-    merge = actions.add_parser("merge", help="add the cases and results of other files to one")
+    resume = _action(actions, "resume", "run the pending cases of a results file")
+    status = _action(actions, "status", "tell how far a study is, and why cases failed")
+    export = _action(actions, "export", "write all cases as a table: .csv, .parquet or .nc (NetCDF)")
+    report = _action(actions, "report", "write one HTML page with the figures inside")
+    merge = _action(actions, "merge", "add the cases and results of other files to one")
     for action in (resume, status, export, report, merge):
         action.add_argument("store", metavar="FILE", type=Path, help="the results file")
     for action in (run_, resume):
+        action.add_argument("--retry", action="store_true", help="run failed cases again")
         action.add_argument("--jobs", metavar="N", type=_jobs, default=1, help="worker processes (1)")
         action.add_argument("--dask", metavar="ADDRESS", help="run on the dask cluster with this scheduler")
         action.add_argument(
@@ -81,6 +80,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for action in (export, report):
         action.add_argument("output", metavar="OUTPUT", type=Path, help="where to write it")
     merge.add_argument("others", metavar="OTHER", type=Path, nargs="+", help="files to add")
+
+
+def _action(actions: Any, name: str, line: str) -> argparse.ArgumentParser:
+    return actions.add_parser(name, help=line, description=line)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -71,7 +71,7 @@ def _judge_answers() -> bool:
 
 
 def _study() -> DriftStudy:
-    from canon.command.drift import Progress
+    from canon.command.progress import Progress
     from canon.flow.method import RK4, Splitting, Taylor
     from canon.scene import find
     from canon.study.comparison import drift_study

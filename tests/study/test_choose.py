@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates
-from canon.command.drift import method_named
+from canon.command.motion import method_named
 from canon.scene import find
 from canon.study.choose_candidate import candidate_methods
 from canon.study.choose_law import expected_error
