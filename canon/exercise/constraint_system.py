@@ -11,13 +11,14 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.manifold import Branch, EmptyDomainError, check_not_empty, inhabited, on_manifold
-from canon.exercise.question import KINKED, Deadline, Part, Same, decide
+from canon.exercise.question import Deadline, Part, Same, decide
 from canon.expression.symbol import time_derivative, velocity
 from canon.mechanics.frobenius import Pfaffian, curl
 from canon.mechanics.linear import eliminate
 from canon.mechanics.substitution import exchanged, substitute
 from canon.proof.domain import Domain
 from canon.proof.generic import is_analytic
+from canon.proof.smooth import KINKED
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:

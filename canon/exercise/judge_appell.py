@@ -1,8 +1,8 @@
 """Claims about the Gibbs–Appell function and Appell's equations, with or without quasi-velocities.
 
 S = Σ ½ m a² + ½ I α² over the bodies; ∂S/∂u̇ⱼ = −Σ ∂V/∂qᵢ ∂q̇ᵢ/∂uⱼ (P. Appell, J. reine angew. Math. 121 (1900)
-310). A rotor with ``omega`` as a list of three has them along its principal axes, where Euler's gyroscopic
-terms join in: I₁α₁ = I₁ω̇₁ + (I₃ − I₂)ω₂ω₃.
+310). A rotor with ``omega`` as a list of three has them along axes fixed in it, where Euler's gyroscopic terms join
+in: the torque is I ω̇ + ω × I ω, so that of principal axes I₁ω̇₁ + (I₃ − I₂)ω₂ω₃.
 """
 
 from __future__ import annotations
@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.judge_energy import exactly
+from canon.exercise.judge_energy import exactly, places
 from canon.exercise.question import Part, Question, Same, SameEquations
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.substitution import substitute
+from canon.proof.smooth import where_differentiable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -66,7 +68,7 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
             tuple(
                 Part(f"∂S/∂{a}", claimed.diff(a), s) for a, s in zip(kinematics.u_dot, slopes, strict=True)
             ),
-            reading.domain,
+            where_differentiable(places(reading, "bodies"), (*kinematics.q, kinematics.t), reading.domain),
         )
     if reading.has("claim"):
         equations = tuple(s - Q for s, Q in zip(slopes, forces, strict=True))
@@ -124,14 +126,26 @@ def _rotor(
         rates: Sequence[Expr] = (substitute(kinematics.rate(angle), kinematics.through),)
     else:
         rates = [substitute(w, kinematics.through) for w in reading.inside(f"{where}.omega", body["omega"])]
+    angular = [kinematics.rate(w) for w in rates]
+    if len(rates) == 3 and len(inertia) in (1, 3, 6):
+        return list(zip(_euler(_tensor(inertia), sp.Matrix(rates), sp.Matrix(angular)), angular, strict=True))
     if len(inertia) == 1:
         inertia = inertia * len(rates)
     if len(inertia) != len(rates):
-        reading.fault(f"{where}.I", f"{len(inertia)} moments of inertia for {len(rates)} angular velocities")
-    angular = [kinematics.rate(w) for w in rates]
-    torques = [moment * a for moment, a in zip(inertia, angular, strict=True)]
-    if len(rates) == 3:
-        for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            torques[i] += (inertia[k] - inertia[j]) * rates[j] * rates[k]
-    return list(zip(torques, angular, strict=True))
+        reading.fault(
+            f"{where}.I",
+            f"{counted(len(inertia), 'moment')} of inertia for "
+            f"{counted(len(rates), 'angular velocity', 'angular velocities')}",
+        )
+    return [(moment * a, a) for moment, a in zip(inertia, angular, strict=True)]
+
+
+def _tensor(inertia: tuple[Expr, ...]) -> sp.Matrix:
+    """Return the tensor of inertia from one moment, three principal ones, or Ixx, Iyy, Izz, Ixy, Ixz, Iyz."""
+    xx, yy, zz, xy, xz, yz = (*(inertia if len(inertia) > 1 else inertia * 3), *(sp.S.Zero,) * 3)[:6]
+    return sp.Matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def _euler(tensor: sp.Matrix, rates: sp.Matrix, angular: sp.Matrix) -> Sequence[Expr]:
+    """Return Euler's torque I ω̇ + ω × I ω."""
+    return (tensor * angular + rates.cross(tensor * rates)).flat()

@@ -13,9 +13,11 @@ from canon.exercise.generating_answer import generating_function_of
 from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.manifold import on_manifold, transported
 from canon.exercise.question import Part, Question, Regular, Same, wrong_variables
+from canon.expression.given import counted
 from canon.mechanics.bilinear import bilinear_covariant, displacements
 from canon.mechanics.bracket import lagrange_bracket, lie_bracket, poisson_bracket, symplectic_unit
 from canon.mechanics.substitution import substitute
+from canon.proof.smooth import where_differentiable
 from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
@@ -38,11 +40,13 @@ __all__ = [
 def poisson_brackets(reading: Reading) -> Iterator[Question]:
     """{f, g} is what was claimed, for all pairs."""
     q, p = reading.phase_space("q", "p")
+    pairs = reading.brackets("f", "g")
     parts = tuple(
         Part(f"{{f, g}} of pair {i}", value, poisson_bracket(f, g, q, p), key=f"pairs[{i - 1}].value")
-        for i, (f, g, value) in enumerate(reading.brackets("f", "g"), 1)
+        for i, (f, g, value) in enumerate(pairs, 1)
     )
-    yield Same(parts, reading.domain)
+    differentiated = [side for f, g, _ in pairs for side in (f, g)]
+    yield Same(parts, where_differentiable(differentiated, (*q, *p), reading.domain))
 
 
 def lagrange_brackets(reading: Reading) -> Iterator[Question]:
@@ -50,7 +54,7 @@ def lagrange_brackets(reading: Reading) -> Iterator[Question]:
     variables, q = reading.symbols("variables"), reading.expressions("q")
     p = reading.expressions("p")
     if len(p) != len(q):
-        reading.fault("p", f"{len(p)} momenta for {len(q)} coordinates")
+        reading.fault("p", f"{counted(len(p), 'momentum', 'momenta')} for {counted(len(q), 'coordinate')}")
     parts: list[Part] = []
     for i, (u, v, value) in enumerate(reading.brackets("u", "v")):
         for letter, symbol in (("u", u), ("v", v)):
@@ -58,7 +62,7 @@ def lagrange_brackets(reading: Reading) -> Iterator[Question]:
                 reading.fault(f"pairs[{i}].{letter}", f"{symbol} is not one of the variables")
         bracket = sp.Add(*(a.diff(u) * b.diff(v) - a.diff(v) * b.diff(u) for a, b in zip(q, p, strict=True)))
         parts.append(Part(f"[{u}, {v}]", value, bracket, key=f"pairs[{i}].value"))
-    yield Same(tuple(parts), reading.domain)
+    yield Same(tuple(parts), where_differentiable((*q, *p), variables, reading.domain))
 
 
 def lie_brackets(reading: Reading) -> Iterator[Question]:
@@ -70,7 +74,7 @@ def lie_brackets(reading: Reading) -> Iterator[Question]:
         Part(f"component {s}", c, r, key=f"claim[{i}]")
         for i, (s, c, r) in enumerate(zip(x, claim, right, strict=True))
     )
-    yield Same(parts, reading.domain, lambda: right)
+    yield Same(parts, where_differentiable((*X, *Y), x, reading.domain), lambda: right)
 
 
 def canonicity(reading: Reading) -> Iterator[Question]:
@@ -85,7 +89,8 @@ def canonicity(reading: Reading) -> Iterator[Question]:
         yield from _implicit_canonicity(reading, q, p, valence)
     else:
         Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
-        yield Same(canonical_parts(Q, P, q, p, valence), reading.domain)
+        domain = where_differentiable((*Q, *P), (*q, *p), reading.domain)
+        yield Same(canonical_parts(Q, P, q, p, valence), domain)
 
 
 def canonical_parts(
@@ -115,7 +120,7 @@ def _implicit_canonicity(
         reading.fault("new_q", f"{len(Q)} new coordinates for {len(q)} old ones")
     equations = reading.equations("implicit")
     if len(equations) != 2 * len(q):
-        reading.fault("implicit", f"{len(equations)} equations for {2 * len(q)} new variables")
+        reading.fault("implicit", f"{counted(len(equations), 'equation')} for {2 * len(q)} new variables")
     old, new = (*q, *p), (*Q, *P)
     A = sp.Matrix([[g.diff(z) for z in new] for g in equations])
     B = sp.Matrix([[g.diff(z) for z in old] for g in equations])
@@ -127,7 +132,8 @@ def _implicit_canonicity(
         return
     keep = set(reading.scope.names.values()) - {*old, *new} | {reading.time}
     try:
-        branches = on_manifold(equations, reading.domain, keep=tuple(keep), prefer=(*new, *old))
+        domain = where_differentiable(equations, (*old, *new), reading.domain)
+        branches = on_manifold(equations, domain, keep=tuple(keep), prefer=(*new, *old))
     except Undecided:
         wanted = {f"M J Mᵀ − c J, {i + 1}": entry for i, entry in enumerate(entries)}
         found = refuted_at_a_point(equations, old, new, wanted, reading.domain)
@@ -147,10 +153,11 @@ def bilinear(reading: Reading) -> Iterator[Question]:
         x = reading.symbols("x")
         d, delta = displacements(x)
         extended = reading.with_names({s.name: s for s in (*d, *delta)})
-        right = bilinear_covariant(reading.expressions("form", like="x"), x, d, delta)
+        form = reading.expressions("form", like="x")
+        right = bilinear_covariant(form, x, d, delta)
         yield Same(
             (Part("the bilinear covariant", extended.expression("claim"), right, key="claim"),),
-            reading.domain,
+            where_differentiable(form, x, reading.domain),
             lambda: right,
         )
         return
@@ -165,7 +172,7 @@ def bilinear(reading: Reading) -> Iterator[Question]:
         )
         for i, j in sorted(combinations(range(2 * n), 2), key=lambda pair: pair[1] - pair[0] != n)
     )
-    yield Same(parts, reading.domain)
+    yield Same(parts, where_differentiable((*Q, *P), z, reading.domain))
 
 
 def generating(reading: Reading) -> Iterator[Question]:
@@ -173,6 +180,8 @@ def generating(reading: Reading) -> Iterator[Question]:
     kind, F = int(reading.claim.kind[-1]), reading.expression("F")
     there, domain = map_values(reading)
     rules = rules_of(reading, kind, F)
+    independent = [z for key in ("q", "p", "new_q", "new_p") for z in reading.symbols(key)]
+    domain = where_differentiable([substitute(F, there)], independent, domain)
     yield Same(rules.on(there), domain, lambda: generating_function_of(reading, kind))
     yield Regular(
         rules.mixed_hessian.applyfunc(lambda entry: substitute(entry, there)),
@@ -267,11 +276,13 @@ def new_hamiltonian(reading: Reading) -> Iterator[Question]:
     names = (*reading.symbols(new[0]), *reading.symbols(new[1]))
     images = [there[name] for name in names]
     n = len(q)
+    domain = where_differentiable(images, (*q, *p, t), domain)
     yield from wrong_variables(
         reading.expression("K"), (*reading.symbols("q"), *reading.symbols("p")), "K", "Q, P and t"
     )
     yield Same(canonical_parts(images[:n], images[n:], q, p), domain)
     difference = substitute(after, there) - before
+    domain = where_differentiable([difference], (*q, *p), domain)
     parts = tuple(
         Part(f"the equation of {name}", poisson_bracket(image, difference, q, p), image.diff(t))
         for name, image in zip(names, images, strict=True)

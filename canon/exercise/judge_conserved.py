@@ -8,18 +8,20 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.question import KINKED, Differ, Part, Question, Same
+from canon.exercise.question import Differ, Part, Question, Same
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.lagrangian import Lagrangian
+from canon.proof.smooth import may_jump
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from canon.exercise.reading import Reading
+    from canon.proof.domain import Domain
 
-__all__ = ["conserved_or_not", "motion_of"]
+__all__ = ["check_continuous", "conserved_or_not", "motion_of"]
 
 
 def conserved_or_not(reading: Reading) -> Iterator[Question]:
@@ -31,20 +33,25 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
         for i, I in enumerate(reading.expressions(key)):
             if I.has(*(s for s in _accelerations(reading) if s not in rates)):
                 reading.fault(f"{key}[{i}]", "should depend on the state and the time only")
-            _check_continuous(I, tuple(rates))
             rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
             if key == "conserved":
                 yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
+                check_continuous(I, (*rates, t), reading.domain)
             else:
+                check_continuous(I, (*rates, t), reading.domain)
                 why = f"{I} is conserved: its rate vanishes on every motion"
                 yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
 
 
-def _check_continuous(I: Expr, state: Sequence[Symbol]) -> None:
-    """Refuse quantities such as |x|/x, whose rate vanishes where it exists and which jump all the same."""
-    kinked = [part for part in I.atoms(*KINKED) if part.has(*state)]
-    jumps = any(isinstance(part, sp.sign | sp.Piecewise | sp.Heaviside) for part in kinked)
-    if jumps or (kinked and any(e.exp.is_negative and e.has(*state) for e in I.atoms(sp.Pow))):
+def check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
+    """Refuse quantities such as |x|/x, whose rate vanishes where it exists and which jump all the same.
+
+    Raises
+    ------
+    Undecided
+        Where the quantity may jump.
+    """
+    if may_jump(I, state, domain):
         raise Undecided(f"{I} may jump, which its rate does not show; narrow the domain to where it does not")
 
 

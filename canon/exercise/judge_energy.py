@@ -12,15 +12,17 @@ from sympy import Expr, Symbol
 
 from canon.exercise.manifold import check_whole, inhabited, on_manifold
 from canon.exercise.question import Part, Question, Same
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.substitution import exchanged, substitute
+from canon.proof.smooth import where_differentiable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.reading import Reading
 
-__all__ = ["exactly", "generalized_force", "kinetic_energy", "shown_short"]
+__all__ = ["exactly", "generalized_force", "kinetic_energy", "places", "shown_short"]
 
 LONGEST_REDUCED = 400
 """Operations of an answer up to which sines and cosines are gathered for display."""
@@ -39,8 +41,10 @@ def kinetic_energy(reading: Reading) -> Iterator[Question]:
     check_whole(held, velocities, reading.domain)
     for branch in inhabited(on_manifold((*held, *rates), reading.domain, keep=(t,), prefer=velocities)):
         here = substitute(right, branch.values)
+        seen = [substitute(r, branch.values) for r in places(reading, "bodies")]
+        domain = where_differentiable(seen, (*q, t), branch.domain)
         part = Part("T", claimed, here, branch.values, "T")
-        yield Same((part,), branch.domain, lambda here=here: shown_short(here))
+        yield Same((part,), domain, lambda here=here: shown_short(here))
 
 
 def generalized_force(reading: Reading) -> Iterator[Question]:
@@ -53,7 +57,9 @@ def generalized_force(reading: Reading) -> Iterator[Question]:
         Part(f"the generalized force of {x}", c, r, key=f"Q[{k}]")
         for k, (x, c, r) in enumerate(zip(q, claimed, right, strict=True))
     )
-    yield Same(parts, reading.domain, lambda: tuple(f"Q_{x} = {r}" for x, r in zip(q, right, strict=True)))
+    differentiated = (*places(reading, "forces"), reading.expression("V", sp.S.Zero))
+    domain = where_differentiable(differentiated, (*q, *map(velocity, q)), reading.domain)
+    yield Same(parts, domain, lambda: tuple(f"Q_{x} = {r}" for x, r in zip(q, right, strict=True)))
 
 
 def shown_short(f: Expr) -> Expr:
@@ -80,6 +86,15 @@ def _energies(reading: Reading) -> Iterator[Expr]:
             yield _of_rotation(reading, where, body)
 
 
+def places(reading: Reading, key: str) -> Iterator[Expr]:
+    """Yield the positions and angles of the bodies, or of the points where forces act."""
+    given = cast("Sequence[Mapping[str, object]]", reading.claim.keys.get(key, []))
+    for i, item in enumerate(given):
+        for part in ("r", "angle"):
+            if part in item:
+                yield from reading.inside(f"{key}[{i}].{part}", item[part])
+
+
 def _check_position(reading: Reading, where: str, place: Expr) -> None:
     if place.has(sp.I):
         reading.fault(where, "should be real components, not a complex number")
@@ -104,7 +119,11 @@ def _of_rotation(reading: Reading, where: str, body: Mapping[str, object]) -> Ex
     if len(inertia) == 1:
         inertia = inertia * len(rates)
     if len(inertia) != len(rates):
-        reading.fault(f"{where}.I", f"{len(inertia)} moments of inertia for {len(rates)} angular velocities")
+        reading.fault(
+            f"{where}.I",
+            f"{counted(len(inertia), 'moment')} of inertia for "
+            f"{counted(len(rates), 'angular velocity', 'angular velocities')}",
+        )
     return sp.Add(*(moment * w**2 / 2 for moment, w in zip(inertia, rates, strict=True)))
 
 
@@ -119,7 +138,8 @@ def _of_forces(reading: Reading) -> Iterator[list[Expr]]:
         along = reading.inside(f"forces[{i}].{second}", force[second])
         if len(strengths) != len(along):
             reading.fault(
-                f"forces[{i}].{first}", f"{len(strengths)} components, and {len(along)} of {second}"
+                f"forces[{i}].{first}",
+                f"{counted(len(strengths), 'component')}, and {len(along)} of {second}",
             )
         if second == "omega":
             slopes = [[w.diff(velocity(x)) for w in along] for x in q]

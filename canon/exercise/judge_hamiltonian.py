@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.judge_conserved import check_continuous
 from canon.exercise.judge_lagrangian import lagrangian_of
 from canon.exercise.manifold import on_manifold, transported
 from canon.exercise.question import Part, Question, Regular, Same, wrong_variables
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian, legendre
 from canon.mechanics.substitution import substitute
+from canon.proof.smooth import where_differentiable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -47,7 +49,8 @@ def hamilton_equations(reading: Reading) -> Iterator[Question]:
             Part(f"d{z}/dt", rate, right, through, key)
             for z, rate, right, key in zip((*q, *p), claimed, system.vector_field, keys, strict=True)
         )
-        yield Same(parts, reading.domain, lambda: system.vector_field)
+        domain = where_differentiable([system.H], (*q, *p), reading.domain)
+        yield Same(parts, domain, lambda: system.vector_field)
     if reading.has("solution"):
         yield _solution(reading, system)
 
@@ -75,7 +78,10 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
     rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
     restrictions = reading.equations("restrict") if reading.has("restrict") else ()
     for branch in on_manifold(restrictions, reading.domain):
-        yield Same((Part("dI/dt", rate, through=branch.values),), branch.domain)
+        there = substitute(I, branch.values)
+        here = where_differentiable([there], (*rates, t), branch.domain)
+        yield Same((Part("dI/dt", rate, through=branch.values),), here)
+        check_continuous(there, (*rates, t), branch.domain)
 
 
 def equality(reading: Reading) -> Iterator[Question]:

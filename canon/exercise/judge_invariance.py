@@ -16,16 +16,18 @@ from sympy.core.function import AppliedUndef
 
 from canon.exercise.judge_canonical import canonical_parts, rules_of
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.question import KINKED, Part, Question, Regular, Same, Stated, without_pieces
+from canon.exercise.question import Part, Question, Regular, Same, Stated
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.bracket import lagrange_bracket, poisson_bracket
-from canon.mechanics.substitution import exchanged
+from canon.mechanics.substitution import exchanged, substitute
+from canon.proof.smooth import KINKED, where_differentiable, without_pieces
 from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from canon.exercise.reading import Reading
+    from canon.proof.domain import Domain
 
 __all__ = ["invariance", "jacobi_identity"]
 
@@ -55,16 +57,17 @@ def invariance(reading: Reading) -> Iterator[Question]:
         return
     q, p = reading.phase_space("q", "p")
     Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
+    domain = where_differentiable((*Q, *P), (*q, *p), reading.domain)
     if subject == "phase-volume":
         M = sp.Matrix([[f.diff(z) for z in (*q, *p)] for f in (*Q, *P)])
         part = Part("the square of the determinant", cast("Expr", M.det(method="berkowitz")) ** 2, sp.S.One)
-        yield Same((part,), reading.domain, _no_answer, is_instead)
+        yield Same((part,), domain, _no_answer, is_instead)
     elif subject == "poisson-brackets":
-        yield Same(canonical_parts(Q, P, q, p), reading.domain, _no_answer, is_instead)
+        yield Same(canonical_parts(Q, P, q, p), domain, _no_answer, is_instead)
     elif subject == "lagrange-brackets":
-        yield Same(_lagrange_parts(Q, P, q, p), reading.domain, _no_answer, is_instead)
+        yield Same(_lagrange_parts(Q, P, q, p), domain, _no_answer, is_instead)
     else:
-        yield from _hamiltonian_form(reading, Q, P, q, p)
+        yield from _hamiltonian_form(reading, domain, Q, P, q, p)
 
 
 def _check_free_of_rates(reading: Reading) -> None:
@@ -77,15 +80,28 @@ def _check_free_of_rates(reading: Reading) -> None:
 
 
 def _hamiltonian_form(
-    reading: Reading, Q: Sequence[Expr], P: Sequence[Expr], q: Sequence[Symbol], p: Sequence[Symbol]
+    reading: Reading,
+    domain: Domain,
+    Q: Sequence[Expr],
+    P: Sequence[Expr],
+    q: Sequence[Symbol],
+    p: Sequence[Symbol],
 ) -> Iterator[Question]:
     """M J Mᵀ = c J with the same c ≠ 0 at all points and times."""
     valence = poisson_bracket(Q[0], P[0], q, p)
-    yield Regular(sp.Matrix([[valence]]), "{Q, P}", reading.domain, "{Q, P} = 0: the map is singular")
-    slopes = [(z, valence.diff(z)) for z in (*q, *p, reading.time)]
-    rates = tuple(Part(f"∂{{Q, P}}/∂{z}", slope) for z, slope in slopes)
-    yield Same(rates, reading.domain, _no_answer, is_instead)
-    yield Same(canonical_parts(Q, P, q, p, valence), reading.domain, _no_answer, is_instead)
+    yield Regular(sp.Matrix([[valence]]), "{Q, P}", domain, "{Q, P} = 0: the map is singular")
+    yield Same(tuple(_constancy(valence, (*q, *p, reading.time), domain)), domain, _no_answer, is_instead)
+    yield Same(canonical_parts(Q, P, q, p, valence), domain, _no_answer, is_instead)
+
+
+def _constancy(valence: Expr, moving: Sequence[Symbol], domain: Domain) -> Iterator[Part]:
+    """Yield slopes that vanish where the valence is constant; one with pieces is compared with its value at a point."""
+    point = next(domain.points(moving, 1), None) if valence.has(*KINKED) else None
+    if point is not None:
+        yield Part("{Q, P}", valence, substitute(valence, {z: point[z] for z in moving}))
+        return
+    for z in moving:
+        yield Part(f"∂{{Q, P}}/∂{z}", valence.diff(z))
 
 
 def _lagrange_parts(
@@ -115,10 +131,9 @@ def _generated(reading: Reading) -> Iterator[Question]:
     if F.has(*((*p, *P) if kind == 1 else (*p, *Q) if kind == 2 else (*q, *P) if kind == 3 else (*q, *Q))):
         reading.fault("F", f"depends on variables that a generating function of type {kind} can't depend on")
     rules = rules_of(reading, kind, F)
+    domain = where_differentiable([F], (*rules.old, *rules.new), reading.domain)
     hessian = _with_free_jets(rules.mixed_hessian)
-    yield Regular(
-        hessian, "the mixed Hessian", reading.domain, "the mixed Hessian is singular: F generates no map"
-    )
+    yield Regular(hessian, "the mixed Hessian", domain, "the mixed Hessian is singular: F generates no map")
     given: Mapping[Symbol, Expr] = dict(zip(rules.foreign, rules.values, strict=True))
     old, new = (tuple(given.get(z, z) for z in side) for side in ((*q, *p), (*Q, *P)))
     n = len(q)
@@ -128,7 +143,7 @@ def _generated(reading: Reading) -> Iterator[Question]:
         )
         for u, v in combinations((*rules.old, *rules.new), 2)
     )
-    yield Same(parts, reading.domain, _no_answer, is_instead)
+    yield Same(parts, domain, _no_answer, is_instead)
 
 
 def _with_free_jets(matrix: sp.Matrix) -> sp.Matrix:
@@ -156,8 +171,10 @@ def _point_transformation(reading: Reading) -> Question:
         why = "new coordinates that hold velocities are no point transformation: the equations get third derivatives"
         return Verdict(Status.FAILS, "a point transformation", "structure", feedback=why)
     jacobian = sp.Matrix([[f.diff(x) for x in q] for f in Q])
-    if jacobian.has(*KINKED) and not without_pieces(jacobian, reading.domain):
-        raise Undecided("∂Q/∂q has pieces, and may be singular on one of them")
+    if jacobian.has(*KINKED) and not without_pieces(jacobian.flat(), reading.domain):
+        raise Undecided(
+            "∂Q/∂q has pieces, and may be singular on one of them; narrow the domain to one piece"
+        )
     return Regular(jacobian, "∂Q/∂q", reading.domain, "∂Q/∂q is singular: Q are no coordinates")
 
 
@@ -166,6 +183,8 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
     x = reading.symbols("x")
     J = _structure(reading, x)
     n = len(x)
+    structure = [J(i, j) for i, j in combinations(range(n), 2)]
+    domain = where_differentiable(structure, x, reading.domain)
 
     def turned(i: int, j: int, k: int) -> Expr:
         return sp.Add(*(J(i, m) * J(j, k).diff(x[m]) for m in range(n)))
@@ -175,7 +194,7 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
         for i, j, k in combinations(range(n), 3)
     ]
     if parts:
-        yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
+        yield Same(tuple(parts), domain, _no_answer, is_instead)
     else:
         yield Stated(Verdict(Status.HOLDS, "Jacobi's identity of two variables", "structure"))
     for i, C in enumerate(reading.expressions("casimirs") if reading.has("casimirs") else ()):
@@ -183,7 +202,7 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
             Part(f"{{{x[k]}, casimirs[{i}]}}", sp.Add(*(J(k, m) * C.diff(x[m]) for m in range(n))))
             for k in range(n)
         ]
-        yield Same(tuple(kept), reading.domain, _no_answer, is_instead)
+        yield Same(tuple(kept), where_differentiable([C], x, reading.domain), _no_answer, is_instead)
 
 
 def _structure(reading: Reading, x: Sequence[Symbol]) -> Callable[[int, int], Expr]:

@@ -15,6 +15,7 @@ from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.routh import routhian as routh
 from canon.mechanics.substitution import substitute
+from canon.proof.smooth import KINKED, where_differentiable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -109,7 +110,8 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         reading.fault("relation", "write gauge or equations")
     elif reading.has("F"):
         F = reading.expression("F")
-        yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
+        domain = where_differentiable([F], (*q, t), reading.domain)
+        yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), domain)
     else:
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
 
@@ -149,9 +151,19 @@ def on_the_motion(lagrangian: Lagrangian, *expressions: Expr) -> dict[Symbol, Ex
     return dict(zip(unknowns, lagrangian.accelerations, strict=True))
 
 
+def _affine_in(f: Expr, velocities: Sequence[Symbol]) -> Expr:
+    """Return the affine function with the values of f where no velocity, or one alone, is 1 and the rest 0."""
+    at_rest = dict.fromkeys(velocities, sp.S.Zero)
+    b = substitute(f, at_rest)
+    return sp.Add(b, *(v * (substitute(f, {**at_rest, v: sp.S.One}) - b) for v in velocities))
+
+
 def _total_derivative_conditions(difference: Expr, q: Sequence[Symbol], t: Symbol) -> Iterator[Part]:
     """Σ aᵢ q̇ᵢ + b is dF/dt of some F(q, t), locally, exactly where the form Σ aᵢ dqᵢ + b dt is closed."""
     velocities = [velocity(x) for x in q]
+    if any(part.has(*velocities) for part in difference.atoms(*KINKED)):
+        affine, difference = difference, _affine_in(difference, velocities)
+        yield Part("L2 − L1 is affine in the velocities", affine, difference)
     slopes = [difference.diff(v) for v in velocities]
     for i, a in enumerate(slopes):
         for v in velocities[i:]:

@@ -14,7 +14,7 @@ from canon.exercise.judge_conserved import motion_of
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.judge_invariance import is_instead
 from canon.exercise.manifold import transported
-from canon.exercise.question import KINKED, Part, Question, Regular, Same, fails
+from canon.exercise.question import Part, Question, Regular, Same, fails
 from canon.exercise.tree import arguments
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
@@ -22,6 +22,7 @@ from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.generic import proved_sign
+from canon.proof.smooth import KINKED
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:

@@ -15,7 +15,6 @@ from canon.expression.symbol import Momentum
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.equations import equivalent_equations, without_solution
-from canon.proof.generic import is_analytic
 from canon.proof.vanish import equal, vanishes
 from canon.proof.verdict import Status, Undecided, Verdict
 
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from canon.proof.domain import Domain
 
 __all__ = [
-    "KINKED",
     "Answer",
     "Deadline",
     "Differ",
@@ -38,12 +36,8 @@ __all__ = [
     "decide",
     "fails",
     "opposite",
-    "without_pieces",
     "wrong_variables",
 ]
-
-KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside)
-"""Functions that are made of pieces: one that is not zero at one point may vanish on a whole piece."""
 
 Answer: TypeAlias = "Callable[[], object]"
 """Finds the right answer; called only where a claim fails."""
@@ -235,15 +229,6 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
         case Regular(matrix, name, domain, singular_is):
             verdict = is_regular(matrix, domain, name)
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
-
-
-def without_pieces(matrix: sp.MatrixBase, domain: Domain) -> bool:
-    """Whether entries are analytic where signs said in the domain are known, as in |q| where q > 0."""
-    bounds = [c for c in domain.conditions if isinstance(c, sp.Gt) and c.rhs == 0]
-    named = [s for c in bounds if isinstance(s := c.lhs, Symbol)]
-    positive: dict[Symbol, Expr] = {s: sp.Dummy(s.name, positive=True) for s in named}
-    entries = [substitute(entry, positive) for entry in matrix.flat()]
-    return is_analytic(entries, domain)
 
 
 def _all_vanish(

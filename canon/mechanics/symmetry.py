@@ -24,7 +24,8 @@ from canon.mechanics.potential import potential
 from canon.mechanics.substitution import exchanged
 from canon.proof.domain import Domain, as_domain
 from canon.proof.equations import equivalent_equations
-from canon.proof.verdict import Verdict, all_hold
+from canon.proof.smooth import KINKED, may_jump, where_differentiable
+from canon.proof.verdict import Status, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -67,12 +68,21 @@ def is_constant_of_motion(
     """
     given_kind(system, (Hamiltonian, Lagrangian), "the system", "the function comes first, then the system")
     if isinstance(system, Hamiltonian):
-        rate = system.rate(plain(I, (*system.q, *system.p), system.t))
+        state = (*system.q, *system.p)
+        function = plain(I, state, system.t)
+        rate = system.rate(function)
     else:
-        rate = time_derivative(plain(I, system.q, system.t), system.q, system.t)
+        state = (*system.q, *map(velocity, system.q))
+        function = plain(I, system.q, system.t)
         found = dict(zip(map(acceleration, system.q), system.accelerations, strict=True))
-        rate = exchanged(rate, found)
-    return all_vanish([("dI/dt = 0", rate)], f"{I} is a constant of motion", domain, budget)
+        rate = exchanged(time_derivative(function, system.q, system.t), found)
+    everywhere, moving = as_domain(domain), (*state, system.t)
+    smooth = where_differentiable([function], moving, everywhere)
+    verdict = all_vanish([("dI/dt = 0", rate)], f"{I} is a constant of motion", smooth, budget)
+    if verdict.holds and may_jump(function, moving, everywhere):
+        why = f"{I} may jump, which its rate does not show; narrow the domain to where it does not"
+        return Verdict(Status.UNDECIDED, verdict.question, seconds=verdict.seconds, feedback=why)
+    return verdict
 
 
 def poissons_theorem(
@@ -172,13 +182,18 @@ def is_gauge_equivalent(
     q, t = _same_coordinates(first, second)
     difference = second.L - first.L
     if F is not None:
-        gap = difference - time_derivative(plain(F, q, t), q, t)
-        return all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", domain)
+        function = plain(F, q, t)
+        gap = difference - time_derivative(function, q, t)
+        smooth = where_differentiable([function], (*q, t), as_domain(domain))
+        return all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", smooth)
     v = [velocity(s) for s in q]
     A = [difference.diff(a) for a in v]
     curvature = [(f"∂²(L2 − L1)/∂{a}∂{b} = 0", A[i].diff(b)) for i, a in enumerate(v) for b in v[i:]]
     at_rest = dict.fromkeys(v, sp.S.Zero)
     coefficients = [*(exchanged(a, at_rest) for a in A), exchanged(difference, at_rest)]
+    if any(part.has(*v) for part in difference.atoms(*KINKED)):  # slopes in pieces may be constant and differ
+        affine = sp.Add(*(a * b for a, b in zip(coefficients, (*v, sp.S.One), strict=True)))
+        curvature.insert(0, ("L2 − L1 is affine in the velocities", difference - affine))
     closed = [
         (f"∂A/∂{z} symmetric with ∂A/∂{y}", coefficients[i].diff(z) - coefficients[j].diff(y))
         for i, y in enumerate((*q, t))

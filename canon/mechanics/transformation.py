@@ -27,6 +27,7 @@ from canon.mechanics.mending import constant_value, mending
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import as_tuple, entry, substitute
 from canon.proof.domain import Domain, as_domain
+from canon.proof.smooth import where_differentiable
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
@@ -195,7 +196,8 @@ class CanonicalTransformation:
         deadline = clock.monotonic() + given_seconds(budget)
         test = by or ("poisson" if self.jacobian.has(*self.variables) else "symplectic")
         left = deadline - clock.monotonic()
-        verdict = all_vanish(residuals(self, test, c), question, self.domain, left)
+        smooth = where_differentiable(self.images, self.variables, self.domain)
+        verdict = all_vanish(residuals(self, test, c), question, smooth, left)
         if verdict.fails:
             left = deadline - clock.monotonic()
             return replace(verdict, feedback=mending(self, c, left) or verdict.feedback)

@@ -1,0 +1,60 @@
+"""Kinks and jumps: where derivatives exist, and what they do not show."""
+
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from canon import (
+    CanonicalTransformation,
+    Hamiltonian,
+    Lagrangian,
+    coordinates,
+    is_constant_of_motion,
+    is_gauge_equivalent,
+)
+from canon.proof.domain import Domain
+from canon.proof.smooth import may_jump, where_differentiable
+
+x, k = sp.symbols("x k", real=True)
+whole = st.integers(-3, 3)
+
+
+@given(a=whole, b=whole, c=whole, d=whole)
+def test_every_kink_of_a_sum_of_moduli_and_maxima_is_excluded_and_no_other_point(a, b, c, d):
+    f = sp.Abs((x - a) * (x - b)) + sp.Max(x - c, 0) + sp.sign(k) * x + sp.Abs(x**2 + d**2 + 1)
+    kept = where_differentiable([f], [x])
+    for place in range(-4, 5):
+        inside = all(condition.subs(x, place) for condition in kept.conditions)
+        assert bool(inside) is (place not in ((a, b, c) if a != b else (c,)))  # |(x − a)²| has no kink
+
+
+@given(cut=whole, slope=whole, offset=whole)
+def test_two_straight_pieces_jump_unless_they_meet(cut, slope, offset):
+    pieces = sp.Piecewise((2 * x, x > cut), (slope * x + offset, True))
+    jumps = 2 * cut != slope * cut + offset
+    assert may_jump(pieces, [x], Domain()) is jumps
+    assert not may_jump(pieces, [x], Domain((x > 3,)))
+
+
+def test_verdicts_of_mechanics_leave_out_kinks_and_mind_jumps():
+    q, p = sp.symbols("q p", real=True)
+    free = Hamiltonian(p**2 / 2, q, p)
+    assert CanonicalTransformation(q, p, abs(q), p * sp.sign(q)).is_canonical("all").holds
+    assert CanonicalTransformation(q, p, abs(q), p).is_canonical().fails
+    assert is_constant_of_motion(sp.Piecewise((p**2, p > 0), (p**3, True)), free).holds
+    assert is_constant_of_motion(sp.Piecewise((p, q > 0), (2 * p, True)), free).undecided
+    assert is_constant_of_motion(p * sp.sign(q), free).undecided
+    assert is_constant_of_motion(p * sp.sign(q), free, Domain((q > 0,))).holds
+
+
+def test_slopes_that_differ_from_piece_to_piece_are_no_gauge():
+    (s,) = coordinates("s")
+    v = s.dot
+    rest = Lagrangian(v**2 / 2, [s])
+
+    def with_gauge(f):
+        return Lagrangian(v**2 / 2 + f, [s])
+
+    assert is_gauge_equivalent(rest, with_gauge(v * sp.sign(s)), abs(s)).holds
+    assert is_gauge_equivalent(rest, with_gauge(sp.Piecewise((v, v > 0), (-v, True)))).fails
+    assert is_gauge_equivalent(rest, with_gauge(sp.Piecewise((v, v > 0), (v, True)))).holds
