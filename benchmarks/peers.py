@@ -168,13 +168,15 @@ def heyoka_methods(problem: Problem) -> Iterator[Contender]:
     for compact in (False, True):
         if compact != (len(problem.q) > 8):
             continue
-        for careful in (False, True):
+        for way in ({}, {"high_accuracy": True}, {"fast_math": True}):
 
-            def run(setting: float, instants: int, compact: bool = compact, careful: bool = careful) -> Run:
-                key = setting, compact, careful
+            def run(
+                setting: float, instants: int, compact: bool = compact, way: dict[str, bool] = way
+            ) -> Run:
+                key = setting, compact, *way
                 if key not in made:
                     made[key] = hy.taylor_adaptive(
-                        system, problem.y0, tol=setting, compact_mode=compact, high_accuracy=careful
+                        system, problem.y0, tol=setting, compact_mode=compact, **way
                     )
                 own = made[key]
                 own.time, own.state[:] = 0.0, problem.y0
@@ -185,7 +187,7 @@ def heyoka_methods(problem: Problem) -> Iterator[Contender]:
                 spent, found = timed(lambda: own.propagate_grid(grid))
                 return spent, found[-1].T
 
-            words = [word for word, on in (("compact", compact), ("high accuracy", careful)) if on]
+            words = [*(["compact"] if compact else []), *(word.replace("_", " ") for word in way)]
             yield Contender(f"heyoka {' '.join(words)}".rstrip(), TOLERANCES, run)
 
 

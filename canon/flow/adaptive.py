@@ -64,7 +64,7 @@ def _dop853(
     """Integrate with SciPy's DOP853 on the compiled right-hand side."""
     from scipy import integrate
 
-    field = field_function(system.program((*system.velocity, *system.force)))
+    field = field_function(system.program(system.rates))
     x, out = np.empty(len(y0) + 1), np.empty(len(y0))
 
     def rate(t: float, y: Array) -> Array:

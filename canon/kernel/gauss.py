@@ -148,7 +148,7 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: Mac
     done, change, reach = d.array(1), g.array(1), g.array(1)
     zero, none = d.constant(Fraction(0)), v.constant(Fraction(0))
     nothing = g.constant(Fraction(0))
-    field = system.program((*system.velocity, *system.force))
+    field = system.program(system.rates)
     with blocks_of(w, y, e, size, carry) as kept:
         v.copy(w.at(kept, size + 2), stage, size)
         with steps_of(w, system) as time:

@@ -179,7 +179,7 @@ def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineTyp
     w = Writer(number)
     y, e = w.array(2 * n), w.array(2 * n) if compensated else ""
     stage, rate, total = w.array(2 * n), w.array(2 * n), w.array(2 * n)
-    field = system.program((*system.velocity, *system.force))
+    field = system.program(system.rates)
     full, half, sixth, third = (w.load("%c", i) for i in range(1, 5))
 
     def evaluate(at: str, clock: str) -> None:

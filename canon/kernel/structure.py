@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from canon.expression.graph import Graph
 from canon.kernel.program import Program, exact_value, program
+from canon.kernel.sharing import with_shared_products
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -69,6 +71,11 @@ class Equations:
     def inputs(self) -> tuple[Symbol, ...]:
         """The arguments of every program of these equations: q, p and t."""
         return (*self.q, *self.p, self.t)
+
+    @cached_property
+    def rates(self) -> tuple[int, ...]:
+        """The nodes of ∂H/∂p and −∂H/∂q together, written with as few products of functions as are found."""
+        return tuple(with_shared_products(self.graph, (*self.velocity, *self.force)))
 
     def program(self, nodes: Sequence[int]) -> Program:
         """Return the program of some nodes, a function of (q, p, t)."""

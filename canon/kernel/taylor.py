@@ -149,8 +149,7 @@ def _product_of_squares(x: Any, power: int) -> Any:
 
 def heyoka_equations(system: Equations, number: Callable[[Fraction], Any] = float) -> list[tuple[Any, Any]]:
     """Return Hamilton's equations as heyoka takes them: pairs of a variable and its rate, (q, p) in order."""
-    rates = heyoka_functions(system, (*system.velocity, *system.force), number)
-    return list(zip(_variables(system).values(), rates, strict=True))
+    return list(zip(_variables(system).values(), heyoka_functions(system, system.rates, number), strict=True))
 
 
 def _variables(system: Equations) -> dict[Symbol, Any]:
@@ -170,6 +169,10 @@ def taylor_integrator(
 ) -> Any:
     """Return heyoka's adaptive integrator of Hamilton's equations.
 
+    In doubles the terms of a Taylor coefficient may be added in any order, and quotients by one number become
+    products with its reciprocal, which errs as little and takes up to a third less time: not where events are looked
+    for, whose search counts on the order of operations, and not in compact mode, which does not gain.
+
     Parameters
     ----------
     system
@@ -185,7 +188,7 @@ def taylor_integrator(
     """
     import heyoka as hy
 
-    size = len(system.graph.reachable((*system.velocity, *system.force)))
+    compact = number is not float or len(system.graph.reachable(system.rates)) > _COMPACT_FROM
     state = [number(x) for x in y0]
     options: dict[str, Any] = {} if tolerance is None else {"tol": number(Fraction(tolerance))}
     return hy.taylor_adaptive(
@@ -193,7 +196,8 @@ def taylor_integrator(
         np.array(state),
         time=number(t0),
         fp_type=type(state[0]),
-        compact_mode=number is not float or size > _COMPACT_FROM,
+        compact_mode=compact,
+        fast_math=not compact and not events,
         **options,
         **events,
     )
