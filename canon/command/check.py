@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Sequence
 
     from canon.exercise.report import Judgement, Report
     from canon.exercise.sheet import Claim, Sheet, SheetError
@@ -99,40 +100,58 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the sheets, print each verdict as soon as it is there, return the exit status."""
-    from canon.exercise.checking import judged
-    from canon.exercise.report import Report, printable
-    from canon.exercise.sheet import SheetError
+    from canon.exercise.report import Report
 
-    sheets: list[Sheet] = []
-    for name in arguments.sheets:
-        try:
-            sheets.append(_read(name))
-        except SheetError as error:
-            print(printable(f"canon check: {error}"), file=sys.stderr)
-            if len(arguments.sheets) == 1:
-                return 2
-            sheets.append(_unreadable(name, error))
+    sheets = _sheets(arguments.sheets)
     chosen = [(sheet, _chosen(sheet, arguments)) for sheet in sheets]
-    wanted = set(arguments.only or ())
-    unknown = wanted - {claim.id for _, claims in chosen for claim in claims}
+    claims = [claim for _, some in chosen for claim in some]
+    unknown = set(arguments.only or ()) - {claim.id for claim in claims}
     if unknown:
         print(f"canon check: no claim is called {', '.join(sorted(unknown))}", file=sys.stderr)
+    if unknown or not sheets:
         return 2
-    judgements: list[Judgement] = []
-    coming = judged([claim for _, claims in chosen for claim in claims], arguments.jobs)
-    for sheet, claims in chosen:
-        if not arguments.json and (sheet.title or len(sheets) > 1):
-            print(printable(sheet.title or sheet.file))
-        for judgement in islice(coming, len(claims)):
-            judgements.append(judgement)
-            _show(judgement, json=arguments.json)
-    title = next((sheet.title or sheet.file for sheet in sheets), "") if len(sheets) == 1 else ""
-    report = Report(title, tuple(judgements), tuple(claim for _, claims in chosen for claim in claims))
+    judgements = _judged(chosen, claims, arguments)
+    title = (sheets[0].title or sheets[0].file) if len(sheets) == 1 else ""
+    report = Report(title, tuple(judgements), tuple(claims))
     if not arguments.json:
         print(report.summary)
     if not _files_written(report, arguments):
         return 2
     return _status(report, judgements, expected=arguments.expect)
+
+
+def _sheets(names: Sequence[str]) -> list[Sheet]:
+    """Read the sheets and tell of those that can't be read; no sheet where the only one can't be."""
+    from canon.exercise.report import printable
+    from canon.exercise.sheet import SheetError
+
+    sheets: list[Sheet] = []
+    for name in names:
+        try:
+            sheets.append(_read(name))
+        except SheetError as error:
+            print(printable(f"canon check: {error}"), file=sys.stderr)
+            if len(names) > 1:
+                sheets.append(_unreadable(name, error))
+    return sheets
+
+
+def _judged(
+    chosen: Sequence[tuple[Sheet, list[Claim]]], claims: list[Claim], arguments: argparse.Namespace
+) -> list[Judgement]:
+    """Judge the claims of each sheet in turn, and show each judgement when it is there."""
+    from canon.exercise.checking import judged
+    from canon.exercise.report import printable
+
+    judgements: list[Judgement] = []
+    coming = judged(claims, arguments.jobs)
+    for sheet, some in chosen:
+        if not arguments.json and (sheet.title or len(chosen) > 1):
+            print(printable(sheet.title or sheet.file))
+        for judgement in islice(coming, len(some)):
+            judgements.append(judgement)
+            _show(judgement, json=arguments.json)
+    return judgements
 
 
 def _files_written(report: Report, arguments: argparse.Namespace) -> bool:
