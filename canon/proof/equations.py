@@ -30,6 +30,11 @@ __all__ = ["equivalent_equations", "without_solution"]
 
 SAME_SOLUTIONS = "the two systems of equations have the same solutions"
 
+GENERIC = "generic point: the coefficients' largest minor is not zero"
+
+LONGEST_SAID = 80
+"""Characters of conditions that are spelt out."""
+
 WORKING_BITS = 256
 POINTS = 12
 
@@ -112,7 +117,8 @@ def equivalent_equations(
         return replace(extra, question=SAME_SOLUTIONS, seconds=time.monotonic() - start)
     missing = _rows_follow(a, b, system_a, ("first", "second"), domain, deadline, field=field)
     worst = missing if missing.fails or extra.holds else extra
-    return replace(worst, question=SAME_SOLUTIONS, seconds=time.monotonic() - start)
+    assumed = tuple(dict.fromkeys((*extra.assumed, *missing.assumed))) if worst.holds else worst.assumed
+    return replace(worst, question=SAME_SOLUTIONS, assumed=assumed, seconds=time.monotonic() - start)
 
 
 def without_solution(system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain = EVERYWHERE) -> bool:
@@ -218,8 +224,17 @@ def _rows_follow(
                 undecided.append(Evidence("equation", text))
     if undecided:
         return Verdict(Status.UNDECIDED, evidence=tuple(dict.fromkeys(undecided)))
-    assumed = ("generic point: the coefficients' largest minor is not zero",)
-    return Verdict(Status.HOLDS, certificate="exact", assumed=assumed if field else ())
+    return Verdict(Status.HOLDS, certificate="exact", assumed=_generic(minor, domain) if field else ())
+
+
+def _generic(minor: Expr, domain: Domain) -> tuple[str, ...]:
+    """Say what a generic point is: one where the largest minor of the coefficients is not zero."""
+    factors = [f.base if isinstance(f, sp.Pow) else f for f in sp.Mul.make_args(minor)]
+    left = [f for f in factors if not f.is_nonzero and proved_sign(f, domain) not in ("+", "-")]
+    if not left:
+        return ()
+    said = ", ".join(f"{f} ≠ 0" for f in left)
+    return (f"generic point: {said}" if len(said) <= LONGEST_SAID else GENERIC,)
 
 
 def _borders(row: tuple[Expr, ...], basis: _System, pivots: _Pivots) -> Iterator[list[list[Expr]]]:

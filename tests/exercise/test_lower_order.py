@@ -58,3 +58,13 @@ def test_pieces_that_the_domain_leaves_out_are_no_obstacle(domain, holds):
     names = {"q": ["q"], "p": ["p"], "new_q": ["Q"], "new_p": ["P"]}
     keys = {**names, "F": "(q + Abs(q))*P", "map": {"Q": ["q + Abs(q)"], "P": ["p/2"]}, "domain": domain}
     assert judge(Claim("a", "generating-F2", keys)).holds is holds
+
+
+@pytest.mark.parametrize(("factor", "said"), [("k", ("generic point: k ≠ 0",)), ("(k**2 + 1)", ())])
+def test_parameters_are_as_generic_in_linearised_equations_as_in_lagranges(factor, said):
+    keys = {"q": ["x"], "L": "x_dot**2/2 - x**2/2", "parameters": {"k": "real"}}
+    for kind, more in (("euler-lagrange", {}), ("linearisation", {"equilibrium": {"x": "0"}})):
+        verdict = judge(Claim("a", kind, {**keys, **more, "claim": [f"{factor}*(x_ddot + x)"]}))
+        assert verdict.holds
+        assert verdict.assumed == said
+        assert judge(Claim("a", kind, {**keys, **more, "claim": [f"{factor}*(x_ddot - x)"]})).fails

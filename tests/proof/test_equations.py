@@ -61,3 +61,13 @@ def test_arbitrary_functions_in_the_coefficients():
 def test_unknowns_must_enter_affinely():
     with pytest.raises(ValueError, match="not affine"):
         equivalent_equations([x_acc**2 - 1], [x_acc - 1], [x_acc])
+
+
+def test_a_generic_point_is_named():
+    k, m = sp.symbols("k", real=True), sp.symbols("m", positive=True)
+    right = [x_acc + phi]
+    for factor, left_open in ((k, ("k ≠ 0",)), (m, ()), (m * k * phi, ("k ≠ 0, phi ≠ 0",)), (k**2 + 1, ())):
+        verdict = equivalent_equations([factor * right[0]], right, [x_acc])
+        assert verdict.holds
+        assert verdict.assumed == tuple(f"generic point: {said}" for said in left_open)
+    assert equivalent_equations([(k - k) * right[0]], right, [x_acc]).fails
