@@ -117,7 +117,7 @@ def _implicit_canonicity(
     """G(z, Z) = 0: with A = ∂G/∂Z and B = ∂G/∂z the map has M = −A⁻¹B, and M J Mᵀ = c J says B J Bᵀ = c A J Aᵀ."""
     Q, P = reading.phase_space("new_q", "new_p")
     if len(Q) != len(q):
-        reading.fault("new_q", f"{len(Q)} new coordinates for {len(q)} old ones")
+        reading.fault("new_q", f"{counted(len(Q), 'new coordinate')} for {len(q)} old; give one each")
     equations = reading.equations("implicit")
     if len(equations) != 2 * len(q):
         reading.fault("implicit", f"{counted(len(equations), 'equation')} for {2 * len(q)} new variables")
@@ -248,7 +248,7 @@ def map_values(reading: Reading) -> tuple[dict[Symbol, Expr], Domain]:
     q, p = reading.phase_space("q", "p")
     Q, P = reading.phase_space("new_q", "new_p")
     if len(Q) != len(q):
-        reading.fault("new_q", f"{len(Q)} new coordinates for {len(q)} old ones")
+        reading.fault("new_q", f"{counted(len(Q), 'new coordinate')} for {len(q)} old; give one each")
     if reading.has("map"):
         dependent, images = (*Q, *P), reading.lists("map", {"Q": "new_q", "P": "new_p"})
         key = "map"

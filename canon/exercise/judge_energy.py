@@ -198,5 +198,5 @@ def exactly(reading: Reading, where: str, value: object, count: int) -> tuple[Ex
     """Return what stands under a key, which is to be so many expressions."""
     found = reading.inside(where, value)
     if len(found) != count:
-        reading.fault(where, f"{count} expression(s) should be here, not {len(found)}")
+        reading.fault(where, f"{counted(count, 'expression')} should be here, not {len(found)}")
     return found

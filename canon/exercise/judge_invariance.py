@@ -17,6 +17,7 @@ from sympy.core.function import AppliedUndef
 from canon.exercise.judge_canonical import canonical_parts, rules_of
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.question import Part, Question, Regular, Same, Stated
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.bracket import lagrange_bracket, poisson_bracket
 from canon.mechanics.substitution import exchanged, substitute
@@ -126,7 +127,7 @@ def _generated(reading: Reading) -> Iterator[Question]:
     q, p = reading.phase_space("q", "p")
     Q, P = reading.phase_space("new_q", "new_p")
     if len(Q) != len(q):
-        reading.fault("new_q", f"{len(Q)} new coordinates for {len(q)} old ones")
+        reading.fault("new_q", f"{counted(len(Q), 'new coordinate')} for {len(q)} old; give one each")
     F = reading.expression("F")
     if F.has(*((*p, *P) if kind == 1 else (*p, *Q) if kind == 2 else (*q, *P) if kind == 3 else (*q, *Q))):
         reading.fault("F", f"depends on variables that a generating function of type {kind} can't depend on")

@@ -11,6 +11,7 @@ from sympy import Expr, Symbol
 from canon.exercise.affine import solved
 from canon.exercise.manifold import transported
 from canon.exercise.question import Part, Question, Regular, Same, SameEquations, wrong_variables
+from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.routh import routhian as routh
@@ -52,7 +53,11 @@ def routhian(reading: Reading) -> Iterator[Question]:
     q, t = reading.symbols("q"), reading.time
     ignorable, momenta = reading.subset("cyclic", of="q"), reading.symbols("momenta")
     if len(momenta) != len(ignorable):
-        reading.fault("momenta", f"{len(momenta)} momenta for {len(ignorable)} ignorable coordinates")
+        reading.fault(
+            "momenta",
+            f"{counted(len(momenta), 'momentum', 'momenta')} for "
+            f"{counted(len(ignorable), 'ignorable coordinate')}",
+        )
     sign = {"L-pq": 1, "pq-L": -1}.get(reading.word("convention"))
     if sign is None:
         reading.fault("convention", "write L-pq or pq-L")
