@@ -1,7 +1,8 @@
 """The outer solar system for 10⁶ years, Kepler's ellipse for 10⁷ periods: who keeps the energy, at what cost?
 
 ``python benchmarks/headline.py`` prints the stored table and draws docs/figures/headline.png from the stored runs;
-``--run`` computes them anew (about a quarter of an hour of processor time), ``--run kepler`` or ``--run planets`` one of the two.
+``--run`` computes them anew (about a quarter of an hour of processor time), ``--run kepler`` or ``--run planets`` one
+of the two.
 Methods too dear for the whole span stop earlier; what they would reach is extrapolated by the law their error
 follows (t for a drift, √t for round-off, constant for an error that is bounded) and marked as such.
 """
@@ -17,15 +18,12 @@ from dataclasses import dataclass
 from datetime import date
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from canon import DOP853, RK4, SABA, Gauss, Splitting, Taylor, TimeTransformed, WisdomHolman, propagate
 from canon.scene import find
-
-if TYPE_CHECKING:
-    from canon.scene.scene import Scene
 
 STORED = Path(__file__).parent / "results" / "headline.json"
 FIGURE = Path(__file__).parent.parent / "docs" / "figures" / "headline.png"
@@ -90,27 +88,11 @@ PROBLEMS = {
 }
 
 
-def at_rest(scene: Scene) -> np.ndarray:
-    """Return a start whose centre of mass rests at the origin, where there are several bodies.
-
-    Otherwise it moves thousands of astronomical units off in a million years, and all places lose digits.
-    """
-    y0 = scene.state()
-    masses = np.array(
-        [value for name, value in scene.values.items() if name.startswith("m") and name != "mu"]
-    )
-    if len(masses) == 0:
-        return y0
-    x, p = y0.reshape(2, len(masses), -1)
-    share = masses[:, np.newaxis] / masses.sum()
-    return np.concatenate([(x - (share * x).sum(axis=0)).ravel(), (p - share * p.sum(axis=0)).ravel()])
-
-
 def run(problem: Problem, case: Case) -> dict[str, Any]:
     """Carry one case out."""
     scene = find(problem.scene)
     unit, period = problem.spans()
-    start, end = at_rest(scene), case.periods * unit
+    start, end = scene.state(), case.periods * unit
     keywords: dict[str, Any] = {}
     if case.steps:
         keywords |= {"step": period / case.steps * (1 + 1e-9), "precision": "compensated"}

@@ -33,16 +33,27 @@ def test_the_planets_are_where_planets_are():
     scene = find("outer-solar-system")
     y = scene.state()
     places, momenta = y[:18].reshape(6, 3), y[18:].reshape(6, 3)
+    sun = momenta[0] / scene.values["m0"]
     known = {1: (5.20, 0.048), 2: (9.56, 0.055), 3: (19.2, 0.047), 4: (30.1, 0.009), 5: (39.5, 0.249)}
     for body, (axis, eccentricity) in known.items():
         mass = scene.values[f"m{body}"]
         mu = scene.values["G"] * (scene.values["m0"] + mass)
-        r, v = places[body], momenta[body] / mass
+        r, v = places[body] - places[0], momenta[body] / mass - sun
         energy = v @ v / 2.0 - mu / np.linalg.norm(r)
         vector = np.cross(v, np.cross(r, v)) / mu - r / np.linalg.norm(r)
         assert -mu / (2.0 * energy) == pytest.approx(axis, rel=0.02)
         assert np.linalg.norm(vector) == pytest.approx(eccentricity, abs=0.015)
     assert scene.period / 365.25 == pytest.approx(11.86, rel=0.01)
+
+
+def test_the_centre_of_mass_of_the_solar_system_rests_at_the_origin():
+    scene = find("outer-solar-system")
+    places, momenta = scene.state().reshape(2, 6, 3)
+    masses = np.array([scene.values[f"m{i}"] for i in range(6)])
+    jupiter = masses[1] * np.linalg.norm(places[1])
+    assert np.linalg.norm(masses @ places) < 1e-15 * jupiter
+    assert np.linalg.norm(momenta.sum(axis=0)) < 1e-15 * np.linalg.norm(momenta[1])
+    assert np.linalg.norm(masses[1:] @ places[1:]) > 0.5 * jupiter
 
 
 def test_newtons_force_on_jupiter():
