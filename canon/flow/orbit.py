@@ -143,9 +143,14 @@ class Orbit:
                 return steps, rows, outcome
 
     def _some_steps(self, integrator: Any, times: list[Any], *, dense: bool) -> tuple[int, list[Any], Any]:
+        from heyoka import taylor_outcome
+
         limits = {"max_steps": _MANY_STEPS}
         if self.meeting.events:
             limits["max_delta_t"] = abs(self.span)
+        if not dense and len(times) == 1:  # keeping every step's series for times between costs a fifth
+            outcome, _, _, steps, _, _ = integrator.propagate_until(times[-1], **limits)
+            return steps, [integrator.state.copy()] if outcome == taylor_outcome.time_limit else [], outcome
         if not dense:
             grid = np.array([integrator.time, *times])
             outcome, _, _, steps, _, found = integrator.propagate_grid(grid, **limits)

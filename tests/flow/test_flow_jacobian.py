@@ -67,10 +67,15 @@ SYMPLECTIC = [
 
 @pytest.mark.parametrize(("system", "start", "method"), SYMPLECTIC, ids=str)
 def test_symplectic_methods_are_symplectic_to_round_off_at_coarse_steps(system, start, method):
-    found = flow_jacobian(system, start, (0, 8), method=method, step=0.25)
-    defect, size = found.symplecticity_defect[-1], abs(found.final).max()
-    assert size > 1
-    assert defect < 30 * 2.0**-53 * size**2
+    """The median of five neighbours: the round-off of a single one scatters by a factor of twenty."""
+    defects = list[float]()
+    for k in range(5):
+        near = [x * (1 - k / 50) for x in start]
+        found = flow_jacobian(system, near, (0, 8), method=method, step=0.25)
+        size = abs(found.final).max()
+        assert size > 1
+        defects.append(found.symplecticity_defect[-1] / size**2)
+    assert np.median(defects) < 10 * 2.0**-53
 
 
 @pytest.mark.parametrize(("system", "start"), [(HENON_HEILES, HENON_HEILES_START), (DRIVEN, DRIVEN_START)])
