@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.facts import InconsistentAssumptions
+from sympy.printing.pretty.pretty_symbology import pretty_symbol, pretty_use_unicode
+from sympy.printing.pretty.stringpict import prettyForm
 
 from canon.expression.given import given_expression, given_symbols
 
@@ -37,8 +39,12 @@ time = Symbol("t", real=True)
 """The time of every system that does not name its own."""
 
 
-class Variable(Symbol):
-    """What moves: a symbol that SymPy writes after constants, as in ``l**2*m*theta_ddot``."""
+class Moving(Symbol):
+    """What moves: a symbol that SymPy writes after constants, as in ``l**2*m*theta_ddot``.
+
+    SymPy's printers choose a rule by the name of the class: one called Variable would be taken for that of its syntax
+    trees for code, and ``lambdify`` would fail.
+    """
 
     __slots__ = ()
 
@@ -49,7 +55,7 @@ class Variable(Symbol):
         return (*kind, f"{name}, variable")
 
 
-class Coordinate(Variable):
+class Coordinate(Moving):
     """A generalized coordinate: a real symbol with ``.dot``, ``.ddot`` and ``.momentum``."""
 
     __slots__ = ()
@@ -70,20 +76,36 @@ class Coordinate(Variable):
         return momentum(self)
 
 
-class Rate(Variable):
+class Rate(Moving):
     """A first or second rate of a coordinate; prints as q̇ or q̈."""
 
     __slots__ = ()
 
-    def _latex(self, printer: Any) -> str:
-        for ending, accent in (("_ddot", "ddot"), ("_dot", "dot")):
+    def _latex(self, _printer: Any) -> str:
+        base, dots = self._parts()
+        written = sp.latex(Symbol(base))
+        return rf"\{'d' * dots}ot{{{written}}}" if dots else written
+
+    def _pretty(self, _printer: Any) -> Any:
+        base, dots = self._parts()
+        if not (pretty_use_unicode() and dots):
+            return prettyForm(pretty_symbol(self.name), binding=prettyForm.ATOM)
+        letter, *rest = pretty_symbol(base) or base
+        return prettyForm("".join((letter, _DOTS[dots], *rest)), binding=prettyForm.ATOM)
+
+    def _parts(self) -> tuple[str, int]:
+        """Return the name of what changes, and the number of dots above it."""
+        for ending, dots in (("_ddot", 2), ("_dot", 1)):
             if self.name.endswith(ending):
-                base = printer.doprint(Symbol(self.name.removesuffix(ending)))
-                return rf"\{accent}{{{base}}}"
-        return printer.doprint(Symbol(self.name))
+                return self.name.removesuffix(ending), dots
+        return self.name, 0
 
 
-class Momentum(Variable):
+_DOTS = ("", "\u0307", "\u0308")
+"""What Unicode puts above the letter before."""
+
+
+class Momentum(Moving):
     """A canonical momentum."""
 
     __slots__ = ()
