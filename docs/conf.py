@@ -44,6 +44,7 @@ nb_merge_streams = True
 
 autosummary_generate = True
 templates_path = ["_templates"]  # a page a name: how it is imported, all its members
+autosummary_context = {"at_the_front_door": {name for names in _ROOMS.values() for name in names}}
 autodoc_typehints = "none"  # the numpydoc sections say it in words, the signatures in types
 autodoc_member_order = "bysource"
 napoleon_numpy_docstring = True
@@ -77,6 +78,63 @@ SUBJECTS = {
 }
 
 
+RETURNED = {
+    "expression": (
+        "expression.symbol.Momentum",
+        "expression.symbol.Rate",
+        "expression.tokens.LanguageError",
+        "expression.translation.NotModelledError",
+    ),
+    "mechanics": (
+        "mechanics.dependence.DependentConstraintsError",
+        "mechanics.generating.NoGeneratingFunctionError",
+        "mechanics.generating.Rule",
+        "mechanics.inverse.NoClosedInverseError",
+        "mechanics.legendre.LegendreError",
+        "mechanics.linear.SingularMatrixError",
+        "mechanics.parametric.ParametricGeneratingFunction",
+        "mechanics.quasi_velocity.Kinematics",
+        "mechanics.routh.Routhian",
+        "mechanics.sympy_bridge.QuasiMotion",
+    ),
+    "flow": (
+        "flow.error.ErrorEstimate",
+        "flow.event.Crossing",
+        "flow.geometry.FlowJacobian",
+        "flow.solvable.SolvableSplitting",
+        "flow.trajectory.Statistics",
+        "flow.witness.Witness",
+        "kernel.kepler_terms.UnsolvableError",
+        "kernel.scheme.Scheme",
+    ),
+    "scene": (
+        "scene.parts.Condition",
+        "scene.parts.Integral",
+        "scene.parts.Parameter",
+        "scene.parts.SceneError",
+        "scene.parts.Solution",
+        "scene.parts.Start",
+    ),
+    "study": (
+        "study.block.Blocks",
+        "study.case.Case",
+        "study.choose_candidate.Candidate",
+        "study.comparison.DriftStudy",
+        "study.drift.Growth",
+        "study.errors.StudyError",
+        "study.export.ExportError",
+        "study.precision.WorkPrecision",
+        "study.precision.WorkRow",
+        "study.result.Result",
+        "study.result.State",
+        "study.rows.DriftRow",
+        "study.store.StoreError",
+    ),
+    "exercise": ("exercise.sheet.ClaimError",),
+}
+"""What public names return and raise that is not itself at the front door."""
+
+
 def public_names() -> str:
     """Return the page that lists every name of the front door, of scenes and of pictures, each with its own page."""
     by_room: dict[str, list[str]] = {}
@@ -97,10 +155,17 @@ def public_names() -> str:
     for room, names in sorted(by_room.items(), key=lambda item: list(SUBJECTS).index(item[0])):
         about = (importlib.import_module(f"canon.{room}").__doc__ or "").splitlines()[0]
         lines += [f"## {SUBJECTS[room]}", "", about, ""]
-        lines += ["```{eval-rst}", ".. autosummary::", "   :toctree: generated", ""]
-        lines += [f"   ~{name}" for name in sorted(names, key=lambda name: name.rsplit(".", 1)[1].lower())]
-        lines += ["```", ""]
+        lines += _listed(names)
+        if room in RETURNED:
+            lines += ["What these return and raise, imported from where it stands:", ""]
+            lines += _listed([f"canon.{name}" for name in RETURNED[room]])
     return "\n".join(lines)
+
+
+def _listed(names: list[str]) -> list[str]:
+    in_order = sorted(names, key=lambda name: name.rsplit(".", 1)[1].lower())
+    lines = ["```{eval-rst}", ".. autosummary::", "   :toctree: generated", ""]
+    return [*lines, *(f"   ~{name}" for name in in_order), "```", ""]
 
 
 def command_line() -> str:
