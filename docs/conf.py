@@ -13,7 +13,9 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent))
+sys.path[:0] = [str(HERE.parent), str(HERE)]
+
+from fetch_inventories import mapping  # noqa: E402
 
 from canon import _ROOMS, __version__  # noqa: E402  (the checkout's canon, found through the line above)
 from canon.cli import COMMANDS, main  # noqa: E402
@@ -52,12 +54,7 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True
 
-# Kept in the repository, so that a build needs no network.
-intersphinx_mapping = {
-    "python": ("https://docs.python.org/3", "inventories/python.inv"),
-    "scipy": ("https://docs.scipy.org/doc/scipy", "inventories/scipy.inv"),
-    "sympy": ("https://docs.sympy.org/latest", "inventories/sympy.inv"),
-}
+intersphinx_mapping = mapping()  # kept in the repository, so that a build needs no network
 
 html_theme = "furo"
 html_title = "canon"
