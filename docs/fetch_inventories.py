@@ -44,6 +44,6 @@ if __name__ == "__main__":
         try:
             fetch(project)
         except (OSError, ValueError) as error:
-            print(f"{project}: kept as it was ({error})")
+            print(f"{project}: not fetched ({error})")
         else:
             print(f"{project}: fetched")
