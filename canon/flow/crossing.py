@@ -51,6 +51,8 @@ class Guard:
         self.bits = steps.loop.number.mantissa + 4
         self.met: list[Crossing] = []
         self.sides: list[int] = []
+        self.legs: list[tuple[Fraction, State]] = []
+        """Where the latest step that was gone through began, and where in it events changed the state."""
 
     def look(self, state: State, t: Fraction) -> list[tuple[float, float]]:
         """Return each event's g and dg/dt, positive where g rises in the order of passing."""
@@ -95,6 +97,7 @@ class Guard:
             all of it was passed; what the compiled loop is to know.
         """
         base, begin, end = before, Fraction(0), after
+        self.legs = [(begin, base)]
         at_end = self.look(end, self.steps.time(n, Fraction(1)))
         found_at = [(begin, rate) for _, rate in self.look(base, self.steps.time(n, begin))]
         self.sides = [side or _sign(g) for side, (g, _) in zip(self.sides, at_end, strict=True)]
@@ -121,6 +124,7 @@ class Guard:
                 break
             changed[i] = place
             base, begin = self._jumped(event, here, t), place
+            self.legs.append((begin, base))
             self._meet(event, t, here, rising, base)
             end = self.steps.moved(base, n, begin, Fraction(1))
             looks = self.look(base, t)

@@ -1,291 +1,249 @@
-"""Motion in a fictitious time: stretches of steps until the time has reached its end, and a landing there."""
+"""Motions in a fictitious time: kept after evenly many steps, or at the times that are asked for."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field, replace
+import time
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.expression.given import counted
-from canon.flow.compiled import compiled_loop
-from canon.flow.fixed import fixed_steps
-from canon.flow.measure import measured
+from canon.flow.compiled import compiled_loop, steps_between
+from canon.flow.job import NonFiniteStateError, described
+from canon.flow.method import TimeTransformed
+from canon.flow.partial import State
 from canon.flow.precision import fixed_precision
-from canon.flow.request import system_of
-from canon.flow.sampling import Plan, fixed_plan
-from canon.flow.task import Task
-from canon.flow.trajectory import Samples, Trajectory
-from canon.flow.transformed import Extended, extended
+from canon.flow.sampling import fixed_plan
+from canon.flow.trajectory import Samples
+from canon.flow.walk import Footing, Walk
 from canon.kernel.machine import DOUBLE, double_pair
-from canon.kernel.program import exact_value
-from canon.kernel.structure import Equations, exact
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
-    from sympy import Symbol
-
-    from canon.flow.method import TimeTransformed
-    from canon.flow.request import HamiltonianSystem
+    from canon.flow.event import Crossing
+    from canon.flow.task import Task
     from canon.flow.trajectory import Array
+    from canon.flow.transformed import Fictitious
 
-__all__ = ["transformed_motion"]
-
-_LANDINGS = 60
-"""Trials of a part of a step; bisection alone would need 53."""
+__all__ = ["Standing", "transformed_motion"]
 
 
-def transformed_motion(
-    hamiltonian: HamiltonianSystem,
-    y0: Any,
-    t_span: tuple[Any, Any],
-    method: TimeTransformed,
-    *,
-    step: float | None,
-    precision: str | int | None,
-    parameters: Mapping[Symbol | str, Any] | None,
-    samples: int | None,
-    progress: Callable[[float], None] = lambda _: None,
-) -> Trajectory:
-    """Integrate in the fictitious time until the time reaches its end, and land there with a part of a step.
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """Where a motion in a fictitious time stands.
 
     Parameters
     ----------
-    hamiltonian, y0, t_span, method, precision, parameters
-        As :func:`canon.flow.propagate.propagate` takes them.
-    step
-        The size in t of a step at the start; elsewhere steps are longer or shorter as g is.
-    samples
-        About how many states to keep, evenly spaced in steps: up to twice as many are kept.
+    footings
+        Of each orbit the end of its last whole step before the last state that is kept.
+    stride
+        How many steps apart states are kept, where they are.
+    rows
+        How many of the states that are kept are ends of such strides.
+    arrived
+        Whether the motion has come to its end.
+    """
+
+    footings: tuple[Footing, ...]
+    stride: int = 1
+    rows: int = 0
+    arrived: bool = False
+
+
+def transformed_motion(task: Task, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
+    """Integrate in the fictitious time until the time has come, and land there with a part of a step.
+
+    Parameters
+    ----------
+    task
+        What to do. Its plan's instants are landed at, one part of a step aside from the motion each; where it has
+        ``wanted`` states, they are kept after evenly many steps, up to twice as many.
     progress
         Called now and then with the fraction of the time span that is done.
+    so_far
+        What was done before, where the motion is resumed.
+
+    Returns
+    -------
+    Samples
+        All of the motion, what was done before included; an interruption ends it at the last state that is kept.
 
     Raises
     ------
     ValueError
-        A step is missing or makes no sense, dt/ds is not positive at the start, or y0 holds several orbits.
+        dt/ds is not positive at the start.
     ArithmeticError
-        The time stops or turns back, or no part of a step ends where the span does.
-    KeyboardInterrupt
-        Ctrl-C: nothing of the motion is kept.
+        The time stops or turns back, or no part of a step ends at an instant.
+    NonFiniteStateError
+        The motion can't be continued.
     """
-    if step is None or not (math.isfinite(step) and step > 0):
-        raise ValueError(f"step={step}: {method} takes the size in t of its first step, a positive number")
-    if np.ndim(y0) != 1:
-        raise ValueError(f"{method} has a time of its own for each orbit: integrate one orbit at a time")
-    n = len(hamiltonian.q)
-    state = [exact(x, "a component of y0") for x in np.asarray(y0).tolist()]
-    if len(state) != 2 * n:
-        raise ValueError(
-            f"y0 has {counted(len(state), 'component')}; {counted(n, 'coordinate')} "
-            f"and {counted(n, 'momentum', 'momenta')} make a state (q, p)"
-        )
-    start, end = (exact(t, "t_span") for t in t_span)
-    if start == end:
-        raise ValueError(f"t_span = {t_span} has no length: give a start and another end")
-    ours, larger = system_of(hamiltonian, parameters or {}), extended(hamiltonian, method)
-    energy, rate = _at_start(ours, larger, state, start)
-    if not rate > 0:
-        raise ValueError(
-            f"dt/ds = {larger.rate} is {float(rate):g} at the start, and {method} needs it positive along the motion: "
-            "give another g"
-        )
-    h = (1 if end > start else -1) * Fraction(step) / rate
-    kind = fixed_precision(precision)
-    system = system_of(larger, parameters or {})
-    loop = compiled_loop(system, method.method, kind)
-
-    def advance(y: Sequence[Fraction], stops: Sequence[int], part: Fraction) -> Samples:
-        high, low = (np.array(half)[:, np.newaxis] for half in zip(*map(double_pair, y), strict=True))
-        plan = fixed_plan(Fraction(0), h * part, tuple(stops))
-
-        def report(_part: float) -> None:
-            progress(way.done)
-
-        return fixed_steps(system, loop, method.method, (high, low), plan, report)
-
-    way = _Way(advance, n, start, end, samples or 1000, min(kind.number.mantissa, DOUBLE.mantissa))
-    way.run([*state[:n], start, *state[n:], -energy])
-    return way.trajectory(ours, method, float(step), kind.name)
+    frame = task.fictitious
+    assert frame is not None
+    course, started = _Course(task, frame, progress, so_far), time.thread_time()
+    try:
+        if task.plan.wanted:
+            course.in_steps()
+        else:
+            course.at_instants()
+    except NonFiniteStateError as lost:
+        raise _told(frame, lost, course.busy if course.orbits > 1 else None) from None
+    except KeyboardInterrupt:
+        pass  # what is kept comes back
+    return course.samples(time.thread_time() - started)
 
 
-def _at_start(
-    system: Equations, larger: Extended, state: Sequence[Fraction], t: Fraction
-) -> tuple[Fraction, Fraction]:
-    """Return H and dt/ds at the start, to 100 digits."""
-    in_time: Any = larger.rate.xreplace({larger.q[-1]: system.t})
-    rate = system.node(in_time, "dt/ds")
-    graph = system.graph
-    point = {graph.symbol(s): graph.number(x) for s, x in zip(system.inputs, (*state, t), strict=True)}
-    found = [exact_value(graph, node) for node in graph.substitute([system.hamiltonian, rate], point)]
-    return found[0], found[1]
+class _Course:
+    """A motion on its way: its orbits, and what of it is kept."""
 
+    def __init__(
+        self, task: Task, frame: Fictitious, progress: Callable[[float], None], so_far: Samples | None
+    ) -> None:
+        assert isinstance(task.method, TimeTransformed)
+        self.task, self.frame, self.so_far, self.progress = task, frame, so_far, progress
+        self.start, self.end = task.plan.start, Fraction(float(task.plan.instants[-1]))
+        self.method, kind = task.method.method, fixed_precision(task.precision)
+        self.bits = min(kind.number.mantissa, DOUBLE.mantissa)
+        self.loop = compiled_loop(frame.system, self.method, kind)
+        self.orbits, self.busy = task.states[0].shape[1], 0
+        self.walks = [self._walk(k) for k in range(self.orbits)]
+        footings = tuple(walk.footing for walk in self.walks)
+        self.standing: Standing = Standing(footings, rows=1) if so_far is None else so_far.beyond
+        self.t, self.high, self.low = self._kept_before()
 
-@dataclass
-class _Way:
-    """States gathered in stretches of steps, thinned out where they grow too many.
+    def _walk(self, k: int) -> Walk:
+        (high, low), frame, plan = self.task.states, self.frame, self.task.plan
+        pairs = zip(high[:, k].tolist(), low[:, k].tolist(), strict=True)
+        state, h = frame.start([Fraction(a) + Fraction(b) for a, b in pairs], self.start)
+        if self.so_far is None:
+            parts = [np.array(half)[:, np.newaxis] for half in zip(*map(double_pair, state), strict=True)]
+            footing = Footing(0, State(parts[0], parts[1]))
+        else:
+            footing = self.so_far.beyond.footings[k]
+        steps = steps_between(self.loop, self.method, fixed_plan(Fraction(0), plan.forward * h, (0,)))
+        return Walk(frame, steps, footing, frame.events(self.task.events), self.bits, self._report)
 
-    Parameters
-    ----------
-    advance
-        Takes steps, or a part of one, from an exact state, and returns the states after some of them.
-    n
-        Degrees of freedom; the state is (q, t; p, p_t).
-    start, end
-        First and last time.
-    wanted
-        About how many states to keep.
-    bits
-        Bits of the mantissa that times are known to.
-    """
+    def _kept_before(self) -> tuple[list[float], list[Array], list[Array]]:
+        """Return the times and states, each of shape (2n, orbits), that are kept already."""
+        if self.so_far is None:
+            high, low = self.task.states
+            return [float(self.start)], [high], [low]
+        rows = self.standing.rows if self.task.plan.wanted else len(self.so_far.t)
+        parts = (np.moveaxis(part, 1, 0)[:rows] for part in (self.so_far.y, self.so_far.carried))
+        high, low = (list(part) for part in parts)
+        return self.so_far.t[:rows].tolist(), high, low
 
-    advance: Callable[[Sequence[Fraction], Sequence[int], Fraction], Samples]
-    n: int
-    start: Fraction
-    end: Fraction
-    wanted: int
-    bits: int
-    done: float = 0.0
-    rows: list[tuple[Array, Array]] = field(default_factory=list[Any])
-    steps: int = 0
-    evaluations: int = 0
-    cpu_seconds: float = 0.0
-    compile_seconds: float = 0.0
+    def _report(self, t: float) -> None:
+        if self.orbits == 1:
+            self.progress(float((Fraction(t) - self.start) / (self.end - self.start)))
 
-    def run(self, state: Sequence[Fraction]) -> None:
-        """Go from the start to the end."""
-        stride = 1
+    def _keep(self, t: float, states: Sequence[State]) -> None:
+        self.t.append(t)
+        for kept, parts in ((self.high, [s.high for s in states]), (self.low, [s.low for s in states])):
+            kept.append(np.concatenate(parts, axis=1)[self.frame.rows])
+
+    # at the times that are asked for -------------------------------------------------------------------
+
+    def at_instants(self) -> None:
+        """Land at every instant, each time with all orbits."""
+        instants, first = self.task.plan.instants.tolist(), self.walks[0]
+        for k in range(len(self.t), len(instants)):
+            goal, states = Fraction(instants[k]), list[State]()
+            for orbit, walk in enumerate(self.walks):
+                self.busy = orbit
+                states.append(walk.landing(goal).state if walk.go(goal) else walk.state)
+            # Where there are events there is one orbit.
+            ended = first.stopped and not first.go(goal)
+            self._keep(first.time if ended else instants[k], states)
+            arrived = ended or k + 1 == len(instants)
+            footings = tuple(walk.before for walk in self.walks)
+            self.standing = Standing(footings, rows=len(self.t), arrived=arrived)
+            if self.orbits > 1:
+                self.progress(k / (len(instants) - 1))
+            if ended:
+                break
+
+    # after evenly many steps ---------------------------------------------------------------------------
+
+    def in_steps(self) -> None:
+        """Keep every so manieth state, twice as far apart whenever there are twice as many as wanted."""
+        (walk,), end, wanted = self.walks, self.end, self.task.plan.wanted
+        stride = self.standing.stride
         while True:
-            piece = self._moved(state, range(0, stride * self.wanted + 1, stride))
-            last = self._last_before_the_end(piece)
-            self._keep(piece, range(1 if self.rows else 0, last + 1))
-            self.steps += last * stride
-            state = _exactly(piece, last)
-            self.done = float((state[self.n] - self.start) / (self.end - self.start))
-            if last < self.wanted:
-                self._land(state, stride)
-                return
-            while len(self.rows) > 2 * self.wanted:
-                self.rows, stride = self.rows[::2], 2 * stride
+            if not self._leap(walk, stride, 2 * wanted + 1 - len(self.t)):
+                reached = walk.go(end, (walk.n // stride + 1) * stride)
+                if reached or walk.stopped:
+                    break
+                self._keep(walk.time, [walk.state])
+            if len(self.t) > 2 * wanted:
+                self.t, self.high, self.low = self.t[::2], self.high[::2], self.low[::2]
+                stride *= 2
+            self.standing = Standing((walk.footing,), stride, len(self.t))
+        last = walk.landing(end).state if reached else walk.state
+        self._keep(float(end) if reached else walk.time, [last])
+        self.standing = Standing((walk.before,), stride, len(self.t) - 1, arrived=True)
 
-    def _moved(
-        self, state: Sequence[Fraction], stops: Sequence[int], part: Fraction = Fraction(1)
-    ) -> Samples:
-        piece = self.advance(state, stops, part)
-        if len(piece.t) < len(stops):
-            raise KeyboardInterrupt("a motion in a fictitious time can't be resumed: nothing of it is kept")
-        self.cpu_seconds += piece.cpu_seconds
-        self.compile_seconds = piece.compile_seconds
-        self.evaluations += piece.evaluations
-        return piece
+    def _leap(self, walk: Walk, stride: int, most: int) -> bool:
+        """Keep the states of many steps in one go, where so many are surely left."""
+        stops = walk.strides(self.end, stride)[: most + 1]
+        if walk.n % stride or len(stops) < 2:
+            return False
+        found = walk.leap(stops, self.end)
+        if found is None:
+            return False
+        times = found.high[self.frame.clock, 1:, 0] + found.low[self.frame.clock, 1:, 0]
+        self.t += times.tolist()
+        for kept, part in ((self.high, found.high), (self.low, found.low)):
+            kept += list(np.moveaxis(part[self.frame.rows, 1:], 1, 0))
+        if walk.interrupted:
+            self.standing = Standing((walk.footing,), stride, len(self.t))
+            raise KeyboardInterrupt
+        return True
 
-    @property
-    def forward(self) -> int:
-        """1 where time runs forward, −1 where it runs back."""
-        return 1 if self.end > self.start else -1
+    # what came out -------------------------------------------------------------------------------------
 
-    def _last_before_the_end(self, piece: Samples) -> int:
-        times = self.forward * piece.y[self.n, :, 0]
-        if not (np.diff(times) > 0).all():
-            raise ArithmeticError(
-                f"the time stops or turns back after t = {piece.y[self.n, 0, 0]:.9g}: "
-                "dt/ds is to be positive along the motion"
-            )
-        return int(np.flatnonzero(times <= self.forward * float(self.end))[-1])
-
-    def _land(self, state: Sequence[Fraction], stride: int) -> None:
-        """Take single steps and then the part of one that ends where the span does."""
-        piece = self._moved(state, range(stride + 1))
-        last = min(self._last_before_the_end(piece), stride - 1)
-        below, above = self._miss(piece, last), self._miss(piece, last + 1)
-        tolerance = max(abs(self.end), abs(above - below)) / 2 ** (self.bits - 1)
-        if abs(below) <= tolerance:
-            self.steps += last
-            self._keep(piece, [last] if last else [])  # the first one is kept already
-            return
-        self.steps += last + 1
-        self._keep(self._landed(_exactly(piece, last), below, above, tolerance), [-1])
-
-    def _miss(self, piece: Samples, k: int) -> Fraction:
-        """Return how far behind the end a state is."""
-        return self.forward * (_exactly(piece, k)[self.n] - self.end)
-
-    def _landed(
-        self, state: Sequence[Fraction], below: Fraction, above: Fraction, tolerance: Fraction
-    ) -> Samples:
-        """Take the part of a step that ends where the span does, between misses of no step and of a whole one."""
-        low, high = Fraction(0), Fraction(1)
-        for _ in range(_LANDINGS):
-            part = Fraction(float(low - below * (high - low) / (above - below)))
-            piece = self._moved(state, (0, 1), part)
-            miss = self._miss(piece, -1)
-            if abs(miss) <= tolerance:
-                return piece
-            # Where one end stays, halving its value keeps the secant from creeping (the Illinois rule).
-            if miss > 0:
-                high, above, below = part, miss, below / 2
-            else:
-                low, below, above = part, miss, above / 2
-        raise ArithmeticError(
-            f"no part of a step ends at t = {float(self.end):.9g}: dt/ds varies too fast there; take smaller steps"
+    def samples(self, seconds: float) -> Samples:
+        """Return all of the motion."""
+        before, standing = self.so_far, self.standing
+        ended = standing.arrived
+        steps = sum(walk.n for walk in self.walks) if ended else sum(f.n for f in standing.footings)
+        work = sum(walk.work for walk in self.walks) * self.method.stages
+        return Samples(
+            t=np.array(self.t),
+            y=np.stack(self.high, axis=1),
+            carried=np.stack(self.low, axis=1),
+            steps=steps,
+            evaluations=work + (before.evaluations if before else 0),
+            step=float(self.frame.step),
+            cpu_seconds=seconds + (before.cpu_seconds if before else 0.0),
+            compile_seconds=self.loop.code.seconds,
+            beyond=standing,
+            crossings=self._crossings(),
         )
 
-    def _keep(self, piece: Samples, which: Sequence[int]) -> None:
-        self.rows += [(piece.y[:, k, 0], piece.carried[:, k, 0]) for k in which]
-
-    def trajectory(
-        self, system: Equations, method: TimeTransformed, step: float, precision: str
-    ) -> Trajectory:
-        """Return the motion in t."""
-        states = [i for i in range(2 * self.n + 2) if i not in (self.n, 2 * self.n + 1)]
-        high, low = (np.array([row[part] for row in self.rows]).T for part in (0, 1))
-        found = Samples(
-            t=high[self.n],
-            y=high[states][:, :, np.newaxis],
-            carried=low[states][:, :, np.newaxis],
-            steps=self.steps,
-            evaluations=self.evaluations,
-            step=step,
-            cpu_seconds=self.cpu_seconds,
-            compile_seconds=self.compile_seconds,
-        )
-        one = replace(found, y=found.y[:, :, 0], carried=found.carried[:, :, 0])
-        ((energy, change),) = measured(system, [system.hamiltonian], one, precision)
-        task = Task(
-            system=system,
-            method=method,
-            precision=precision,
-            states=(found.y[:, 0], found.carried[:, 0]),
-            single=True,
-            plan=Plan(Fraction(float(found.t[0])), found.t, ends=(len(found.t) - 1,)),
-            names=(),
-            nodes=(system.hamiltonian,),
-            cadence=None,
-            events=(),
-            dense=False,
-        )
-        return Trajectory(
-            t=found.t,
-            y=one.y,
-            carried=one.carried,
-            energy=energy,
-            energy_change=change,
-            method=method,
-            precision=precision,
-            step=step,
-            steps=self.steps,
-            evaluations=self.evaluations,
-            cpu_seconds=self.cpu_seconds,
-            compile_seconds=self.compile_seconds,
-            autonomous=system.autonomous,
-            task=task,
-            samples=found,
-        )
+    def _crossings(self) -> tuple[Crossing, ...]:
+        """Return the events met up to the last state that is kept."""
+        (walk, *_), forward = self.walks, self.task.plan.forward
+        earlier = () if self.so_far is None else self.so_far.crossings[: self.so_far.beyond.footings[0].met]
+        found = [*earlier, *(_crossing(self.frame, met) for met in walk.guard.met)]
+        return tuple(met for met in found if (met.t - self.t[-1]) * forward <= 0)
 
 
-def _exactly(piece: Samples, k: int) -> list[Fraction]:
-    pairs = zip(piece.y[:, k, 0].tolist(), piece.carried[:, k, 0].tolist(), strict=True)
-    return [Fraction(high) + Fraction(low) for high, low in pairs]
+def _crossing(frame: Fictitious, met: Crossing) -> Crossing:
+    """Return an event met as one of the motion in t."""
+    t, y = _in_time(frame, met.y)
+    return replace(met, t=t, y=y, after=None if met.after is None else _in_time(frame, met.after)[1])
+
+
+def _told(frame: Fictitious, lost: NonFiniteStateError, orbit: int | None) -> NonFiniteStateError:
+    """Return an error in the fictitious time as one in t."""
+    t, y = _in_time(frame, lost.state)
+    said = str(lost).replace(described(lost.time, lost.state), described(t, y))
+    return NonFiniteStateError(said if orbit is None else f"{said} (orbit {orbit})", t, y)
+
+
+def _in_time(frame: Fictitious, state: Array) -> tuple[float, Array]:
+    """Return t and (q, p) of an extended state without parameters that vary."""
+    clock = frame.clock
+    return float(state[clock]), np.delete(state, [clock, 2 * clock + 1])

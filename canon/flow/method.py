@@ -278,8 +278,10 @@ class TimeTransformed:
 
     Notes
     -----
-    ``step`` is the size in t of the first step. The samples' times are as the method gives them, evenly spaced in
-    steps; the last step ends where the span does. One orbit at a time.
+    ``step`` is the size in t of the first step; elsewhere steps are longer or shorter as dt/ds is. The end, named
+    ``times`` and events are reached by a part of a step, so that those states err by one more part of a step than the
+    motion itself, which goes on from its own whole steps. ``samples`` of one orbit are evenly spaced in steps, more
+    where steps are short; of many orbits in t.
 
     Examples
     --------

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.job import NonFiniteStateError
-from canon.flow.method import TimeTransformed
 from canon.flow.progress import reporting
 from canon.flow.request import HamiltonianSystem, system_of, task_of
 from canon.flow.trajectory import Interrupted, Trajectory
@@ -59,23 +58,25 @@ def propagate(
         vary: ``TimeTransformed(...)``.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
-        span; ``Trajectory.step`` has it.
+        span; ``Trajectory.step`` has it. Of a time-transformed method: the size in t of the first step.
     tolerance
         Relative tolerance of an adaptive method, in place of the method's own.
     precision
         Fixed steps: ``"single"``, ``"double"``, ``"compensated"`` (the default: doubles, what rounding takes
         from the state being carried along so that little is lost), ``"extended"`` (64 bits, x86 only),
-        ``"double-double"`` (106 bits; all functions but the inverse hyperbolic ones); Gauss methods have
-        all but the first and the fourth. Taylor: ``"double"``, ``"extended"``, ``"quad"`` or decimal digits.
+        ``"double-double"`` (106 bits; all functions but the inverse hyperbolic ones). Taylor: ``"double"``, ``"extended"``, ``"quad"`` or decimal digits.
     parameters
         A number for every parameter of H, by symbol or name; or, where it differs from orbit to orbit, an array
         of shape (orbits,).
     samples
-        How many sampled states to keep after the first, evenly spaced up to a step; 1000 where not given.
+        How many sampled states to keep after the first, evenly spaced up to a step; 1000 where not given. Of one
+        time-transformed orbit: about so many up to twice as many, evenly spaced in steps.
     times
         In place of ``samples``: times at which to keep the state, in order, within the span. Both ends of the
         span are kept as well. Taylor and DOP853 are evaluated exactly there; methods of fixed steps keep the
-        state after the step nearest to each, and ``Trajectory.t`` has the times of those steps.
+        state after the step nearest to each, and ``Trajectory.t`` has the times of those steps. Time-transformed
+        methods land there: each state is reached from the motion's last step before by a part of a step, found in
+        about two trials, which leaves the motion as it is.
     observables
         Further functions of (q, p, t) to evaluate at the samples, by name.
     cadence
@@ -97,7 +98,8 @@ def propagate(
     Trajectory
         Sampled states, energies evaluated in higher precision than the states, and the cost. Many orbits
         run side by side in SIMD lanes and on threads (splittings and RK4) and give arrays with a last axis
-        for the orbits.
+        for the orbits. Time-transformed orbits have steps of their own and run one by one, their states kept at
+        common times.
 
     Raises
     ------
@@ -125,25 +127,6 @@ def propagate(
     >>> motion.steps, bool(abs(motion.energy_error).max() < 1e-8)
     (10000, True)
     """
-    if isinstance(method, TimeTransformed):
-        given = {
-            "tolerance": tolerance is not None,
-            "times": times is not None,
-            "observables": bool(observables),
-            "cadence": cadence is not None,
-            "events": bool(events),
-            "dense": dense,
-        }
-        if any(given.values()):
-            foreign = ", ".join(name for name, is_given in given.items() if is_given)
-            raise ValueError(f"{method} takes step, precision, parameters and samples, not {foreign}")
-        from canon.flow.fictitious import transformed_motion
-
-        with reporting(progress) as report:
-            return transformed_motion(
-                hamiltonian, y0, t_span, method, step=step, precision=precision, parameters=parameters,
-                samples=samples, progress=report,
-            )  # fmt: skip
     task = task_of(
         hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -14,15 +16,15 @@ from canon.expression.given import counted
 from canon.flow.event import Event, prepared
 from canon.flow.fixed import planned
 from canon.flow.magnitude import check_magnitudes, is_narrow
-from canon.flow.method import DOP853, FixedStep, Method, Taylor
-from canon.flow.sampling import adaptive_plan, sampling
+from canon.flow.method import DOP853, FixedStep, Method, Taylor, TimeTransformed
+from canon.flow.sampling import adaptive_plan, fictitious_plan, sampling
 from canon.flow.task import Task
+from canon.flow.transformed import extended, fictitious
 from canon.kernel.machine import double_pair
 from canon.kernel.structure import Equations, equations, exact, exact_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from fractions import Fraction
 
     import numpy.typing as npt
     from sympy import Expr
@@ -91,10 +93,14 @@ def task_of(
     wanted = sampling((start, end), samples, times)
     _check_start(system, given, start, precision)
     check_magnitudes(system, given[0], start, method, precision)
+    frame = None
     if isinstance(method, FixedStep):
         plan = planned(wanted, step, method)
-    elif not isinstance(method, Taylor | DOP853):
-        raise ValueError(f"{method} is for propagate() alone; use Splitting, Gauss or Taylor")
+    elif isinstance(method, TimeTransformed):
+        _check_transformed(method, step, cadence)
+        larger = extended(hamiltonian, method)
+        frame = fictitious(larger, system_of(larger, fixed, tuple(varying)), hamiltonian, Fraction(step or 0))
+        plan = fictitious_plan(wanted, named=times is not None or not single)
     else:
         _check_adaptive(method, step, cadence, precision)
         plan = adaptive_plan(wanted)
@@ -110,6 +116,7 @@ def task_of(
         cadence=cadence,
         events=tuple(events),
         dense=dense,
+        fictitious=frame,
     )
     _check_events(task)
     return task
@@ -239,6 +246,16 @@ def _check_start(
         raise ValueError(
             f"H or its derivatives are not finite at y0 = {wrong}: start inside H's domain, in units "
             "in which no number on the way is beyond 1e±308"
+        )
+
+
+def _check_transformed(method: TimeTransformed, step: float | None, cadence: int | None) -> None:
+    if step is None or not (math.isfinite(step) and step > 0):
+        raise ValueError(f"step={step}: {method} takes the size in t of its first step, a positive number")
+    if cadence is not None:
+        raise ValueError(
+            f"cadence={cadence}: {method} has no statistics inside the loop, as its samples are not whole numbers of "
+            "steps apart; observables= at many samples= do instead"
         )
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from canon.flow.trajectory import Array
 
-__all__ = ["Plan", "Sampling", "adaptive_plan", "fixed_plan", "sampling", "steps_over"]
+__all__ = ["Plan", "Sampling", "adaptive_plan", "fictitious_plan", "fixed_plan", "sampling", "steps_over"]
 
 _SLICES = 20
 """Parts a run of an adaptive method is done in, between which progress is reported and an interruption heard."""
@@ -153,6 +153,9 @@ class Plan:
         Of a fixed-step method: the exact step, and the numbers of the steps after which to sample.
     ends
         Of an adaptive method: the samples at which to look at progress and interruptions.
+    wanted
+        Of a time-transformed method that is to keep states after evenly many steps: about how many. Then the instants
+        are the first and the last time.
     """
 
     start: Fraction
@@ -160,6 +163,7 @@ class Plan:
     h: Fraction | None = None
     stops: tuple[int, ...] = ()
     ends: tuple[int, ...] = ()
+    wanted: int = 0
 
     @property
     def forward(self) -> int:
@@ -220,6 +224,14 @@ def adaptive_plan(wanted: Sampling) -> Plan:
     """Return the plan of a run in steps that the method chooses."""
     instants = wanted.instants()
     return Plan(wanted.start, instants, ends=tuple(_slices(len(instants) - 1)))
+
+
+def fictitious_plan(wanted: Sampling, *, named: bool) -> Plan:
+    """Return the plan of a time-transformed run: the named times, or about so many states evenly spaced in steps."""
+    if named:
+        return adaptive_plan(wanted)
+    ends = np.array([float(wanted.start), float(wanted.end)])
+    return Plan(wanted.start, ends, ends=(1,), wanted=wanted.samples)
 
 
 def _slices(samples: int) -> list[int]:

@@ -6,21 +6,29 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from canon.flow.adaptive import dop853_motion
 from canon.flow.compiled import compiled_loop
 from canon.flow.event import Event, prepared
+from canon.flow.fictitious import transformed_motion
 from canon.flow.fixed import fixed_steps
 from canon.flow.measure import measured, warn_of_jumps
-from canon.flow.method import DOP853, FixedStep, Method, Taylor
+from canon.flow.method import DOP853, FixedStep, Method, Taylor, TimeTransformed
 from canon.flow.precision import fixed_precision
+from canon.flow.sampling import sampling
 from canon.flow.series import taylor_motion
 from canon.flow.trajectory import Array, Interrupted, Samples, Statistics, Trajectory, joined
 from canon.flow.watching import watch_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from fractions import Fraction
+
+    import numpy.typing as npt
 
     from canon.flow.sampling import Plan
+    from canon.flow.transformed import Fictitious
     from canon.kernel.structure import Equations
 
 __all__ = ["Task"]
@@ -44,6 +52,8 @@ class Task:
         The observables; H, then they, on the system's graph.
     cadence, events, dense
         As :func:`canon.flow.propagate.propagate` takes them.
+    fictitious
+        Of a time-transformed method: what the motion in the fictitious time needs.
     """
 
     system: Equations
@@ -57,6 +67,7 @@ class Task:
     cadence: int | None
     events: tuple[Event, ...]
     dense: bool
+    fictitious: Fictitious | None = None
 
     def trajectory(self, progress: Callable[[float], None], so_far: Samples | None = None) -> Trajectory:
         """Carry the task out, from the start or from what was done before.
@@ -68,17 +79,59 @@ class Task:
         NonFiniteStateError
             The motion can't be continued.
         """
-        found = joined(so_far, self._continued(progress, so_far))
+        found = self._continued(progress, so_far)
         made = self._made(found)
-        if len(found.t) < len(self.plan.instants) and not made.stopped:
+        if not (self.arrived(found) or made.stopped):
             raise Interrupted(made)
         return made
+
+    def arrived(self, found: Samples) -> bool:
+        """Return whether samples reach to the end of what was to be done."""
+        if isinstance(self.method, TimeTransformed):
+            return found.beyond.arrived
+        return len(found.t) == len(self.plan.instants)
+
+    def until(self, end: Fraction, found: Samples, samples: int | None, times: npt.ArrayLike | None) -> Task:
+        """Return the task that goes on from the last sample of this one to another end.
+
+        Parameters
+        ----------
+        end
+            The new last time.
+        found
+            What was done.
+        samples, times
+            When to keep the state on the new part; as densely as before where not given.
+
+        Raises
+        ------
+        ValueError
+            The end lies behind, or is not a whole number of fixed steps away.
+        """
+        plan, wanted = self.plan, samples or self.plan.wanted
+        if self.plan.wanted:  # its instants were not known before
+            plan = replace(plan, instants=found.t, wanted=0)
+        last = plan.last(len(found.t) - 1)
+        if self.plan.wanted and times is None:
+            ends = plan.continued(sampling((last, end), 1, None)).instants[[0, -1]]
+            return replace(self, plan=replace(plan, instants=ends, wanted=wanted))
+        if samples is None and times is None:
+            density = (len(found.t) - 1) / abs(found.t[-1] - found.t[0])
+            samples = max(1, round(density * abs(float(end - last))))
+        return replace(self, plan=plan.continued(sampling((last, end), samples, times)))
 
     def samples(self) -> Samples:
         """Carry the task out and return the states alone."""
         return self._continued(lambda _: None, None)
 
     def _continued(self, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
+        """Return all of the motion, what was done before included."""
+        if isinstance(self.method, TimeTransformed):
+            return transformed_motion(self, progress, so_far)
+        return joined(so_far, self._more(progress, so_far))
+
+    def _more(self, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
+        """Return the part of the motion that was not done before."""
         states = self.states if so_far is None else (so_far.y[:, -1], so_far.carried[:, -1])
         events, orbits = prepared(self.system, self.events), states[0].shape[1]
         if isinstance(self.method, FixedStep):
@@ -136,6 +189,13 @@ class Task:
                 {} if watched is None else {k: Statistics(*v) for k, v in zip(names, watched, strict=True)}
             ),
             events=found.crossings,
-            task=self,
+            task=self._ended(found),
             samples=kept,
         )
+
+    def _ended(self, found: Samples) -> Task:
+        """Return the task with the instants that are known only now, where an event has ended a motion."""
+        if not self.plan.wanted or not found.crossings or found.crossings[-1].event.action != "stop":
+            return self
+        instants = np.append(found.t, self.plan.instants[-1])
+        return replace(self, plan=replace(self.plan, instants=instants, wanted=0))

@@ -287,16 +287,17 @@ class Trajectory:
     ) -> Trajectory:
         """Go on with the motion and return all of it, from its first time on.
 
-        Methods of fixed steps take the steps that a run without the break would have taken: its states,
-        observables and statistics are the same bits. Taylor's are too where an interrupted run is completed; DOP853
-        chooses its first step anew.
+        Methods of fixed steps, time-transformed ones too, take the steps that a run without the break would have
+        taken: its states, observables and statistics are the same bits. Taylor's are too where an interrupted run is
+        completed; DOP853 chooses its first step anew.
 
         Parameters
         ----------
         until
-            The new last time, a whole number of steps away; where not given, an interrupted run is completed.
+            The new last time, a whole number of fixed steps away; where not given, an interrupted run is completed.
         samples, times
-            When to keep the state on the new part; as densely as before where not given.
+            When to keep the state on the new part; as densely as before where not given. A time-transformed motion
+            that keeps states evenly in steps does so anew, about so many in all.
         progress
             As :func:`canon.flow.propagate.propagate` takes it.
 
@@ -318,25 +319,17 @@ class Trajectory:
         >>> bool((half.resume(20).y == whole.y).all())
         True
         """
-        from canon.flow.method import DOP853, Taylor
         from canon.flow.progress import reporting
-        from canon.flow.sampling import sampling
         from canon.kernel.structure import exact
 
         task, kept = self.origin
         if self.stopped:
             raise ValueError(f"the motion was ended by the event {self.events[-1].event}: it does not go on")
-        if task.plan.h is None and not isinstance(task.method, Taylor | DOP853):
-            raise ValueError(f"{task.method} does not go on: propagate() anew from the last state")
         if until is not None:
-            last, end = task.plan.last(len(kept.t) - 1), exact(until, "until")
-            if len(kept.t) < len(task.plan.instants):
+            if not task.arrived(kept):
                 raise ValueError("complete the interrupted run first: run.resume()")
-            if samples is None and times is None:
-                density = (len(kept.t) - 1) / abs(kept.t[-1] - kept.t[0])
-                samples = max(1, round(density * abs(float(end - last))))
-            task = replace(task, plan=task.plan.continued(sampling((last, end), samples, times)))
-        elif len(kept.t) == len(task.plan.instants):
+            task = task.until(exact(until, "until"), kept, samples, times)
+        elif task.arrived(kept):
             raise ValueError(f"the motion has arrived at t = {self.t[-1]:g}: say how far to go on, until=")
         with reporting(progress) as report:
             return task.trajectory(report, kept)

@@ -16,18 +16,29 @@ VIII.2.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.flow.event import Prepared, prepared
+from canon.kernel.program import exact_value
+
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
     from sympy import Expr, Symbol
 
+    from canon.flow.event import Event
     from canon.flow.method import TimeTransformed
     from canon.flow.request import HamiltonianSystem
+    from canon.kernel.structure import Equations
 
-__all__ = ["Extended", "extended"]
+__all__ = ["Extended", "Fictitious", "extended", "fictitious"]
+
+# No parameter of H is one of these, whatever its name is.
+_P_T, _S = sp.Dummy("p_t", real=True), sp.Dummy("s", real=True)
 
 
 @dataclass(frozen=True)
@@ -66,26 +77,24 @@ def extended(hamiltonian: HamiltonianSystem, method: TimeTransformed) -> Extende
     >>> extended(find("kepler").hamiltonian, TimeTransformed(Splitting("verlet"))).rate
     sqrt(x**2 + y**2)/mu
     """
-    t, p_t, s = sp.Symbol("t", real=True), sp.Symbol("p_t", real=True), sp.Symbol("s", real=True)
-    taken = {symbol.name for symbol in (*hamiltonian.q, *hamiltonian.p)}
-    if taken & {"t", "p_t"}:
-        t, p_t = sp.Dummy("t", real=True), sp.Dummy("p_t", real=True)
-    energy: Any = hamiltonian.H.xreplace({hamiltonian.t: t})
+    t, p_t, s = hamiltonian.t, _P_T, _S
+    energy: Any = hamiltonian.H
     q, p = (*hamiltonian.q, t), (*hamiltonian.p, p_t)
     if method.g is not None:
-        g: Any = sp.sympify(method.g, strict=True).xreplace({hamiltonian.t: t})
+        g: Any = sp.sympify(method.g, strict=True)
         return Extended(g * (energy + p_t), q, p, s, g)
-    kinetic, potential = _split(energy, hamiltonian, t)
+    kinetic, potential = _split(hamiltonian)
     return Extended(sp.log(kinetic + p_t) - sp.log(-potential), q, p, s, -1 / potential)
 
 
-def _split(energy: Any, hamiltonian: HamiltonianSystem, t: Symbol) -> tuple[Any, Any]:
+def _split(hamiltonian: HamiltonianSystem) -> tuple[Any, Any]:
     """Return T(p) and V(q, t)."""
+    energy: Any = hamiltonian.H
     if energy.is_polynomial(*hamiltonian.q, *hamiltonian.p):
         energy = sp.expand(energy)
     kinetic, potential = sp.S.Zero, sp.S.Zero
     for term in sp.Add.make_args(energy):
-        moves, rests = term.has(*hamiltonian.p), term.has(*hamiltonian.q, t)
+        moves, rests = term.has(*hamiltonian.p), term.has(*hamiltonian.q, hamiltonian.t)
         if moves and rests:
             raise ValueError(
                 f"the logarithmic transformation needs H = T(p) + V(q, t), but H holds {term}; use "
@@ -93,3 +102,115 @@ def _split(energy: Any, hamiltonian: HamiltonianSystem, t: Symbol) -> tuple[Any,
             )
         kinetic, potential = (kinetic + term, potential) if moves else (kinetic, potential + term)
     return kinetic, potential
+
+
+@dataclass(frozen=True, eq=False)
+class Fictitious:
+    """What a motion in a fictitious time needs beside H's own equations.
+
+    Parameters
+    ----------
+    system
+        Hamilton's equations of K, their time the fictitious one.
+    physical
+        Those of H on the same graph.
+    rate
+        The node of dt/ds as a function of (q, p, t).
+    words
+        What dt/ds is, for messages.
+    step
+        The size in t of the first step.
+    """
+
+    system: Equations
+    physical: Equations
+    rate: int
+    words: str
+    step: Fraction
+
+    @property
+    def clock(self) -> int:
+        """Which component of the extended state is t."""
+        return len(self.physical.q) - self.physical.varying
+
+    @property
+    def rows(self) -> list[int]:
+        """The components of the extended state that are (q, p), parameters that vary included."""
+        half = len(self.system.q)
+        return [i for i in range(2 * half) if i % half != self.clock]
+
+    def start(self, state: Sequence[Fraction], t: Fraction) -> tuple[list[Fraction], Fraction]:
+        """Return the extended state at the start of a motion, and the step's size in the fictitious time.
+
+        Raises
+        ------
+        ValueError
+            dt/ds is not positive there.
+        """
+        physical, graph = self.physical, self.physical.graph
+        values = zip(physical.inputs, (*state, t), strict=True)
+        point = {graph.symbol(symbol): graph.number(value) for symbol, value in values}
+        nodes = graph.substitute([physical.hamiltonian, self.rate], point)
+        energy, rate = (exact_value(graph, node) for node in nodes)
+        if not rate > 0:
+            raise ValueError(
+                f"dt/ds = {self.words} is {float(rate):g} at the start, and time-transformed methods need it positive "
+                "along the motion: give another g"
+            )
+        half = len(state) // 2
+        q, p = list(state[:half]), list(state[half:])
+        q.insert(self.clock, t)
+        p.insert(self.clock, -energy)
+        return [*q, *p], self.step / rate
+
+    def events(self, events: Sequence[Event]) -> tuple[Prepared, ...]:
+        """Return events for the extended motion: their slopes are by s, and p_t changes as −H does."""
+        return tuple(self._prepared(event) for event in prepared(self.physical, events))
+
+    def _prepared(self, event: Prepared) -> Prepared:
+        graph, physical = self.system.graph, self.physical
+        rate = graph.mul([event.rate, self.system.velocity[self.clock]])
+        if event.jump is None:
+            return replace(event, rate=rate)
+        state = (*physical.q, *physical.p)
+        changed = {graph.symbol(symbol): new for symbol, new in zip(state, event.jump, strict=True)}
+        energy = physical.hamiltonian
+        (after,) = graph.substitute([energy], changed)
+        t, p_t = (graph.symbol(half[self.clock]) for half in (self.system.q, self.system.p))
+        half = len(physical.q)
+        q, p = list(event.jump[:half]), list(event.jump[half:])
+        q.insert(self.clock, t)
+        p.insert(self.clock, graph.add([p_t, energy, graph.negative(after)]))
+        return replace(event, rate=rate, jump=(*q, *p))
+
+
+def fictitious(
+    larger: Extended, system: Equations, hamiltonian: HamiltonianSystem, step: Fraction
+) -> Fictitious:
+    """Return what a motion in the fictitious time of an extended Hamiltonian needs.
+
+    Parameters
+    ----------
+    larger, system
+        The extended Hamiltonian, and its equations with numbers for the parameters.
+    hamiltonian
+        H.
+    step
+        The size in t of the first step.
+    """
+    graph, varying = system.graph, system.varying
+    n = len(hamiltonian.q)
+    q, p = (*hamiltonian.q, *system.q[n + 1 :]), (*hamiltonian.p, *system.p[n + 1 :])
+    energy = system.node(hamiltonian.H, "the Hamiltonian")
+    slopes = graph.gradient(energy, (*hamiltonian.q, *hamiltonian.p))
+    stays = (graph.zero,) * varying
+    physical = replace(
+        system,
+        q=q,
+        p=p,
+        t=hamiltonian.t,
+        hamiltonian=energy,
+        velocity=(*slopes[n:], *stays),
+        force=(*(graph.negative(slope) for slope in slopes[:n]), *stays),
+    )
+    return Fictitious(system, physical, system.node(larger.rate, "dt/ds"), str(larger.rate), step)

@@ -35,7 +35,11 @@ _PARAMETERS = ", ".join(
 
 
 def sentry_function(
-    system: Equations, values: Sequence[int], rates: Sequence[int], loop: Loop
+    system: Equations,
+    values: Sequence[int],
+    rates: Sequence[int],
+    loop: Loop,
+    timed: int | None = None,
 ) -> MachineCode:
     """Compile ``drive(advance, y, e, c, before_y, before_e, kept, done, first, steps)``.
 
@@ -54,6 +58,9 @@ def sentry_function(
     loop
         A loop for one orbit. ``kept`` has the direction of time, ±1, and for each event the sign that g has
         had last (0: not known yet), dg/dt, positive where g rises in the order of passing, and g.
+    timed
+        Which component of the state is a time, where one is: the function returns too after the step in which that
+        reaches the number that ``kept`` has last, or turns back.
     """
     w = Writer(dataclasses.replace(loop.number, lanes=1))
     size = len(system.inputs) - 1
@@ -88,5 +95,23 @@ def sentry_function(
             unknown = d.equal(side, zero)
             for each in (crossed, dipped, unknown):
                 flag = w.let(f"or i1 {flag}, {each}")
+        if timed is not None:
+            goal = d.load("%kept", 1 + 3 * len(values))
+            for each in _clock_flags(w, d, state[timed], timed, goal, compensated=loop.compensated):
+                flag = w.let(f"or i1 {flag}, {each}")
         w.leave_if(flag)
     return compiled_function(w, "drive", _PARAMETERS, _SIGNATURE)
+
+
+def _clock_flags(
+    w: Writer, d: Writer, now: str, row: int, goal: str, *, compensated: bool
+) -> tuple[str, str]:
+    """Return whether a component that is a time has reached a goal, and whether it has turned back in the step."""
+    direction = d.load("%kept", 0)
+    ahead, there = (d.algebra("mul", direction, x) for x in (w.as_double(now), goal))
+    passed = w.algebra("sub", w.load("%y", row), w.load("%before_y", row))
+    if compensated:
+        rest = w.algebra("sub", w.load("%e", row), w.load("%before_e", row))
+        passed = w.algebra("add", passed, rest)
+    turned = d.less(d.algebra("mul", direction, w.as_double(passed)), "0.0")
+    return w.let(f"fcmp oge double {ahead}, {there}"), turned

@@ -175,8 +175,14 @@ def test_chosen_orbits_of_an_ensemble():
     assert np.allclose(some.relative, all_of_them.relative[:, [3, 30]], rtol=1e-3)
 
 
-def test_time_transformed_motions_do_not_resume():
-    method = TimeTransformed(Splitting("verlet"))
-    motion = propagate(KEPLER, kepler_start(0.5), (0, 1), method=method, step=0.01)
-    with pytest.raises(ValueError, match="anew from the last state"):
-        motion.resume(2)
+@pytest.mark.parametrize("how", [{}, {"times": [1.0, 2.0]}])
+def test_time_transformed_motions_that_an_event_has_ended(how):
+    method = TimeTransformed(Splitting("forest-ruth"))
+    radial = x * x.momentum + y * y.momentum
+    end = Event(radial, -1, "stop")
+    motion = propagate(KEPLER, kepler_start(0.5), (0, 9), method=method, step=0.01, events=[end], **how)
+    estimate = motion.error_estimate()
+    assert motion.stopped
+    # The apocentre is passed after half a period of 2π.
+    assert abs(motion.t[-1] - np.pi) <= estimate.events[0] < 1e-4
+    assert (true_error(motion, kepler_truth(kepler_start(0.5), motion.t)) <= estimate.error).all()

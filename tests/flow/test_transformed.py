@@ -1,15 +1,11 @@
 """Time transformations: close encounters with long steps, geometry in the fictitious time, and what is refused."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.fictitious import _Way
 from canon.flow.method import RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.propagate import propagate
-from canon.flow.trajectory import Samples
 from canon.flow.transformed import extended
 from tests.flow.systems import DOUBLE_PENDULUM, HENON_HEILES, KEPLER, PENDULUM, System, kepler_start
 from tests.flow.test_geometry import compiled_jacobian, kepler_orbit
@@ -156,39 +152,12 @@ def test_the_end_is_met_to_the_rounding_of_time(precision, bits, forward):
     assert abs(found.t[-1] - 10 * forward) <= 10 * 2.0 ** (1 - bits)
 
 
-def test_an_end_that_no_part_of_a_step_meets_is_an_error():
-    def stubborn(state, stops, part):
-        # A whole step passes the end, but no part of one advances the time.
-        times = np.array([float(state[1]) + (5.0 if part == 1 and k else 0.0) for k in range(len(stops))])
-        y = np.zeros((4, len(stops), 1))
-        y[1, :, 0] = times
-        return Samples(times, y, np.zeros_like(y), 0, 0, 0.1, 0.0, 0.0)
-
-    way = _Way(stubborn, 1, Fraction(0), Fraction(1), 1, 53)
-    with pytest.raises(ArithmeticError, match="no part of a step ends at t = 1"):
-        way.run([Fraction(0)] * 4)
-
-
-def test_an_interrupted_motion_is_not_taken_for_a_whole_one():
-    seen = []
-
-    def impatient(fraction):
-        seen.append(fraction)
-        if fraction > 0.3:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt, match="nothing of it is kept"):
-        motion(0.9, LOGARITHMIC, 0.1, samples=20, progress=impatient)
-    assert seen == sorted(seen)
-
-
 @pytest.mark.parametrize(
     ("system", "start", "method", "message"),
     [
         (HENON_HEILES, [0.1, 0.2, 0.3, 0.1], LOGARITHMIC, "positive along the motion"),
         (DOUBLE_PENDULUM, [1.0, 0.4, 0.1, -0.2], LOGARITHMIC, r"T\(p\) \+ V\(q, t\)"),
         (KEPLER, [0.5, 0, 0, 1.5], TimeTransformed(Gauss(2), -RADIUS), "positive along the motion"),
-        (KEPLER, np.ones((4, 2)), LOGARITHMIC, "one orbit at a time"),
         (KEPLER, [0.5, 0, 1.5], LOGARITHMIC, "2 coordinates and 2 momenta"),
     ],
 )
@@ -203,16 +172,15 @@ def test_steps_and_other_arguments_are_checked():
             propagate(KEPLER, kepler_start(0.5), (0, 1), method=LOGARITHMIC, step=step)
     with pytest.raises(ValueError, match="no length"):
         propagate(KEPLER, kepler_start(0.5), (1, 1), method=LOGARITHMIC, step=0.1)
-    with pytest.raises(ValueError, match=r"not times, cadence$"):
-        propagate(
-            KEPLER,
-            kepler_start(0.5),
-            (0, 1),
-            method=LOGARITHMIC,
-            step=0.1,
-            cadence=3,
-            times=np.array([0.5, 1]),
-        )
+    for foreign, message in (
+        ({"cadence": 3}, "no statistics inside the loop"),
+        ({"dense": True}, "no polynomials"),
+        ({"tolerance": 1e-9}, "give step="),
+        ({"times": [0.5, 2]}, "outside t_span"),
+        ({"times": [0.5], "samples": 3}, "give one of them"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            propagate(KEPLER, kepler_start(0.5), (0, 1), method=LOGARITHMIC, step=0.1, **foreign)
 
 
 def test_methods_without_a_transformation_of_theirs_are_refused():
