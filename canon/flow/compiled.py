@@ -13,13 +13,13 @@ from canon.flow.solvable import loop_of as solvable_loop_of
 from canon.kernel.gauss import gauss_coefficients, gauss_loop
 from canon.kernel.llvm import simd_bytes
 from canon.kernel.loop import Loop, runge_kutta_loop, splitting_loop
-from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, MachineType
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
     from canon.flow.precision import Precision
     from canon.flow.sampling import Plan
+    from canon.kernel.machine import MachineType
     from canon.kernel.structure import Equations
 
 __all__ = ["compiled_loop", "steps_between"]
@@ -47,8 +47,8 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
     Raises
     ------
     ValueError
-        A splitting is asked of a Hamiltonian that does not split; a Nyström method of one whose kinetic energy
-        is not quadratic; or a Gauss method in other numbers than doubles and double-double.
+        A splitting is asked of a Hamiltonian that does not split, or a Nyström method of one whose kinetic energy
+        is not quadratic.
     """
     if isinstance(method, Splitting) and method.parts is not None:
         method = SolvableSplitting(method.scheme, parts=method.parts)
@@ -56,10 +56,6 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
         return solvable_loop_of(system, method, precision)
     number = _with_lanes(precision.number, system) if orbits > 1 else precision.number
     if isinstance(method, Gauss):
-        if precision.number not in (DOUBLE, DOUBLE_DOUBLE):
-            raise ValueError(
-                f"precision={precision.name!r}: Gauss methods have 'double', 'compensated' and 'double-double'"
-            )
         return _kept_gauss(system, method.stages, precision.number, compensated=precision.compensated)
     if isinstance(method, RK4):
         return _kept_runge_kutta(system, number, compensated=precision.compensated)

@@ -18,11 +18,13 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import sympy as sp
 from mpmath import MPContext
 
+from canon.expression.arithmetic import LONGDOUBLE
 from canon.kernel.loop import METHOD, Loop, blocks_of, finished, increase, steps_of
-from canon.kernel.machine import DOUBLE, double_pair
+from canon.kernel.machine import DOUBLE, EXTENDED, SINGLE, double_pair
 from canon.kernel.writer import Writer
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ HIGHEST_STAGES = 8
 _ITERATIONS = 100
 _BITS = 42, 20
 """In doubles, changes above 2⁻⁴² of the largest component are not taken for round-off while iterations are left; a
-last change above 2⁻²⁰ of it means that the iteration has not converged. In wider numbers accordingly."""
+last change above 2⁻²⁰ of it means that the iteration has not converged. In other numbers accordingly."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +108,7 @@ def gauss_coefficients(stages: int, h: Fraction, number: MachineType = DOUBLE) -
     tableau = gauss_tableau(stages)
 
     def rounded(value: Fraction) -> Fraction:
-        high, low = double_pair(value)
-        return Fraction(high) + Fraction(low) if number.pair else Fraction(high)
+        return _rounded(value, number)
 
     mu = [[Fraction(1, 2)] * stages for _ in range(stages)]
     for i in range(stages):
@@ -124,6 +125,16 @@ def gauss_coefficients(stages: int, h: Fraction, number: MachineType = DOUBLE) -
     return [x for row in rows for x in (*row, *empty)]
 
 
+def _rounded(value: Fraction, number: MachineType) -> Fraction:
+    """Return a number of a type near an exact one."""
+    if number == EXTENDED:
+        return Fraction(*LONGDOUBLE.number(value).as_integer_ratio())
+    high, low = double_pair(value)
+    if number.pair:
+        return Fraction(high) + Fraction(low)
+    return Fraction(*np.dtype(number.dtype).type(high).as_integer_ratio())
+
+
 def _lanes(stages: int) -> int:
     return 1 << (stages - 1).bit_length()
 
@@ -133,13 +144,14 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: Mac
 
     After the 2n numbers of compensation, ``e`` keeps the number of iterations, the last change of an iteration
     that did not converge, and the stages L, from which the next step's are predicted. A step whose
-    iteration does not converge makes the state NaN.
+    iteration does not converge makes the state NaN. In single precision iterations are counted up to 2²⁴.
     """
     size, lanes = 2 * len(system.q), _lanes(stages)
     w = Writer(number)
     v = w.side_by_side(lanes)
-    # Changes and sizes are watched in doubles, of pairs by their high parts.
-    d, g = (each.in_numbers(replace(each.number, pair=False)) for each in (w, v))
+    # Changes and sizes are watched in numbers no wider than doubles, of pairs by their high parts.
+    watched = number if number == SINGLE else DOUBLE
+    d, g = (each.in_numbers(replace(watched, lanes=each.number.lanes)) for each in (w, v))
     round_off, not_converged = (Fraction(1, 2 ** (bits * number.mantissa // 53)) for bits in _BITS)
     carry = size + 2 + size * lanes
     y, e = w.array(size), w.array(size) if compensated else ""
@@ -150,7 +162,8 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: Mac
     nothing = g.constant(Fraction(0))
     field = system.program(system.rates)
     with blocks_of(w, y, e, size, carry) as kept:
-        v.copy(w.at(kept, size + 2), stage, size)
+        with w.loop(0, size) as i:
+            v.store(_row(w, v, w.at(kept, size + 2), i), stage, i)
         with steps_of(w, system) as time:
             clock = v.algebra("add", v.splat(time), method.node)
             with w.loop(0, size) as i:
@@ -182,25 +195,44 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: Mac
                 d.store(d.select(coarse, zero, d.load(done, 0)), done, 0)
                 w.leave_if(w.let(f"or i1 {last}, {d.equal(moves, zero)}"))
             moves, scale = g.greatest(g.load(change, 0)), g.greatest(g.load(reach, 0))
-            diverges = d.less(d.algebra("mul", scale, d.constant(not_converged)), moves)
-            pair = number.pair
-            w.store(
-                w.select(diverges, w.paired(moves, zero) if pair else moves, w.load(kept, size + 1)),
-                kept,
-                size + 1,
-            )
-            w.store(w.select(diverges, w.paired(d.nan(), zero) if pair else w.nan(), w.load(y, 0)), y, 0)
+            large = d.less(d.algebra("mul", scale, d.constant(not_converged)), moves)
+            diverges = w.let(f"or i1 {large}, {d.equal(scale, d.infinity())}")
+            last_change = w.select(diverges, w.widened(moves, watched), w.load(kept, size + 1))
+            w.store(last_change, kept, size + 1)
+            lost = w.widened(d.nan(), watched)
             with w.loop(0, size) as i:
+                w.store(w.select(diverges, lost, w.load(y, i)), y, i)
                 found = v.load(stage, i)
                 for j in range(stages):
                     increase(w, y, e, i, w.constant(Fraction(1)), v.lane(found, j))
-        v.copy(stage, w.at(kept, size + 2), size)
+        with w.loop(0, size) as i:
+            _store_row(w, v, v.load(stage, i), w.at(kept, size + 2), i)
     return finished(w, len(system.q), compensated=compensated, carry=carry)
 
 
 def _size(v: Writer, g: Writer, value: str) -> str:
-    """Write the sizes of numbers in lanes, as doubles."""
-    return g.intrinsic("fabs", v.let(f"extractvalue {v.number.name} {value}, 0") if v.number.pair else value)
+    """Write the sizes of numbers in lanes, in the numbers that sizes are watched in."""
+    if v.number.pair:
+        value = v.let(f"extractvalue {v.number.name} {value}, 0")
+    elif v.number.scalar != g.number.scalar:
+        value = v.let(f"fptrunc {v.number.name} {value} to {g.number.name}")
+    return g.intrinsic("fabs", value)
+
+
+def _row(w: Writer, v: Writer, table: str, k: int | str) -> str:
+    """Read numbers that lie in memory one by one into lanes."""
+    lanes = v.number.lanes
+    if lanes == 1 or not (v.number.pair or v.number.scalar == "x86_fp80"):
+        return v.load(table, k)
+    first = w.let(f"mul i64 {k}, {lanes}")
+    return v.from_lanes([w.load(table, w.let(f"add i64 {first}, {lane}")) for lane in range(lanes)])
+
+
+def _store_row(w: Writer, v: Writer, value: str, table: str, k: str) -> None:
+    """Store lanes as numbers that lie in memory one by one."""
+    first = w.let(f"mul i64 {k}, {v.number.lanes}")
+    for lane in range(v.number.lanes):
+        w.store(v.lane(value, lane), table, w.let(f"add i64 {first}, {lane}"))
 
 
 class _Stages:
@@ -210,18 +242,7 @@ class _Stages:
         self.v, self.stages = v, stages
 
         def row(k: int) -> str:
-            """Read a row: pairs lie in memory one by one, in lanes all high parts come first."""
-            if not v.number.pair or v.number.lanes == 1:
-                return v.load(table, k)
-            parts = ["poison", "poison"]
-            for lane in range(v.number.lanes):
-                one = w.load(table, k * v.number.lanes + lane)
-                for part in (0, 1):
-                    value = w.let(f"extractvalue {w.number.name} {one}, {part}")
-                    parts[part] = w.let(
-                        f"insertelement {v.number.base} {parts[part]}, {v.number.scalar} {value}, i32 {lane}"
-                    )
-            return v.paired(*parts)
+            return _row(w, v, table, k)
 
         self.weight, self.node = row(0), row(1)
         columns = [row(2 + column) for column in range(2 * stages)]

@@ -203,6 +203,21 @@ class Writer:
             return self.side_by_side(1).paired(*(self._part.lane(part, index) for part in parts))
         return self.let(f"extractelement {self.number.name} {value}, i32 {index}")
 
+    def from_lanes(self, scalars: Sequence[str]) -> str:
+        """Put scalars side by side."""
+        if self.number.lanes == 1:
+            return scalars[0]
+        if self.number.pair:
+            kind = self.side_by_side(1).number.name
+            parts = ([self.let(f"extractvalue {kind} {x}, {k}") for x in scalars] for k in (0, 1))
+            return self.paired(*(self._part.from_lanes(part) for part in parts))
+        result = "poison"
+        for lane, scalar in enumerate(scalars):
+            result = self.let(
+                f"insertelement {self.number.name} {result}, {self.number.scalar} {scalar}, i32 {lane}"
+            )
+        return result
+
     def greatest(self, value: str) -> str:
         """Return the greatest lane."""
         kind, full = self.number, f"@llvm.vector.reduce.fmax.{self.number.intrinsic}"

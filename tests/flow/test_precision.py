@@ -55,6 +55,45 @@ def test_fixed_step_precisions_end_at_their_own_round_off(precision):
         assert abs(error).max() > 0.1 * floor
 
 
+@pytest.mark.parametrize("stages", [4, 6, 8])
+@pytest.mark.parametrize("precision", UNIT)
+def test_gauss_methods_end_at_the_round_off_of_each_precision(stages, precision):
+    """The step is so small that nothing of the method's own error is left above the round-off."""
+    n = 4_000
+    motion = propagate(
+        DOUBLE_PENDULUM,
+        DOUBLE_PENDULUM_START,
+        (0, 60),
+        method=Gauss(stages),
+        step=60 / n,
+        precision=precision,
+    )
+    error, floor = abs(motion.energy_error).max(), UNIT[precision] * n**0.5
+    assert error < {"compensated": 0.3}.get(precision, 10) * floor
+    assert error > 1e-3 * floor
+    # The iteration ends, and not because it was cut short.
+    assert 2 < motion.evaluations / motion.steps / stages < 12
+
+
+@pytest.mark.parametrize(("precision", "digits"), [("single", 6), ("double", 15), ("extended", 18)])
+def test_a_gauss_step_is_the_double_double_one_rounded(precision, digits):
+    arguments = {"method": Gauss(5), "step": 1 / 8, "samples": 1}
+    found = propagate(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 1 / 8), precision=precision, **arguments)
+    wide = propagate(
+        DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 1 / 8), precision="double-double", **arguments
+    )
+    difference = (found.y[:, -1] - wide.y[:, -1]) + (found.carried[:, -1] - wide.carried[:, -1])
+    assert abs(difference).max() < 10.0**-digits
+
+
+@pytest.mark.parametrize("precision", FIXED)
+def test_a_gauss_iteration_that_does_not_converge_says_so_in_every_precision(precision):
+    """A fall into the centre from rest."""
+    with pytest.raises(NonFiniteStateError, match="do not converge") as caught:
+        propagate(KEPLER, [1.0, 0.0, 0.0, 0.0], (0, 3), method=Gauss(4), step=0.02, precision=precision)
+    assert 1.0 < caught.value.time < np.pi / 8**0.5
+
+
 def test_double_double_steps_are_exact_to_31_digits():
     scheme = SCHEMES["kahan-li-8"]
     for system, start in ((KEPLER, kepler_start(0.6)), (HENON_HEILES, HENON_HEILES_START)):
@@ -145,7 +184,7 @@ def test_heyokas_precisions_go_below_doubles(precision):
     [
         (SS10, "quadruple", "double-double"),
         (SS10, 40, "double-double"),
-        (Gauss(2), "extended", "Gauss"),
+        (Gauss(2), "quad", "double-double"),
         (DOP853(), "quad", "double precision"),
         (Taylor(), "compensated", "'quad'"),
         (Taylor(), 5, "16 … 1000"),
@@ -189,7 +228,7 @@ def starts(base, orbits):
 
 
 @pytest.mark.parametrize("precision", FIXED)
-@pytest.mark.parametrize("method", [Splitting("verlet"), Splitting("kahan-li-8"), RK4()], ids=str)
+@pytest.mark.parametrize("method", [Splitting("verlet"), Splitting("kahan-li-8"), RK4(), Gauss(3)], ids=str)
 def test_orbits_together_give_the_bits_of_each_alone(method, precision):
     many = starts(kepler_start(0.3), 37)
     arguments = {"method": method, "step": 0.05, "precision": precision, "samples": 3}

@@ -26,6 +26,8 @@ CASES = [
     (HENON_HEILES, HENON_HEILES_START, Splitting("verlet"), {"step": 0.1, "precision": "extended"}),
     (KEPLER, kepler_start(0.3), Splitting("kahan-li-6"), {"step": 0.1, "precision": "double-double"}),
     (DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(6), {"step": 0.1}),
+    (DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(3), {"step": 0.1, "precision": "single"}),
+    (DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(5), {"step": 0.1, "precision": "extended"}),
     (DRIVEN, DRIVEN_START, RK4(), {"step": 0.1}),
     (DRIVEN, DRIVEN_START, Splitting("blanes-moan-4"), {"step": 0.1}),
 ]
