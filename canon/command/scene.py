@@ -107,7 +107,8 @@ def _show(scene: Scene, arguments: argparse.Namespace) -> None:
     if scene.solutions:
         print("\nKnown motions (--run holds them against the equations)")
         for solution in scene.solutions:
-            print(f"  {solution.name} (start {solution.start!r})")
+            where = f"; known where {solution.condition.about}" if solution.condition else ""
+            print(f"  {solution.name} (start {solution.start!r}{where})")
 
 
 def _print_section(section: Section, arguments: argparse.Namespace) -> None:

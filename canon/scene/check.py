@@ -164,6 +164,8 @@ def integrals_along(motion: Motion) -> tuple[Check, ...]:
 def solutions_met(scene: Scene, start: str | None = None) -> Iterator[Check]:
     """Yield how well the motions known beforehand are met, one after another.
 
+    What is not known at these values of the parameters is passed over.
+
     Examples
     --------
     >>> from canon.scene import find
@@ -173,6 +175,8 @@ def solutions_met(scene: Scene, start: str | None = None) -> Iterator[Check]:
     """
     for solution in scene.solutions:
         if start is not None and solution.start != start:
+            continue
+        if solution.condition is not None and not solution.condition.met(scene.values):
             continue
         about = f"{solution.start}, {solution.periods:g} periods"
         try:

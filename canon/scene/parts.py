@@ -151,6 +151,8 @@ class Solution:
     event
         Instead of evenly spaced instants: the first instant after the start at which this function of the
         symbols vanishes.
+    condition
+        What the parameters must satisfy, where it is not known for all of them.
     """
 
     name: str
@@ -162,6 +164,7 @@ class Solution:
     samples: int = 200
     source: str = ""
     event: Build | None = None
+    condition: Condition | None = None
 
 
 def multiplier(number: int = 1) -> Symbol:

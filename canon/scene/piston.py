@@ -6,7 +6,7 @@ import math
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from canon.scene.parts import multiplier
+from canon.scene.parts import Condition, multiplier
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 from canon.scene.slider_crank import (
     PARAMETERS,
@@ -112,9 +112,13 @@ def _truncated_picture(s: SimpleNamespace) -> Picture:
 
 
 def _harmonic_speed(value: Mapping[str, float], _t: Array) -> float:
-    """Return ω √((A − B)/(A + B))."""
+    """Return √(((A − B) ω² − π M)/(A + B))."""
+    return math.sqrt(_harmonic_square(value))
+
+
+def _harmonic_square(value: Mapping[str, float]) -> float:
     A, B = _harmonics(SimpleNamespace(**value))
-    return SPEED * math.sqrt(float((A - B) / (A + B)))
+    return float(((A - B) * SPEED**2 - math.pi * value["M"]) / (A + B))
 
 
 _FIRST = tuple(c for c in PARAMETERS if c.name not in ("e", "P"))
@@ -135,13 +139,14 @@ TRUNCATED = Scene(
     picture_of=_truncated_picture,
     solutions=(
         Solution(
-            "θ̇ at θ = π/2: ω √((A − B)/(A + B))",
+            "θ̇ at θ = π/2: √(((A − B) ω² − π M)/(A + B))",
             "running",
             lambda s: s.theta.dot,
             _harmonic_speed,
             event=quarter_turn,
             periods=1.0,
             bound=1e-13,
+            condition=Condition("the crank reaches θ = π/2 against M", lambda v: _harmonic_square(v) > 0.0),
         ),
     ),
     shown=1.0,

@@ -6,10 +6,11 @@ import math
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from canon.scene.parts import multiplier
+from canon.scene.parts import Condition, multiplier
 from canon.scene.scene import Scene, Solution, Start
 from canon.scene.slider_crank import (
     PARAMETERS,
+    REACHED,
     SPEED,
     TURNS,
     VALUES,
@@ -18,6 +19,7 @@ from canon.scene.slider_crank import (
     quarter_turn,
     ratios,
     speed_at_a_quarter,
+    square_at_a_quarter,
     turn,
 )
 
@@ -63,8 +65,8 @@ def _joints(s: SimpleNamespace) -> Sequence[Expr]:
 
 
 def _piston_force(value: Mapping[str, float], _t: Array) -> float:
-    """Return λ₁ = m₃ s̈ at θ = π/2, s̈ = k_s′ θ̇² + k_s θ̈, I θ̈ = −I′ θ̇²/2."""
-    from sympy import Float, Symbol, pi, sympify
+    """Return λ₁ = m₃ s̈ + P at θ = π/2, s̈ = k_s′ θ̇² + k_s θ̈, I θ̈ = −I′ θ̇²/2 − P k_s − M."""
+    from sympy import Float, Symbol, pi
 
     from canon.mechanics.substitution import exchanged
 
@@ -72,14 +74,12 @@ def _piston_force(value: Mapping[str, float], _t: Array) -> float:
     s = SimpleNamespace(**{k: Float(v, 30) for k, v in value.items()}, theta=theta)
     I, k_s = inertia(s), ratios(s)[1]
 
-    def at(f: Expr, angle: Expr | int) -> float:
-        return float(exchanged(f, {theta: sympify(angle, strict=True)}))
+    def at(f: Expr) -> float:
+        return float(exchanged(f, {theta: pi / 2}))
 
-    quarter = pi / 2
-    square = SPEED**2 * at(I, 0) / at(I, quarter)
-    slowing = at(I.diff(theta), quarter) / (2.0 * at(I, quarter))
-    change = at(k_s.diff(theta), quarter) - at(k_s, quarter) * slowing
-    return value["m3"] * change * square
+    square, ratio = square_at_a_quarter(value), at(k_s)
+    acceleration = -(at(I.diff(theta)) * square / 2.0 + value["P"] * ratio + value["M"]) / at(I)
+    return value["m3"] * (at(k_s.diff(theta)) * square + ratio * acceleration) + value["P"]
 
 
 def _at_the_top() -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -103,6 +103,11 @@ def _picture(s: SimpleNamespace) -> Picture:
     return drawn((s.r * cos(s.theta), s.r * sin(s.theta)), (s.s, s.e), s)
 
 
+_AS_BUILT = Condition(
+    "the start fits the lengths, as they are given here, and the crank reaches θ = π/2 against P and M",
+    lambda v: all(v[length] == VALUES[length] for length in "abcer") and REACHED.met(v),
+)
+
 WHOLE = Scene(
     name="piston-engine-joints",
     title="Piston engine with all its bodies: seven coordinates, six constraints, joint forces as multipliers",
@@ -120,15 +125,16 @@ WHOLE = Scene(
     forces_of=lambda s: [*[0 * s.M] * 4, -s.M, 0 * s.M, -s.P],
     holonomic_of=_joints,
     solutions=(
-        speed_at_a_quarter(1e-12),
+        speed_at_a_quarter(1e-12, _AS_BUILT),
         Solution(
-            "force on the piston at θ = π/2, λ₁ = m₃ s̈",
+            "force on the piston at θ = π/2, λ₁ = m₃ s̈ + P",
             "running",
             lambda _s: multiplier(1),
             _piston_force,
             event=quarter_turn,
             periods=1.0,
             bound=1e-11,
+            condition=_AS_BUILT,
         ),
     ),
     picture_of=_picture,

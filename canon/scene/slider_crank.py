@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 __all__ = [
-    "PARAMETERS", "SPEED", "TURNS", "VALUES", "drawn", "inertia", "quarter_turn", "ratios", "rod_cosine", "rod_sine",
-    "speed_at_a_quarter", "turn",
+    "PARAMETERS", "REACHED", "SPEED", "TURNS", "VALUES", "drawn", "inertia", "quarter_turn", "ratios", "rod_cosine",
+    "rod_sine", "speed_at_a_quarter", "square_at_a_quarter", "turn",
 ]  # fmt: skip
 
 VALUES = {
@@ -102,21 +102,28 @@ def drawn(pin: tuple[Expr, Expr], piston: tuple[Expr, Expr], s: SimpleNamespace)
     return Picture(masses=(pin, piston), bars=(((zero, zero), pin, piston), box), ground=(circle,))
 
 
-def speed_at_a_quarter(bound: float) -> Solution:
-    """Return the known angular velocity of the crank at θ = π/2, where neither P nor M acts: I(θ) θ̇² = I(0) ω²."""
-
-    def known(value: Mapping[str, float], _t: Array) -> float:
-        return SPEED * math.sqrt(_inertia_at(value, 0.0) / _inertia_at(value, math.pi / 2.0))
-
+def speed_at_a_quarter(bound: float, condition: Condition | None = None) -> Solution:
+    """Return the known angular velocity of the crank at θ = π/2: what is left of the energy of I(0) ω²/2."""
     return Solution(
-        "θ̇ at θ = π/2 by I(θ) θ̇² = I(0) ω²",
+        "θ̇ at θ = π/2 by I(θ) θ̇² = I(0) ω² less the work of P and M",
         "running",
         lambda s: s.theta.dot,
-        known,
+        lambda value, _t: math.sqrt(square_at_a_quarter(value)),
         event=quarter_turn,
         periods=1.0,
         bound=bound,
+        condition=condition or REACHED,
     )
+
+
+def square_at_a_quarter(value: Mapping[str, float]) -> float:
+    """Return θ̇² at θ = π/2 by I(θ) θ̇²/2 = I(0) ω²/2 − P (s(π/2) − s(0)) − M π/2; negative where it isn't reached."""
+    top, quarter = _at(value, 0.0), _at(value, math.pi / 2.0)
+    work = -value.get("P", 0.0) * (_piston(quarter) - _piston(top)) - value.get("M", 0.0) * math.pi / 2.0
+    return float((inertia(top) * SPEED**2 + 2.0 * work) / inertia(quarter))
+
+
+REACHED = Condition("the crank reaches θ = π/2 against P and M", lambda v: square_at_a_quarter(v) > 0.0)
 
 
 def quarter_turn(s: SimpleNamespace) -> Expr:
@@ -126,8 +133,14 @@ def quarter_turn(s: SimpleNamespace) -> Expr:
     return s.theta - pi / 2
 
 
-def _inertia_at(value: Mapping[str, float], angle: float) -> float:
+def _at(value: Mapping[str, float], angle: float) -> SimpleNamespace:
     from sympy import Float
 
-    known = {name: Float(x, 30) for name, x in value.items()}
-    return float(inertia(SimpleNamespace(**known, theta=Float(angle, 30))))
+    return SimpleNamespace(**{name: Float(x, 30) for name, x in value.items()}, theta=Float(angle, 30))
+
+
+def _piston(s: SimpleNamespace) -> Expr:
+    """Return s = r cos θ + l cos φ."""
+    from sympy import cos
+
+    return s.r * cos(s.theta) + (s.a + s.b) * rod_cosine(s)

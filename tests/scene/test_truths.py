@@ -12,6 +12,7 @@ from sympy import cos, sin
 from canon.expression.symbol import time_derivative
 from canon.proof.vanish import equal, vanishes
 from canon.scene import find
+from canon.scene.check import solutions_met
 
 
 def particle(mass, position, coordinates):
@@ -172,3 +173,25 @@ def test_the_conical_pendulum_stays_on_its_cone():
     rates = np.array([float(rate.subs(at)) for rate in scene.hamiltonian.vector_field])
     assert abs(rates[0]) < 1e-14
     assert abs(rates[2]) < 1e-14
+
+
+@pytest.mark.parametrize("name", ["piston-engine", "piston-engine-first-order", "piston-engine-joints"])
+@pytest.mark.parametrize(
+    "changed", [{"M": 2.0}, {"M": -1.5}, {"m3": 0.5, "J1": 1e-3}, {"P": 300.0, "M": 1.0}]
+)
+def test_the_crank_has_the_known_speed_whatever_acts_on_it(name, changed):
+    scene = find(name)
+    known = {c.name for c in scene.parameters}
+    given = {key: value for key, value in changed.items() if key in known}
+    met = list(solutions_met(scene.with_parameters(**given)))
+    assert met
+    assert all(each.passed for each in met), str(met)
+    idle = scene.solutions[0].value(scene.values, np.zeros(1))
+    assert scene.solutions[0].value(scene.values | given, np.zeros(1)) != pytest.approx(idle, rel=1e-4)
+
+
+def test_what_is_not_known_at_these_values_is_not_asked():
+    stalled = find("piston-engine").with_parameters(M=1e4)
+    assert not list(solutions_met(stalled))
+    assert not list(solutions_met(find("piston-engine-joints").with_parameters(r=0.03)))
+    assert len(list(solutions_met(find("piston-engine").with_parameters(r=0.03)))) == 1
