@@ -263,7 +263,7 @@ def rebound_methods(problem: Problem) -> Iterator[Contender]:
                     lambda t=problem.span * k / instants: sim.integrate(t, exact_finish_time=exact)
                 )
                 spent += more
-                if spent > PATIENCE:
+                if spent > PATIENCE / 8:
                     raise RuntimeError(f"{name} in {setting} steps a period doesn't come to an end")
                 sim.synchronize()
                 energies.append(energy(sim))
