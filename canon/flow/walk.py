@@ -123,11 +123,12 @@ class Walk:
 
     def _stand(self, state: State) -> None:
         self.job = Job(self.steps.loop, state.high, state.low, self.pairs, memory=state.beyond)
+        self._read()
 
-    @property
-    def state(self) -> State:
-        """The extended state at the end of the latest step, or where an event ended the motion."""
-        return State(*self.job.states(), self.job.beyond())
+    def _read(self) -> None:
+        """Note the state and the time at the end of the latest step, or where an event ended the motion."""
+        self.state = State(*self.job.states(), self.job.beyond())
+        self.time = float(time_of(self.state, self.frame.clock))
 
     @property
     def footing(self) -> Footing:
@@ -137,11 +138,6 @@ class Walk:
     @property
     def _met(self) -> int:
         return self._earlier + len(self.guard.met)
-
-    @property
-    def time(self) -> float:
-        """The time at the end of the latest step."""
-        return float(time_of(self.state, self.frame.clock))
 
     # steps ----------------------------------------------------------------------------------------------
 
@@ -221,6 +217,7 @@ class Walk:
         self._count(start, job.beyond(), self.n - first)
         if not job.finite():
             raise job.lost(*safe, first, self.n - first, np.array(self.frame.system.rows))
+        self._read()
         self.before = Footing(self.n - 1, _state_in(job, *before), tuple(self.guard.sides), self._met)
         self.legs = [Leg(Fraction(0), self.before.state)]
         if self.events:
