@@ -7,6 +7,7 @@ import re
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from canon.display import preformatted
 from canon.expression.given import counted
 
 if TYPE_CHECKING:
@@ -84,6 +85,12 @@ class Judgement:
     file: str = ""
     steps: tuple[tuple[str, str], ...] = ()
     warnings: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Judgement {self.id!r}: {self.kind}, {self.status}>"
+
+    def _repr_html_(self) -> str:
+        return preformatted("\n".join(self.lines()))
 
     @property
     def as_expected(self) -> bool:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.display import preformatted
 from canon.expression.arithmetic import LONGDOUBLE
 from canon.flow.job import NonFiniteStateError
 from canon.flow.measure import jumped
@@ -117,7 +118,17 @@ class ErrorEstimate:
         found = [x for x in (_e_folding(abs(self.t - self.t[0]), c) for c in columns) if x is not None]
         return min(found) if found else None
 
+    def __repr__(self) -> str:
+        return f"<ErrorEstimate: {self._sentences[0]}>"
+
     def __str__(self) -> str:
+        return "; ".join(self._sentences)
+
+    def _repr_html_(self) -> str:
+        return preformatted("\n".join(self._sentences))
+
+    @property
+    def _sentences(self) -> list[str]:
         worst = float(np.max(self.relative))
         said = [f"relative error up to {worst:.1e} ({-math.log10(worst):.1f} digits)" if 0 < worst < 1 else
                 f"relative error up to {worst:.1e}"]  # fmt: skip
@@ -127,7 +138,7 @@ class ErrorEstimate:
             said.append(f"e-fold in {tau:.3g} units of time (chaotic)")
         if (until := self.meaningful_until) is not None:
             said.append(f"after t = {until:.6g} this single trajectory means nothing")
-        return "; ".join(said) + f"; by {self.companion}"
+        return [*said, f"by {self.companion}"]
 
 
 def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> ErrorEstimate:

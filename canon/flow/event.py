@@ -113,6 +113,9 @@ class Crossing:
     rising: bool
     after: Array | None = None
 
+    def __repr__(self) -> str:
+        return f"<Crossing: {self.event} {'rising' if self.rising else 'falling'} at t = {self.t:.9g}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Prepared:

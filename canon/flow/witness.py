@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 import sympy as sp
 
+from canon.display import preformatted
 from canon.flow.pointwise import FINE, Miss, bracket_misses
 from canon.flow.variation import carried, field_of, look_at, step_error
 from canon.kernel.structure import exact_numbers
@@ -73,6 +74,12 @@ class Witness:
     largest: float
     roundoff: float
     looks: int
+
+    def __repr__(self) -> str:
+        return f"<Witness: {self.kind}: speaks {self.speaks}{'' if self.speaks == 'neither' else ' it'}>"
+
+    def _repr_html_(self) -> str:
+        return preformatted(self.text, lead=f"{self.kind}: ")
 
     @property
     def evidence(self) -> Evidence:

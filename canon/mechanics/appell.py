@@ -84,6 +84,12 @@ class GibbsAppell:
                 f"{counted(len(self.q), 'coordinate')}; give one each"
             )
 
+    def _repr_latex_(self) -> str:
+        rows = [f"S &= {sp.latex(self.gibbs_function)}"]
+        for a, U in zip(self.u_dot, self.forces, strict=True):
+            rows.append(rf"\partial S/\partial {sp.latex(a)} &= {sp.latex(U)}")
+        return "$\\displaystyle \\begin{aligned}" + r" \\ ".join(rows) + "\\end{aligned}$"
+
     @property
     def q(self) -> tuple[Symbol, ...]:
         """The coordinates."""

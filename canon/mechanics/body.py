@@ -151,6 +151,10 @@ class RigidBody:
                 f"{counted(len(self.omega), 'component')} of the angular velocity; in space there are three"
             )
 
+    def __repr__(self) -> str:
+        turned = f"omega={self.omega}" if self.rotation is None else f"rotation={self.rotation.tolist()}"
+        return f"RigidBody(m={self.m}, r={self.r}, inertia={self.inertia.tolist()}, {turned})"
+
     def angular_velocity(self, kinematics: Kinematics) -> tuple[Expr, ...]:
         """Return ω along the body's axes: the three entries of Rᵀ Ṙ."""
         if self.omega is not None:

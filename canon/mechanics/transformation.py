@@ -255,7 +255,7 @@ class CanonicalTransformation:
 
     def _repr_latex_(self) -> str:
         rows = [
-            rf"{letter}_{{{i + 1}}} &= {sp.latex(f)}"
+            rf"{letter}{f'_{{{i + 1}}}' if len(self.q) > 1 else ''} &= {sp.latex(f)}"
             for letter, images in (("Q", self.Q), ("P", self.P))
             for i, f in enumerate(images)
         ]

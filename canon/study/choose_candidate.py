@@ -75,6 +75,13 @@ class Candidate:
     resonant: bool = False
     note: str = ""
 
+    def __repr__(self) -> str:
+        step = f", step {self.step:.4g}" if self.step is not None else ""
+        tolerance = f", tol {self.tolerance:.2g}" if self.tolerance is not None else ""
+        kept = "kept" if self.keeps else "not kept"
+        error = f"error {self.predicted_error:.1e}"
+        return f"<Candidate: {self.method}{step}{tolerance}, {self.precision}: {kept}, {error}>"
+
     @property
     def setting(self) -> Setting:
         """The setting as pilots take it."""

@@ -59,6 +59,9 @@ class Result:
     done: float = 1.0
     versions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
+    def __repr__(self) -> str:
+        return f"<Result: {self.motion}; {self.setting}: {self.state.value}>"
+
     @property
     def motion(self) -> str:
         """System, parameters and start in words: what all methods are compared on."""
