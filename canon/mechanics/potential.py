@@ -3,7 +3,8 @@
 Forms in mechanics are mostly homogeneous under some scaling; then Euler's theorem gives the potential
 without an integral: if scaling the variables with weights w multiplies the form by λᵏ, then
 d(Σ wⱼ zⱼ aⱼ) = k Σ aⱼ dzⱼ. Else the potential is fitted as a combination, with rational coefficients, of the
-functions that the form is made of. Each is checked at points and proved before it is returned.
+functions that the form is made of. Each is checked at points and proved before it is returned. What is left are
+quadratures, such as those of arbitrary functions.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.integral import table_integral
+from canon.mechanics.quadrature import quadratures
 from canon.mechanics.substitution import exchanged, size
 from canon.mechanics.witness import Witness, witnesses
 from canon.proof.vanish import vanishes
@@ -39,6 +41,8 @@ def potential(
     budget: float = 10.0,
 ) -> Expr | None:
     """Return G with ∂G/∂zⱼ = aⱼ, proved on the domain; None where none was found.
+
+    Where no closed form was found, integrals of functions of one variable are named and not evaluated.
 
     Parameters
     ----------
@@ -78,7 +82,11 @@ def potential(
         )
         if proved.holds:
             return named
-    return None
+    integrals, rest = quadratures(form, z)
+    if integrals == 0:
+        return None
+    remaining = potential(rest, z, domain, hints, max(0.0, end - clock.monotonic()))
+    return None if remaining is None else integrals + remaining
 
 
 def _candidates(
