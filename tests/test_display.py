@@ -71,12 +71,13 @@ def test_a_line_says_what_it_is(shown):
     assert repr(shown["crossing"]).startswith("<Crossing: theta = 0 falling at t = ")
     assert repr(shown["witness"]) == "<Witness: symplectic flow: speaks for it>"
     assert repr(shown["result"]).startswith("<Result: kepler; RK4, h = 0.1: ")
+    assert "energy to " in repr(shown["work"].rows[0])
     assert repr(shown["splitting"]) == "<SolvableSplitting: wisdom-holman, corrector 11>"
     assert repr(shown["drift"]).startswith(f"<Drift: {shown['drift'].verdict.value}, ")
 
 
 def test_a_notebook_shows_tables_and_escapes_them(shown):
-    for name in ("verdict", "drift", "choice", "methods", "error", "judgement", "witness"):
+    for name in ("verdict", "drift", "choice", "methods", "work", "error", "judgement", "witness"):
         page = shown[name]._repr_html_()
         assert page.startswith("<pre style="), name
         assert "script" not in page

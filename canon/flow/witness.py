@@ -13,6 +13,7 @@ root of the steps even where neighbouring motions part exponentially (D. Brouwer
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -79,7 +80,7 @@ class Witness:
         return f"<Witness: {self.kind}: speaks {self.speaks}{'' if self.speaks == 'neither' else ' it'}>"
 
     def _repr_html_(self) -> str:
-        return preformatted(self.text, lead=f"{self.kind}: ")
+        return preformatted("\n".join(textwrap.wrap(f"{self.kind}: {self.text}", 90)))
 
     @property
     def evidence(self) -> Evidence:

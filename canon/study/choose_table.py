@@ -1,4 +1,4 @@
-"""A choice as text: the answer first, then the candidates it was chosen from."""
+"""Accuracy and its cost as text: a choice with the candidates it was chosen from, runs of given steps."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from canon.study.table import aligned
 if TYPE_CHECKING:
     from canon.study.choose import Choice
     from canon.study.choose_candidate import Candidate
+    from canon.study.precision import WorkPrecision, WorkRow
 
-__all__ = ["answer", "choice_table", "duration_in_words"]
+__all__ = ["answer", "choice_table", "duration_in_words", "work_table"]
 
 
 MEANINGLESS = 0.1
@@ -33,6 +34,39 @@ def choice_table(choice: Choice) -> str:
     rule = "─" * max(map(len, lines))
     asked = f"{choice.observable} to {choice.accuracy:.2g} over t = {choice.span:.6g}"
     return "\n".join([choice.title, f"{asked}: {answer(choice)}", "", lines[0], rule, *lines[1:], rule])
+
+
+def work_table(work: WorkPrecision) -> str:
+    """Return what each run cost and how precise it was, as a table with a title.
+
+    Examples
+    --------
+    >>> from canon import RK4, work_precision
+    >>> from canon.scene import find
+    >>> print(work_table(work_precision(find("henon-heiles"), None, 5.0, [RK4()], steps=[0.1])).splitlines()[1])
+    t = 0 … 5
+    """
+    head = ("method", "step", "precision", "energy error", "position error", "evaluations", "CPU", "")
+    lines = aligned([head, *map(_work_cells, work.rows)], right={1, 3, 4, 5, 6})
+    rule = "─" * max(map(len, lines))
+    return "\n".join([work.title, f"t = 0 … {work.span:.6g}", "", lines[0], rule, *lines[1:], rule])
+
+
+def _work_cells(row: WorkRow) -> tuple[str, ...]:
+    knob = f"{row.step:.4g}" if row.step is not None else f"tol {row.tolerance:.1e}"
+    name = str(row.method).partition("(")[0] if row.step is None else str(row.method)
+    if row.failure:
+        return (name, knob, row.precision, "", "", "", "", f"failed: {row.failure}")
+    return (
+        name,
+        knob,
+        row.precision,
+        f"{row.energy_error:.1e}",
+        f"{row.position_error:.1e}",
+        f"{row.evaluations:,}",
+        duration_in_words(row.cpu_seconds),
+        "resonant step" if row.resonant else "",
+    )
 
 
 def answer(choice: Choice) -> str:

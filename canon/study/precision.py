@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.display import preformatted
 from canon.expression.given import counted
 from canon.flow.method import Stepped, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
@@ -72,6 +73,11 @@ class WorkRow:
     failure: str = ""
     precision: str = ""
 
+    def __repr__(self) -> str:
+        knob = f"step {self.step:.4g}" if self.step is not None else f"tol {self.tolerance:.2g}"
+        said = self.failure or f"energy to {self.energy_error:.1e}, position to {self.position_error:.1e}"
+        return f"<WorkRow: {self.method}, {knob}, {self.precision}: {said}>"
+
 
 @dataclass(frozen=True)
 class WorkPrecision:
@@ -94,6 +100,14 @@ class WorkPrecision:
     def __repr__(self) -> str:
         methods = dict.fromkeys(str(row.method) for row in self.rows)
         return f"<WorkPrecision: {counted(len(self.rows), 'run')} by {', '.join(methods)}; {self.title}>"
+
+    def __str__(self) -> str:
+        from canon.study.choose_table import work_table
+
+        return work_table(self)
+
+    def _repr_html_(self) -> str:
+        return preformatted(str(self))
 
 
 def work_precision(
