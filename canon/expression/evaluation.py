@@ -26,7 +26,7 @@ def evaluate(
             kind, operands, value = graph.nodes[each]
             if kind == "symbol":
                 if value not in values:
-                    raise KeyError(f"no value given for the symbol {value}")
+                    raise KeyError(f"no value given for the symbol {value}; give it one")
                 done[each] = values[value]
             else:
                 done[each] = _value(graph, each, [done[o] for o in operands], arithmetic)

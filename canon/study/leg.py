@@ -238,7 +238,9 @@ def _run(
             observables={of.name: of.expression for of in along if of.expression is not None},
         )
     if not found.autonomous:
-        raise ValueError("H depends on t, so its change is no error")
+        raise ValueError(
+            "H depends on t, so its change is no error: studies are of H(q, p); propagate() runs it"
+        )
     return found
 
 
