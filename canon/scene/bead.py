@@ -116,7 +116,13 @@ HOOP = Scene(
     ),
     starts=(
         Start("low", "let go near the bottom", q=(0.2,), v=(0.0,)),
-        Start("balance", "at rest on the hoop where cos φ = g/(a w²)", q=(_balance(_HOOP),), v=(0.0,)),
+        Start(
+            "balance",
+            "at rest on the hoop where cos φ = g/(a w²)",
+            q=(_balance(_HOOP),),
+            v=(0.0,),
+            made_for="a w g",
+        ),
     ),
     time_scale=lambda value: 2.0 * math.pi / value["w"],
     time_unit="s",

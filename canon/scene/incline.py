@@ -104,6 +104,7 @@ def _scene(name: str, title: str, parameters: tuple[Parameter, ...], *, multipli
         "rolled upwards with 2 m/s",
         q=(0.0, 0.0) if multipliers else (0.0,),
         v=(_SPEED, _SPEED / 0.1) if multipliers else (_SPEED,),
+        made_for="R" if multipliers else "",
     )
     return Scene(
         name=name,

@@ -71,6 +71,7 @@ def perihelion(eccentricity: float, mu: float = SUN, semi_major_axis: float = 1.
         about=f"perihelion of an orbit of eccentricity {eccentricity:g}",
         q=(semi_major_axis * (1.0 - eccentricity), 0.0),
         p=(0.0, speed),
+        made_for="mu",
     )
 
 

@@ -198,7 +198,7 @@ def _rolled(name: str, about: str, tilt: float, turning: float, spin: float) -> 
     """Return the start with ω₃ = spin, heading φ = 0, that rolls."""
     return Start(
         name, about, q=(0.0, 0.0, tilt, 0.0, 0.0),
-        v=(-_DISC["R"] * spin, 0.0, 0.0, turning, spin - turning * math.cos(tilt)),
+        v=(-_DISC["R"] * spin, 0.0, 0.0, turning, spin - turning * math.cos(tilt)), made_for="R g",
     )  # fmt: skip
 
 

@@ -87,6 +87,9 @@ class Start:
         Coordinates.
     v, p
         Either the velocities or the momenta.
+    made_for
+        Parameters, separated by spaces, whose given values it was made for: where one is changed, motions known
+        from this start are known no more.
     """
 
     name: str
@@ -94,6 +97,7 @@ class Start:
     q: tuple[float, ...]
     v: tuple[float, ...] | None = None
     p: tuple[float, ...] | None = None
+    made_for: str = ""
 
     def __post_init__(self) -> None:
         if (self.v is None) == (self.p is None):

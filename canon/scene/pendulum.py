@@ -218,7 +218,11 @@ SPHERICAL = Scene(
     starts=(
         Start("precessing", "thrown sideways from 1 rad", q=(1.0, 0.0), v=(0.0, 2.0)),
         Start(
-            "conical", "circling at 1 rad", q=(1.0, 0.0), v=(0.0, math.sqrt(GRAVITY.value / math.cos(1.0)))
+            "conical",
+            "circling at 1 rad",
+            q=(1.0, 0.0),
+            v=(0.0, math.sqrt(GRAVITY.value / math.cos(1.0))),
+            made_for="l g",
         ),
     ),
     time_scale=_small_swing,

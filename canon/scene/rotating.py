@@ -122,7 +122,13 @@ RESTRICTED = Scene(
     coordinates="x y",
     parameters=(Parameter("mu", ARENSTORF_MU, "", "mass of the Moon as a part of both", most=0.5),),
     starts=(
-        Start("Arenstorf", "a closed orbit of four loops", q=(0.994, 0.0), p=(0.0, _SPEED + 0.994)),
+        Start(
+            "Arenstorf",
+            "a closed orbit of four loops",
+            q=(0.994, 0.0),
+            p=(0.0, _SPEED + 0.994),
+            made_for="mu",
+        ),
         Start(
             "tadpole",
             "near the Lagrangian point L4, at rest in the turning frame",
@@ -134,6 +140,7 @@ RESTRICTED = Scene(
             "in the Lagrangian point L4",
             q=(0.5 - ARENSTORF_MU, math.sqrt(0.75)),
             p=(-math.sqrt(0.75), 0.5 - ARENSTORF_MU),
+            made_for="mu",
         ),
     ),
     time_scale=lambda _value: 2.0 * math.pi,

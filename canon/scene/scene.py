@@ -228,7 +228,7 @@ class Scene:
         return {integral.name: integral.build(self.symbols) for integral in self.integrals}
 
     def with_parameters(self, **values: float) -> Scene:
-        """Return the scene with other values of some parameters.
+        """Return the scene with other values of some parameters, without the motions that are not known then.
 
         Raises
         ------
@@ -242,7 +242,10 @@ class Scene:
         changed = tuple(
             replace(c, value=float(values[c.name])) if c.name in values else c for c in self.parameters
         )
-        return replace(self, parameters=changed)
+        moved = {c.name for c, now in zip(self.parameters, changed, strict=True) if c.value != now.value}
+        unfit = {start.name for start in self.starts if moved & set(start.made_for.split())}
+        known_still = tuple(solution for solution in self.solutions if solution.start not in unfit)
+        return replace(self, parameters=changed, solutions=known_still)
 
     def start(self, name: str | None = None) -> Start:
         """Return the start of that name, or the default one."""

@@ -102,7 +102,7 @@ def drawn(pin: tuple[Expr, Expr], piston: tuple[Expr, Expr], s: SimpleNamespace)
     return Picture(masses=(pin, piston), bars=(((zero, zero), pin, piston), box), ground=(circle,))
 
 
-def speed_at_a_quarter(bound: float, condition: Condition | None = None) -> Solution:
+def speed_at_a_quarter(bound: float) -> Solution:
     """Return the known angular velocity of the crank at θ = π/2: what is left of the energy of I(0) ω²/2."""
     return Solution(
         "θ̇ at θ = π/2 by I(θ) θ̇² = I(0) ω² less the work of P and M",
@@ -112,7 +112,7 @@ def speed_at_a_quarter(bound: float, condition: Condition | None = None) -> Solu
         event=quarter_turn,
         periods=1.0,
         bound=bound,
-        condition=condition or REACHED,
+        condition=REACHED,
     )
 
 

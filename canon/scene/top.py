@@ -133,6 +133,7 @@ LAGRANGE = Scene(
             "slow regular precession at 0.5 rad",
             q=(_STEADY_TILT, 0.0, 0.0),
             v=(0.0, _OMEGA, _STEADY_SPIN - _OMEGA * math.cos(_STEADY_TILT)),
+            made_for="m l g A C",
         ),
         Start("loops", "pushed against its precession", q=(0.6, 0.0, 0.0), v=(0.0, -5.0, 150.0)),
     ),

@@ -11,7 +11,7 @@ from sympy import cos, sin
 
 from canon.expression.symbol import time_derivative
 from canon.proof.vanish import equal, vanishes
-from canon.scene import find
+from canon.scene import SCENES, find
 from canon.scene.check import solutions_met
 
 
@@ -195,3 +195,23 @@ def test_what_is_not_known_at_these_values_is_not_asked():
     assert not list(solutions_met(stalled))
     assert not list(solutions_met(find("piston-engine-joints").with_parameters(r=0.03)))
     assert len(list(solutions_met(find("piston-engine").with_parameters(r=0.03)))) == 1
+
+
+QUICK = {"kepler", "bead-hoop", "simple-pendulum", "spherical-pendulum", "table-hole"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(scene.name, marks=[] if scene.name in QUICK else [pytest.mark.slow])
+        for scene in SCENES
+        if scene.solutions
+    ],
+)
+def test_what_is_known_of_a_scene_is_known_at_other_values_or_not_claimed(name):
+    """Every parameter in turn, a little larger; one that is 0 becomes 0.4."""
+    scene = find(name)
+    for c in scene.parameters:
+        for met in solutions_met(scene.with_parameters(**{c.name: 1.07 * c.value or 0.4})):
+            assert met.passed, f"{c.name}: {met}"
+    assert scene.with_parameters(**scene.values).solutions == scene.solutions
