@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.given import counted
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.propagate import propagate
 from canon.flow.request import task_of
 from canon.flow.sampling import Plan, fixed_plan
+from canon.flow.section import section_jacobian
 from canon.kernel.variational import variational
 
 if TYPE_CHECKING:
@@ -125,6 +126,8 @@ def flow_jacobian(
         raise ValueError(
             "the Jacobian is made of one orbit at a time: give one state and one set of parameters"
         )
+    if isinstance(task.method, TimeTransformed):
+        return FlowJacobian(*section_jacobian(task, hamiltonian, parameters or {}))
     if not isinstance(task.method, Splitting | Gauss | RK4 | Taylor | DOP853) or (
         getattr(task.method, "parts", None) is not None
     ):
@@ -218,7 +221,8 @@ def reversal_error(
 ) -> Array:
     """Go there and back again and return how far from the start the motion arrives, shape of y0.
 
-    A symmetric method arrives to round-off, times what the motion makes of it; others miss by their error.
+    A symmetric method arrives to round-off, times what the motion makes of it; others miss by their error, and so do
+    time-transformed ones, which land within a step.
 
     Parameters
     ----------
