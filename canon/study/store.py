@@ -50,6 +50,12 @@ CREATE TABLE checkpoints (
 ) STRICT;
 """
 
+FURTHER = """
+INSERT INTO checkpoints SELECT ?1, ?2, ?3 WHERE ?1 NOT IN (SELECT key FROM records)
+ON CONFLICT (key) DO UPDATE SET part = excluded.part, point = excluded.point WHERE excluded.part > part
+"""
+"""Keeps a checkpoint where there is no record, nor one that is further along."""
+
 
 class StoreError(OSError):
     """The file can't be read or written as a store; its data stay as they are."""
@@ -137,18 +143,18 @@ class Store:
             All that is needed to go on, as text.
         """
         with self._writing() as connection:
-            connection.execute(
-                "INSERT INTO checkpoints SELECT ?1, ?2, ?3 WHERE ?1 NOT IN (SELECT key FROM records) "
-                "ON CONFLICT (key) DO UPDATE SET part = excluded.part, point = excluded.point "
-                "WHERE excluded.part > part",
-                (key, part, point),
-            )
+            connection.execute(FURTHER, (key, part, point))
 
     def checkpoint(self, key: str) -> str | None:
         """Return the checkpoint of a case as text, None where there is none."""
         with self._open() as connection:
             row = connection.execute("SELECT point FROM checkpoints WHERE key = ?", (key,)).fetchone()
             return None if row is None else str(row[0])
+
+    def checkpoints(self) -> list[tuple[str, int, str]]:
+        """Return key, parts done and text of every checkpoint."""
+        with self._open() as connection:
+            return connection.execute("SELECT key, part, point FROM checkpoints ORDER BY rowid").fetchall()
 
     def parts_done(self) -> dict[str, int]:
         """Return by key how many parts are done of each case that has a checkpoint."""
@@ -172,8 +178,11 @@ class Store:
             return connection.execute("SELECT 1 FROM records WHERE key = ?", (key,)).fetchone() is not None
 
     def add_from(self, other: Store) -> None:
-        """Add the cases and records of another file, in one transaction; what is here already stays."""
-        cases, records = other.cases(), other.records()
+        """Add the cases, records and checkpoints of another file, in one transaction.
+
+        What is here already stays, but of two checkpoints of a case the one further along.
+        """
+        cases, checkpoints, records = other.cases(), other.checkpoints(), other.records()
         with self._writing() as connection:
             connection.executemany("INSERT OR IGNORE INTO cases VALUES (?, ?)", cases.items())
             connection.executemany(
@@ -181,6 +190,7 @@ class Store:
                 [(each.key, each.failure, each.outcome, each.seconds) for each in records.values()],
             )
             connection.execute("DELETE FROM checkpoints WHERE key IN (SELECT key FROM records)")
+            connection.executemany(FURTHER, checkpoints)
 
     def records(self) -> dict[str, Record]:
         """Return the records of finished cases by key."""

@@ -227,3 +227,23 @@ def test_killed_inside_a_transaction_nothing_of_it_stays(store):
         program.wait(30)
     assert Store(store.path).cases() == {f"k{i}": f"inputs {i}" for i in range(4)}
     assert store.checkpoint("k1") == "kept"
+
+
+def test_files_joined_keep_what_is_begun_and_of_two_the_further(store, tmp_path):
+    other = Store(tmp_path / "other.sqlite")
+    other.add_cases({f"k{i}": f"inputs {i}" for i in range(6)})
+    for key, part in (("k0", 3), ("k1", 2), ("k2", 5), ("k5", 7)):
+        other.save_checkpoint(key, part, f"other at {part}")
+    other.save(Record("k4", outcome="done there"))
+    store.save(Record("k0", outcome="done here"))
+    store.save_checkpoint("k1", 4, "here at 4")
+    store.save_checkpoint("k2", 1, "here at 1")
+    store.save_checkpoint("k3", 1, "here alone")
+    store.add_from(other)
+    assert store.parts_done() == {"k1": 4, "k2": 5, "k3": 1, "k5": 7}
+    assert [store.checkpoint(f"k{i}") for i in range(6)] == [
+        None, "here at 4", "other at 5", "here alone", None, "other at 7",
+    ]  # fmt: skip
+    assert set(store.records()) == {"k0", "k4"}
+    store.add_from(other)
+    assert store.parts_done() == {"k1": 4, "k2": 5, "k3": 1, "k5": 7}
