@@ -196,7 +196,9 @@ class Screen:
         self.first: dict[Symbol, sp.Rational] | None = None
         with precision(PRECISION):
             for number, point in enumerate(
-                domain.points((s for s in symbols if s not in part.through), POINTS, seed=11)
+                domain.points(
+                    (s for s in symbols if s not in part.through), POINTS, seed=11, but_functions=True
+                )
             ):
                 memo = self.memo(point, number)
                 if memo is not None:

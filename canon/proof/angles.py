@@ -296,14 +296,14 @@ def _rational(number: Any) -> sp.Rational:
 
 def _sign_between(low: Expr, high: Expr, rise: Expr, *, strict: bool) -> str:
     """Return the sign on [low, high] of a function like cos that is positive on (rise, rise + π), then negative."""
-    for turn in (-2, -1, 0, 1):
-        start = rise + turn * sp.pi
-        end = start + sp.pi
-        if (low - start).is_nonnegative and (end - high).is_nonnegative:
-            sign = "+" if turn % 2 == 0 else "-"
-            inside = (low - start).is_positive and (end - high).is_positive
-            return sign if strict or inside else "0" + sign
-    return ""
+    turn = sp.floor((low - rise) / sp.pi)
+    start = rise + turn * sp.pi
+    end = start + sp.pi
+    if not (turn.is_Integer and (low - start).is_nonnegative and (end - high).is_nonnegative):
+        return ""
+    sign = "+" if turn.is_even else "-"
+    inside = (low - start).is_positive and (end - high).is_positive
+    return sign if strict or inside else "0" + sign
 
 
 # -- rational multiples of π ---------------------------------------------------------------------------

@@ -10,14 +10,16 @@ import random
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
-from sympy import And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
+from sympy import Abs, And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
+from canon.proof.relaxation import moved_inside
 from canon.proof.typed import free_symbols, rational
 
 if TYPE_CHECKING:
@@ -30,6 +32,7 @@ __all__ = [
     "EVERYWHERE",
     "Domain",
     "as_domain",
+    "conditions_hold",
     "declared_complex",
     "isolated",
     "linear",
@@ -112,6 +115,18 @@ def isolated(condition: Boolean) -> Boolean:
 _REVERSED = {Lt: Gt, Le: Ge, Gt: Lt, Ge: Le}
 
 
+def _unfolded(condition: Boolean) -> tuple[Boolean, ...]:
+    """Return |g| < c as g < c and −g < c, which bound a symbol where g is linear."""
+    if not isinstance(condition, Lt | Le | Gt | Ge) or any(map(declared_complex, free_symbols(condition))):
+        return (condition,)
+    less, greater = cast("Expr", condition.lts), cast("Expr", condition.gts)
+    if not isinstance(less, Abs):
+        return (condition,)
+    relation = Lt if isinstance(condition, Lt | Gt) else Le
+    inner = less.args[0]
+    return cast("tuple[Boolean, ...]", (relation(inner, greater), relation(-inner, greater)))
+
+
 @dataclass(frozen=True)
 class Domain:
     """Conditions that hold beside the symbols' own assumptions.
@@ -146,7 +161,8 @@ class Domain:
                 raise TypeError(
                     f"a condition should be one of SymPy's, such as x > 0 or Ne(x, 0), not {condition!r}"
                 )
-        object.__setattr__(self, "conditions", tuple(map(isolated, self.conditions)))
+        bounds = (isolated(bound) for condition in self.conditions for bound in _unfolded(condition))
+        object.__setattr__(self, "conditions", tuple(bounds))
         for name, ends in box.items():
             if not isinstance(name, Symbol):
                 raise TypeError(
@@ -169,6 +185,7 @@ class Domain:
         in_box: bool = True,
         marks: Mapping[Symbol, Sequence[Rational]] = MappingProxyType({}),
         deadline: float = float("inf"),
+        but_functions: bool = False,
     ) -> Iterator[dict[Symbol, Rational]]:
         """Draw exact points of the domain: short rationals at several scales.
 
@@ -186,6 +203,8 @@ class Domain:
             Values at which one or two symbols at a time are put.
         deadline
             Value of :func:`time.monotonic` after which no more points are drawn.
+        but_functions
+            Leave :attr:`on_functions` to the caller, who chooses the functions.
 
         Examples
         --------
@@ -198,9 +217,12 @@ class Domain:
         ordered = sorted({*symbols, *conditioned}, key=lambda s: s.name)
         facts = {s: said_of(s) for s in ordered}
         chance = random.Random(seed)
-        found = 0
+        left_open = self.on_functions if but_functions else ()
+        settled = [c for c in self.conditions if c not in left_open]
+        steering = random.Random(seed)
+        found = moved = moves = 0
         for attempt in range(40 * count + 200):
-            if found == count or time.monotonic() > deadline:
+            if found + moved == count or time.monotonic() > deadline:
                 return
             scale = rational(_SCALES[(attempt // 3) % len(_SCALES)])
             point = {s: self._draw(s, scale, chance, in_box=in_box) for s in ordered}
@@ -210,9 +232,16 @@ class Domain:
             allowed = self._settle_equalities(point) and all(
                 _allows(facts[s], number) for s, number in point.items()
             )
-            if allowed and self.contains(point):
+            if allowed and conditions_hold(settled, point):
                 found += 1
                 yield point
+            elif found == 0 and attempt >= PATIENCE and moves < MOST_MOVES:
+                moves += 1
+                inside = moved_inside(point, settled, steering, deadline)
+                within = inside and all(_allows(facts[s], n) for s, n in inside.items())
+                if inside and within and conditions_hold(settled, inside):
+                    moved += 1
+                    yield inside
 
     def interval(self, symbol: Symbol) -> tuple[Expr, Expr, bool]:
         """Return the bounds of one symbol, and whether both are certainly excluded.
@@ -258,13 +287,12 @@ class Domain:
 
     def contains(self, point: Mapping[Symbol, Rational]) -> bool:
         """Tell whether every condition certainly holds at an exact point."""
-        try:
-            with precision(128):
-                return all(holds_at(condition, point) for condition in self.conditions)
-        except (NotDecided, Undefined):
-            return False
-        except Unmodelled:
-            return False
+        return conditions_hold(self.conditions, point)
+
+    @cached_property
+    def on_functions(self) -> tuple[Boolean, ...]:
+        """The conditions on arbitrary functions, which hold or not as the functions are chosen."""
+        return tuple(c for c in self.conditions if c.has(AppliedUndef))
 
     def _draw(self, symbol: Symbol, scale: Rational, chance: random.Random, *, in_box: bool) -> Rational:
         if in_box and symbol in self.box:
@@ -328,6 +356,21 @@ def as_domain(given: Any, otherwise: Domain = EVERYWHERE) -> Domain:
 
 _SCALES = tuple(Rational(p, q) for p, q in ((1, 2), (1, 1), (1, 8), (4, 1), (1, 1), (1, 500), (30, 1)))
 """Sizes that points are drawn at, one after another."""
+
+
+PATIENCE = 40
+"""Attempts without a point after which points are moved to where the conditions hold."""
+
+MOST_MOVES = 40
+
+
+def conditions_hold(conditions: Iterable[Boolean], point: Mapping[Symbol, Rational]) -> bool:
+    """Tell whether conditions certainly hold at an exact point."""
+    try:
+        with precision(128):
+            return all(holds_at(condition, point) for condition in conditions)
+    except (NotDecided, Undefined, Unmodelled):
+        return False
 
 
 def _allows(facts: Mapping[str, bool], number: Rational) -> bool:

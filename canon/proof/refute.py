@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import time
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING, cast
 
@@ -15,6 +16,7 @@ from sympy.core.relational import Relational
 
 from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.domain import conditions_hold
 from canon.proof.examples import with_example_functions
 from canon.proof.typed import free_symbols, rational
 from canon.proof.verdict import Counterexample
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sympy import Expr, Symbol
+    from sympy.logic.boolalg import Boolean
 
     from canon.proof.domain import Domain
 
@@ -79,6 +82,7 @@ def look_for_counterexample(
     highest: int,
     deadline: float,
     search: Search | None = None,
+    conditions: Sequence[Boolean] = (),
 ) -> Search:
     """Evaluate both sides at points of the domain until they certainly differ somewhere.
 
@@ -94,17 +98,20 @@ def look_for_counterexample(
         Value of :func:`time.monotonic` to stop at.
     search
         What was found before, to be added to.
+    conditions
+        Conditions on arbitrary functions, which the functions that are put in should satisfy.
     """
     result = search or Search()
     sides = (left, right)
-    has_functions = anatomy(sides).has(AppliedUndef)
+    has_functions = anatomy(sides).has(AppliedUndef) or bool(conditions)
     for number, point in enumerate(points):
         if time.monotonic() > deadline:
             break
         if has_functions:
-            (left_there, right_there), result.functions = with_example_functions(
-                (left, right), random.Random(number)
-            )
+            found = _example((left, right), conditions, point, number)
+            if found is None:
+                continue
+            (left_there, right_there), result.functions = found
             sides = (left_there, right_there)
         result.tried += 1
         if _try_point(sides, point, highest, deadline, result):
@@ -114,6 +121,23 @@ def look_for_counterexample(
     return result
 
 
+def _example(
+    exprs: Sequence[Expr], conditions: Sequence[Boolean], point: Mapping[Symbol, sp.Rational], number: int
+) -> tuple[Sequence[Expr], dict[str, str]] | None:
+    """Put functions that satisfy the conditions at a point for the arbitrary ones."""
+    for attempt in range(MOST_EXAMPLES if conditions else 1):
+        chance = random.Random(number + 1000 * attempt)
+        all_ = (*exprs, *cast("Sequence[Expr]", conditions))
+        shown, functions = with_example_functions(all_, chance)
+        if conditions_hold(cast("Sequence[Boolean]", shown[len(exprs) :]), point):
+            return shown[: len(exprs)], functions
+    return None
+
+
+MOST_EXAMPLES = 12
+"""Choices of functions of which one should satisfy the conditions on them."""
+
+
 def first_counterexample(
     exprs: Sequence[Expr], domain: Domain, deadline: float, *, points: int = 2
 ) -> tuple[Search, int | None]:
@@ -121,9 +145,13 @@ def first_counterexample(
     found = anatomy(exprs)
     result = Search()
     shown: Sequence[Expr] = exprs
-    for number, point in enumerate(domain.points(found.symbols, points, deadline=deadline)):
-        if found.has(AppliedUndef):
-            shown, result.functions = with_example_functions(exprs, random.Random(number))
+    drawn = domain.points(found.symbols, points, deadline=deadline, but_functions=True)
+    for number, point in enumerate(drawn):
+        if found.has(AppliedUndef) or domain.on_functions:
+            example = _example(exprs, domain.on_functions, point, number)
+            if example is None:
+                continue
+            shown, result.functions = example
         with precision(SCREEN_BITS):
             memo: dict[sp.Basic, acb] = {}
             for place, expr in enumerate(shown):
@@ -145,15 +173,24 @@ def search_widely(left: Expr, right: Expr, domain: Domain, deadline: float) -> S
     found = anatomy([left, right])
     symbols = found.symbols
     marks = landmarks(found, domain)
+    draw = partial(domain.points, symbols, deadline=deadline, but_functions=True)
     rounds = (
-        (domain.points(symbols, 6, seed=1, deadline=deadline), 512),
-        (domain.points(symbols, 40, seed=2, in_box=False, deadline=deadline), 128),
-        (domain.points(symbols, 60, seed=3, in_box=False, marks=marks, deadline=deadline), 128),
-        (domain.points(symbols, 40, seed=4, marks=marks, deadline=deadline), 128),
+        (draw(6, seed=1), 512),
+        (draw(40, seed=2, in_box=False), 128),
+        (draw(60, seed=3, in_box=False, marks=marks), 128),
+        (draw(40, seed=4, marks=marks), 128),
     )
     search = Search()
     for points, highest in (*rounds, (_some(search), HIGHEST_PRECISION)):
-        look_for_counterexample(left, right, points, highest=highest, deadline=deadline, search=search)
+        look_for_counterexample(
+            left,
+            right,
+            points,
+            highest=highest,
+            deadline=deadline,
+            search=search,
+            conditions=domain.on_functions,
+        )
         if search.counterexample is not None or search.unmodelled:
             break
     return search

@@ -188,7 +188,12 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
     """Climb the ladder: a few balls, the quick proof, many balls, the thorough proof in the worker."""
     found = anatomy([left, right])
     search = look_for_counterexample(
-        left, right, domain.points(found.symbols, 3, deadline=deadline), highest=64, deadline=deadline
+        left,
+        right,
+        domain.points(found.symbols, 3, deadline=deadline, but_functions=True),
+        highest=64,
+        deadline=deadline,
+        conditions=domain.on_functions,
     )
     if search.counterexample is not None:
         return _refuted(left, right, search)
