@@ -42,7 +42,7 @@ NEAR_THE_CREST = Domain((sin(x) > Rational(999, 1000), cos(x) > 0))
         (SLIVER, Abs(sin(x)), sin(x), -sin(x)),
         (Domain((x > 100, x < Rational(201, 2))), acos(cos(x)), 32 * pi - x, x - 32 * pi),
         (CORNER, Abs(x + y + z - 30), x + y + z - 30, x + y + z - 29),
-        (CORNER, Max(x + y, 19), x + y, x + y + 1),
+        (CORNER, Max(x + y + z, 29), x + y + z, x + y + z + 1),
         (NEAR_THE_CREST, sqrt(1 - sin(x) ** 2), cos(x), -cos(x)),
         (Domain((a > 1000, a < 1001)), Abs(a - 1000), a - 1000, 1001 - a),
         (Domain((exp(x) > 10**6, x < 14)), log(exp(x)), x, x + Rational(1, 10**9)),
