@@ -6,7 +6,7 @@ import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from canon.kernel.perturbed import ABA, corrector, saba, sbab, wisdom_holman
+from canon.kernel.perturbed import ABA, corrector, saba, sbab, wisdom_holman, with_commutator
 from canon.kernel.planets import Centres, Planets, UnsolvableError, named_part, solvable_part
 from canon.kernel.solvable import solvable_loop
 
@@ -18,9 +18,12 @@ if TYPE_CHECKING:
     from canon.kernel.scheme import Scheme
     from canon.kernel.structure import Equations
 
-__all__ = ["SABA", "SBAB", "SolvableSplitting", "UnsolvableError", "WisdomHolman", "loop_of"]
+__all__ = ["COORDINATES", "SABA", "SBAB", "SolvableSplitting", "UnsolvableError", "WisdomHolman", "loop_of"]
 
 Parts = tuple["Expr", "Expr"] | None
+
+COORDINATES = ("jacobi", "democratic-heliocentric")
+"""Coordinates of planets about a star."""
 
 
 @dataclass(frozen=True)
@@ -37,19 +40,51 @@ class SolvableSplitting:
         The order of a symplectic corrector, 0 for none.
     parts
         H₀ and H₁; found from the structure of H where not given.
+    commutator
+        Whether kicks hold the commutator {H₁, {H₀, H₁}} too, which takes ε² τ² away.
+    coordinates
+        Of planets about a star: ``"jacobi"`` or ``"democratic-heliocentric"``.
     """
 
     scheme: Scheme
     corrector: int = 0
     parts: Parts = None
+    commutator: bool = False
+    coordinates: str = "jacobi"
 
     def __post_init__(self) -> None:
         if self.corrector:
             corrector(self.scheme, self.corrector)
+        if self.coordinates not in COORDINATES:
+            raise ValueError(
+                f"coordinates={self.coordinates!r}: there are {' and '.join(map(repr, COORDINATES))}"
+            )
+        if self.commutator and self.scheme.order > 2:
+            raise ValueError(f"{self.scheme.name} has no ε² τ² that a commutator could take away")
+        if self.commutator and self.coordinates != "jacobi":
+            raise ValueError(
+                "commutator=True asks for kicks that are functions of q, but in democratic heliocentric coordinates "
+                "H₁ holds the star's momentum: use Jacobi's"
+            )
+
+    def __repr__(self) -> str:
+        return f"<SolvableSplitting: {self}>"
 
     def __str__(self) -> str:
-        corrected = f", corrector {self.corrector}" if self.corrector else ""
-        return f"{self.scheme.name or 'splitting'}{corrected}{', own parts' if self.parts else ''}"
+        notes = [
+            f", corrector {self.corrector}" if self.corrector else "",
+            ", commutator" if self.commutator else "",
+            f", {self.coordinates}" if self.coordinates != "jacobi" else "",
+            ", own parts" if self.parts else "",
+        ]
+        return (self.scheme.name or "splitting") + "".join(notes)
+
+    @property
+    def kicks(self) -> Scheme:
+        """The scheme with the weights of the commutator in its kicks."""
+        return (
+            with_commutator(self.scheme, corrected=bool(self.corrector)) if self.commutator else self.scheme
+        )
 
     @property
     def order(self) -> int:
@@ -59,7 +94,7 @@ class SolvableSplitting:
     @property
     def stages(self) -> int:
         """Kicks in a step."""
-        return self.scheme.stages
+        return self.kicks.stages
 
     @property
     def citation(self) -> str:
@@ -67,7 +102,9 @@ class SolvableSplitting:
         return self.scheme.citation
 
 
-def WisdomHolman(*, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:
+def WisdomHolman(
+    *, corrector: int = 0, commutator: bool = False, coordinates: str = "jacobi", parts: Parts = None
+) -> SolvableSplitting:
     """Return Wisdom and Holman's method: Kepler's motion of every planet, kicks by the planets' attractions.
 
     For planets about a star the coordinates are Jacobi's, the bodies in the order of the Hamiltonian's coordinates
@@ -79,13 +116,18 @@ def WisdomHolman(*, corrector: int = 0, parts: Parts = None) -> SolvableSplittin
     corrector
         The order of a symplectic corrector, an odd number from 3 to 17; 0 for none. The energy's error
         is ε τ² without, ε τ^(corrector + 1) + ε² τ² with it.
+    commutator
+        Whether each kick holds the commutator {H₁, {H₀, H₁}} too: with a corrector ε² τ⁴ remains of ε² τ².
+    coordinates
+        ``"jacobi"``, or ``"democratic-heliocentric"``, where orbits may cross: each planet's place from the star
+        (M. J. Duncan, H. F. Levison, M. H. Lee, Astron. J. 116 (1998) 2067–2077, doi:10.1086/300541).
     parts
         H₀ and H₁, in place of what is found from the structure of H. H₁ is to be a function of q alone.
 
     Raises
     ------
     ValueError
-        There is no such corrector.
+        There is no such corrector, or no such coordinates; or a commutator is asked of a kick that depends on p.
 
     Examples
     --------
@@ -100,10 +142,17 @@ def WisdomHolman(*, corrector: int = 0, parts: Parts = None) -> SolvableSplittin
     >>> bool(abs(motion.energy_error).max() < 3e-8)
     True
     """
-    return SolvableSplitting(wisdom_holman(), corrector, parts)
+    return SolvableSplitting(wisdom_holman(), corrector, parts, commutator, coordinates)
 
 
-def SABA(stages: int | str, *, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:
+def SABA(
+    stages: int | str,
+    *,
+    corrector: int = 0,
+    commutator: bool = False,
+    coordinates: str = "jacobi",
+    parts: Parts = None,
+) -> SolvableSplitting:
     """Return Laskar and Robutel's method SABA_n, or one of Blanes and others that kills ε² τ² too.
 
     Parameters
@@ -111,7 +160,10 @@ def SABA(stages: int | str, *, corrector: int = 0, parts: Parts = None) -> Solva
     stages
         n = 1 … 8 kicks in a step, errors ε τ^2n + ε² τ²; or ``"8-6-4"`` (7 kicks, ε τ⁸ + ε² τ⁶ + ε³ τ⁴),
         ``"10-6-4"`` (8 kicks, ε τ¹⁰ + ε² τ⁶ + ε³ τ⁴).
-    corrector, parts
+    commutator
+        Whether steps end with a kick by the commutator {H₁, {H₀, H₁}}: SABAC_n, one evaluation more, errors
+        ε τ^2n + ε² τ⁴.
+    corrector, coordinates, parts
         As for :func:`WisdomHolman`.
 
     Raises
@@ -123,32 +175,43 @@ def SABA(stages: int | str, *, corrector: int = 0, parts: Parts = None) -> Solva
     --------
     >>> str(SABA(4)), SABA("10-6-4").stages
     ('saba-4', 8)
+    >>> str(SABA(3, commutator=True)), SABA(3, commutator=True).stages
+    ('saba-3, commutator', 4)
     """
     if isinstance(stages, str):
         if stages not in ABA:
             raise ValueError(
                 f"SABA({stages!r}): give a number of stages from 1 to 8, or one of {', '.join(ABA)}"
             )
-        return SolvableSplitting(ABA[stages], corrector, parts)
-    return SolvableSplitting(saba(stages), corrector, parts)
+        return SolvableSplitting(ABA[stages], corrector, parts, commutator, coordinates)
+    return SolvableSplitting(saba(stages), corrector, parts, commutator, coordinates)
 
 
-def SBAB(stages: int, *, corrector: int = 0, parts: Parts = None) -> SolvableSplitting:
+def SBAB(
+    stages: int,
+    *,
+    corrector: int = 0,
+    commutator: bool = False,
+    coordinates: str = "jacobi",
+    parts: Parts = None,
+) -> SolvableSplitting:
     """Return Laskar and Robutel's method SBAB_n: n kicks in a step, the first and last half ones of two steps.
 
     Parameters
     ----------
     stages
         n = 1 … 8, errors ε τ^2n + ε² τ².
-    corrector, parts
+    commutator
+        Whether the first and the last kick hold the commutator {H₁, {H₀, H₁}} too: SBABC_n, errors ε τ^2n + ε² τ⁴.
+    corrector, coordinates, parts
         As for :func:`WisdomHolman`.
 
     Examples
     --------
-    >>> SBAB(3).stages
-    3
+    >>> SBAB(3).stages, SBAB(3, commutator=True).stages
+    (3, 3)
     """
-    return SolvableSplitting(sbab(stages), corrector, parts)
+    return SolvableSplitting(sbab(stages), corrector, parts, commutator, coordinates)
 
 
 def loop_of(system: Equations, method: SolvableSplitting, precision: Precision) -> Loop:
@@ -185,4 +248,11 @@ def _kept(system: Equations, method: SolvableSplitting, *, compensated: bool) ->
             "the bodies have different numbers of coordinates; give each as many, or name two parts"
         )
     chosen = corrector(method.scheme, method.corrector) if method.corrector else None
-    return solvable_loop(part, len(system.q), method.scheme, chosen, compensated=compensated)
+    democratic = method.coordinates == "democratic-heliocentric"
+    if democratic and not isinstance(part, Planets):
+        raise UnsolvableError(
+            "democratic heliocentric coordinates are for planets about a star, which H is not"
+        )
+    return solvable_loop(
+        part, len(system.q), method.kicks, chosen, compensated=compensated, democratic=democratic
+    )

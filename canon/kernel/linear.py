@@ -9,12 +9,14 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from canon.kernel.commutator import commutator_force
 from canon.kernel.loop import increase
-from canon.kernel.machine import double_pair
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from canon.kernel.lanes import Times
+    from canon.kernel.machine import MachineType
     from canon.kernel.planets import Quadratic
     from canon.kernel.writer import Writer
 
@@ -65,17 +67,26 @@ class LinearMotion:
     def count(self, steps: str) -> None:
         """Do nothing: all moves with the steps."""
 
-    def kick(self, time: str) -> None:
-        """Write p ← p − t ∂H₁/∂q."""
+    def move(self, times: Times, pair: str) -> None:
+        """Write a kick and then the flow of H₀."""
+        self._kick(times)
+        self._flow(pair)
+
+    def _kick(self, times: Times) -> None:
+        """Write p ← p − t ∂H₁/∂q, and with a commutator + 2γτ³ ∂(½ Σ A_ij ∂_iH₁ ∂_jH₁)/∂q, A = ∂²H₀/∂p²."""
         w, n, rest = self.w, self.size // 2, self.part.rest
         arguments = [*(w.load(self.state, i) for i in range(n)), *["poison"] * (n + 1)]
-        for i, force in enumerate(w.program(rest.program(rest.force), arguments)):
-            increase(w, self.state, self.carried, str(n + i), time, force)
+        changes = [(rest.force, times.kick)]
+        if times.commutator:
+            inverse_mass = [row[n:] for row in self.part.field[:n]]
+            changes.append((commutator_force(rest, inverse_mass), times.commutator))
+        for nodes, time in changes:
+            for i, force in enumerate(w.program(rest.program(nodes), arguments)):
+                increase(w, self.state, self.carried, str(n + i), time, force)
 
-    def flow(self, time: str, pair: str) -> None:
+    def _flow(self, pair: str) -> None:
         """Write y ← y + (exp(tL) − 1) y, column by column."""
         w, n = self.w, self.size
-        del time
         offset = w.let(f"add i64 {w.let(f'mul i64 {pair}, {2 * n * n}')}, {self.matrices}")
         matrix = w.at("%c", offset)
         lost = w.at(matrix, n * n)
@@ -135,8 +146,8 @@ def _sum(w: Writer, a: str, b: str) -> tuple[str, str]:
     return total, lost
 
 
-def flow_matrices(part: Quadratic, times: Sequence[Fraction]) -> list[Fraction]:
-    """Return exp(tL) − 1 for each time, by columns, each as doubles and then what they leave.
+def flow_matrices(part: Quadratic, number: MachineType, times: Sequence[Fraction]) -> list[Fraction]:
+    """Return exp(tL) − 1 for each time, by columns, each as numbers of the loop and then what they leave.
 
     Raises
     ------
@@ -146,11 +157,11 @@ def flow_matrices(part: Quadratic, times: Sequence[Fraction]) -> list[Fraction]:
     known = dict[Fraction, list[Fraction]]()
     for time in times:
         if time not in known:
-            known[time] = _matrix(part, time)
-    return [number for time in times for number in known[time]]
+            known[time] = _matrix(part, number, time)
+    return [entry for time in times for entry in known[time]]
 
 
-def _matrix(part: Quadratic, time: Fraction) -> list[Fraction]:
+def _matrix(part: Quadratic, number: MachineType, time: Fraction) -> list[Fraction]:
     from flint import arb, arb_mat, ctx, fmpq  # pyright: ignore[reportMissingTypeStubs]
 
     n = len(part.field)
@@ -159,14 +170,9 @@ def _matrix(part: Quadratic, time: Fraction) -> list[Fraction]:
             [arb(fmpq((x * time).numerator, (x * time).denominator)) for x in row] for row in part.field
         ]
         found = arb_mat(scaled).exp()
-        high, low = list[Fraction](), list[Fraction]()
-        for j in range(n):
-            for i in range(n):
-                value = _exact(found[i, j]) - (i == j)
-                first, second = double_pair(value)
-                high.append(Fraction(first))
-                low.append(Fraction(second))
-    return high + low
+        exact = [_exact(found[i, j]) - (i == j) for j in range(n) for i in range(n)]
+    high = [number.nearest(value) for value in exact]
+    return high + [number.nearest(value - first) for value, first in zip(exact, high, strict=True)]
 
 
 def _exact(ball: Any) -> Fraction:

@@ -78,6 +78,20 @@ class MachineType:
         rest = self._literal(value - Fraction(float(value)))
         return f"{{ {self.base} {self._in_every_lane(one)}, {self.base} {self._in_every_lane(rest)} }}"
 
+    def nearest(self, value: Fraction) -> Fraction:
+        """Return the number of this type nearest to an exact one."""
+        if self.pair:
+            return sum(map(Fraction, double_pair(value)), Fraction(0))
+        if self.scalar == "double":
+            return Fraction(float(value))
+        if not value:
+            return value
+        exponent = abs(value.numerator).bit_length() - value.denominator.bit_length() - self.mantissa
+        scale = Fraction(2) ** exponent
+        if abs(value) >= scale * 2**self.mantissa:
+            scale *= 2
+        return round(value / scale) * scale
+
     def packed(self, high: Array, low: Array) -> npt.NDArray[Any]:
         """Return numbers high + low as they lie in memory.
 

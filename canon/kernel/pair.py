@@ -85,23 +85,23 @@ _FUNCTIONS = {
 _ALGEBRA = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 
 
-def pair_functions(base: str, intrinsic: str, flags: str) -> str:
-    """Return the definitions of ``@pair.add.f64``, ``mul``, ``div`` and ``sqrt`` for doubles or lanes of them.
+def pair_functions(base: str, intrinsic: str, flags: str) -> list[str]:
+    """Return the definitions of ``@pair.add.f64``, ``mul``, ``div`` and ``sqrt`` and the declarations they need.
 
     Parameters
     ----------
     base
-        The LLVM type T.
+        The LLVM type T: double or lanes of doubles.
     intrinsic
         How intrinsics name it.
     flags
         The type of a comparison's result.
     """
-    declared = [
+    return [
         f"declare {base} @llvm.fma.{intrinsic}({base}, {base}, {base})",
         f"declare {base} @llvm.sqrt.{intrinsic}({base})",
+        *(_definition(name, base, intrinsic, flags) for name in _FUNCTIONS),
     ]
-    return "\n".join([*declared, *(_definition(name, base, intrinsic, flags) for name in _FUNCTIONS)])
 
 
 def _definition(name: str, base: str, intrinsic: str, flags: str) -> str:

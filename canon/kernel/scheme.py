@@ -35,6 +35,9 @@ class Scheme:
         Where it was published.
     nystrom
         The order holds only for kinetic energies quadratic in p with constant coefficients.
+    commutators
+        For each kick the weight γ of a commutator in it: by τ b V + γ τ³ {V, {T, V}} in place of τ b V. Empty where
+        there is none.
     """
 
     name: str
@@ -43,6 +46,7 @@ class Scheme:
     b: tuple[Fraction, ...]
     citation: str
     nystrom: bool = False
+    commutators: tuple[Fraction, ...] = ()
 
     @property
     def stages(self) -> int:

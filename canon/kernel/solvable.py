@@ -6,20 +6,24 @@ only. The state that the steps work on is kept in ``e`` from call to call, so th
 where it was looked at; ``y`` and ``e`` get what leads out of a copy of it. It is used where y, the round-off in e and
 h are what the last call left, and made anew from y where an event, say, has changed them.
 
-``c`` holds t0, h, then for every pair the times of kick and flow, then what flows need beyond their times.
+``c`` holds t0, h, then for every pair the times of kick and flow and the weight 2γτ³ of a commutator in the kick, then
+what flows need beyond their times.
 """
 
 from __future__ import annotations
 
 import functools
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
-from canon.kernel.bodies import CentresInLanes, PlanetsInLanes
+from canon.kernel.bodies import CentresInLanes
+from canon.kernel.lanes import Times
 from canon.kernel.linear import LinearMotion, flow_matrices
 from canon.kernel.loop import METHOD, PARAMETERS, SIGNATURE, Loop, compiled_function
-from canon.kernel.machine import DOUBLE
+from canon.kernel.machine import DOUBLE, MachineType
 from canon.kernel.planets import Centres, Planets
+from canon.kernel.star import HeliocentricPlanets, JacobiPlanets
 from canon.kernel.writer import Writer
 
 if TYPE_CHECKING:
@@ -31,14 +35,26 @@ if TYPE_CHECKING:
 
 __all__ = ["solvable_loop"]
 
-Pairs = list[tuple[Fraction, Fraction]]
+
+@dataclass(frozen=True)
+class _Pair:
+    """A kick and the flow after it, in steps; γ in steps³."""
+
+    kick: Fraction
+    flow: Fraction
+    commutator: Fraction = Fraction(0)
+
+
+_NUMBERS = 3
+"""Numbers of a pair in c."""
 
 
 class Motion(Protocol):
     """What the loop asks of a solvable part: its working state, and how the two flows move it."""
 
+    state: str
     words: int
-    """Numbers of the working state."""
+    """The working state, an array of so many numbers."""
 
     def enter(self, y: str, e: str) -> None:
         """Write the working state from a state y + e."""
@@ -48,12 +64,8 @@ class Motion(Protocol):
         """Write y + e from the working state."""
         ...
 
-    def kick(self, time: str) -> None:
-        """Write the flow of H₁."""
-        ...
-
-    def flow(self, time: str, pair: str) -> None:
-        """Write the flow of H₀; ``pair`` is the number of the pair in the tables."""
+    def move(self, times: Times, pair: str) -> None:
+        """Write the flow of H₁ and then that of H₀; ``pair`` is the number of the two in the tables."""
         ...
 
     def count(self, steps: str) -> None:
@@ -62,7 +74,14 @@ class Motion(Protocol):
 
 
 def solvable_loop(
-    part: Part, degrees: int, scheme: Scheme, corrector: Corrector | None, *, compensated: bool
+    part: Part,
+    degrees: int,
+    scheme: Scheme,
+    corrector: Corrector | None,
+    *,
+    compensated: bool,
+    number: MachineType = DOUBLE,
+    democratic: bool = False,
 ) -> Loop:
     """Compile a splitting H = H₀ + H₁ by the flows of a solvable part and of the rest.
 
@@ -73,16 +92,18 @@ def solvable_loop(
     degrees
         Degrees of freedom n.
     scheme
-        Its a are the times of H₀'s flow, its b those of the kicks by H₁.
+        Its a are the times of H₀'s flow, its b those of the kicks by H₁, its commutators the weights γ in these.
     corrector
         A symplectic corrector, or none.
-    compensated
-        Whether round-off is carried along.
+    compensated, number
+        The arithmetic.
+    democratic
+        Whether planets move in democratic heliocentric coordinates rather than Jacobi's.
     """
     tables = _tables(scheme, corrector)
-    size, w = 2 * degrees, Writer(DOUBLE)
+    size, w = 2 * degrees, Writer(number)
     pairs = sum(map(len, tables))
-    motion, extra = _motion(w, part, pairs, compensated=compensated)
+    motion, extra = _motion(w, part, pairs, compensated=compensated, democratic=democratic)
     carry = size + 2 + 2 * size + motion.words
     with w.loop(0, "%blocks") as block:
         y = w.at("%y", w.let(f"mul i64 {block}, {size}"))
@@ -94,7 +115,7 @@ def solvable_loop(
         with w.loop(fresh, 1):
             w.copy(kept, motion.state, motion.words)
         with w.loop(0, 3) as phase:
-            leading_in, leading_out = (w.let(f"icmp eq i64 {phase}, {number}") for number in (0, 2))
+            leading_in, leading_out = (w.let(f"icmp eq i64 {phase}, {which}") for which in (0, 2))
             with w.loop(0, w.let(f"zext i1 {leading_out} to i64")):
                 motion.count("%steps")
                 w.copy(motion.state, kept, motion.words)
@@ -104,12 +125,7 @@ def solvable_loop(
             first = w.entry((0, len(tables[0]), len(tables[0]) + len(tables[1])), phase)
             last = w.let(f"add i64 {first}, {w.entry([len(table) for table in tables], phase)}")
             with w.loop(0, times), w.loop(first, last) as pair:
-                place = w.at("%c", w.let(f"add i64 {w.let(f'shl i64 {pair}, 1')}, {METHOD}"))
-                for which, flow in ((0, motion.kick), (1, functools.partial(motion.flow, pair=pair))):
-                    time = w.load(place, which)
-                    moving = w.let(f"fcmp une double {time}, {w.constant(Fraction(0))}")
-                    with w.loop(0, w.let(f"zext i1 {moving} to i64")):
-                        flow(time)
+                _write_pair(w, motion, pair, commutators=bool(scheme.commutators))
         motion.leave(y, e)
         w.store(w.constant(Fraction(1)), record, 0)
         w.store(w.load("%c", 1), record, 1)
@@ -118,53 +134,77 @@ def solvable_loop(
     code = compiled_function(w, "advance", PARAMETERS, SIGNATURE)
 
     def coefficients(h: Fraction) -> list[Fraction]:
-        times = [(b * h, a * h) for table in tables for b, a in table]
-        return [*(time for pair in times for time in pair), *extra([a for _, a in times])]
+        flat = [pair for table in tables for pair in table]
+        numbers = ((pair.kick * h, pair.flow * h, 2 * pair.commutator * h**3) for pair in flat)
+        return [*(time for three in numbers for time in three), *extra([pair.flow * h for pair in flat])]
 
-    return Loop(code, degrees, compensated, DOUBLE, carry, coefficients=coefficients)
+    return Loop(code, degrees, compensated, number, carry, coefficients=coefficients)
+
+
+def _write_pair(w: Writer, motion: Motion, pair: str, *, commutators: bool) -> None:
+    """Write a kick and a flow, without branches between: what both read of the state is computed once."""
+    place = w.at("%c", w.let(f"add i64 {w.let(f'mul i64 {pair}, {_NUMBERS}')}, {METHOD}"))
+    kick, flow, commutator = (w.load(place, which) for which in range(_NUMBERS))
+    if not commutators:
+        motion.move(Times(kick, flow), pair)
+        return
+    weight = w.as_double(commutator)
+    with_it = w.let(f"zext i1 {w.let(f'fcmp une double {weight}, 0.0')} to i64")
+    with w.loop(0, with_it):
+        motion.move(Times(kick, flow, commutator), pair)
+    with w.loop(with_it, 1):
+        motion.move(Times(kick, flow), pair)
 
 
 def _differs(w: Writer, record: str, state: tuple[str, str], size: int) -> str:
     """Return 1 where y, e or h is not what the last call left, or there was none, and 0 otherwise."""
-    same = w.array(1)
-    w.store(w.load(record, 0), same, 0)
+    b, parts = (w.in_numbers(DOUBLE), 2) if w.number.pair else (w, 1)
+    same = b.array(1)
+    b.store(b.load(record, 0), same, 0)
 
-    def compare(a: str, b: str) -> None:
-        w.store(w.select(w.equal(a, b), w.load(same, 0), w.constant(Fraction(0))), same, 0)
+    def compare(a: str, b_array: str, count: int) -> None:
+        with b.loop(0, count * parts) as i:
+            equal = b.equal(b.load(a, i), b.load(b_array, i))
+            b.store(b.select(equal, b.load(same, 0), b.constant(Fraction(0))), same, 0)
 
-    compare(w.load(record, 1), w.load("%c", 1))
-    for part, array in enumerate(state):
-        with w.loop(0, size) as i:
-            compare(w.load(array, i), w.load(w.at(record, 2 + part * size), i))
-    return w.let(f"zext i1 {w.equal(w.load(same, 0), w.constant(Fraction(0)))} to i64")
+    compare(w.at(record, 1), w.at("%c", 1), 1)
+    for which, array in enumerate(state):
+        compare(array, w.at(record, 2 + which * size), size)
+    return w.let(f"zext i1 {b.equal(b.load(same, 0), b.constant(Fraction(0)))} to i64")
 
 
 def _motion(
-    w: Writer, part: Part, pairs: int, *, compensated: bool
-) -> tuple[PlanetsInLanes | CentresInLanes | LinearMotion, Callable[[Sequence[Fraction]], list[Fraction]]]:
+    w: Writer, part: Part, pairs: int, *, compensated: bool, democratic: bool
+) -> tuple[Motion, Callable[[Sequence[Fraction]], list[Fraction]]]:
     """Return a part's motion, and what it reads beyond the times of its flows."""
     if isinstance(part, Planets):
-        return PlanetsInLanes(w, part, compensated=compensated), _nothing
+        kind = HeliocentricPlanets if democratic else JacobiPlanets
+        return kind(w, part, compensated=compensated), _nothing
     if isinstance(part, Centres):
         return CentresInLanes(w, part, compensated=compensated), _nothing
-    matrices = METHOD + 2 * pairs
-    return LinearMotion(w, part, matrices, compensated=compensated), functools.partial(flow_matrices, part)
+    matrices = METHOD + _NUMBERS * pairs
+    motion = LinearMotion(w, part, matrices, compensated=compensated)
+    return motion, functools.partial(flow_matrices, part, w.number)
 
 
 def _nothing(_times: Sequence[Fraction]) -> list[Fraction]:
     return []
 
 
-def _tables(scheme: Scheme, corrector: Corrector | None) -> tuple[Pairs, Pairs, Pairs]:
-    """Return the (kick, flow) pairs that lead into the loop, of a step inside it, and that lead out.
+def _tables(scheme: Scheme, corrector: Corrector | None) -> tuple[list[_Pair], list[_Pair], list[_Pair]]:
+    """Return the pairs that lead into the loop, of a step inside it, and that lead out.
 
     A step that starts and ends with a flow (kick) is begun by doing its first (undoing its last) outside.
     """
     a, b = scheme.a, scheme.b
-    forth = corrector.pairs(inverse=False) if corrector else []
-    back = corrector.pairs(inverse=True) if corrector else []
+    c = scheme.commutators or (Fraction(0),) * len(b)
+    none = Fraction(0)
+    forth = [_Pair(*each) for each in corrector.pairs(inverse=False)] if corrector else []
+    back = [_Pair(*each) for each in corrector.pairs(inverse=True)] if corrector else []
     if scheme.kick_first:
-        step = [(b[0] + b[-1], a[1]), *zip(b[1:-1], a[2:-1], strict=True)]
-        return [*forth, (-b[-1], Fraction(0))], step, [(b[-1], Fraction(0)), *back]
-    step = [*zip(b[:-1], a[1:-1], strict=True), (b[-1], a[-1] + a[0])]
-    return [*forth, (Fraction(0), a[0])], step, [(Fraction(0), -a[0]), *back]
+        inner = [_Pair(*each) for each in zip(b[1:-1], a[2:-1], c[1:-1], strict=True)]
+        step = [_Pair(b[0] + b[-1], a[1], c[0] + c[-1]), *inner]
+        return [*forth, _Pair(-b[-1], none, -c[-1])], step, [_Pair(b[-1], none, c[-1]), *back]
+    inner = [_Pair(*each) for each in zip(b[:-1], a[1:-1], c[:-1], strict=True)]
+    step = [*inner, _Pair(b[-1], a[-1] + a[0], c[-1])]
+    return [*forth, _Pair(none, a[0])], step, [_Pair(none, -a[0]), *back]

@@ -120,7 +120,7 @@ class Writer:
 
     def _of_pairs(self, function: str, *operands: str) -> str:
         kind = self.number.name
-        self.declarations.add(pair_functions(self.number.base, self.number.intrinsic, self.number.flags))
+        self.declarations.update(pair_functions(self.number.base, self.number.intrinsic, self.number.flags))
         return self.let(
             f"call {kind} @pair.{function}.{self.number.intrinsic}({', '.join(f'{kind} {o}' for o in operands)})"
         )

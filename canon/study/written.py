@@ -20,6 +20,9 @@ __all__ = ["method_from", "method_to"]
 EIGHT = range(1, 9)
 """Stages of SABA and SBAB methods."""
 
+_CHOICES = {"corrector", "commutator", "coordinates"}
+"""What a splitting by solvable parts may say beside its name."""
+
 
 def method_to(method: Method) -> dict[str, Any]:
     """Return a method as what JSON and TOML can hold.
@@ -41,10 +44,10 @@ def method_to(method: Method) -> dict[str, Any]:
             if scheme.name:
                 return {"splitting": scheme.name}
             return {"splitting": {"a": [str(x) for x in scheme.a], "b": [str(x) for x in scheme.b]}}
-        case SolvableSplitting(scheme=scheme, corrector=corrector, parts=parts):
+        case SolvableSplitting(scheme=scheme, parts=parts):
             if parts is not None or not scheme.name:
                 raise ValueError(f"{method}: a study takes parts that are found from the structure of H")
-            return {"solvable": scheme.name, "corrector": corrector}
+            return {"solvable": scheme.name, "corrector": method.corrector} | _choices(method)
         case TimeTransformed(method=inner, g=g):
             if g is not None:
                 raise ValueError(f"{method} with g: a study takes the splittings, which need none")
@@ -88,8 +91,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return Splitting(name)
         case {"splitting": {"a": a, "b": b}, **rest} if not rest:
             return Splitting(a=[Fraction(x) for x in a], b=[Fraction(x) for x in b])
-        case {"solvable": str() as name, **rest} if set(rest) <= {"corrector"} and _is_solvable(name):
-            return _solvable(name, rest.get("corrector", 0))
+        case {"solvable": str() as name, **rest} if set(rest) <= _CHOICES and _is_solvable(name):
+            return _solvable(name, rest)
         case {"time_transformed": str() | dict() as inner, **rest} if not rest:
             return _time_transformed(method_from(inner))
         case {"gauss": int() as stages, **rest} if not rest and stages is not True:
@@ -110,7 +113,7 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
                 f"no method is written {known}; there are {', '.join(SCHEMES)}, rk4, taylor, dop853, "
                 "wisdom-holman, saba-1 … saba-8, sbab-1 … sbab-8, { gauss = stages }, { taylor = tolerance }, "
                 "{ dop853 = tolerance }, { time_transformed = splitting }, { splitting = { a, b } }, "
-                "{ solvable = name, corrector = order }"
+                "{ solvable = name, corrector = order, commutator = true, coordinates = name }"
             )
 
 
@@ -128,11 +131,17 @@ def _is_solvable(name: str) -> bool:
     return name == WisdomHolman().scheme.name or numbered or name in (scheme.name for scheme in ABA.values())
 
 
-def _solvable(name: str, corrector: int) -> SolvableSplitting:
+def _choices(method: SolvableSplitting) -> dict[str, Any]:
+    """Return what differs from the ordinary choices."""
+    commutator = {"commutator": True} if method.commutator else {}
+    return commutator | ({"coordinates": method.coordinates} if method.coordinates != "jacobi" else {})
+
+
+def _solvable(name: str, choices: dict[str, Any]) -> SolvableSplitting:
     if name == WisdomHolman().scheme.name:
-        return WisdomHolman(corrector=corrector)
+        return WisdomHolman(**choices)
     for key, scheme in ABA.items():
         if scheme.name == name:
-            return SABA(key, corrector=corrector)
+            return SABA(key, **choices)
     family, _, stages = name.partition("-")
-    return (SABA if family == "saba" else SBAB)(int(stages), corrector=corrector)
+    return (SABA if family == "saba" else SBAB)(int(stages), **choices)

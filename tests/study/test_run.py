@@ -183,6 +183,8 @@ def test_a_file_begun_with_other_versions_is_not_resumed(tmp_path, monkeypatch):
         SABA(4),
         SABA("10-6-4"),
         SBAB(3),
+        SBAB(3, commutator=True),
+        WisdomHolman(corrector=7, coordinates="democratic-heliocentric"),
         TimeTransformed(Splitting("verlet")),
     ],
 )
