@@ -13,6 +13,7 @@ import time
 import warnings
 from dataclasses import asdict, dataclass, field, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from canon.flow.method import FixedStep, TimeTransformed
 from canon.flow.propagate import propagate
 from canon.flow.sampling import steps_over
 from canon.study.case import parts_of
+from canon.study.driven import driven
 from canon.study.followed import followed
 from canon.study.instants import is_resolved, scattered
 from canon.study.judged import judged_energy, judged_observable
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 
     from canon.flow.trajectory import Trajectory
     from canon.study.case import Case
+    from canon.study.driven import Driven
     from canon.study.observed import Observable
 
 __all__ = ["Checkpoint", "FailedRun", "Outcome", "advance", "started"]
@@ -65,11 +68,12 @@ class Checkpoint:
     part
         Parts done.
     state, carried
-        The state is state + carried, each of length 2n.
+        The state is state + carried, each of length 2n; with time and work (:mod:`canon.study.driven`) where H
+        depends on the time.
     energy
         H at the start of the run.
     t, change
-        The samples so far: times, and H − H(start).
+        The samples so far: times, and H − H(start), less the work done from outside.
     steps, evaluations, seconds
         Cost so far; the processor time is that of the steps and of keeping samples.
     step, precision
@@ -126,7 +130,16 @@ class Outcome:
 
 def started(case: Case) -> Checkpoint:
     """Return the checkpoint at the start of a case."""
-    return Checkpoint(0, case.state, (0.0,) * len(case.state))
+    timed = _with_time(case)
+    state = case.state if timed is None else tuple(timed.state(np.array(case.state)).tolist())
+    return Checkpoint(0, state, (0.0,) * len(state))
+
+
+@lru_cache(maxsize=64)
+def _with_time(case: Case) -> Driven | None:
+    """Return the motion with its time as a coordinate where H depends on the time, None where it does not."""
+    hamiltonian = case.hamiltonian
+    return driven(hamiltonian) if hamiltonian.t in hamiltonian.H.free_symbols else None
 
 
 def advance(case: Case, reached: Checkpoint | None = None, seconds: float = math.inf) -> Checkpoint | Outcome:
@@ -210,7 +223,10 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
         ends = np.linspace(0.0, case.span, end + 1)
         span, step = (Fraction(ends[point.part]), Fraction(ends[point.part + 1])), case.step
     times = None if point.even else _between(span, samples, seed=point.part)
-    return _run(case, state, span, step, samples, times, followed(case))
+    along, timed = followed(case), _with_time(case)
+    if timed is not None:
+        along = tuple(map(timed.observable, along))
+    return _run(case, state, span, step, samples, times, along)
 
 
 def _run(
@@ -222,10 +238,11 @@ def _run(
     times: Sequence[float] | None = None,
     along: Sequence[Observable] = (),
 ) -> Trajectory:
+    timed = _with_time(case)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
-        found = propagate(
-            case.hamiltonian,
+        return propagate(
+            case.hamiltonian if timed is None else timed.hamiltonian,
             np.array(state, dtype=object),
             span,  # pyright: ignore[reportArgumentType] - times may be exact
             method=case.method,
@@ -237,11 +254,6 @@ def _run(
             times=times,
             observables={of.name: of.expression for of in along if of.expression is not None},
         )
-    if not found.autonomous:
-        raise ValueError(
-            "H depends on t, so its change is no error: studies are of H(q, p); propagate() runs it"
-        )
-    return found
 
 
 def _evenly(case: Case) -> bool:
@@ -258,7 +270,7 @@ def _evenly(case: Case) -> bool:
     if every < 2:
         return True
     seen = min(INTERVALS, case.samples)
-    found = _run(case, case.state, (Fraction(0), Fraction(seen * interval)), step, seen * every)
+    found = _run(case, started(case).state, (Fraction(0), Fraction(seen * interval)), step, seen * every)
     return is_resolved(found.energy_change, every)
 
 
@@ -280,7 +292,7 @@ def _whole_steps(case: Case, part: int, end: int) -> tuple[tuple[Fraction, Fract
 
 def _numbers(case: Case, point: Checkpoint) -> dict[str, Any]:
     """Judge a run that reached its end."""
-    t = np.array(point.t)
+    t, timed = np.array(point.t), _with_time(case)
     energy = judged_energy(t, np.array(point.change), point.energy, point.steps, point.precision)
     others = {
         of.name: judged_observable(t, point.changes[of.name], of, point.precision) for of in followed(case)
@@ -291,6 +303,6 @@ def _numbers(case: Case, point: Checkpoint) -> dict[str, Any]:
         "steps": point.steps,
         "evaluations": point.evaluations,
         "precision": point.precision,
-        "final": list(point.state),
+        "final": list(point.state) if timed is None else timed.original(np.array(point.state)).tolist(),
         **({"observables": others} if others else {}),
     }

@@ -148,8 +148,54 @@ def test_a_collision_is_a_failed_run_with_its_reason():
     taylor = replace(case, method=Taylor(), step=None)
     with pytest.raises(FailedRun, match="collision or the edge of H's domain"):
         advance(taylor)
-    driven = Formula("driven", "p**2/2 + q**2/2 + q*sin(t)", ("q",), ("p",), starts=(("rest", (1.0, 0.0)),))
-    with pytest.raises(FailedRun, match="H depends on t"):
-        advance(replace(case, system=driven))
     with pytest.raises(FailedRun, match="10 steps can't be run in 20 parts"):
         advance(replace(KEPLER, span=0.2, parts=20))
+
+
+SHAKEN = Formula("shaken", "p**2/2 + q**2/2 - q*cos(2*t)/4", ("q",), ("p",), starts=(("out", (1.0, 0.5)),))
+DRIVEN = [
+    Case(SHAKEN, Splitting("kahan-li-8"), span=300.0, step=0.05, samples=1200, parts=5),
+    Case(SHAKEN, RK4(), span=300.0, step=0.05, samples=1200, parts=5, precision="double"),
+    Case(SHAKEN, Taylor(), span=300.0, samples=1200, parts=5),
+    Case("parametric-pendulum", Gauss(2), span=200.0, step=0.02, samples=1200, parts=4),
+]
+
+
+@pytest.mark.parametrize("case", DRIVEN, ids=lambda case: str(case.method))
+def test_a_motion_driven_in_time_goes_on_where_it_stopped_and_is_where_propagate_takes_it(case):
+    stopped: Checkpoint | Outcome = started(case)
+    while isinstance(stopped, Checkpoint):
+        stopped = advance(case, Checkpoint.from_text(stopped.to_text()), seconds=0.0)
+    whole = advance(case)
+    assert isinstance(whole, Outcome)
+    assert whole.numbers == stopped.numbers
+    values, span = {**case.values}, (0.0, case.span)
+    found = propagate(
+        case.hamiltonian, case.state, span, method=case.method, step=case.step, parameters=values,
+        precision=case.precision,
+    )  # fmt: skip
+    np.testing.assert_allclose(whole.numbers["final"], found.y[:, -1], rtol=1e-9, atol=1e-9)
+
+
+def test_the_energy_less_the_work_is_judged_where_a_motion_is_driven():
+    """Symplectic and Runge–Kutta: the one is bounded, the other is not; the energy itself changes by itself."""
+    kept, lost = (
+        advance(replace(case, span=3000.0, step=0.1, samples=2**13, parts=None)) for case in DRIVEN[:2]
+    )
+    assert isinstance(kept, Outcome)
+    assert isinstance(lost, Outcome)
+    assert kept.numbers["verdict"] in ("bounded", "round-off")
+    assert kept.numbers["bound"] < 1e-9
+    assert lost.numbers["verdict"] == "secular"
+    assert lost.numbers["bound"] > 1e-4
+
+
+def test_functions_of_the_time_are_followed():
+    """For H = p²/2 + t q the momentum p + t²/2 is constant; p + t²/4 is not."""
+    falling = Formula("falling", "p**2/2 + t*q", ("q",), ("p",), starts=(("rest", (0.0, 1.0)),))
+    written = (("right", "p + t**2/2"), ("wrong", "p + t**2/4"))
+    case = Case(falling, Gauss(2), span=10.0, step=0.01, samples=512, parts=3, observables=written)
+    found = advance(case)
+    assert isinstance(found, Outcome)
+    assert found.numbers["observables"]["right"]["bound"] < 1e-12
+    assert found.numbers["observables"]["wrong"]["bound"] > 1.0
