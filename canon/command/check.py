@@ -6,6 +6,8 @@ import sys
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from canon.command.number import seconds, whole_number
+
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
@@ -86,10 +88,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--only", metavar="ID", action="append", help="judge this claim only; may be repeated"
     )
     parser.add_argument(
-        "--jobs", metavar="N", type=_jobs, default=1, help="how many claims are judged at once (1)"
+        "--jobs",
+        metavar="N",
+        type=whole_number(256),
+        default=1,
+        help="how many claims are judged at once (1)",
     )
     parser.add_argument(
-        "--budget", metavar="S", type=_seconds, help="seconds a claim, whatever the sheet says"
+        "--budget", metavar="S", type=seconds(most=3600), help="seconds a claim, whatever the sheet says"
     )
     parser.add_argument(
         "--implicit-multiplication",
@@ -219,23 +225,3 @@ def _show(judgement: Judgement, *, json: bool) -> None:
         print(judgement.json_line, flush=True)
     else:
         print(*judgement.lines(), sep="\n", flush=True)
-
-
-def _jobs(text: str) -> int:
-    import argparse
-
-    if not text.isdecimal() or not 1 <= int(text) <= 256:
-        raise argparse.ArgumentTypeError(f"{text!r} should be a whole number from 1 to 256")
-    return int(text)
-
-
-def _seconds(text: str) -> float:
-    import argparse
-
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = 0.0
-    if not 0 < seconds <= 3600:
-        raise argparse.ArgumentTypeError(f"{text!r} should be a number of seconds above 0 and up to 3600")
-    return seconds

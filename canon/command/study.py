@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from canon.command.number import seconds, whole_number
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
     from concurrent.futures import Executor
@@ -70,10 +72,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action.add_argument("store", metavar="FILE", type=Path, help="the results file")
     for action in (run_, resume):
         action.add_argument("--retry", action="store_true", help="run failed cases again")
-        action.add_argument("--jobs", metavar="N", type=_jobs, default=1, help="worker processes (1)")
+        action.add_argument(
+            "--jobs", metavar="N", type=whole_number(1024), default=1, help="worker processes (1)"
+        )
         action.add_argument("--dask", metavar="ADDRESS", help="run on the dask cluster with this scheduler")
         action.add_argument(
-            "--checkpoint", metavar="S", type=_seconds, default=30.0, help="seconds between checkpoints (30)"
+            "--checkpoint",
+            metavar="S",
+            type=seconds(none=True),
+            default=30.0,
+            help="seconds between checkpoints (30)",
         )
     for action in (run_, resume, status):
         action.add_argument("--plot", metavar="IMAGE", type=Path, help="draw the study, every case a cell")
@@ -258,19 +266,3 @@ def _share(text: str) -> tuple[int, int]:
     if not (slash and number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
         raise argparse.ArgumentTypeError(f"{text!r} should be K/N, such as 3/16")
     return int(number), int(of)
-
-
-def _jobs(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= 1024:
-        raise argparse.ArgumentTypeError(f"{text!r} should be a whole number from 1 to 1024")
-    return int(text)
-
-
-def _seconds(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = -1.0
-    if not 0 <= seconds < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text!r} should be a number of seconds, 0 or more")
-    return seconds
