@@ -50,7 +50,7 @@ class WorkRow:
     evaluations
         Evaluations of the force (Taylor: of the series).
     energy_error
-        Largest |E(t) − E(0)|/|E(0)|.
+        Largest abs(E(t) − E(0))/abs(E(0)).
     position_error
         Distance of the final coordinates from those of the reference, over the length of the latter.
     resonant

@@ -48,7 +48,7 @@ class DriftRow:
     step
         Its step, None where it chooses its own.
     t, error
-        The sampled times, and the error of the observable: of the energy (E(t) − E(0))/|E(0)|; empty where the
+        The sampled times, and the error of the observable: of the energy (E(t) − E(0))/abs(E(0)); empty where the
         run failed. Of many orbits, the one with the largest error.
     relative
         Whether the error is relative; it is E(t) − E(0) where E(0) = 0.
