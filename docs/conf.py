@@ -4,6 +4,8 @@ Build with ``sphinx-build -W -b html docs docs/_build``. While you write, ``-D n
 the pages that changed.
 """
 
+from __future__ import annotations
+
 import contextlib
 import importlib
 import io
@@ -11,6 +13,10 @@ import os
 import re
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
@@ -193,8 +199,31 @@ def _console(command: str) -> list[str]:
     return ["```console", f"$ {command} --help", help_of(*command.split()[1:]), "```", ""]
 
 
-def setup(app: object) -> None:  # noqa: ARG001  (Sphinx gives it)
+COLON = "\ue000"
+"""Stands for a colon while napoleon reads properties: it takes what is before one for a type."""
+
+
+def hide_colons(
+    _app: object, what: str, _name: str, _object: object, _options: object, lines: list[str]
+) -> None:
+    """Hide the colons in the first paragraph of a property's description."""
+    if what == "property":
+        end = lines.index("") if "" in lines else len(lines)
+        lines[:end] = [line.replace(":", COLON) for line in lines[:end]]
+
+
+def show_colons(
+    _app: object, what: str, _name: str, _object: object, _options: object, lines: list[str]
+) -> None:
+    """Put the colons back."""
+    if what == "property":
+        lines[:] = [line.replace(COLON, ":") for line in lines]
+
+
+def setup(app: Sphinx) -> None:
     """Write the list of public names and the commands' help before Sphinx reads them."""
+    app.connect("autodoc-process-docstring", hide_colons, priority=400)  # napoleon's is 500
+    app.connect("autodoc-process-docstring", show_colons, priority=600)
     for name, text in (("api", public_names()), ("command_line", command_line())):
         page = HERE / "reference" / f"{name}.md"
         if not page.exists() or page.read_text(encoding="utf-8") != text:
