@@ -11,6 +11,7 @@ from canon.kernel import loop as loops
 from canon.kernel import rolled
 from canon.kernel.machine import DOUBLE, MachineType
 from canon.kernel.structure import equations
+from canon.kernel.writer import Writer
 
 
 def chain(n):
@@ -28,6 +29,19 @@ def bodies(count):
         for j in range(i):
             H -= sp.Rational(i + j, 7) / sp.sqrt(sum((q[3 * i + k] - q[3 * j + k]) ** 2 for k in range(3)))
     return q, H
+
+
+def toda(n):
+    """Bonds hold functions, which are not to be computed twice."""
+    q = coordinates(" ".join(f"x{i}" for i in range(n)))
+    bonds = [sp.exp(a - b) for a, b in itertools.pairwise(q)]
+    return q, sp.Add(*(s.momentum**2 / 2 for s in q), *bonds)
+
+
+def second_neighbours(n):
+    """Bonds of two kinds, of which a force reads members k and k + 1, and k and k + 2."""
+    q, H = chain(n)
+    return q, sp.Add(H, *((q[k + 2] - q[k]) ** 4 / 3 for k in range(n - 2)))
 
 
 def driven(n):
@@ -48,7 +62,15 @@ def stepped(system, number=DOUBLE, *, compensated, kick_first=False, steps=20):
 
 
 @pytest.mark.parametrize(
-    "make", [lambda: chain(12), lambda: bodies(4), lambda: driven(9)], ids=["chain", "bodies", "driven"]
+    "make",
+    [
+        lambda: chain(12),
+        lambda: bodies(4),
+        lambda: driven(9),
+        lambda: toda(11),
+        lambda: second_neighbours(13),
+    ],
+    ids=["chain", "bodies", "driven", "toda", "second neighbours"],
 )
 @pytest.mark.parametrize("lanes", [1, 8])
 @pytest.mark.parametrize("compensated", [False, True])
@@ -89,3 +111,17 @@ def test_long_chains_are_rolled_without_tables_and_small_systems_are_not():
     assert not rolled.is_worth_rolling(system.program(system.force))
     families, _ = rolled._families(force(100))
     assert len(families) < 40
+
+
+def test_a_chains_forces_run_one_behind_its_bonds_and_nothing_lies_in_memory():
+    q, H = chain(100)
+    system = equations(H, q, tuple(s.momentum for s in q), time, {})
+    made = rolled._Rolling(Writer(DOUBLE), system.program(system.force), "%q", "%t")
+    assert [loop.size for loop in made.loops if loop.after] == [99]
+    # The squares of the two ends.
+    assert [len(made.families[kind].members) for kind in made.arrays] == [2]
+    q, H = toda(100)
+    system = equations(H, q, tuple(s.momentum for s in q), time, {})
+    made = rolled._Rolling(Writer(DOUBLE), system.program(system.force), "%q", "%t")
+    # The ends' forces read the exponentials of two bonds.
+    assert {made.families[kind].operation for kind in made.arrays} == {"exp"}
