@@ -221,14 +221,7 @@ def loop_of(system: Equations, method: SolvableSplitting, precision: Precision) 
     ------
     UnsolvableError
         H has no solvable part, or not the one that was named.
-    ValueError
-        The precision is another than ``"double"`` and ``"compensated"``.
     """
-    if precision.name not in ("double", "compensated"):
-        raise ValueError(
-            f"precision={precision.name!r}: splittings by solvable parts have 'double' and 'compensated'; "
-            "Taylor() has more"
-        )
     if not system.autonomous:
         raise UnsolvableError(
             "H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')"
@@ -237,11 +230,11 @@ def loop_of(system: Equations, method: SolvableSplitting, precision: Precision) 
         raise UnsolvableError(
             "parameters that differ by orbit: splittings by solvable parts take one number for each"
         )
-    return _kept(system, method, compensated=precision.compensated)
+    return _kept(system, method, precision)
 
 
 @functools.lru_cache(maxsize=64)
-def _kept(system: Equations, method: SolvableSplitting, *, compensated: bool) -> Loop:
+def _kept(system: Equations, method: SolvableSplitting, precision: Precision) -> Loop:
     part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
     if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:
         raise UnsolvableError(
@@ -254,5 +247,11 @@ def _kept(system: Equations, method: SolvableSplitting, *, compensated: bool) ->
             "democratic heliocentric coordinates are for planets about a star, which H is not"
         )
     return solvable_loop(
-        part, len(system.q), method.kicks, chosen, compensated=compensated, democratic=democratic
+        part,
+        len(system.q),
+        method.kicks,
+        chosen,
+        compensated=precision.compensated,
+        number=precision.number,
+        democratic=democratic,
     )

@@ -208,7 +208,10 @@ class Lanes:
         parts = [self.w.let(f"extractvalue {self.pair.number.name} {value}, {k}") for k in (0, 1)]
         if kind == DOUBLE:
             return parts[0], parts[1]
-        total = self.w.algebra("add", *(self.w.let(f"fpext double {part} to {kind.name}") for part in parts))
+        if kind.scalar == "float":
+            total = self.w.let(f"fptrunc double {parts[0]} to float")
+        else:
+            total = self.w.algebra("add", *(self.w.let(f"fpext double {x} to {kind.name}") for x in parts))
         return total, self.w.constant(Fraction(0))
 
     def combined(self, weights: Sequence[Fraction], values: Sequence[str]) -> str:

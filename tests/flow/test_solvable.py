@@ -318,11 +318,6 @@ def test_what_has_no_solvable_part_is_refused(system, method, message):
                   (0, 1), method=method, step=0.1)  # fmt: skip
 
 
-def test_other_precisions_are_refused():
-    with pytest.raises(ValueError, match="'double' and 'compensated'"):
-        propagate(KEPLER, kepler_start(0.1), (0, 1), method=SABA(2), step=0.1, precision="extended")
-
-
 def test_wrong_methods_are_refused():
     with pytest.raises(ValueError, match="8-6-4"):
         SABA("7-7-7")

@@ -10,13 +10,13 @@ import pytest
 
 from canon.kernel.kepler import kepler_flow
 from canon.kernel.loop import compiled_function
-from canon.kernel.machine import DOUBLE
+from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, EXTENDED, SINGLE
 from canon.kernel.writer import Writer
 
 
 @functools.cache
-def compiled(lanes, axes):
-    w = Writer(DOUBLE)
+def compiled(lanes, axes, number=DOUBLE):
+    w = Writer(number)
     v = w.side_by_side(lanes)
     x, u = ([v.load("%y", part * axes + axis) for axis in range(axes)] for part in (0, 1))
     moved, turned = kepler_flow(w, v, x, u, v.load("%m", 0), v.splat(w.load("%t", 0)))
@@ -100,6 +100,35 @@ def test_conics_of_all_eccentricities_and_steps_of_all_sizes(e):
             turns = abs(t) * max(0.0, 1 - e) ** 1.5
             size = max(abs(float(a)) for a in true)
             assert error < (10 + 10 * turns) * (2e-16 * size + sensitivity)
+
+
+def wide_increments(x, v, mu, t, number):
+    """Of one body in other numbers, as numbers of 60 digits."""
+    y, m, time = (number.packed(np.array(a), np.zeros(len(a))) for a in ([*x, *v], [mu], [t]))
+    out = np.zeros_like(y)
+    compiled(1, len(x), number).call(*(a.ctypes.data for a in (y, m, time, out)))
+    high, low = (part.ravel().tolist() for part in number.unpacked(out))
+    with mpmath.workdps(60):
+        return [mpmath.mpf(a) + mpmath.mpf(b) for a, b in zip(high, low, strict=True)]
+
+
+@pytest.mark.parametrize(
+    "number", [SINGLE, EXTENDED, DOUBLE_DOUBLE], ids=["single", "extended", "double-double"]
+)
+@pytest.mark.parametrize("e", [0, 0.5, 0.9999, 1, 1.5])
+def test_other_numbers_reach_their_own_round_off(e, number):
+    unit = mpmath.mpf(2) ** -number.mantissa
+    for anomaly in (0.0, -2.0 if e < 1 else -0.9 * math.acos(-1 / e)):
+        x, v = (np.float32(part).astype(float).tolist() for part in state(e, anomaly, mu=2.5))
+        for t in (2.0**-20, -11.0, 70.0):
+            found, true = wide_increments(x, v, 2.5, t, number), true_increments(x, v, 2.5, t)
+            with mpmath.workdps(60):
+                shifted = [mpmath.mpf(x[0]) * (1 + 8 * unit), x[1]], [v[0], mpmath.mpf(v[1]) * (1 - 8 * unit)]
+                moved = true_increments(*shifted, 2.5, t)
+                error = max(abs(a - b) for a, b in zip(found, true, strict=True))
+                sensitivity = max(abs(a - b) for a, b in zip(moved, true, strict=True))
+                turns = abs(t) * max(0.0, 1 - e) ** 1.5
+                assert error < (10 + 10 * turns) * (unit * max(abs(a) for a in true) + sensitivity)
 
 
 def test_many_periods_in_one_step_return():
