@@ -117,7 +117,7 @@ def splitting_loop(
     def evaluate(nodes: Sequence[int], reads: int, clock: str, take: Callable[[str, str], None]) -> None:
         steps = system.program(nodes)
         state = w.at(y, gap) if reads else y
-        if is_worth_rolling(steps):
+        if is_worth_rolling(steps, system.program(system.force) if reads else None):
             write_rolled(w, steps, state, clock, take)
             return
         arguments = ["poison"] * (2 * n + 1)

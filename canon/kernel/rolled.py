@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["is_worth_rolling", "write_rolled"]
 
-_REGULAR, _IRREGULAR = 100, 12_000
+_REGULAR, _BESIDE, _IRREGULAR = 100, 16, 12_000
 """Programs with fewer operations are written out: the compiler then sees every one of them. Irregular ones, which need
 tables, run faster written out, and are rolled only where compiling them would take very long."""
 
@@ -80,10 +80,14 @@ def _families(steps: Program) -> tuple[list[_Family], list[tuple[int, int]]]:
     return found, list(zip(family_of, place, strict=True))
 
 
-def is_worth_rolling(steps: Program) -> bool:
-    """Return whether a program is better written as loops."""
+def is_worth_rolling(steps: Program, beside: Program | None = None) -> bool:
+    """Return whether a program is better written as loops.
+
+    A short one is where one beside it is: of arrays that loops work on, nothing is then kept in registers.
+    """
     count = len(steps.instructions)
-    if count <= _REGULAR:
+    shortest = _BESIDE if beside is not None and is_worth_rolling(beside) else _REGULAR
+    if count <= shortest:
         return False
     families, location = _families(steps)
     places = _operand_places(steps, families, location)
