@@ -78,14 +78,14 @@ def test_rolled_and_written_out_programs_agree_bit_for_bit(make, lanes, compensa
     q, H = make()
     system = equations(H, q, tuple(s.momentum for s in q), time, {})
     number = MachineType("double", 53, "float64", "", lanes=lanes)
-    monkeypatch.setattr(loops, "is_worth_rolling", lambda _: False)
+    monkeypatch.setattr(loops, "is_worth_rolling", lambda *_: False)
     out = stepped(system, number, compensated=compensated)
-    monkeypatch.setattr(loops, "is_worth_rolling", lambda _: True)
+    monkeypatch.setattr(loops, "is_worth_rolling", lambda *_: True)
     np.testing.assert_array_equal(stepped(system, number, compensated=compensated), out)
     assert np.isfinite(out).all()
     if system.autonomous:
         shared = stepped(system, number, compensated=compensated, kick_first=True)
-        monkeypatch.setattr(loops, "is_worth_rolling", lambda _: False)
+        monkeypatch.setattr(loops, "is_worth_rolling", lambda *_: False)
         np.testing.assert_array_equal(
             stepped(system, number, compensated=compensated, kick_first=True), shared
         )
