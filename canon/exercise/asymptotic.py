@@ -67,7 +67,7 @@ def right_to_an_order(parts: Sequence[Part], domain: Domain, deadline: float) ->
         scaled = [(substitute(r, limit.values), substitute(c, limit.values)) for r, c in residuals]
         orders = [_order(r, c, epsilon, domain) for r, c in scaled]
         order = min((0 if k is None else k for k in orders), default=0)
-        truncated = all(_is_truncated(part.claimed, tuple(limit.values), order) for part in parts)
+        truncated = all(_is_truncated(_in_variables(part), tuple(limit.values), order) for part in parts)
         if (
             truncated
             and 2 <= order <= MOST_ORDERS
@@ -96,6 +96,11 @@ def _limits(residuals: Sequence[Expr], epsilon: Symbol) -> Iterator[_Limit]:
     if len(moving) > 1:
         names = ", ".join(map(str, moving))
         yield _Limit({s: epsilon * s for s in moving}, f"{names} together")
+
+
+def _in_variables(part: Part) -> Expr:
+    """Return what was claimed with the momenta as functions of the velocities: they become small with these."""
+    return substitute(part.claimed, {s: v for s, v in part.through.items() if s not in part.determined})
 
 
 def _is_truncated(claimed: Expr, small: Sequence[Symbol], order: int) -> bool:

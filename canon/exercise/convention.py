@@ -50,12 +50,13 @@ def convention(reading: Reading, parts: Sequence[Part], domain: Domain) -> Itera
         yield from _stated(_one_rule(parts, domain))
         return
     factor = _proved_factor(parts, domain)
-    if factor is None:
-        return
     if kind == "bilinear-covariant" and reading.has("factor"):
-        found = parts[0].right / factor
-        sentence = f"the factor is {found}, not {parts[0].right}"
-        yield Diagnosis(sentence, reading.with_instead("factor", found))
+        found = parts[0].right if factor is None else factor * parts[0].claimed
+        if not found.has(*reading.symbols("q"), *reading.symbols("p")):
+            sentence = f"the factor is {found}, not {parts[0].claimed}"
+            yield Diagnosis(sentence, reading.with_instead("factor", found))
+    elif factor is None:
+        return
     elif kind in _BRACKETS and factor == -1:
         sentence = f"right under the opposite sign convention; {_BRACKETS[kind]}"
         yield Diagnosis(sentence, scaled(reading, parts, factor), only_fault=True)

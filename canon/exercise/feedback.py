@@ -20,7 +20,7 @@ from canon.exercise.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.question import Part, Same, SameEquations, Stated
 from canon.exercise.rejudged import another_gauge, another_reading, one_change, only_where, right_where
 from canon.exercise.repair import Screen, repairs
-from canon.exercise.tree import replaced, symbols_of
+from canon.exercise.tree import replaced, shown, symbols_of
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.substitution import substitute
 from canon.proof.vanish import vanishes
@@ -94,6 +94,9 @@ def _confirmed(found: Diagnosis, finding: Finding) -> bool:
 def _diagnoses(finding: Finding, deadline: float) -> Iterator[Diagnosis]:
     question, reading = finding.question, finding.reading
     if isinstance(question, SameEquations):
+        if "is not affine" in finding.verdict.feedback:
+            yield Diagnosis(finding.verdict.feedback)
+            return
         parts, domain = _on_the_motion(question), question.domain
     elif isinstance(question, Same):
         parts, domain = question.parts, question.domain
@@ -145,13 +148,14 @@ def corrected(finding: Finding) -> str:
     if not isinstance(question, Same | SameEquations | Stated):
         return ""
     if question.answer is None:
-        shown = (
+        parts = (
             [p for p in question.parts if not p.through and p.residual != 0]
             if isinstance(question, Same)
             else []
         )
-        shown = [] if finding.reading.claim.kind.startswith(_DERIVED) else shown
-        return "; ".join(f"{p.name} = {p.right}" for p in shown[:MOST_SENTENCES])
+        derived = finding.reading.claim.kind.startswith(_DERIVED) or finding.reading.has("solution")
+        parts = [] if derived or (isinstance(question, Same) and question.said) else parts
+        return "; ".join(f"{p.name} = {shown(p.right)}" for p in parts[:MOST_SENTENCES])
     try:
         answer = question.answer()
     except (ValueError, Undecided):
@@ -159,7 +163,7 @@ def corrected(finding: Finding) -> str:
     if answer is None:
         return ""
     ending = " = 0" if isinstance(question, SameEquations) else ""
-    return "; ".join(f"{e}{ending}" for e in (answer if isinstance(answer, tuple) else (answer,)))
+    return "; ".join(f"{shown(e)}{ending}" for e in (answer if isinstance(answer, tuple) else (answer,)))
 
 
 def _on_the_motion(question: SameEquations) -> tuple[Part, ...]:

@@ -13,6 +13,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.kinds import COMMON, KINDS, Shape
+from canon.expression.tokens import GREEK
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,6 +55,10 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if wanted.one_of and not any(all(key in keys for key in group) for group in wanted.one_of):
         groups = " or ".join(" with ".join(group) for group in wanted.one_of)
         yield wanted.one_of[0][-1], f"missing; a claim of kind {kind} needs {groups}"
+    complete = [group for group in wanted.one_of if all(key in keys for key in group)]
+    if wanted.exclusive and len(complete) > 1:
+        groups = " and ".join(" with ".join(group) for group in complete)
+        yield complete[1][-1], f"{groups} both say what it is about; leave one out"
     for key, value in keys.items():
         if key not in known:
             close = difflib.get_close_matches(key[:60], known, n=1, cutoff=0.6)
@@ -62,7 +67,26 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         elif isinstance(value, (list, Mapping)) and len(value) > MAX_NAMES:
             yield key, f"{len(value)} entries, and at most {MAX_NAMES} are read; split the claim"
         elif not _fits(value, known[key]):
-            yield key, f"should be {known[key].value}"
+            yield key, f"should be {known[key].value}{_remedy(value, known[key])}"
+
+
+def _remedy(value: Any, shape: Shape) -> str:
+    """Say which entry is at fault, where one is."""
+    table = value if isinstance(value, Mapping) else {}
+    names = [value] if isinstance(value, str) else value if isinstance(value, list) else list(table)
+    for name in names if shape in _OF_NAMES else ():
+        if isinstance(name, str) and not _name(name):
+            plain = "".join(GREEK.get(letter, letter) for letter in name)
+            return f"; write {plain} for {name[:60]}" if _name(plain) else f"; {name[:60]!r} is not a name"
+    for name, item in table.items():
+        if shape is Shape.ASSUMPTIONS and item not in ASSUMPTIONS:
+            return f"; {name} is {', '.join(ASSUMPTIONS[:-1])} or {ASSUMPTIONS[-1]}, not {str(item)[:60]!r}"
+        if shape is Shape.BOX and not _interval(item):
+            return f"; that of {name} should be two numbers, the smaller one first"
+    return ""
+
+
+_OF_NAMES = (Shape.NAMES, Shape.ASSUMPTIONS, Shape.FUNCTIONS, Shape.BOX, Shape.EXPRESSIONS)
 
 
 def _number(value: Any) -> bool:

@@ -167,8 +167,8 @@ def bilinear(reading: Reading) -> Iterator[Question]:
     parts = tuple(
         Part(
             f"the coefficient of δ{z[j]} d{z[i]} − d{z[j]} δ{z[i]}",
-            lagrange_bracket(z[i], z[j], Q, P),
             factor if j - i == n else sp.S.Zero,
+            lagrange_bracket(z[i], z[j], Q, P),
         )
         for i, j in sorted(combinations(range(2 * n), 2), key=lambda pair: pair[1] - pair[0] != n)
     )

@@ -90,7 +90,7 @@ def _on_every_motion(
             SingularMatrixError
         ):  # dependent constraints or massless coordinates: ask for linear consequences
             seen = tuple(substitute(claim, branch.values) for claim in open_.values())
-            yield SameEquations((*here, *seen), tuple(here), unknowns, branch.domain)
+            yield SameEquations((*here, *seen), tuple(here), unknowns, branch.domain, before=len(here))
             continue
         through = {**branch.values, **solution}
         parts = tuple(

@@ -43,11 +43,14 @@ class Kind:
         Shape of each key.
     one_of
         Alternatives: at least one whole group of keys must be there.
+    exclusive
+        Whether the alternatives say the same thing, so that only one of them can be there.
     """
 
     required: Mapping[str, Shape]
     optional: Mapping[str, Shape] = field(default_factory=lambda: MappingProxyType({}))
     one_of: tuple[tuple[str, ...], ...] = ()
+    exclusive: bool = False
 
 
 COMMON: Mapping[str, Shape] = MappingProxyType(
@@ -77,8 +80,9 @@ _CANONICITY = Kind(
     _PHASE,
     {"Q": _TS, "P": _TS, "valence": _T, **_NEW, "implicit": _TS},
     one_of=(("Q", "P"), ("new_q", "new_p", "implicit")),
+    exclusive=True,
 )
-_GENERATING = Kind({**_PHASE, **_NEW, "F": _T}, _MAP_EITHER_WAY, one_of=(("map",), ("inverse_map",)))
+_GENERATING = Kind({**_PHASE, **_NEW, "F": _T}, _MAP_EITHER_WAY, (("map",), ("inverse_map",)), exclusive=True)
 _MOTION = {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS}
 _CONSTRAINED = Kind({**_LAGRANGE, "constraints": _TS, "multipliers": _N, "claim": _TS})
 
@@ -119,18 +123,23 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             {},
             {"x": _N, "form": _TS, "claim": _T, **_PHASE, "Q": _TS, "P": _TS, "factor": _T},
             one_of=(("x", "form", "claim"), ("q", "p", "Q", "P", "factor")),
+            exclusive=True,
         ),
         "generating-F1": _GENERATING,
         "generating-F2": _GENERATING,
         "generating-F3": _GENERATING,
         "generating-F4": _GENERATING,
         "transformed-hamiltonian-K": Kind(
-            {**_PHASE, "H": _T, **_NEW, "K": _T}, _MAP_EITHER_WAY, one_of=(("map",), ("inverse_map",))
+            {**_PHASE, "H": _T, **_NEW, "K": _T},
+            _MAP_EITHER_WAY,
+            one_of=(("map",), ("inverse_map",)),
+            exclusive=True,
         ),
         "constant-of-motion": Kind(
             {"I": _T},
             {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS, "restrict": _TS},
             one_of=(("q", "p", "H"), ("q", "L"), ("x", "X")),
+            exclusive=True,
         ),
         "lagrangian-equivalence": Kind({"q": _N, "L1": _T, "L2": _T, "relation": Shape.WORD}, {"F": _T}),
         "equality-only": Kind({"lhs": _T, "rhs": _T}),

@@ -132,11 +132,7 @@ def inhabited(branches: Iterable[Branch]) -> list[Branch]:
         ...
     canon.exercise.manifold.EmptyDomainError: no point satisfies the constraints, assumptions and conditions
     """
-    found = [
-        b
-        for b in branches
-        if next(b.domain.points((), 1), None) is not None or not is_empty(b.domain, time.monotonic() + 0.5)
-    ]
+    found = [b for b in branches if not _without_point(b.domain)]
     if not found:
         raise EmptyDomainError(_NO_POINT)
     return found
@@ -217,7 +213,15 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
         )
     kept = {symbol: ends for symbol, ends in domain.box.items() if symbol not in values}
     kept_conditions = dict.fromkeys(c for c in conditions if c is not sp.true)
-    return Domain(tuple(kept_conditions), kept)
+    found = Domain(tuple(kept_conditions), kept)
+    if kept_conditions.keys() - set(domain.conditions) and _without_point(found):
+        raise EmptyDomainError(_NO_POINT)
+    return found
+
+
+def _without_point(domain: Domain) -> bool:
+    """Whether it is proved that a domain holds no point."""
+    return next(domain.points((), 1), None) is None and is_empty(domain, time.monotonic() + 0.5)
 
 
 def _signs(symbol: Symbol, value: Expr) -> Iterator[Boolean]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
@@ -122,6 +123,8 @@ class SameEquations:
         else, and then there is no equation to repair.
     through
         What their symbols are in terms of those of the systems, such as p = ∂L/∂q̇.
+    before
+        How many equations of the claimed system stand before those that were written.
     """
 
     claimed: tuple[Expr, ...]
@@ -131,6 +134,7 @@ class SameEquations:
     answer: Answer | None = None
     written: tuple[Expr, ...] = ()
     through: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    before: int = 0
 
 
 @dataclass(frozen=True)
@@ -224,8 +228,9 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return opposite(verdict.about(part.name), feedback)
         case Same(parts, domain, said=said):
             return _all_vanish(parts, domain, deadline, said)
-        case SameEquations(claimed, right, unknowns, domain):
-            return _same_equations(claimed, right, unknowns, domain, deadline)
+        case SameEquations(claimed, right, unknowns, domain, before=before):
+            verdict = _same_equations(claimed, right, unknowns, domain, deadline)
+            return replace(verdict, feedback=_in_our_words(verdict.feedback, before))
         case Regular(matrix, name, domain, singular_is):
             verdict = is_regular(matrix, domain, name)
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
@@ -266,8 +271,8 @@ def _same_equations(
             )
     verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
     if verdict.holds and without_solution(right, unknowns, domain):
-        verdict = _equations_of_lower_order(claimed, right, unknowns, domain, deadline)
-    return replace(verdict, feedback=_in_our_words(verdict.feedback))
+        return _equations_of_lower_order(claimed, right, unknowns, domain, deadline)
+    return verdict
 
 
 def _equations_of_lower_order(
@@ -295,8 +300,20 @@ def _equations_of_lower_order(
     raise Undecided("the equations bind the state in a way that is not affine; solve them for the velocities")
 
 
-def _in_our_words(feedback: str) -> str:
-    """Say "claimed" and "of motion" where the proof room says first and second."""
+LONGEST_FORMULA = 200
+"""Characters of an equation that is still written out in a sentence."""
+
+
+def _in_our_words(feedback: str, before: int) -> str:
+    """Say "claimed" and "of motion" where the proof room says first and second, and count as the claim does."""
+    feedback = re.sub(
+        r"^equation (\d+) (?=of the first system|is not affine)",
+        lambda found: f"equation {int(found[1]) - before} ",
+        feedback,
+    )
+    sentence, _, formula = feedback.partition(": ")
+    if len(formula) > LONGEST_FORMULA:
+        feedback = sentence
     words = {
         "of the second system does not follow from the first": "of motion does not follow from the claimed ones",
         "of the first system does not follow from the second": "of the claim does not follow from those of motion",

@@ -136,6 +136,9 @@ class Reading:
                 real = (self.claim.kind, key) not in _COMPLEX
                 said = self._assumptions(name) if real else {"complex": True}
                 names[name] = _MAKERS.get(key, Symbol)(name, **said)
+        for name in names:
+            if _is_rate(name, names):
+                self.fault("q", f"{name} is the velocity of a coordinate that is declared too; rename one")
         functions = {name: tuple(_as_list(args)) for name, args in keys.get("functions", {}).items()}
         for name in keys.get("parameters", {}):
             if name not in functions and name != self.time.name and not _is_rate(name, names):

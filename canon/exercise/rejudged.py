@@ -84,13 +84,17 @@ def another_gauge(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
 
 
 def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
-    """Yield a region, or a value of a parameter, for which the claim does hold."""
+    """Yield a region, or a value of a parameter, for which the claim does hold.
+
+    It may hold for more: that it holds only there is not proved, and not said.
+    """
     keys = reading.claim.keys
     assumed = dict(keys.get("parameters", {}))
+    following = {name for key in _following(reading) for name in _names(keys.get(key))}
     free = [
         s
         for s in reading.scope.names.values()
-        if s.is_positive is None and s.is_negative is None and not s.is_integer
+        if s.is_positive is None and s.is_negative is None and not s.is_integer and s.name not in following
     ]
     for symbol in free[:6]:
         for word, sign in (("positive", ">"), ("negative", "<")):
@@ -98,8 +102,8 @@ def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
                 return
             changed = {**keys, "parameters": {**assumed, symbol.name: word}}
             trial = _read_anew(reading, reading.claim.kind, changed)
-            if _could_hold(trial) and _holds(trial, deadline):
-                yield Diagnosis(f"right only for {symbol} {sign} 0", trial)
+            if _is_somewhere(trial) and _could_hold(trial) and _holds(trial, deadline):
+                yield Diagnosis(f"right for {symbol} {sign} 0, but not on the whole domain", trial)
     variables = {
         name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
     }
@@ -110,7 +114,7 @@ def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
             return
         trial = replace(reading, at=MappingProxyType({reading.scope.names[name]: sp.S.One}))
         if _could_hold(trial) and _holds(trial, deadline):
-            yield Diagnosis(f"right only for {name} = 1", trial)
+            yield Diagnosis(f"right for {name} = 1, but not in general", trial)
 
 
 def right_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
@@ -123,8 +127,27 @@ def right_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
             domain = reading.claim.keys.get("domain", [])
             conditions = [*(domain if isinstance(domain, list) else [domain]), f"{g} {sign} 0"]
             trial = _read_anew(reading, reading.claim.kind, {**reading.claim.keys, "domain": conditions})
-            if _could_hold(trial) and _holds(trial, deadline):
+            if _is_somewhere(trial) and _could_hold(trial) and _holds(trial, deadline):
                 yield Diagnosis(f"right where {g} {sign} 0, but not on the whole domain", trial)
+
+
+def _is_somewhere(reading: Reading) -> bool:
+    """Whether the domain of a claim has a point: of an empty one everything is true."""
+    try:
+        return (
+            next(reading.domain.points(reading.scope.names.values(), 1, but_functions=True), None) is not None
+        )
+    except InvalidClaim:
+        return False
+
+
+def _following(reading: Reading) -> tuple[str, ...]:
+    """Return the keys whose names stand for what follows from other variables and can't be chosen freely."""
+    if reading.has("map") or reading.has("implicit"):
+        return ("new_q", "new_p")
+    if reading.has("inverse_map") or reading.has("solution"):
+        return ("q", "p")
+    return ("p",) if reading.claim.kind == "legendre-hamiltonian" else ("momenta", "multipliers")
 
 
 def _dividing(expressions: Sequence[Expr]) -> list[Expr]:

@@ -81,6 +81,7 @@ def repairs(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = 
         if (
             _says_something(part, candidate.right)
             and screen.passes(candidate.right)
+            and not _says_only_zeros(part, candidate.right, screen)
             and _is_right(part, candidate.right, domain)
         ):
             yield candidate
@@ -173,6 +174,12 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
 def _says_something(part: Part, right: Expr) -> bool:
     """Whether a repaired equation still holds an acceleration or multiplier, if the wrong one did."""
     return part.right != 0 or not part.claimed.has(*part.determined) or right.has(*part.determined)
+
+
+def _says_only_zeros(part: Part, right: Expr, screen: Screen) -> bool:
+    """Whether every term of a repaired equation vanishes by itself on the motion, as no equation of motion does."""
+    terms = sp.Add.make_args(right)
+    return part.right == 0 and bool(part.through) and len(terms) > 1 and all(map(screen.vanish, terms))
 
 
 def _as_sums(expression: Expr) -> Iterator[Sequence[Expr]]:

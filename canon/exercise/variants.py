@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.tree import arguments, replaced, symbols_of
+from canon.exercise.tree import arguments, replaced, shown, symbols_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -42,7 +42,7 @@ class Change:
         object.__setattr__(self, "items", items)
 
     def __str__(self) -> str:
-        return self.pattern.format(*self.items)
+        return self.pattern.format(*map(shown, self.items))
 
 
 def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple[Expr, Change]]:
@@ -73,8 +73,8 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     def multiplied_by_functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, functions)
 
-    first = (_signs, _functions, _factors, _together, _exponents, exchanged, _by_another, multiplied)
-    for edits in (*first, _dropped, _swapped, _shifted, multiplied_by_functions):
+    first = (_signs, _functions, _factors, _together, _exponents, _by_another, _superfluous, exchanged)
+    for edits in (*first, multiplied, _dropped, _swapped, _shifted, multiplied_by_functions):
         yield from _one_place(expression, edits)
     if not expression.is_Add:
         for symbol in symbols:
@@ -219,10 +219,13 @@ def _exponents(node: Expr) -> Iterator[tuple[Expr, Change]]:
         yield sp.Abs(node), Change("{} should be Abs({})", node, node)
 
 
-def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _superfluous(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
         for term in arguments(node):
             yield node - term, Change("the term {} does not belong", term)
+
+
+def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Mul:
         for factor in arguments(node):
             if not factor.is_Number:

@@ -309,8 +309,10 @@ class _Builder:
     def power(self, node: syntax.Power, base: Expr, exponent: Expr) -> Expr:
         coefficient = abs(exponent.as_coeff_Mul()[0])
         if isinstance(coefficient, Rational):
-            if coefficient > MAX_EXPONENT or coefficient.q > MAX_EXPONENT:
+            if coefficient > MAX_EXPONENT:
                 self.refuse(node, f"an exponent beyond {MAX_EXPONENT}")
+            if max(coefficient.p, coefficient.q) > MAX_EXPONENT:
+                self.refuse(node, f"an exponent whose numerator or denominator is beyond {MAX_EXPONENT}")
             if _bits(base) * max(1, int(coefficient)) > MAX_BITS:
                 self.refuse(node, "the power is a number too long to be meant")
         if base is sp.S.Zero and isinstance(exponent, Rational) and exponent < 0:

@@ -40,18 +40,18 @@ EXPECTED = {
     "LI-02a": "right under the opposite sign convention; the convention here is [X, Y] = X·∇Y − Y·∇X",
     "CA-01a": "{Q, P} = -1, not 1: exchange Q and P, or change the sign of one of them",
     "CA-05a": "canonical with valence 2, not 1: {Q, P} = 2; multiply P by 1/2",
-    "CA-13a": "right only for y > 0",
+    "CA-13a": "right for y > 0, but not on the whole domain",
     "BC-05a": "the factor is 2, not 1/2",
     "F1-01a": "F should be half what it is",
     "F1-02b": "right under the opposite sign of a rule: here P = −∂F/∂Q",
     "F2-01a": "F has the wrong sign",
     "KH-02a": "K is H in the new variables; ∂F/∂t is missing: K = H + ∂F/∂t",
     "KH-02b": "the sign of ∂F/∂t in K is wrong: K = H + ∂F/∂t",
-    "CM-01b": "right only for m = 1",
+    "CM-01b": "right for m = 1, but not in general",
     "CM-02a": "in I the sign of t*p/m is wrong",
     "LE-02b": "in F the sign of -m*v*x is wrong",
     "LE-04a": "L1 and L2 have the same equations of motion, but L2 − L1 is not dF/dt of any F(q, t)",
-    "EQ-33a": "right only for x > 0",
+    "EQ-33a": "right for x > 0, but not on the whole domain",
 }
 EVERY = {c.id: c for path in CLAIMS.glob("*.json") for c in read_sheet(path).claims}
 
