@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.given import counted
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
+from canon.flow.method import DOP853, Taylor, TimeTransformed
 from canon.flow.propagate import propagate
 from canon.flow.request import task_of
 from canon.flow.sampling import Plan, fixed_plan
 from canon.flow.section import section_jacobian
+from canon.flow.solvable import SolvableSplitting
+from canon.flow.solvable_jacobian import solvable_jacobian
 from canon.kernel.variational import variational
 
 if TYPE_CHECKING:
@@ -104,7 +106,8 @@ def flow_jacobian(
     Raises
     ------
     ValueError
-        As ``propagate``; or the method knows no variations, or several states or parameters by orbit are given.
+        As ``propagate``; or the planets' coordinates are democratic heliocentric ones, or several states or parameters
+        by orbit are given.
 
     Examples
     --------
@@ -128,10 +131,9 @@ def flow_jacobian(
         )
     if isinstance(task.method, TimeTransformed):
         return FlowJacobian(*section_jacobian(task, hamiltonian, parameters or {}))
-    if not isinstance(task.method, Splitting | Gauss | RK4 | Taylor | DOP853) or (
-        getattr(task.method, "parts", None) is not None
-    ):
-        raise ValueError(f"{task.method} carries no variations: use Splitting, Gauss or Taylor")
+    if isinstance(task.method, SolvableSplitting) or getattr(task.method, "parts", None) is not None:
+        t, motion, slopes = solvable_jacobian(task)
+        return FlowJacobian(t, motion, slopes, np.zeros_like(slopes))
     size = len(y0)
     # Orbits side by side, one variation each; where steps adapt, all variations of one orbit.
     together = isinstance(task.method, Taylor | DOP853)
