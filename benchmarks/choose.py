@@ -20,12 +20,13 @@ from typing import TYPE_CHECKING
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from canon.flow.method import FixedStep, Splitting
+from canon.flow.method import Splitting, Stepped, TimeTransformed
 from canon.flow.propagate import NonFiniteStateError
 from canon.scene import find
 from canon.study.choose import Choice, choose
 from canon.study.choose_candidate import candidate_methods
-from canon.study.choose_pilot import Question, Setting, natural_step, pilot
+from canon.study.choose_pilot import Pilot, Question, Setting, natural_step, pilot
+from canon.study.choose_search import widest_step
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -106,9 +107,15 @@ def dear(question: Question, setting: Setting, limit: float) -> bool:
         return False
 
 
+def unresolved(run: Pilot, natural: float) -> bool:
+    """Tell whether a method in a fictitious time takes steps too long to show the motion, whatever its energy does."""
+    method = run.setting.method
+    return isinstance(method, TimeTransformed) and run.steps * widest_step(method, natural) < run.span
+
+
 def settings(method: object, natural: float) -> Iterator[Setting]:
     """Yield settings of a method, dearer and dearer."""
-    if isinstance(method, FixedStep):
+    if isinstance(method, Stepped):
         step = 6.0 * natural if isinstance(method, Splitting) else 12.0 * natural
         for k in range(80):
             yield Setting(method, step=step / RATIO**k, precision="double")
@@ -134,7 +141,8 @@ def exhaustive(
                 cost = measured_cost(question, tried, 2)
                 if cost > dearest:
                     continue
-                error = pilot(question, tried, question.span, WINDOWS).bound
+                run = pilot(question, tried, question.span, WINDOWS)
+                error = math.inf if unresolved(run, natural) else run.bound
                 for each in (each for each in wanted - kept if error <= each):
                     kept.add(each)
                     if cost < best[each][0]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.display import preformatted
-from canon.flow.method import FixedStep, Taylor
+from canon.flow.method import FixedStep, Stepped, Taylor
 from canon.flow.propagate import propagate
 from canon.scene.scene import Scene, near
 from canon.study.choose_candidate import Candidate, candidate_methods
@@ -206,7 +206,7 @@ def choose(
     found: list[Candidate] = []
     for number, method in enumerate(considered):
         cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
-        precision = "compensated" if isinstance(method, FixedStep) else "double"
+        precision = "compensated" if isinstance(method, Stepped) else "double"
         found.append(searched(question, method, precision, duration, natural, accuracy, cheapest))
         if progress is not None:
             progress(str(method), (number + 1) / (len(considered) + 1))

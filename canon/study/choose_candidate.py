@@ -6,7 +6,10 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+import numpy as np
+from sympy import Pow
+
+from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.propagate import NonFiniteStateError, is_separable
 from canon.flow.request import system_of
 from canon.flow.solvable import SABA, WisdomHolman
@@ -17,6 +20,7 @@ from canon.study.choose_pilot import Pilot, Question, Setting, pilot, seconds_pe
 
 if TYPE_CHECKING:
     from canon.flow.method import Method
+    from canon.kernel.structure import Equations
 
 __all__ = [
     "HOPELESS",
@@ -39,6 +43,12 @@ PILOTS = 9
 
 HOPELESS = 4.0
 """How many times dearer than the best so far a method may be expected to be before its search ends."""
+
+IN_FICTITIOUS_TIME = ("verlet", "blanes-moan-6", "kahan-li-8")
+"""Splittings that are considered with steps that vary along the orbit: Verlet's puts Kepler's motion on its ellipse."""
+
+DENSEST = 8
+"""How many times the operations of the force a drift by a matrix may take: about what its larger steps can gain."""
 
 
 @dataclass(frozen=True)
@@ -91,14 +101,15 @@ class Candidate:
 def candidate_methods(question: Question) -> tuple[Method, ...]:
     """Return the methods that apply, those first that are usually the cheapest.
 
-    Splittings where H = T(p) + V(q), else Gauss's methods; Wisdom & Holman's and its kin where H is a disturbed
-    motion known in closed form; Taylor's, and two ordinary ones for comparison.
+    Splittings where H = T(p) + V(q), in a fictitious time too where V has a singularity, else Gauss's methods;
+    Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
+    for comparison.
     """
     others = *_of_disturbed(question), RK4(), DOP853()
     if not is_separable(question.hamiltonian, question.values):
         return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *others
     names = sorted(SCHEMES, key=lambda name: -SCHEMES[name].order)
-    return Taylor(), *(Splitting(name) for name in names), *others
+    return Taylor(), *(Splitting(name) for name in names), *_of_close_encounters(question), *others
 
 
 def _of_disturbed(question: Question) -> tuple[Method, ...]:
@@ -116,7 +127,31 @@ def _of_disturbed(question: Question) -> tuple[Method, ...]:
     n = len(question.y0) // 2
     if isinstance(part, Quadratic) and not any(any(row[:n]) for row in part.field):
         return ()
-    return WisdomHolman(), SABA(4), SABA("8-6-4"), SABA("10-6-4")
+    if isinstance(part, Quadratic) and len(part.field) ** 2 > DENSEST * _operations(part.rest):
+        return ()
+    return WisdomHolman(), WisdomHolman(corrector=7), SABA(4), SABA("8-6-4"), SABA("10-6-4")
+
+
+def _operations(system: Equations) -> int:
+    """Return how many distinct quantities an evaluation of the force goes through."""
+    return len(system.graph.reachable(system.force))
+
+
+def _of_close_encounters(question: Question) -> tuple[Method, ...]:
+    """Return methods whose steps shrink near a singularity, where V < 0 has one and falls to it.
+
+    The sign is that at the start; where it changes on the way their pilots say so.
+    """
+    system = system_of(question.hamiltonian, question.values)
+    coordinates = set(system.q)
+    below = {power.base for power in question.hamiltonian.H.atoms(Pow) if power.exp.is_negative}
+    if not system.autonomous or not any(base.free_symbols & coordinates for base in below):
+        return ()
+    n = len(question.y0) // 2
+    at_rest = np.concatenate([question.y0[:n], np.zeros(n)])
+    point = dict(zip((*system.q, *system.p), map(float, at_rest), strict=True))
+    (potential,) = system.graph.evaluate([system.hamiltonian], point)
+    return tuple(TimeTransformed(Splitting(name)) for name in IN_FICTITIOUS_TIME) if potential < 0.0 else ()
 
 
 @dataclass(frozen=True)

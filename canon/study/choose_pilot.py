@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.measure import AccuracyWarning
-from canon.flow.method import DOP853, FixedStep, Gauss, Splitting, Taylor
+from canon.flow.method import DOP853, FixedStep, Gauss, Splitting, Stepped, Taylor, TimeTransformed
 from canon.flow.propagate import NonFiniteStateError, propagate
 from canon.flow.solvable import SolvableSplitting
 from canon.kernel.machine import EXTENDED
@@ -34,6 +34,9 @@ __all__ = ["Pilot", "Question", "Setting", "is_symplectic", "pilot", "seconds_pe
 WINDOWS = 512
 """Windows a pilot run is looked at in."""
 
+SEEN = 16
+"""Samples in each of the windows, at most, of a run whose errors are not seen inside its loop."""
+
 PLACES = 64
 """Times at which positions are compared with those of the reference."""
 
@@ -50,6 +53,9 @@ TIMED_SECONDS = 0.004
 """Processor time over which a step is timed."""
 
 TIMINGS = 4
+
+TIMED_STEPS = 50_000
+"""Steps of the longer of two runs from which the cost of a method in a fictitious time is told."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +74,7 @@ class Setting:
 
     def turned(self, knob: float) -> Setting:
         """Return the setting with another step or tolerance."""
-        if isinstance(self.method, FixedStep):
+        if isinstance(self.method, Stepped):
             return replace(self, step=knob)
         return replace(self, tolerance=knob)
 
@@ -97,8 +103,15 @@ class Question:
         default_factory=dict[tuple[float, bool], "tuple[Array, Array]"], repr=False, compare=False
     )
 
-    def run(self, setting: Setting, duration: float, samples: int, cadence: int | None = None) -> Trajectory:
-        """Return a run of that duration from the start."""
+    def run(
+        self,
+        setting: Setting,
+        duration: float,
+        samples: int,
+        cadence: int | None = None,
+        times: Array | None = None,
+    ) -> Trajectory:
+        """Return a run of that duration from the start; its samples are even unless times are named."""
         with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
             warnings.simplefilter("ignore", AccuracyWarning)  # its energy error is looked at here
             return propagate(
@@ -110,7 +123,8 @@ class Question:
                 tolerance=setting.tolerance,
                 precision=setting.precision,
                 parameters=self.values,
-                samples=samples,
+                samples=samples if times is None else None,
+                times=times,
                 cadence=cadence,
                 observables=None if self.integral is None else {self.observable: self.integral},
             )
@@ -175,7 +189,12 @@ class Pilot:
 
 def is_symplectic(method: Method) -> bool:
     """Tell whether a method keeps a modified energy, so that its energy error does not grow."""
-    return isinstance(method, Splitting | Gauss | SolvableSplitting)
+    return isinstance(method, Splitting | Gauss | SolvableSplitting | TimeTransformed)
+
+
+def is_seen_inside(method: Method) -> bool:
+    """Tell whether the errors of a method are those inside its loop: steps of one size, and no corrector."""
+    return isinstance(method, FixedStep) and not (isinstance(method, SolvableSplitting) and method.corrector)
 
 
 def pilot(question: Question, setting: Setting, duration: float, windows: int = WINDOWS) -> Pilot:
@@ -183,15 +202,17 @@ def pilot(question: Question, setting: Setting, duration: float, windows: int = 
     try:
         if question.observable == "position":
             return _against_reference(question, setting, duration)
-        if isinstance(setting.method, FixedStep):
+        if is_seen_inside(setting.method):
             return _watched(question, setting, duration, windows)
-        return _sampled(question, setting, duration)
+        return _sampled(question, setting, duration, windows)
     except (ArithmeticError, ValueError) as failed:
         return Pilot(setting, duration, failure=str(failed))
 
 
 def seconds_per_time(question: Question, setting: Setting, duration: float) -> float:
     """Return the processor time of the steps per unit of time, the least of a few runs."""
+    if isinstance(setting.method, TimeTransformed):
+        return _seconds_with_landing(question, setting, duration)
     trial = duration / 64.0
     found = question.run(setting, trial, 1)
     while found.cpu_seconds < TIMED_SECONDS and trial < duration:
@@ -199,6 +220,18 @@ def seconds_per_time(question: Question, setting: Setting, duration: float) -> f
         found = question.run(setting, trial, 1)
     again = (question.run(setting, trial, 1).cpu_seconds for _ in range(TIMINGS - 1))
     return min(found.cpu_seconds, *again) / trial
+
+
+def _seconds_with_landing(question: Question, setting: Setting, duration: float) -> float:
+    """Return the same for a method in a fictitious time, whose stretches and landing take milliseconds of their own."""
+    steps = question.run(setting, duration, 1).steps
+    longest = min(question.span, duration * TIMED_STEPS / steps)
+    short, long = (
+        min(question.run(setting, trial, 1).cpu_seconds for _ in range(TIMINGS))
+        for trial in (longest / 4.0, longest)
+    )
+    rate = max(0.0, long - short) / (0.75 * longest)
+    return rate + max(0.0, long - rate * longest) / question.span
 
 
 def _watched(question: Question, setting: Setting, duration: float, windows: int) -> Pilot:
@@ -222,38 +255,51 @@ def _watched(question: Question, setting: Setting, duration: float, windows: int
     )
 
 
-def _sampled(question: Question, setting: Setting, duration: float) -> Pilot:
-    found = question.run(setting, duration, 2 * WINDOWS)
+def _sampled(question: Question, setting: Setting, duration: float, windows: int) -> Pilot:
+    """Follow the error from sample to sample: of stepped methods in windows of many."""
+    stepped = isinstance(setting.method, Stepped)
+    samples = 2 * WINDOWS
+    if stepped:
+        samples = max(windows, min(SEEN * WINDOWS, math.ceil(duration / setting.knob)))
+    found = question.run(setting, duration, samples)
     error = found.energy_change if question.integral is None else found.changes[question.observable]
-    error = error / _unit(found, question)
+    error = error[1:] / _unit(found, question)
+    parts = min(windows, error.size) if stepped else error.size
+    rows = error[: error.size // parts * parts].reshape(parts, -1)
+    times = found.t[1:][: rows.size].reshape(parts, -1)
     return Pilot(
-        setting=setting,
+        setting=setting if setting.step is None else replace(setting, step=found.step),
         span=duration,
         steps=found.steps,
         evaluations=found.evaluations,
-        t=found.t,
-        mean=error,
-        largest=np.abs(error),
+        t=times.mean(axis=1),
+        mean=rows.mean(axis=1),
+        largest=np.abs(rows).max(axis=1),
         energy=_energy(found),
     )
 
 
 def _against_reference(question: Question, setting: Setting, duration: float) -> Pilot:
     """Compare coordinates with the reference; a step is adjusted to meet its times."""
-    if isinstance(setting.method, FixedStep):
+    times = None
+    if isinstance(setting.method, TimeTransformed):  # its samples are even in its own time
+        times = np.linspace(0.0, duration, PLACES + 1)[1:]
+    elif isinstance(setting.method, FixedStep):
         steps = PLACES * max(1, round(duration / setting.knob / PLACES))
         setting = replace(setting, step=duration / steps)
     true, rest = question.positions(duration, setting.precision)
-    found = question.run(setting, duration, PLACES)
+    found = question.run(setting, duration, PLACES, times=times)
+    if found.t.size == PLACES:
+        true, rest = true[:, 1:], rest[:, 1:]
     off = (found.q - true) + (found.carried[: len(found.q)] - rest)
     size = float(np.linalg.norm(true, axis=0).max())
-    away = np.linalg.norm(off, axis=0)[1:] / size
+    away = np.linalg.norm(off, axis=0)[-PLACES:] / size
     return Pilot(
         setting=setting,
         span=duration,
         steps=found.steps,
         evaluations=found.evaluations,
-        t=found.t[1:],
+        t=found.t[-PLACES:],
         mean=away,
         largest=away,
         energy=_energy(found),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from canon.flow.method import FixedStep, Gauss
+from canon.flow.method import Gauss, Stepped, TimeTransformed
 from canon.flow.solvable import SolvableSplitting
 from canon.study.choose_candidate import (
     HOPELESS,
@@ -25,7 +25,7 @@ from canon.study.choose_tolerance import searched_tolerance
 if TYPE_CHECKING:
     from canon.flow.method import Method
 
-__all__ = ["LONGEST_PILOT", "searched"]
+__all__ = ["LONGEST_PILOT", "searched", "widest_step"]
 
 LOWEST = 0.6
 """Share of the accuracy below which a setting is dearer than it need be."""
@@ -35,6 +35,9 @@ LONGEST_PILOT = 4_000_000
 
 LARGER = (2.0, 1.5)
 """Steps beyond the one found that are tried, in units of it."""
+
+SHORTER = 0.25
+"""Share of a usual step that a time-transformed method begins with: starts are often where the motion is fast."""
 
 DISTURBED_ORDER = 8
 """Order with which the first step of a splitting by solvable parts is guessed."""
@@ -62,7 +65,7 @@ def searched(
     cheapest
         Cost of the best candidate so far: the search ends where a method can't come near it.
     """
-    if not isinstance(method, FixedStep):
+    if not isinstance(method, Stepped):
         return searched_tolerance(question, method, precision, duration, accuracy, cheapest)
     # An integral may be kept exactly whatever the step: begin with a large one.
     error = accuracy if question.integral is None else 1.0
@@ -70,8 +73,13 @@ def searched(
     setting = Setting(method, step=first, precision=precision)
     good: Try | None = None
     bad: Try | None = None
+    ceiling = math.inf
     for _ in range(PILOTS):
         tried = tried_with(question, setting, duration)
+        ceiling = min(ceiling, _ceiling(tried, natural))
+        if setting.knob > 1.02 * ceiling:
+            setting = setting.turned(ceiling)
+            continue
         if tried.error <= accuracy:
             good = tried
             if tried.error >= LOWEST * accuracy:
@@ -81,19 +89,32 @@ def searched(
             return candidate_of(question, best, accuracy, note="its error falls no further")
         else:
             bad = tried
-        knob = _next_knob(tried, good, bad, accuracy)
+        knob = min(ceiling, _next_knob(tried, good, bad, accuracy))
         if good is not None:
-            largest = knob if bad is not None else max(knob, _by_its_order(good, accuracy))
+            largest = knob if bad is not None else min(ceiling, max(knob, _by_its_order(good, accuracy)))
             if knob <= good.knob * 1.02 or _cost_at(good, largest) > HOPELESS * cheapest:
                 break
         elif duration / knob > LONGEST_PILOT or _cost_at(tried, knob) > HOPELESS * cheapest:
             return by_order(question, tried, accuracy)
         setting = setting.turned(knob)
     if good is not None:
-        good = _still_larger(question, good, duration, accuracy, cheapest)
+        if good.knob * LARGER[-1] <= ceiling:
+            good = _still_larger(question, good, duration, accuracy, cheapest)
         dearer = good.error < LOWEST * accuracy and good.cost > HOPELESS * cheapest
         return candidate_of(question, good, accuracy, note="dearer at any step" if dearer else "")
     return by_order(question, bad, accuracy) if bad is not None else nothing(setting, "")
+
+
+def _ceiling(tried: Try, natural: float) -> float:
+    """Return the largest step that still shows the motion.
+
+    Steps of one size that are too large lose it; Verlet's in a fictitious time keep Kepler's energy whatever their
+    size, and so may be no longer on average than ordinary ones.
+    """
+    method = tried.pilot.setting.method
+    if not isinstance(method, TimeTransformed) or not tried.pilot.steps:
+        return math.inf
+    return tried.knob * widest_step(method, natural) * tried.pilot.steps / tried.pilot.span
 
 
 def _still_larger(question: Question, good: Try, duration: float, accuracy: float, cheapest: float) -> Try:
@@ -111,7 +132,7 @@ def _cost_at(tried: Try, step: float) -> float:
     return tried.cost * tried.knob / step
 
 
-def _first_step(method: FixedStep, natural: float, accuracy: float, duration: float) -> float:
+def _first_step(method: Stepped, natural: float, accuracy: float, duration: float) -> float:
     """Return where to begin: as many steps in the natural one as an ordinary error constant asks for.
 
     That of a splitting by solvable parts holds the size of the disturbance, so begin with a large step there.
@@ -119,9 +140,15 @@ def _first_step(method: FixedStep, natural: float, accuracy: float, duration: fl
     if isinstance(method, SolvableSplitting):
         widest, order = 2.0 * natural, DISTURBED_ORDER
     else:
-        share = method.stages / (6.0 if isinstance(method, Gauss) else 16.0)
-        widest, order = natural * (0.5 + share), method.order
+        widest, order = widest_step(method, natural), method.order
+    if isinstance(method, TimeTransformed):
+        widest *= SHORTER
     return max(duration / LONGEST_PILOT, widest * min(1.0, (1e3 * accuracy) ** (1.0 / order)))
+
+
+def widest_step(method: Stepped, natural: float) -> float:
+    """Return the step that a method of that many stages may take where accuracy does not matter, about."""
+    return natural * (0.5 + method.stages / (6.0 if isinstance(method, Gauss) else 16.0))
 
 
 def _next_knob(tried: Try, good: Try | None, bad: Try | None, accuracy: float) -> float:

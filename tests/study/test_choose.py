@@ -10,6 +10,8 @@ import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates
 from canon.command.motion import method_named
+from canon.flow.method import TimeTransformed
+from canon.flow.solvable import WisdomHolman
 from canon.scene import find
 from canon.study.choose_candidate import candidate_methods
 from canon.study.choose_law import expected_error
@@ -93,15 +95,21 @@ def test_the_choice_is_the_cheapest_candidate_that_keeps_the_accuracy():
     assert len({str(each.method) for each in choice.candidates}) > 10
 
 
-DISTURBED = ("wisdom-holman", "saba-4", "aba-8-6-4", "aba-10-6-4")
+DISTURBED = ("wisdom-holman", "wisdom-holman, corrector 7", "saba-4", "aba-8-6-4", "aba-10-6-4")
 
 
 @pytest.mark.parametrize(
     ("name", "disturbed"),
-    [("outer-solar-system", True), ("henon-heiles", True), ("kepler", False), ("simple-pendulum", False)],
+    [
+        ("outer-solar-system", True),
+        ("henon-heiles", True),
+        ("kepler", False),
+        ("simple-pendulum", False),
+        ("fput", False),
+    ],
 )
 def test_splittings_by_solvable_parts_are_candidates_where_something_disturbs_them(name, disturbed):
-    """Kepler's motion is known and nothing disturbs it; of a pendulum only T(p) is quadratic."""
+    """Kepler's motion is known and nothing disturbs it; of a pendulum only T(p) is quadratic; 62² is too many."""
     scene = find(name)
     names = {
         str(method)
@@ -112,10 +120,68 @@ def test_splittings_by_solvable_parts_are_candidates_where_something_disturbs_th
 
 def test_planets_are_cheaper_by_their_keplerian_motions():
     scene = find("outer-solar-system")
-    methods = [Splitting("srkn-6b"), *(method_named(name) for name in DISTURBED[:3])]
+    methods = [Splitting("srkn-6b"), *(method_named(name) for name in ("wisdom-holman", "saba-4"))]
     choice = choose(scene, None, 300.0 * scene.period, 1e-6, methods=methods)
     assert str(choice.method) in DISTURBED
     assert pilot(choice.question, choice.chosen.setting, choice.span).bound <= 1e-6
+
+
+IN_FICTITIOUS_TIME = {f"{name}, time-transformed" for name in ("verlet", "blanes-moan-6", "kahan-li-8")}
+
+
+@pytest.mark.parametrize(
+    ("name", "singular"),
+    [
+        ("kepler", True),
+        ("figure-eight", True),
+        ("henon-heiles", False),
+        ("simple-pendulum", False),
+        ("toda", False),
+    ],
+)
+def test_steps_that_vary_are_considered_where_the_potential_has_a_singularity(name, singular):
+    scene = find(name)
+    names = {
+        str(method)
+        for method in candidate_methods(Question(scene.hamiltonian, scene.state(), scene.values, 1.0))
+    }
+    assert names & IN_FICTITIOUS_TIME == (IN_FICTITIOUS_TIME if singular else set())
+
+
+def test_close_encounters_are_followed_by_steps_that_vary():
+    scene = find("kepler")
+    steady = [Splitting("kahan-li-8"), Splitting("srkn-6b")]
+    varying = [TimeTransformed(method) for method in (Splitting("verlet"), Splitting("kahan-li-8"))]
+    choice = choose(scene, "e=0.9", 500.0, 1e-7, methods=[*steady, *varying])
+    assert isinstance(choice.method, TimeTransformed)
+    whole = pilot(choice.question, choice.chosen.setting, choice.span)
+    assert whole.bound <= 1e-7
+    assert whole.steps > 60 * 500
+    steps = {str(each.method): each.evaluations for each in choice.candidates}
+    assert steps[str(choice.method)] < 0.2 * min(steps[str(method)] for method in steady)
+
+
+def test_positions_are_compared_at_the_same_instants_whatever_the_steps():
+    scene = find("kepler")
+    choice = choose(
+        scene, "e=0.9", 50.0, 1e-5, "position", methods=[TimeTransformed(Splitting("kahan-li-8"))]
+    )
+    assert choice.reached
+    motion = choice.run(samples=50)
+    exact = choose(scene, "e=0.9", 50.0, 1e-9, "position", methods=[Taylor()]).run(samples=50)
+    size = np.linalg.norm(exact.q, axis=0).max()
+    assert np.linalg.norm(motion.q[:, -1] - exact.q[:, -1]) <= 1e-5 * size
+
+
+def test_correctors_are_judged_with_the_corrector():
+    """The error with it is far below that of the same steps without."""
+    scene = find("outer-solar-system")
+    question = Question(scene.hamiltonian, scene.state(), scene.values, 100.0 * scene.period)
+    plain, corrected = (
+        pilot(question, Setting(WisdomHolman(corrector=order), step=200.0), 100.0 * scene.period).bound
+        for order in (0, 7)
+    )
+    assert corrected < 0.1 * plain
 
 
 def test_steps_follow_the_order_of_the_method():
