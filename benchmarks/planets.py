@@ -21,10 +21,15 @@ METHODS = (
     WisdomHolman(),
     WisdomHolman(corrector=5),
     WisdomHolman(corrector=7),
+    WisdomHolman(corrector=11),
     WisdomHolman(corrector=17),
+    WisdomHolman(corrector=11, commutator=True),
+    WisdomHolman(coordinates="democratic-heliocentric"),
+    WisdomHolman(corrector=11, coordinates="democratic-heliocentric"),
     SABA(2),
     SABA(3),
     SABA(4),
+    SABA(4, commutator=True),
     SBAB(3),
     SABA("8-6-4"),
     SABA("10-6-4"),
@@ -78,7 +83,7 @@ def main() -> None:
             precision=given.precision, parameters=planets.values, samples=samples,
         )  # fmt: skip
 
-    print(f"{'method':28} {'accuracy':>8} {'steps a period':>14} {'max |dE/E|':>10} {'µs a period':>11}")
+    print(f"{'method':54} {'accuracy':>8} {'steps a period':>14} {'max |dE/E|':>10} {'µs a period':>11}")
     for method in METHODS:
         wanted = list(ACCURACIES)
         for steps in STEPS_A_PERIOD:
@@ -88,7 +93,7 @@ def main() -> None:
             while wanted and error <= wanted[0]:
                 cpu = statistics.median(run(method, steps, 10).cpu_seconds for _ in range(5))
                 cost = cpu / given.periods * 1e6
-                print(f"{method!s:28} {wanted.pop(0):8.0e} {steps:14} {error:10.1e} {cost:11.2f}", flush=True)
+                print(f"{method!s:54} {wanted.pop(0):8.0e} {steps:14} {error:10.1e} {cost:11.2f}", flush=True)
 
 
 if __name__ == "__main__":

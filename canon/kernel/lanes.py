@@ -67,6 +67,7 @@ class Lanes:
         self.v = w.side_by_side(self.lanes)
         self.c = Arithmetic(self.v)
         self.pair = w.in_numbers(DOUBLE_DOUBLE)
+        self.pair.inlined = w.number.pair
         self.places, self.velocities, self.lost = 0, axes, 2 * axes
         rows = 4 * axes if compensated else 2 * axes
         self.words = rows * self.lanes + extra

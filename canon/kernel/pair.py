@@ -1,6 +1,6 @@
 """Double-double arithmetic as LLVM functions: a number is the unevaluated sum of two doubles, 106 bits.
 
-Values have the type ``{ T, T }`` with T a double or SIMD lanes of doubles; every function is inlined.
+Values have the type ``{ T, T }`` with T a double or SIMD lanes of doubles.
 
 Source: M. Joldes, J.-M. Muller, V. Popescu, Tight and rigorous error bounds for basic building blocks of
 double-word arithmetic, ACM Trans. Math. Softw. 44 (2017) 15res, doi:10.1145/3121432 (relative errors below 3u², 5u²
@@ -85,7 +85,7 @@ _FUNCTIONS = {
 _ALGEBRA = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 
 
-def pair_functions(base: str, intrinsic: str, flags: str) -> list[str]:
+def pair_functions(base: str, intrinsic: str, flags: str, *, inlined: bool = True) -> list[str]:
     """Return the definitions of ``@pair.add.f64``, ``mul``, ``div`` and ``sqrt`` and the declarations they need.
 
     Parameters
@@ -96,19 +96,22 @@ def pair_functions(base: str, intrinsic: str, flags: str) -> list[str]:
         How intrinsics name it.
     flags
         The type of a comparison's result.
+    inlined
+        Whether they become part of what calls them: right in a loop, but long to compile where they are many.
     """
     return [
         f"declare {base} @llvm.fma.{intrinsic}({base}, {base}, {base})",
         f"declare {base} @llvm.sqrt.{intrinsic}({base})",
-        *(_definition(name, base, intrinsic, flags) for name in _FUNCTIONS),
+        *(_definition(name, base, intrinsic, flags, inlined=inlined) for name in _FUNCTIONS),
     ]
 
 
-def _definition(name: str, base: str, intrinsic: str, flags: str) -> str:
+def _definition(name: str, base: str, intrinsic: str, flags: str, *, inlined: bool) -> str:
     kind = f"{{ {base}, {base} }}"
     operands = ["x"] if name == "sqrt" else ["x", "y"]
     arguments = ", ".join(f"{kind} %{x}" for x in operands)
-    lines = [f"define internal {kind} @pair.{name}.{intrinsic}({arguments}) alwaysinline {{"]
+    inlining = "alwaysinline" if inlined else "noinline"
+    lines = [f"define internal {kind} @pair.{name}.{intrinsic}({arguments}) {inlining} {{"]
     for x in operands:
         lines += [f"  %{x}{part} = extractvalue {kind} %{x}, {i}" for i, part in enumerate("hl")]
     for statement in _FUNCTIONS[name].strip().splitlines():

@@ -42,6 +42,8 @@ class Writer:
 
     def __init__(self, number: MachineType) -> None:
         self.number = number
+        self.inlined = True
+        """Whether double-double operations become part of the function that calls them."""
         self.reserved: list[str] = []
         self.lines: list[str] = []
         self.declarations: set[str] = set()
@@ -120,7 +122,8 @@ class Writer:
 
     def _of_pairs(self, function: str, *operands: str) -> str:
         kind = self.number.name
-        self.declarations.update(pair_functions(self.number.base, self.number.intrinsic, self.number.flags))
+        kinds = (self.number.base, self.number.intrinsic, self.number.flags)
+        self.declarations.update(pair_functions(*kinds, inlined=self.inlined))
         return self.let(
             f"call {kind} @pair.{function}.{self.number.intrinsic}({', '.join(f'{kind} {o}' for o in operands)})"
         )
