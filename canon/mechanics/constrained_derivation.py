@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from sympy import Expr, Symbol
 
-    from canon.mechanics.derivation import Equations
+    from canon.mechanics.derivation import SecondOrderEquations
 
     Vector = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ class ConstrainedEquations:
         γ = Ȧ q̇ + ȧ₀.
     """
 
-    equations: Equations
+    equations: SecondOrderEquations
     values: tuple[int, ...]
     A: tuple[tuple[int, ...], ...]
     rests: tuple[int, ...]
@@ -70,7 +70,7 @@ class ConstrainedEquations:
 
 
 def constrained(
-    equations: Equations, holonomic: Sequence[Expr] = (), nonholonomic: Sequence[Expr] = ()
+    equations: SecondOrderEquations, holonomic: Sequence[Expr] = (), nonholonomic: Sequence[Expr] = ()
 ) -> ConstrainedEquations:
     """Return equations of motion with constraints f(q, t) = 0 and g(q, q̇, t) = 0, the latter affine in q̇.
 
@@ -217,7 +217,7 @@ def constrained_motion(
 
 
 def _check_independent(
-    equations: Equations, rows: Sequence[Sequence[int]], constraints: Sequence[Expr]
+    equations: SecondOrderEquations, rows: Sequence[Sequence[int]], constraints: Sequence[Expr]
 ) -> None:
     """Look for dependent rows at a few points; rows of full rank at one of them are independent."""
     graph, flat = equations.graph, [a for row in rows for a in row]
@@ -254,7 +254,7 @@ def _solved(matrix: Vector, right: Vector) -> Vector:
     return solved(matrix, right, "the matrix of masses and constraints")
 
 
-def _rate(equations: Equations, node: int) -> int:
+def _rate(equations: SecondOrderEquations, node: int) -> int:
     """Return the rate of a function of q and t."""
     graph = equations.graph
     moving = zip(equations.q, equations.velocities, strict=True)

@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from canon.mechanics.body import Body
     from canon.mechanics.lagrangian import Lagrangian
 
-__all__ = ["Equations", "derivation", "derivation_of_lagrangian"]
+__all__ = ["SecondOrderEquations", "derivation", "derivation_of_lagrangian"]
 
 
 @dataclass(frozen=True)
-class Equations:
+class SecondOrderEquations:
     """Equations of motion M q̈ = f on a graph.
 
     Parameters
@@ -107,7 +107,7 @@ def derivation(
     field: Sequence[Expr] = (),
     forces: Sequence[Expr] | None = None,
     t: Symbol = time,
-) -> Equations:
+) -> SecondOrderEquations:
     """Return the equations of motion of bodies.
 
     Parameters
@@ -148,7 +148,9 @@ def derivation(
         for i, term in assembly.not_a_rate(c):
             terms[i].append(term)
     _add_given(terms, reader, V, forces)
-    return Equations(graph, reader.q, t, assembly.mass_matrix(), tuple(map(graph.plain_add, terms)))
+    return SecondOrderEquations(
+        graph, reader.q, t, assembly.mass_matrix(), tuple(map(graph.plain_add, terms))
+    )
 
 
 def _add_given(terms: list[list[int]], reader: Reader, V: Expr, forces: Sequence[Expr] | None) -> None:
@@ -164,7 +166,7 @@ def _add_given(terms: list[list[int]], reader: Reader, V: Expr, forces: Sequence
         terms[i].append(reader.given(Q))
 
 
-def derivation_of_lagrangian(lagrangian: Lagrangian) -> Equations:
+def derivation_of_lagrangian(lagrangian: Lagrangian) -> SecondOrderEquations:
     """Return the equations of motion of any Lagrangian, differentiated on a graph.
 
     M = ∂p/∂q̇ may depend on the velocities then.
@@ -194,4 +196,4 @@ def derivation_of_lagrangian(lagrangian: Lagrangian) -> Equations:
         left = [graph.negative(term) for term in (*drift, graph.derivative(p, t))]
         Q = [graph.from_sympy(lagrangian.forces[i])] if lagrangian.forces else []
         f.append(graph.add((both[i], *Q, *left)))
-    return Equations(graph, q, t, tuple(M), tuple(f))
+    return SecondOrderEquations(graph, q, t, tuple(M), tuple(f))

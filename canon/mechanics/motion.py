@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.mechanics.canonical_derivation import CanonicalEquations
-    from canon.mechanics.derivation import Equations
+    from canon.mechanics.derivation import SecondOrderEquations
 
     Vector = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ _SMALLEST = 1e-290
 
 
 def acceleration_function(
-    equations: Equations, parameters: Mapping[Symbol, float]
+    equations: SecondOrderEquations, parameters: Mapping[Symbol, float]
 ) -> Callable[[Sequence[float], Sequence[float], float], Vector]:
     """Return a function (q, q̇, t) → q̈.
 
@@ -151,7 +151,7 @@ def _symmetric(values: Sequence[float], lower: tuple[NDArray[np.intp], ...], n: 
 
 
 def mass_condition_function(
-    equations: Equations, parameters: Mapping[Symbol, float]
+    equations: SecondOrderEquations, parameters: Mapping[Symbol, float]
 ) -> Callable[[Sequence[float], Sequence[float], float], float]:
     """Return a function (q, q̇, t) → κ, the condition number of the mass matrix in the units best for it.
 

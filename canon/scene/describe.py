@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
     from canon.scene.scene import Scene
 
-__all__ = ["Formula", "Section", "description"]
+__all__ = ["Section", "ShownFormula", "description"]
 
 
 @dataclass(frozen=True)
-class Formula:
+class ShownFormula:
     """A formula, left = right.
 
     Parameters
@@ -57,7 +57,7 @@ class Section:
     """Formulas under a heading, and a remark on them."""
 
     title: str
-    formulas: tuple[Formula, ...]
+    formulas: tuple[ShownFormula, ...]
     remark: str = ""
 
 
@@ -76,40 +76,42 @@ def description(scene: Scene) -> Iterator[Section]:
     """
     if scene.has_lagrangian:
         lagrangian = scene.lagrangian
-        yield Section("Lagrangian", (Formula("L", lagrangian.L),))
+        yield Section("Lagrangian", (ShownFormula("L", lagrangian.L),))
         if lagrangian.forces:
             pairs = zip(scene.q, lagrangian.forces, strict=True)
-            yield Section("Forces without potential", tuple(Formula(f"Q_{s}", Q) for s, Q in pairs if Q != 0))
+            yield Section(
+                "Forces without potential", tuple(ShownFormula(f"Q_{s}", Q) for s, Q in pairs if Q != 0)
+            )
         yield from _equations(scene)
     if scene.is_free:
         hamiltonian = scene.hamiltonian
-        yield Section("Hamiltonian", (Formula("H", hamiltonian.H),))
+        yield Section("Hamiltonian", (ShownFormula("H", hamiltonian.H),))
         if not scene.has_lagrangian:
             variables = (*hamiltonian.q, *hamiltonian.p)
             rates = zip(variables, hamiltonian.vector_field, strict=True)
-            yield Section("Hamilton's equations", tuple(Formula(f"d{x}/dt", rate) for x, rate in rates))
+            yield Section("Hamilton's equations", tuple(ShownFormula(f"d{x}/dt", rate) for x, rate in rates))
         yield from _routhian(scene)
     found = scene.constants().items()
     if found:
         yield Section(
             "Constants of the motion besides the energy",
-            tuple(Formula(f"I{i}", f, name) for i, (name, f) in enumerate(found, 1)),
+            tuple(ShownFormula(f"I{i}", f, name) for i, (name, f) in enumerate(found, 1)),
         )
 
 
 def _equations(scene: Scene) -> Iterator[Section]:
     if not scene.is_constrained:
         equations = scene.lagrangian.equations
-        yield Section("Lagrange's equations", tuple(Formula(None, e) for e in equations))
+        yield Section("Lagrange's equations", tuple(ShownFormula(None, e) for e in equations))
         return
     bound = scene.constrained
     constraints = (*bound.holonomic, *bound.nonholonomic)
-    yield Section("Constraints", tuple(Formula(None, f) for f in constraints))
+    yield Section("Constraints", tuple(ShownFormula(None, f) for f in constraints))
     multipliers = [multiplier(i) for i in range(1, len(constraints) + 1)]
     with_reactions = bound.equations(multipliers)[: len(scene.q)]
     yield Section(
         "Lagrange's equations with multipliers",
-        tuple(Formula(None, e) for e in with_reactions),
+        tuple(ShownFormula(None, e) for e in with_reactions),
         f"{counted(len(scene.q), 'coordinate')}, {counted(len(constraints), 'constraint')} on the velocities",
     )
 
@@ -121,4 +123,4 @@ def _routhian(scene: Scene) -> Iterator[Section]:
     from canon.mechanics.routh import routhian
 
     found = routhian(scene.lagrangian)
-    yield Section("Routhian", (Formula("R", found.R),) if found.ignorable else (), found.note)
+    yield Section("Routhian", (ShownFormula("R", found.R),) if found.ignorable else (), found.note)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-    from canon.mechanics.derivation import Equations
+    from canon.mechanics.derivation import SecondOrderEquations
     from canon.scene.scene import Scene
 
 __all__ = ["Equation", "equation_of"]
@@ -140,7 +140,7 @@ def _lagrangian_equation(scene: Scene) -> Equation:
     return _with_work(made, power)
 
 
-def _velocities(found: Equations, momenta: Sequence[int], p: Sequence[Symbol]) -> tuple[int, ...]:
+def _velocities(found: SecondOrderEquations, momenta: Sequence[int], p: Sequence[Symbol]) -> tuple[int, ...]:
     """Return the nodes of q̇ from M q̇ = p − b."""
     graph, v = found.graph, found.velocities
     if any(graph.symbols(node) & set(v) for row in found.M for node in row):
@@ -151,7 +151,7 @@ def _velocities(found: Equations, momenta: Sequence[int], p: Sequence[Symbol]) -
 
 
 def _constraints(
-    scene: Scene, found: Equations
+    scene: Scene, found: SecondOrderEquations
 ) -> tuple[list[int], tuple[int, ...], tuple[int, ...], tuple[tuple[int, ...], ...]]:
     """Return residuals, multipliers λ, a₀ and A of the scene's constraints as nodes in q, q̇, t."""
     if not scene.is_constrained:
