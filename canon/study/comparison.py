@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -18,14 +18,7 @@ from canon.study.driven import driven
 from canon.study.errors import StudyError
 from canon.study.observed import ENERGY, observables_of
 from canon.study.rows import DriftRow, Run, drift_row, drift_rows
-from canon.study.system import (
-    motion_hamiltonian,
-    parameters_of,
-    period_of,
-    state_of,
-    time_unit_of,
-    title_of,
-)
+from canon.study.system import Subject, subject_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -36,6 +29,7 @@ if TYPE_CHECKING:
     from canon.flow.method import Method
     from canon.flow.propagate import HamiltonianSystem
     from canon.scene.scene import Scene
+    from canon.study.driven import Driven
 
 __all__ = ["DriftRow", "DriftStudy", "StudyError", "drift_row", "drift_study"]
 
@@ -183,27 +177,24 @@ def drift_study(
     >>> [row.drift.verdict.value for row in study.rows]
     ['bounded', 'secular']
     """
-    hamiltonian = motion_hamiltonian(system)
-    state, values = state_of(system, y0), parameters_of(system, parameters)
-    timed = driven(hamiltonian) if hamiltonian.t in hamiltonian.H.free_symbols else None
-    known, hamiltonian = hamiltonian, hamiltonian if timed is None else timed.hamiltonian
-    chosen = tuple(methods) if methods is not None else _usual_methods(hamiltonian, values)
+    subject = subject_of(system, y0, parameters)
+    timed = driven(subject.hamiltonian) if subject.depends_on_time else None
+    hamiltonian = subject.hamiltonian if timed is None else timed.hamiltonian
+    chosen = tuple(methods) if methods is not None else _usual_methods(hamiltonian, subject.values)
     if not chosen:
         raise StudyError("no method to study: name at least one")
-    known_period = period if period is not None else period_of(system)
-    span = until if until is not None else _span(periods, known_period)
-    if not (math.isfinite(span) and span > 0.0):
-        raise StudyError(f"a run over a time of {span} makes no sense: give a positive, finite duration")
-    h = step if step is not None else _usual_step(chosen, known_period)
-    if h is not None and not (math.isfinite(h) and h > 0.0):
-        raise StudyError(f"a step of {h} makes no sense: give a positive, finite one")
+    known_period = period if period is not None else subject.period
+    span = _checked(
+        "run over a time", "duration", until if until is not None else _span(periods, known_period)
+    )
+    h = _checked("step", "one", step if step is not None else _usual_step(chosen, known_period))
     kept = samples if samples is not None else _usual_samples(span, known_period)
     if kept < FEWEST:
         raise StudyError(f"{kept} samples are too few to judge growth: keep at least {FEWEST}")
-    followed = observables_of(system, known, observables, state, values)
-    starts = _starts(state, orbits, scatter, seed)
+    followed = observables_of(subject.system, subject.hamiltonian, observables, subject.state, subject.values)
+    starts = _starts(subject.state, orbits, scatter, seed)
     if timed is not None:
-        followed, starts = [timed.observable(each) for each in followed], timed.state(starts)
+        followed, starts = tuple(map(timed.observable, followed)), timed.state(starts)
     inside = samples is None and known_period is not None and kept >= MOST_SAMPLES
     rows: list[DriftRow] = []
     for method in chosen:
@@ -217,18 +208,35 @@ def drift_study(
             step=h if stepped else None,
             tolerance=None if stepped else tolerance,
             precision=precision if stepped or precision in ADAPTIVE_ONLY else None,
-            parameters=values,
+            parameters=subject.values,
             cadence=_cadence(h, known_period) if watched else None,
         )
         rows.extend(drift_rows(run, followed, partial(progress, str(method)) if progress else None))
+    return _study(subject, timed, rows, span, known_period)
+
+
+def _study(
+    subject: Subject, timed: Driven | None, rows: Sequence[DriftRow], span: float, period: float | None
+) -> DriftStudy:
+    """Return the study of these rows, its states without the time that was added to them."""
     if all(row.failure for row in rows):
         reasons = "; ".join(f"{row.method}: {row.failure}" for row in rows)
         raise StudyError(f"every run failed: {reasons}")
-    title = title_of(system, y0)
+    title = subject.title
     if timed is not None:
         rows = [replace(row, final=timed.original(row.final)) if row.drift else row for row in rows]
         title += "; energy less the work done from outside"
-    return DriftStudy(title, span, known_period, time_unit_of(system), tuple(rows))
+    return DriftStudy(title, span, period, subject.time_unit, tuple(rows))
+
+
+@overload
+def _checked(what: str, wanted: str, number: float) -> float: ...
+@overload
+def _checked(what: str, wanted: str, number: float | None) -> float | None: ...
+def _checked(what: str, wanted: str, number: float | None) -> float | None:
+    if number is not None and not (math.isfinite(number) and number > 0.0):
+        raise StudyError(f"a {what} of {number} makes no sense: give a positive, finite {wanted}")
+    return number
 
 
 def _usual_methods(
@@ -247,7 +255,7 @@ def _starts(state: NDArray[np.float64], orbits: int, scatter: float, seed: int) 
     if orbits == 1:
         return state
     if not (math.isfinite(scatter) and scatter > 0.0):
-        raise StudyError(f"a scatter of {scatter} makes no sense: give a positive, finite one")
+        raise StudyError(f"a scatter of {scatter} makes no sense: give a positive, finite {wanted}")
     n = state.size // 2
     size = np.repeat([np.linalg.norm(half) / math.sqrt(n) for half in (state[:n], state[n:])], n)
     moved = np.random.default_rng(seed).normal(size=(2 * n, orbits - 1)) * (scatter * size)[:, None]

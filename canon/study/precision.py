@@ -12,9 +12,9 @@ from canon.display import preformatted
 from canon.expression.given import counted
 from canon.flow.method import Stepped, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
-from canon.scene.scene import Scene
 from canon.study.errors import StudyError
 from canon.study.resonance import resonant_steps
+from canon.study.system import Subject, subject_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from canon.flow.method import Method
     from canon.flow.propagate import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
+    from canon.scene.scene import Scene
 
 __all__ = ["WorkPrecision", "WorkRow", "work_precision"]
 
@@ -164,71 +165,82 @@ def work_precision(
     """
     if repetitions < 1:
         raise StudyError(f"repetitions = {repetitions}: run each method at least once")
-    given_steps, given_tolerances = tuple(steps), tuple(tolerances)
     several = (precision,) if precision is None or isinstance(precision, str) else tuple(precision)
-    cases = [
-        (method, *setting, arithmetic)
-        for method in methods
-        for arithmetic in (several if isinstance(method, Stepped) else (None,))
-        for setting in _settings(method, given_steps, given_tolerances)
-    ]
-    if isinstance(system, Scene):
-        given = {str(name): value for name, value in (parameters or {}).items()}
-        scene = system.with_parameters(**given)
-        values: Mapping[Symbol | str, float] = {**scene.values}
-        state = scene.state(y0) if y0 is None or isinstance(y0, str) else np.asarray(y0, dtype=np.float64)
-        hamiltonian, title = scene.hamiltonian, scene.title
-    else:
-        values, state = parameters or {}, np.asarray(y0, dtype=np.float64)
-        hamiltonian, title = system, "Hamiltonian"
-
-    def run(
-        method: Method,
-        step: float | None,
-        tolerance: float | None,
-        arithmetic: str | None,
-        samples: int = SAMPLES,
-    ) -> Trajectory:
-        return propagate(
-            hamiltonian,
-            state,
-            (0.0, span),
-            method=method,
-            step=step,
-            tolerance=tolerance,
-            precision=arithmetic,
-            parameters=values,
-            samples=samples,
-        )
-
+    trials = _trials(methods, several, tuple(steps), tuple(tolerances))
+    subject = subject_of(system, y0, parameters)
     try:
-        reference = run(REFERENCE, None, None, "quad").q[:, -1]
+        reference = _run(subject, Trial(REFERENCE, precision="quad"), span, SAMPLES).q[:, -1]
     except (NonFiniteStateError, ValueError) as error:
         raise StudyError(f"the reference could not be run: {error}") from error
     rows: list[WorkRow] = []
-    for number, (method, step, tolerance, arithmetic) in enumerate(cases, 1):
-        try:
-            found = run(method, step, tolerance, arithmetic)
-            timed = [run(method, step, tolerance, arithmetic, samples=1) for _ in range(repetitions)]
-            rows.append(_measured(found, timed, tolerance, reference))
-        except (NonFiniteStateError, ValueError) as error:
-            rows.append(WorkRow(method, step, tolerance, failure=str(error), precision=arithmetic or ""))
+    for number, trial in enumerate(trials, 1):
+        rows.append(_row(subject, trial, span, repetitions, reference))
         if progress is not None:
-            progress(number / len(cases))
-    return WorkPrecision(title, span, tuple(_marked(rows)))
+            progress(number / len(trials))
+    return WorkPrecision(subject.title, span, tuple(_marked(rows)))
 
 
-def _settings(
-    method: Method, steps: Iterable[float], tolerances: Iterable[float]
-) -> list[tuple[float | None, float | None]]:
-    """Return (step, tolerance) pairs, precision rising."""
-    if isinstance(method, Stepped):
-        if not (ordered := sorted(steps, reverse=True)):
-            raise StudyError(f"{method} takes steps of given sizes: give steps")
-        return [(step, None) for step in ordered]
-    if not (ordered := sorted(tolerances, reverse=True)):
-        raise StudyError(f"{method} chooses its steps by a tolerance: give tolerances")
-    return [(None, tolerance) for tolerance in ordered]
+@dataclass(frozen=True)
+class Trial:
+    """What is measured: a method with its step or tolerance and its arithmetic."""
+
+    method: Method
+    step: float | None = None
+    tolerance: float | None = None
+    precision: str | None = None
+
+
+def _trials(
+    methods: Sequence[Method],
+    precisions: Sequence[str | None],
+    steps: Sequence[float],
+    tolerances: Sequence[float],
+) -> list[Trial]:
+    """Return what is measured of all methods, of each the precision rising."""
+    found: list[Trial] = []
+    for method in methods:
+        if isinstance(method, Stepped):
+            if not steps:
+                raise StudyError(f"{method} takes steps of given sizes: give steps")
+            falling = sorted(steps, reverse=True)
+            found += [Trial(method, step, precision=each) for each in precisions for step in falling]
+        elif not tolerances:
+            raise StudyError(f"{method} chooses its steps by a tolerance: give tolerances")
+        else:
+            found += [Trial(method, tolerance=each) for each in sorted(tolerances, reverse=True)]
+    return found
+
+
+def _run(subject: Subject, trial: Trial, span: float, samples: int) -> Trajectory:
+    return propagate(
+        subject.hamiltonian,
+        subject.state,
+        (0.0, span),
+        method=trial.method,
+        step=trial.step,
+        tolerance=trial.tolerance,
+        precision=trial.precision,
+        parameters=subject.values,
+        samples=samples,
+    )
+
+
+def _row(
+    subject: Subject, trial: Trial, span: float, repetitions: int, reference: NDArray[np.float64]
+) -> WorkRow:
+    """Return what it costs and how far it is off; a run that fails with the reason."""
+    try:
+        found = _run(subject, trial, span, SAMPLES)
+        timed = [_run(subject, trial, span, samples=1) for _ in range(repetitions)]
+        return _measured(found, timed, trial.tolerance, reference)
+    except (NonFiniteStateError, ValueError) as error:
+        return WorkRow(
+            trial.method,
+            trial.step,
+            trial.tolerance,
+            failure=str(error),
+            precision=trial.precision or "",
+        )
 
 
 def _measured(

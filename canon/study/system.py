@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,70 @@ if TYPE_CHECKING:
 
     from canon.flow.propagate import HamiltonianSystem
 
-__all__ = ["motion_hamiltonian", "parameters_of", "period_of", "state_of", "time_unit_of", "title_of"]
+__all__ = ["Subject", "motion_hamiltonian", "subject_of"]
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The motion that is studied.
+
+    Parameters
+    ----------
+    system, hamiltonian
+        The scene with the values that were asked for, or the Hamiltonian; and the Hamiltonian itself.
+    state, values
+        State (q, p) at the start, shape (2n,), and values of all parameters.
+    title
+        What the motion is called.
+    """
+
+    system: Scene | HamiltonianSystem
+    hamiltonian: HamiltonianSystem
+    state: NDArray[np.float64]
+    values: Mapping[Symbol | str, float]
+    title: str
+
+    @property
+    def period(self) -> float | None:
+        """The period of a scene."""
+        return self.system.period if isinstance(self.system, Scene) else None
+
+    @property
+    def time_unit(self) -> str:
+        """The unit of time of a scene."""
+        return self.system.time_unit if isinstance(self.system, Scene) else ""
+
+    @property
+    def depends_on_time(self) -> bool:
+        """Whether H depends on the time."""
+        return self.hamiltonian.t in self.hamiltonian.H.free_symbols
+
+
+def subject_of(
+    system: Scene | HamiltonianSystem,
+    y0: ArrayLike | str | None,
+    parameters: Mapping[Symbol | str, float] | None = None,
+) -> Subject:
+    """Return the motion of a scene or Hamiltonian from a start or state, with these values of its parameters.
+
+    Raises
+    ------
+    StudyError
+        Where no Hamiltonian alone describes the motion, or nothing says where it starts.
+
+    Examples
+    --------
+    >>> from canon.scene import find
+    >>> heavy = subject_of(find("simple-pendulum"), "wide", {"m": 3.0})
+    >>> heavy.values["m"], heavy.depends_on_time
+    (3.0, False)
+    """
+    given = {str(name): value for name, value in (parameters or {}).items()}
+    if isinstance(system, Scene):
+        scene = system.with_parameters(**given)
+        hamiltonian = motion_hamiltonian(scene)
+        return Subject(scene, hamiltonian, _state_of(scene, y0), {**scene.values}, _title_of(scene, y0))
+    return Subject(system, system, _state_of(system, y0), {**given}, "Hamiltonian")
 
 
 def motion_hamiltonian(system: Scene | HamiltonianSystem) -> HamiltonianSystem:
@@ -40,12 +104,7 @@ def motion_hamiltonian(system: Scene | HamiltonianSystem) -> HamiltonianSystem:
     return system.hamiltonian
 
 
-def period_of(system: Scene | HamiltonianSystem) -> float | None:
-    """Return the period of a scene."""
-    return system.period if isinstance(system, Scene) else None
-
-
-def state_of(system: Scene | HamiltonianSystem, y0: ArrayLike | str | None) -> NDArray[np.float64]:
+def _state_of(system: Scene | HamiltonianSystem, y0: ArrayLike | str | None) -> NDArray[np.float64]:
     """Return the state (q, p) of a start or of numbers, shape (2n,)."""
     if isinstance(system, Scene) and (y0 is None or isinstance(y0, str)):
         return system.state(y0)
@@ -54,25 +113,7 @@ def state_of(system: Scene | HamiltonianSystem, y0: ArrayLike | str | None) -> N
     return np.asarray(y0, dtype=np.float64)
 
 
-def parameters_of(
-    system: Scene | HamiltonianSystem, parameters: Mapping[Symbol | str, float] | None
-) -> Mapping[Symbol | str, float]:
-    """Return the values of all parameters."""
-    given = {str(name): value for name, value in (parameters or {}).items()}
-    if isinstance(system, Scene):
-        return {**system.with_parameters(**given).values}
-    return {**given}
-
-
-def title_of(system: Scene | HamiltonianSystem, y0: ArrayLike | str | None) -> str:
-    """Return what a motion is called."""
-    if not isinstance(system, Scene):
-        return "Hamiltonian"
+def _title_of(scene: Scene, y0: ArrayLike | str | None) -> str:
     if y0 is not None and not isinstance(y0, str):
-        return system.title
-    return f"{system.title}; {system.start(y0).about}"
-
-
-def time_unit_of(system: Scene | HamiltonianSystem) -> str:
-    """Return the unit of time of a scene."""
-    return system.time_unit if isinstance(system, Scene) else ""
+        return scene.title
+    return f"{scene.title}; {scene.start(y0).about}"

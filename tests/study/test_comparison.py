@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from canon import DOP853, RK4, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon import DOP853, RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon.flow.method import TimeTransformed
 from canon.scene import find
 from canon.study.comparison import StudyError, drift_study
@@ -188,3 +188,17 @@ def test_a_value_with_error_reads_back_to_within_its_error(value, error):
     mean, spread = (float(part) * 10.0 ** int(power[1:]) for part in digits.split(" ± "))
     assert abs(mean - value) <= max(0.051 * error, 0.51e-6 * abs(value))
     assert abs(spread - error) <= max(0.051 * error, 0.51e-6 * abs(value))
+
+
+def test_a_start_given_by_velocities_keeps_them_whatever_the_mass():
+    """Its momenta follow from the mass that was asked for, not from the scene's own."""
+    scene = find("simple-pendulum")
+    asked = {"methods": [Gauss(3)], "until": 20.0, "step": 0.02, "samples": 512}
+    start = next(s.name for s in scene.starts if any(s.v or ()))
+    by_value, changed = (
+        drift_study(scene, start, parameters={"m": 3.0}, **asked),
+        drift_study(scene.with_parameters(m=3.0), start, **asked),
+    )
+    np.testing.assert_array_equal(by_value.rows[0].final, changed.rows[0].final)
+    own = drift_study(scene, start, **asked)
+    np.testing.assert_allclose(by_value.rows[0].final, own.rows[0].final * [1.0, 3.0], rtol=1e-9)
