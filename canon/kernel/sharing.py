@@ -1,11 +1,11 @@
-"""Equations written with fewer products of two functions: parts of products shared, sums factored.
+"""Equations written with fewer products of two functions: parts of products and of sums shared, sums factored.
 
 A Taylor coefficient of order k of a product of two functions is a sum of k products, that of a constant multiple
 one product: what a right-hand side costs is its number of products and quotients of functions. A product
 is taken here as a list of factors, each a function or its reciprocal. Greedily, the pair of factors that occurs
-in most products becomes a function of its own, N/D for instance, whose square then is N²/D²; then common factors of a
-sum's terms are taken out of it. Constant factors do not count, nothing is expanded, and the function stays the same
-wherever it is defined.
+in most products becomes a function of its own, N/D for instance, whose square then is N²/D²; then the pair of terms
+that occurs in most sums, up to a constant; then common factors of a sum's terms are taken out of it. Constant factors
+do not count, nothing is expanded, and the function stays the same wherever it is defined.
 
 Source: A. Hosangadi, F. Fallah, R. Kastner, Optimizing polynomial expressions by algebraic factorization and common
 subexpression elimination, IEEE Trans. Comput.-Aided Des. 25 (2006) 2012–2022, doi:10.1109/TCAD.2005.862741.
@@ -17,10 +17,11 @@ import heapq
 import itertools
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from canon.expression.graph import Graph
 
@@ -32,8 +33,17 @@ _Factor = tuple[int, int]
 _Product = tuple[_Factor, ...]
 """Factors in order, equal ones repeated."""
 
+_Sum = tuple[tuple[int, Fraction], ...]
+"""Products by their numbers, and their factors."""
+
+_Pair = tuple[int, int, Fraction]
+"""Two products of a sum and the second's factor as a multiple of the first's."""
+
+_Row = TypeVar("_Row")
+_P = TypeVar("_P")
+
 _LONGEST = 12
-"""Products of more factors stay as they are."""
+"""Products of more factors, and sums of more terms, stay as they are."""
 
 _HIGHEST = 2
 """Powers up to this one are repeated factors; higher ones count as functions."""
@@ -61,10 +71,12 @@ def with_shared_products(graph: Graph, nodes: Sequence[int]) -> list[int]:
     """
     table = _Table(graph)
     table.read(nodes)
-    _share_pairs(table)
+    _share_products(table)
+    _share_sums(table)
+    table.count_uses()
     for node in list(table.sums):
         _factor_sum(table, node)
-    _share_pairs(table)
+    _share_products(table)
     return _Writing(table).written(nodes)
 
 
@@ -119,6 +131,18 @@ class _Table:
         self.uses[number] += 1
         return _Term(factor, number)
 
+    def numerical(self, terms: Sequence[_Term]) -> _Sum | None:
+        """Return a sum as products with rational factors, or None where it is long or has others."""
+        nodes = [self.graph.nodes[term.factor] for term in terms]
+        if len(terms) > _LONGEST or any(node.kind != "number" for node in nodes):
+            return None
+        return tuple((term.product, node.value) for term, node in zip(terms, nodes, strict=True))
+
+    def count_uses(self) -> None:
+        """Count in how many places each product is read."""
+        terms = itertools.chain(self.meanings.values(), *self.sums.values())
+        self.uses = Counter(term.product for term in terms)
+
     def new(self) -> int:
         """Return a name for a new function."""
         return -next(self._new)
@@ -148,13 +172,53 @@ class _Table:
         return [(operands[0], 1 if times > 0 else -1)] * abs(int(times))
 
 
-def _share_pairs(table: _Table) -> None:
-    """Make the pair of factors that most products have a function of its own, until none is in two products."""
-    having: dict[_Product, set[int]] = {}
-    for number, product in enumerate(table.products):
-        for pair in _pairs(product):
+def _share_products(table: _Table) -> None:
+    """Make pairs of factors that several products have functions of their own."""
+
+    def named(pair: _Product) -> int:
+        name = table.new()
+        table.meanings[name] = _Term(table.graph.one, len(table.products))
+        table.products.append(pair)
+        return name
+
+    rows = dict(enumerate(table.products))
+    _share(rows, _pairs, lambda row, pair, name: _replaced(row, pair, (name, 1)), named)
+    table.products[: len(rows)] = rows.values()
+
+
+def _share_sums(table: _Table) -> None:
+    """Make pairs of terms that several sums have, up to a constant, functions of their own."""
+
+    def named(pair: _Pair) -> int:
+        first, second, ratio = pair
+        name = table.new()
+        table.sums[name] = [_Term(table.graph.one, first), _Term(table.graph.number(ratio), second)]
+        return name
+
+    def replaced(row: _Sum, pair: _Pair, name: int) -> _Sum:
+        first, second, _ = pair
+        rest = {product: factor for product, factor in row if product not in (first, second)}
+        product = table.term(table.graph.one, ((name, 1),)).product
+        return (*rest.items(), (product, dict(row)[first]))
+
+    rows = {node: row for node, terms in table.sums.items() if (row := table.numerical(terms)) is not None}
+    _share(rows, _term_pairs, replaced, named)
+    for node, row in rows.items():
+        table.sums[node] = [_Term(table.graph.number(factor), product) for product, factor in row]
+
+
+def _share(
+    rows: dict[int, _Row],
+    pairs_of: Callable[[_Row], set[_P]],
+    replaced: Callable[[_Row, _P, int], _Row],
+    named: Callable[[_P], int],
+) -> None:
+    """Name the pair that most rows have and put the name in its place, until no two rows have a pair in common."""
+    having: dict[_P, set[int]] = {}
+    for number, row in rows.items():
+        for pair in pairs_of(row):
             having.setdefault(pair, set()).add(number)
-    queue = [(-len(found), pair) for pair, found in having.items()]
+    queue: list[tuple[int, Any]] = [(-len(found), pair) for pair, found in having.items()]
     heapq.heapify(queue)
     while queue:
         count, pair = heapq.heappop(queue)
@@ -164,25 +228,25 @@ def _share_pairs(table: _Table) -> None:
         if -count != now:
             heapq.heappush(queue, (-now, pair))
             continue
-        name = table.new()
+        name = named(pair)
         for number in sorted(having[pair]):
-            before = table.products[number]
-            after = _replaced(before, pair, (name, 1))
-            table.products[number] = after
-            for gone in _pairs(before) - _pairs(after):
+            before = rows[number]
+            after = rows[number] = replaced(before, pair, name)
+            for gone in pairs_of(before) - pairs_of(after):
                 having[gone].discard(number)
-            for found in _pairs(after) - _pairs(before):
-                if found not in having:
-                    having[found] = set()
-                having[found].add(number)
+            for found in pairs_of(after) - pairs_of(before):
+                having.setdefault(found, set()).add(number)
                 heapq.heappush(queue, (-len(having[found]), found))
-        table.meanings[name] = _Term(table.graph.one, len(table.products))
-        table.products.append(pair)
-        table.uses[len(table.products) - 1] += 1
 
 
 def _pairs(product: _Product) -> set[_Product]:
     return {tuple(sorted(pair)) for pair in itertools.combinations(product, 2)}
+
+
+def _term_pairs(row: _Sum) -> set[_Pair]:
+    # Of 2a + b the name is b + 2a: b then needs no factor.
+    ordered = sorted(row, key=lambda term: (abs(term[1]) != 1, term[0]))
+    return {(a[0], b[0], b[1] / a[1]) for a, b in itertools.combinations(ordered, 2)}
 
 
 def _replaced(product: _Product, pair: _Product, new: _Factor) -> _Product:

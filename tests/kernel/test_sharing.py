@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 
 from canon.expression.arithmetic import multiprecision
 from canon.expression.graph import Graph
+from canon.expression.symbol import time
 from canon.kernel.program import program
 from canon.kernel.sharing import with_shared_products
 from canon.kernel.structure import equations, exact_numbers
 from canon.scene import find
+from tests.kernel.test_rolled import chain
 
 SYMBOLS = sp.symbols("x y z", positive=True)
 
@@ -104,6 +106,29 @@ def test_terms_with_a_factor_in_common_share_it():
     shared = with_shared_products(graph, [graph.from_sympy(x * y + 3 * x * z + z)])
     assert sp.simplify(graph.to_sympy(shared[0]) - (x * (y + 3 * z) + z)) == 0
     assert products(graph, shared, SYMBOLS) == 1
+
+
+def sums(graph, nodes, inputs):
+    steps = program(graph, nodes, inputs)
+    return steps.count("add") + steps.count("sub")
+
+
+def test_sums_share_the_terms_they_have_in_common_up_to_a_constant():
+    x, y, z = SYMBOLS
+    graph = Graph()
+    nodes = [graph.from_sympy(each) for each in (x + 2 * y, 3 * x + 6 * y + z, x - 2 * y)]
+    assert sums(graph, nodes, SYMBOLS) == 4
+    assert sums(graph, with_shared_products(graph, nodes), SYMBOLS) == 3
+
+
+def test_a_chains_forces_compute_each_bond_once():
+    """d = b − a, d + d²/4, and the difference of two neighbours: three sums a mass, not five."""
+    counts = []
+    for n in (12, 22):
+        q, H = chain(n)
+        system = equations(H, q, tuple(s.momentum for s in q), time, {})
+        counts.append([sums(system.graph, nodes, system.inputs) for nodes in (system.force, system.rates)])
+    assert [(long - short) / 10 for short, long in zip(*counts, strict=True)] == [5, 3]
 
 
 def test_a_factor_is_not_taken_out_where_that_saves_nothing():
