@@ -38,11 +38,11 @@ __all__ = ["HeliocentricPlanets", "JacobiPlanets"]
 
 @dataclass(frozen=True)
 class _Pull:
-    """Attractions k d/|d|³ along vectors d: registers k/|d|³ and 1/|d|²."""
+    """Attractions k d/|d|³ along vectors d: registers k/|d|³ and |d|²."""
 
     d: Sequence[str]
     strength: str
-    per_square: str
+    square: str
 
 
 class _PlanetsInLanes(Lanes):
@@ -126,17 +126,19 @@ class _PlanetsInLanes(Lanes):
     def _pull(self, strength: Sequence[Fraction], d: Sequence[str], idle: Sequence[Fraction] = ()) -> _Pull:
         """Return attractions; ``idle`` is added to |d|², so that lanes left over have a distance."""
         c = self.c
-        square = c.add(c.dot(d, d), c.numbers(idle)) if idle else c.dot(d, d)
-        root = c.sqrt(square)
-        cube = c.div(root, c.mul(square, square))
-        return _Pull(d, c.mul(c.numbers(self.filled(strength, Fraction(0))), cube), c.mul(cube, root))
+        square = c.numbers(idle) if idle else ""
+        for value in d:
+            square = c.fma(value, value, square) if square else c.mul(value, value)
+        # The root and the quotient at once, rather than one after the other.
+        part = c.div(c.numbers(self.filled(strength, Fraction(0))), c.mul(square, square))
+        return _Pull(d, c.mul(c.sqrt(square), part), square)
 
     def _pulled(self, pull: _Pull, along: Sequence[str] | None = None) -> list[str]:
         """Return the attractions, or how they change where d changes by ``along``."""
         c = self.c
         if along is None:
             return [c.mul(pull.strength, d) for d in pull.d]
-        turn = c.mul(c.mul(c.number(Fraction(-3)), c.dot(pull.d, along)), pull.per_square)
+        turn = c.div(c.mul(c.number(Fraction(-3)), c.dot(pull.d, along)), pull.square)
         return [c.mul(pull.strength, c.fma(turn, d, a)) for d, a in zip(pull.d, along, strict=True)]
 
     def _turn(self, by: int) -> list[int]:
@@ -203,9 +205,10 @@ class JacobiPlanets(_PlanetsInLanes):
         star = self._pull([-k for k in self.part.attractions[0][1:]], place)
         pairs = self._pairs(place)
         # 1/|X| as the flow that follows has it; the lanes left over move on plain orbits.
-        near = c.div(c.one, c.sqrt(c.dot(x, x)))
-        square = c.mul(near, near)
-        own = _Pull(x, c.mul(c.mul(c.numbers(self.filled(self.own, Fraction(0))), near), square), square)
+        square = c.dot(x, x)
+        near = c.div(c.one, c.sqrt(square))
+        weight = c.mul(c.numbers(self.filled(self.own, Fraction(0))), near)
+        own = _Pull(x, c.mul(weight, c.mul(near, near)), square)
         forces = self._add_pairs(pairs, self._pulled(star))
         rates = [self._gathered_by(*each) for each in zip(self._pulled(own), forces, strict=True)]
         if not times.commutator:
