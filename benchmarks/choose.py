@@ -25,7 +25,8 @@ from canon.flow.propagate import NonFiniteStateError
 from canon.scene import find
 from canon.study.choose import Choice, choose
 from canon.study.choose_candidate import candidate_methods
-from canon.study.choose_pilot import Pilot, Question, Setting, natural_step, pilot
+from canon.study.choose_pilot import Pilot, natural_step, pilot
+from canon.study.choose_question import Question, Setting
 from canon.study.choose_search import widest_step
 
 if TYPE_CHECKING:

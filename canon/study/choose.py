@@ -14,7 +14,8 @@ from canon.flow.propagate import propagate
 from canon.scene.scene import Scene, near
 from canon.study.choose_candidate import Candidate, candidate_methods
 from canon.study.choose_last import confirmed, double_instead
-from canon.study.choose_pilot import Question, natural_step
+from canon.study.choose_pilot import natural_step
+from canon.study.choose_question import Question
 from canon.study.choose_search import searched
 from canon.study.errors import StudyError
 from canon.study.system import motion_hamiltonian

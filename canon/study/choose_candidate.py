@@ -16,7 +16,8 @@ from canon.flow.solvable import SABA, WisdomHolman
 from canon.kernel.planets import Planets, Quadratic, UnsolvableError, solvable_part
 from canon.kernel.scheme import SCHEMES
 from canon.study.choose_law import expected_error, order_of
-from canon.study.choose_pilot import Pilot, Question, Setting, pilot, seconds_per_time
+from canon.study.choose_pilot import Pilot, pilot, seconds_per_time
+from canon.study.choose_question import Question, Setting
 
 if TYPE_CHECKING:
     from canon.flow.method import Method

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from canon.study.choose_candidate import MARGIN, Candidate, candidate_of, tried_with
 from canon.study.choose_law import order_of
-from canon.study.choose_pilot import Question, Setting, dop853_share
+from canon.study.choose_pilot import dop853_share
+from canon.study.choose_question import Question, Setting
 from canon.study.choose_search import LONGEST_PILOT
 from canon.study.choose_tolerance import ADAPTIVE_MARGIN, last_rung, tolerance_at
 

@@ -3,33 +3,29 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.measure import AccuracyWarning
 from canon.flow.method import DOP853, FixedStep, Gauss, Splitting, Stepped, Taylor, TimeTransformed
-from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.flow.propagate import NonFiniteStateError
 from canon.flow.solvable import SolvableSplitting
-from canon.kernel.machine import EXTENDED
+from canon.study.choose_question import PLACES, Question, Setting
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
-    from sympy import Expr, Symbol
 
     from canon.flow.method import Method
-    from canon.flow.propagate import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
 
     Array = NDArray[np.float64]
 
-__all__ = ["Pilot", "Question", "Setting", "is_symplectic", "pilot", "seconds_per_time"]
+__all__ = ["Pilot", "dop853_share", "is_symplectic", "natural_step", "pilot", "seconds_per_time"]
 
 WINDOWS = 512
 """Windows a pilot run is looked at in."""
@@ -37,111 +33,20 @@ WINDOWS = 512
 SEEN = 16
 """Samples in each of the windows, at most, of a run whose errors are not seen inside its loop."""
 
-PLACES = 64
-"""Times at which positions are compared with those of the reference."""
-
 WATCHED = 200_000
 """Steps of a pilot run at which the error is looked at, at most."""
 
 BEFORE_LOST = 0.1
 """Relative energy error from which a run no longer shows the motion that was asked for."""
 
-REFERENCE, FINE_REFERENCE = Taylor(1e-19), Taylor(1e-28)
-"""Methods of the references for positions."""
-
 TIMED_SECONDS = 0.004
 """Processor time over which a step is timed."""
 
 TIMINGS = 4
+"""Timed runs, of which the least counts: other programs only add to it."""
 
 TIMED_STEPS = 50_000
 """Steps of the longer of two runs from which the cost of a method in a fictitious time is told."""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A method with its step or tolerance and its arithmetic, the way ``propagate`` takes them."""
-
-    method: Method
-    step: float | None = None
-    tolerance: float | None = None
-    precision: str = "compensated"
-
-    @property
-    def knob(self) -> float:
-        """The step, or the tolerance of an adaptive method."""
-        return self.step if self.step is not None else self.tolerance or 2.0**-52
-
-    def turned(self, knob: float) -> Setting:
-        """Return the setting with another step or tolerance."""
-        if isinstance(self.method, Stepped):
-            return replace(self, step=knob)
-        return replace(self, tolerance=knob)
-
-
-@dataclass(frozen=True)
-class Question:
-    """What is to be kept over which motion.
-
-    Parameters
-    ----------
-    hamiltonian, y0, values, span
-        The motion: Hamiltonian, state (q, p) of shape (2n,), values of the parameters, duration.
-    observable
-        ``"energy"``, ``"position"``, or the name of an integral.
-    integral
-        That integral as a function of (q, p); None for the first two.
-    """
-
-    hamiltonian: HamiltonianSystem
-    y0: Array
-    values: Mapping[Symbol | str, float]
-    span: float
-    observable: str = "energy"
-    integral: Expr | None = None
-    _known: dict[tuple[float, bool], tuple[Array, Array]] = field(
-        default_factory=dict[tuple[float, bool], "tuple[Array, Array]"], repr=False, compare=False
-    )
-
-    def run(
-        self,
-        setting: Setting,
-        duration: float,
-        samples: int,
-        cadence: int | None = None,
-        times: Array | None = None,
-    ) -> Trajectory:
-        """Return a run of that duration from the start; its samples are even unless times are named."""
-        with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
-            warnings.simplefilter("ignore", AccuracyWarning)  # its energy error is looked at here
-            return propagate(
-                self.hamiltonian,
-                self.y0,
-                (0.0, duration),
-                method=setting.method,
-                step=setting.step,
-                tolerance=setting.tolerance,
-                precision=setting.precision,
-                parameters=self.values,
-                samples=samples if times is None else None,
-                times=times,
-                cadence=cadence,
-                observables=None if self.integral is None else {self.observable: self.integral},
-            )
-
-    def positions(self, duration: float, precision: str) -> tuple[Array, Array]:
-        """Return the reference's coordinates at PLACES + 1 even times as sums of doubles, each (n, times).
-
-        The reference of runs in doubles has 64 bits, or 113 where the platform has no such numbers; that of
-        runs in more digits has 113.
-        """
-        plain = precision in ("single", "double", "compensated")
-        if (duration, plain) not in self._known:
-            digits = "extended" if plain and EXTENDED.available() else "quad"
-            reference = Setting(REFERENCE if plain else FINE_REFERENCE, precision=digits)
-            found = self.run(reference, duration, PLACES)
-            self._known[duration, plain] = found.q, found.carried[: len(found.q)]
-        return self._known[duration, plain]
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from canon.study.choose_candidate import (
     tried_with,
 )
 from canon.study.choose_law import order_of
-from canon.study.choose_pilot import Question, Setting
+from canon.study.choose_question import Question, Setting
 from canon.study.choose_tolerance import searched_tolerance
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ from canon.study.choose_candidate import (
     nothing,
     tried_with,
 )
-from canon.study.choose_pilot import Question, Setting, dop853_share
+from canon.study.choose_pilot import dop853_share
+from canon.study.choose_question import Question, Setting
 
 if TYPE_CHECKING:
     from canon.flow.method import Method

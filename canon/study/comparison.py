@@ -255,7 +255,7 @@ def _starts(state: NDArray[np.float64], orbits: int, scatter: float, seed: int) 
     if orbits == 1:
         return state
     if not (math.isfinite(scatter) and scatter > 0.0):
-        raise StudyError(f"a scatter of {scatter} makes no sense: give a positive, finite {wanted}")
+        raise StudyError(f"a scatter of {scatter} makes no sense: give a positive, finite one")
     n = state.size // 2
     size = np.repeat([np.linalg.norm(half) / math.sqrt(n) for half in (state[:n], state[n:])], n)
     moved = np.random.default_rng(seed).normal(size=(2 * n, orbits - 1)) * (scatter * size)[:, None]

@@ -15,7 +15,8 @@ from canon.flow.solvable import WisdomHolman
 from canon.scene import find
 from canon.study.choose_candidate import candidate_methods
 from canon.study.choose_law import expected_error
-from canon.study.choose_pilot import Pilot, Question, Setting, pilot
+from canon.study.choose_pilot import Pilot, pilot
+from canon.study.choose_question import Question, Setting
 from canon.study.choose_tolerance import tolerance_at
 from canon.study.errors import StudyError
 from tests.study import series
