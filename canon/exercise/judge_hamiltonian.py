@@ -34,7 +34,8 @@ def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
         yield from wrong_variables(reading.expression("H"), lagrangian.velocities, "H", "q, p and t")
         through = dict(zip(p, lagrangian.momenta, strict=True))
         part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through, "H")
-        yield Same((part,), transported(domain, through), lambda: legendre(lagrangian, p, domain).H)
+        smooth = where_differentiable([lagrangian.L], lagrangian.velocities, domain)
+        yield Same((part,), transported(smooth, through), lambda: legendre(lagrangian, p, domain).H)
 
 
 def hamilton_equations(reading: Reading) -> Iterator[Question]:

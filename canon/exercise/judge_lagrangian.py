@@ -45,7 +45,10 @@ def dissipative(reading: Reading) -> Iterator[Question]:
         claimed = reading.expression("energy_rate")
         rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
         part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed), "energy_rate")
-        yield Same((part,), reading.domain, lambda: rate)
+        moving = (*q, *lagrangian.velocities, t)
+        yield Same(
+            (part,), where_differentiable([lagrangian.L, damping], moving, reading.domain), lambda: rate
+        )
 
 
 def routhian(reading: Reading) -> Iterator[Question]:
@@ -64,11 +67,12 @@ def routhian(reading: Reading) -> Iterator[Question]:
     lagrangian = lagrangian_of(reading)
     L, velocities = lagrangian.L, tuple(velocity(c) for c in ignorable)
     absent = tuple(Part(f"∂L/∂{c} of the ignorable coordinate {c}", L.diff(c)) for c in ignorable)
-    yield Same(absent, reading.domain, said=_not_ignorable)
+    domain = where_differentiable([L], (*q, *lagrangian.velocities), reading.domain)
+    yield Same(absent, domain, said=_not_ignorable)
     yield Regular(
         sp.Matrix([[L.diff(a, b) for b in velocities] for a in velocities]),
         "the Hessian in the ignorable velocities",
-        reading.domain,
+        domain,
     )
     through = {p: L.diff(v) for p, v in zip(momenta, velocities, strict=True)}
     if reading.has("R"):
@@ -79,7 +83,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
         part = Part("the Routhian", reading.expression("R"), right, through, "R")
         yield Same(
             (part,),
-            transported(reading.domain, through),
+            transported(domain, through),
             lambda: routhian_in_momenta(lagrangian, velocities, through, sign),
         )
     if reading.has("claim"):
@@ -87,12 +91,11 @@ def routhian(reading: Reading) -> Iterator[Question]:
         written = reading.equations("claim")
         seen = tuple(substitute(equation, through) for equation in written)
         unknowns = tuple(acceleration(x) for x in q)
-        domain = transported(reading.domain, through)
         yield SameEquations(
             (*seen, *conserved),
             lagrangian.equations,
             unknowns,
-            domain,
+            transported(reading.domain, through),
             lambda: routh(lagrangian, ignorable, momenta, domain=reading.domain).equations,
             written,
             through,

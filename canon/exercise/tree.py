@@ -26,6 +26,8 @@ def replaced(f: Expr, values: Mapping[Symbol, Expr] | Mapping[Expr, Expr]) -> Ex
 def shown(item: object) -> str:
     """Return an expression as a sheet writes it: the derivative of V at the place q − X(t) as one by q.
 
+    What SymPy writes for the derivative of sign(u) at u = 0, where it has none, is left out.
+
     Examples
     --------
     >>> q, t = sp.symbols("q t")
@@ -36,9 +38,10 @@ def shown(item: object) -> str:
     >>> shown(force)
     '-Derivative(V(q - X(t)), q)'
     """
-    if not (isinstance(item, sp.Basic) and item.has(sp.Subs)):
+    if not (isinstance(item, sp.Basic) and item.has(sp.Subs, sp.DiracDelta)):
         return str(item)
-    return str(item.replace(lambda e: isinstance(e, sp.Subs), _by_a_symbol))
+    off_the_kinks = item.replace(lambda e: isinstance(e, sp.DiracDelta), lambda _: sp.S.Zero)
+    return str(off_the_kinks.replace(lambda e: isinstance(e, sp.Subs), _by_a_symbol))
 
 
 def _by_a_symbol(there: sp.Subs) -> Expr:

@@ -273,6 +273,15 @@ def _heaviside(z: acb, at_zero: acb) -> acb:
     return acb(1 if real > 0 else 0)
 
 
+def _impulse(z: acb, *_order: acb) -> acb:
+    """DiracDelta, which SymPy writes into the derivative of sign(u): 0 where u ≠ 0, no value where u = 0."""
+    if z.is_zero():
+        raise Undefined("DiracDelta(0)")
+    if z.contains(0):
+        raise NotDecided("the impulse of something near zero")
+    return acb(0)
+
+
 def _atan2(y: acb, x: acb) -> acb:
     if y.is_zero() and x.is_zero():
         raise Undefined("atan2(0, 0)")
@@ -356,6 +365,7 @@ _FUNCTIONS: dict[Any, Callable[..., acb]] = {
     sp.Abs: lambda z: acb(abs(z)),
     sp.sign: _sign,
     sp.Heaviside: _heaviside,
+    sp.DiracDelta: _impulse,
     sp.re: lambda z: acb(z.real),
     sp.im: lambda z: acb(z.imag),
     sp.conjugate: lambda z: z.conjugate(),

@@ -18,6 +18,7 @@ from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import with_example_functions
 from canon.proof.generic import is_analytic, proved_sign
 from canon.proof.split import defined_nowhere
+from canon.proof.typed import arguments
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Verdict
 
@@ -150,7 +151,7 @@ def _augmented(
     at_rest: dict[sp.Basic, Expr] = dict.fromkeys(unknowns, sp.Integer(0))
     rows: list[tuple[Expr, ...]] = []
     for number, equation in enumerate(system, start=1):
-        expr = given_expression(equation, f"equation {number} of the {which} system")
+        expr = _off_the_kinks(given_expression(equation, f"equation {number} of the {which} system"))
         row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
         row.append(cast("Expr", expr.xreplace(at_rest)))
         if not _is_affine(expr, set(unknowns)):
@@ -166,6 +167,11 @@ def _augmented(
                 return f"equation {number} of the {which} system was not proved affine in the unknowns"
         rows.append(tuple(row))
     return _System(tuple(rows))
+
+
+def _off_the_kinks(expr: Expr) -> Expr:
+    """Leave out the impulses that SymPy writes into the derivative of sign(u): generic points have u ≠ 0."""
+    return cast("Expr", expr.replace(lambda e: isinstance(e, sp.DiracDelta), lambda _: sp.Integer(0)))
 
 
 def _is_affine(expr: sp.Basic, unknowns: set[Symbol]) -> bool:
@@ -194,7 +200,7 @@ def _rows_follow(
     """
     pivots = _largest_minor(basis, domain)
     minor = _determinant([[basis.rows[i][c] for c in pivots.columns] for i in pivots.rows])
-    sure = field or proved_sign(minor, domain) in ("+", "-")
+    sure = field or proved_sign(minor, domain) in ("+", "-") or is_analytic(_without_moduli(minor), domain)
     undecided: list[Evidence] = []
     if not sure:
         undecided.append(
@@ -208,7 +214,7 @@ def _rows_follow(
             if verdict.fails and not sure:
                 verdict = vanishes(minor * determinant, domain, max(0.1, deadline - time.monotonic()))
             if verdict.fails and _minor_is_largest(basis, pivots, domain, deadline):
-                equation = equations[number]
+                equation = _off_the_kinks(equations[number])
                 return replace(
                     verdict,
                     residual=equation,
@@ -225,6 +231,15 @@ def _rows_follow(
     if undecided:
         return Verdict(Status.UNDECIDED, evidence=tuple(dict.fromkeys(undecided)))
     return Verdict(Status.HOLDS, certificate="exact", assumed=_generic(minor, domain) if field else ())
+
+
+def _without_moduli(minor: Expr) -> list[Expr]:
+    """Return the factors of a minor, |g| and sign(g) as g, which vanishes where they do and nowhere else."""
+    powers = [factor.as_base_exp() for factor in sp.Mul.make_args(minor)]
+    return [
+        (arguments(base)[0] if isinstance(base, sp.Abs | sp.sign) else base) ** exponent
+        for base, exponent in powers
+    ]
 
 
 def _generic(minor: Expr, domain: Domain) -> tuple[str, ...]:
@@ -266,7 +281,7 @@ def _largest_minor(system: _System, domain: Domain) -> _Pivots:
     symbols = anatomy([entry for row in system.rows for entry in row]).symbols
     system = _with_examples(system)
     full = min(len(system.rows), len(system.rows[0]))
-    for point in domain.points(symbols, POINTS, seed=3):
+    for point in domain.points(symbols, POINTS, seed=3, but_functions=True):
         found = _pivots_at(system, point)
         if len(found.rows) > len(best.rows):
             best = found

@@ -80,8 +80,11 @@ def may_jump(f: Expr, variables: Iterable[Symbol], domain: Domain) -> bool:
     >>> x = sp.symbols("x", real=True)
     >>> [may_jump(f, [x], Domain()) for f in (abs(x), sp.sign(x), abs(x) / x, sp.Piecewise((x, x > 0), (0, True)))]
     [False, True, True, False]
+    >>> may_jump(x * sp.sign(x), [x], Domain())
+    False
     """
     moving = tuple(variables)
+    f = cast("Expr", f.replace(lambda e: isinstance(e, sp.Mul), _with_moduli))
     kinked = [part for part in f.atoms(*KINKED) if part.has(*moving)]
     if not kinked or without_pieces([f], domain):
         return False
@@ -90,6 +93,16 @@ def may_jump(f: Expr, variables: Iterable[Symbol], domain: Domain) -> bool:
     if any(power.exp.is_negative and power.has(*moving) for power in f.atoms(sp.Pow)):
         return True
     return not all(_pieces_meet(part, domain) for part in kinked if isinstance(part, sp.Piecewise))
+
+
+def _with_moduli(product: Expr) -> Expr:
+    """Write u·sign(u) as |u|, which it is everywhere and which does not jump."""
+    powers = product.as_powers_dict()
+    for jump in [base for base in powers if isinstance(base, sp.sign) and powers[base] == 1]:
+        u = arguments(jump)[0]
+        if powers.get(u, 0) == 1:
+            product = product / (u * jump) * sp.Abs(u)
+    return product
 
 
 def _pieces_meet(function: sp.Piecewise, domain: Domain) -> bool:
