@@ -287,9 +287,18 @@ def test_an_interrupted_run_keeps_what_is_done_and_is_completed_bit_by_bit(metho
     equal(twice.resume(), whole)
 
 
-@pytest.mark.parametrize("how", WAYS[:1] + WAYS[3:4], ids=lambda how: ", ".join(how))
-@pytest.mark.parametrize("precision", ["single", "double", "extended", "double-double"])
-def test_a_run_resumed_is_the_run_in_one(how, precision):
+@pytest.mark.parametrize(
+    ("precision", "how"),
+    [
+        ("single", WAYS[0]),
+        ("double", WAYS[3]),
+        ("extended", WAYS[0]),
+        ("double-double", WAYS[0]),
+        pytest.param("extended", WAYS[3], marks=pytest.mark.slow),
+        pytest.param("double-double", WAYS[3], marks=pytest.mark.slow),
+    ],
+)
+def test_a_run_resumed_is_the_run_in_one(precision, how):
     given = keywords(LOGARITHMIC, precision=precision, **how)
     whole = propagate(**given)
     half = propagate(**{**given, "t_span": (0, 9.7)})
