@@ -159,8 +159,11 @@ def _is_x86() -> bool:
 
 def double_pair(value: Fraction) -> tuple[float, float]:
     """Return an exact number as a sum of two doubles."""
-    high = float(value)
-    return high, float(value - Fraction(high))
+    n, d = value.numerator, value.denominator
+    high = n / d
+    a, b = high.as_integer_ratio()
+    # Quotients of whole numbers are rounded correctly, and quicker than fractions are subtracted.
+    return high, (n * b - a * d) / (d * b)
 
 
 DOUBLE = MachineType("double", 53, "float64", "")
