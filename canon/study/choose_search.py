@@ -44,7 +44,7 @@ STRIDE = (0.1, 2.5)
 """How far to go from one step to the next: beyond, the order that one error shows need not hold."""
 
 INSIDE = (0.1, 0.9)
-"""Where between a step that is good and one that is not the next may lie, logarithmically: an end would tell nothing."""
+"""Where between a good step and a bad one the next may lie, logarithmically: at an end it would tell nothing."""
 
 FALLING = 0.25
 """Share of its order with which an error still falls where round-off is not all that is left of it."""
