@@ -1,4 +1,4 @@
-"""Over a thousand claims of all kinds whose labels were found by other programs: no verdict is wrong, few are open."""
+"""1 800 claims of all kinds whose labels were found by other programs: no verdict is wrong, few are open."""
 
 from pathlib import Path
 
@@ -7,8 +7,8 @@ import pytest
 from canon.exercise.checking import judged
 from canon.exercise.sheet import read_sheet
 
-SHEETS = sorted((Path(__file__).parents[1] / "data").glob("held_out*/*.json"))
-UNDECIDED = {"X-EQ-20", "X-EQ-45", "X-EQ-47", "X-EQ-51", "X-HE-08a"}
+SHEETS = sorted((Path(__file__).parents[1] / "data").glob("held_out*/*.*"))
+UNDECIDED = {"H3-EQ-70", "X-EQ-20", "X-EQ-45", "X-EQ-47", "X-EQ-51", "X-HE-08a"}
 """What canon can't decide yet; a claim that leaves this list is progress, one that joins it is a regression."""
 
 
