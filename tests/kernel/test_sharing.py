@@ -131,6 +131,17 @@ def test_a_chains_forces_compute_each_bond_once():
     assert [(long - short) / 10 for short, long in zip(*counts, strict=True)] == [5, 3]
 
 
+def test_products_that_are_equal_once_multiplied_out_are_added():
+    graph = Graph()
+    x, y, z = map(graph.symbol, SYMBOLS)
+    nested = graph.plain_mul([x, graph.plain_mul([y, z])])
+    node = graph.plain_add([nested, graph.plain_mul([x, y, z]), x])
+    other = graph.plain_add([nested, graph.scaled(2, x)])
+    shared = with_shared_products(graph, [node, other])
+    a, b, c = SYMBOLS
+    assert [sp.expand(graph.to_sympy(each)) for each in shared] == [2 * a * b * c + a, a * b * c + 2 * a]
+
+
 def test_a_factor_is_not_taken_out_where_that_saves_nothing():
     x, y, _ = SYMBOLS
     graph = Graph()
