@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Standing", "transformed_motion"]
 
+Row = tuple[float, "Array", "Array"]
+"""A time and the states y + carried there, each of shape (2n, orbits)."""
+
 
 @dataclass(frozen=True, eq=False)
 class Standing:
@@ -41,9 +44,9 @@ class Standing:
     stride
         How many steps apart states are kept, where they are.
     rows
-        How many of the states that are kept are ends of such strides.
+        How many states are kept.
     arrived
-        Whether the motion has come to its end.
+        Whether the motion has come to its end, where the last state need not be the end of a stride.
     """
 
     footings: tuple[Footing, ...]
@@ -108,9 +111,8 @@ class _Course:
         self.loop = compiled_loop(frame.system, self.method, kind)
         self.orbits, self.busy = task.states[0].shape[1], 0
         self.walks = [self._walk(k) for k in range(self.orbits)]
-        footings = tuple(walk.footing for walk in self.walks)
-        self.standing: Standing = Standing(footings, rows=1) if so_far is None else so_far.beyond
-        self.t, self.high, self.low = self._kept_before()
+        # In one attribute, so that an interruption finds rows and standing of the same moment.
+        self.kept = self._kept_before()
 
     def _walk(self, k: int) -> Walk:
         (high, low), frame, plan = self.task.states, self.frame, self.task.plan
@@ -124,41 +126,42 @@ class _Course:
         steps = steps_between(self.loop, self.method, fixed_plan(Fraction(0), plan.forward * h, (0,)))
         return Walk(frame, steps, footing, frame.events(self.task.events), self.bits, self._report)
 
-    def _kept_before(self) -> tuple[list[float], list[Array], list[Array]]:
-        """Return the times and states, each of shape (2n, orbits), that are kept already."""
+    def _kept_before(self) -> tuple[list[Row], Standing]:
+        """Return the times and states that are kept already, and where the motion stands."""
         if self.so_far is None:
-            high, low = self.task.states
-            return [float(self.start)], [high], [low]
-        rows = self.standing.rows if self.task.plan.wanted else len(self.so_far.t)
-        parts = (np.moveaxis(part, 1, 0)[:rows] for part in (self.so_far.y, self.so_far.carried))
-        high, low = (list(part) for part in parts)
-        return self.so_far.t[:rows].tolist(), high, low
+            footings = tuple(walk.footing for walk in self.walks)
+            return [(float(self.start), *self.task.states)], Standing(footings, rows=1)
+        standing: Standing = self.so_far.beyond
+        count = standing.rows - bool(standing.arrived and self.task.plan.wanted)
+        parts = (np.moveaxis(part, 1, 0) for part in (self.so_far.y, self.so_far.carried))
+        rows = list(zip(self.so_far.t.tolist(), *parts, strict=True))[:count]
+        return rows, replace(standing, rows=count, arrived=False)
 
     def _report(self, t: float) -> None:
         if self.orbits == 1:
-            self.progress(float((Fraction(t) - self.start) / (self.end - self.start)))
+            self.progress(min(1.0, float((Fraction(t) - self.start) / (self.end - self.start))))
 
-    def _keep(self, t: float, states: Sequence[State]) -> None:
-        self.t.append(t)
-        for kept, parts in ((self.high, [s.high for s in states]), (self.low, [s.low for s in states])):
-            kept.append(np.concatenate(parts, axis=1)[self.frame.rows])
+    def _row(self, t: float, states: Sequence[State]) -> Row:
+        high, low = (
+            np.concatenate(parts, axis=1) for parts in ([s.high for s in states], [s.low for s in states])
+        )
+        return t, high[self.frame.rows], low[self.frame.rows]
 
     # at the times that are asked for -------------------------------------------------------------------
 
     def at_instants(self) -> None:
         """Land at every instant, each time with all orbits."""
-        instants, first = self.task.plan.instants.tolist(), self.walks[0]
-        for k in range(len(self.t), len(instants)):
+        instants, first, (rows, standing) = self.task.plan.instants.tolist(), self.walks[0], self.kept
+        for k in range(standing.rows, len(instants)):
             goal, states = Fraction(instants[k]), list[State]()
             for orbit, walk in enumerate(self.walks):
                 self.busy = orbit
                 states.append(walk.landing(goal).state if walk.go(goal) else walk.state)
             # Where there are events there is one orbit.
             ended = first.stopped and not first.go(goal)
-            self._keep(first.time if ended else instants[k], states)
-            arrived = ended or k + 1 == len(instants)
+            rows.append(self._row(first.time if ended else instants[k], states))
             footings = tuple(walk.before for walk in self.walks)
-            self.standing = Standing(footings, rows=len(self.t), arrived=arrived)
+            self.kept = rows, Standing(footings, rows=k + 1, arrived=ended or k + 1 == len(instants))
             if self.orbits > 1:
                 self.progress(k / (len(instants) - 1))
             if ended:
@@ -168,66 +171,65 @@ class _Course:
 
     def in_steps(self) -> None:
         """Keep every so manieth state, twice as far apart whenever there are twice as many as wanted."""
-        (walk,), end, wanted = self.walks, self.end, self.task.plan.wanted
-        stride = self.standing.stride
+        (walk,), end, (rows, standing) = self.walks, self.end, self.kept
+        stride, most = standing.stride, 2 * self.task.plan.wanted
         while True:
-            if not self._leap(walk, stride, 2 * wanted + 1 - len(self.t)):
+            more = self._leap(walk, stride, most + 1 - len(rows))
+            if not more:
                 reached = walk.go(end, (walk.n // stride + 1) * stride)
                 if reached or walk.stopped:
                     break
-                self._keep(walk.time, [walk.state])
-            if len(self.t) > 2 * wanted:
-                self.t, self.high, self.low = self.t[::2], self.high[::2], self.low[::2]
-                stride *= 2
-            self.standing = Standing((walk.footing,), stride, len(self.t))
+                more = [self._row(walk.time, [walk.state])]
+            rows += more
+            if len(rows) > most:
+                rows, stride = rows[::2], 2 * stride
+            self.kept = rows, Standing((walk.footing,), stride, len(rows))
+            if walk.interrupted:
+                raise KeyboardInterrupt
         last = walk.landing(end).state if reached else walk.state
-        self._keep(float(end) if reached else walk.time, [last])
-        self.standing = Standing((walk.before,), stride, len(self.t) - 1, arrived=True)
+        rows = [*rows, self._row(float(end) if reached else walk.time, [last])]
+        self.kept = rows, Standing((walk.before,), stride, len(rows), arrived=True)
 
-    def _leap(self, walk: Walk, stride: int, most: int) -> bool:
-        """Keep the states of many steps in one go, where so many are surely left."""
+    def _leap(self, walk: Walk, stride: int, most: int) -> list[Row]:
+        """Return the states of many strides taken in one go; none where so many are not surely left."""
         stops = walk.strides(self.end, stride)[: most + 1]
         if walk.n % stride or len(stops) < 2:
-            return False
+            return []
         found = walk.leap(stops, self.end)
         if found is None:
-            return False
+            return []
         times = found.high[self.frame.clock, 1:, 0] + found.low[self.frame.clock, 1:, 0]
-        self.t += times.tolist()
-        for kept, part in ((self.high, found.high), (self.low, found.low)):
-            kept += list(np.moveaxis(part[self.frame.rows, 1:], 1, 0))
-        if walk.interrupted:
-            self.standing = Standing((walk.footing,), stride, len(self.t))
-            raise KeyboardInterrupt
-        return True
+        parts = (np.moveaxis(part[self.frame.rows, 1:], 1, 0) for part in (found.high, found.low))
+        return list(zip(times.tolist(), *parts, strict=True))
 
     # what came out -------------------------------------------------------------------------------------
 
     def samples(self, seconds: float) -> Samples:
         """Return all of the motion."""
-        before, standing = self.so_far, self.standing
+        before, (rows, standing) = self.so_far, self.kept
+        t, high, low = zip(*rows[: standing.rows], strict=True)
         ended = standing.arrived
         steps = sum(walk.n for walk in self.walks) if ended else sum(f.n for f in standing.footings)
         work = sum(walk.work for walk in self.walks) * self.method.stages
         return Samples(
-            t=np.array(self.t),
-            y=np.stack(self.high, axis=1),
-            carried=np.stack(self.low, axis=1),
+            t=np.array(t),
+            y=np.stack(high, axis=1),
+            carried=np.stack(low, axis=1),
             steps=steps,
             evaluations=work + (before.evaluations if before else 0),
             step=float(self.frame.step),
             cpu_seconds=seconds + (before.cpu_seconds if before else 0.0),
             compile_seconds=self.loop.code.seconds,
             beyond=standing,
-            crossings=self._crossings(),
+            crossings=self._crossings(t[-1]),
         )
 
-    def _crossings(self) -> tuple[Crossing, ...]:
+    def _crossings(self, last: float) -> tuple[Crossing, ...]:
         """Return the events met up to the last state that is kept."""
         (walk, *_), forward = self.walks, self.task.plan.forward
         earlier = () if self.so_far is None else self.so_far.crossings[: self.so_far.beyond.footings[0].met]
         found = [*earlier, *(_crossing(self.frame, met) for met in walk.guard.met)]
-        return tuple(met for met in found if (met.t - self.t[-1]) * forward <= 0)
+        return tuple(met for met in found if (met.t - last) * forward <= 0)
 
 
 def _crossing(frame: Fictitious, met: Crossing) -> Crossing:

@@ -306,6 +306,26 @@ def test_a_run_resumed_is_the_run_in_one(precision, how):
     equal(half.resume(11).resume(20), whole)
 
 
+@pytest.mark.parametrize("how", WAYS[:1] + WAYS[2:3], ids=lambda how: ", ".join(how))
+def test_a_continuation_that_is_interrupted_at_once_is_not_taken_for_a_whole_one(how):
+    given = keywords(LOGARITHMIC, **how)
+    whole = propagate(**given)
+    half = propagate(
+        **{**given, "t_span": (0, 9.7), **({"times": how["times"][:25]} if "times" in how else {})}
+    )
+
+    def impatient(_fraction):
+        raise KeyboardInterrupt
+
+    rest = {"times": how["times"][25:]} if "times" in how else {}
+    with pytest.raises(Interrupted) as caught:
+        half.resume(20, **rest, progress=impatient)
+    part = caught.value.motion
+    assert part.t[-1] <= 9.7
+    np.testing.assert_array_equal(part.resume().final, whole.final)
+    assert part.resume().steps == whole.steps
+
+
 def test_a_run_with_named_times_goes_on_with_others():
     given = keywords(POINCARE, times=[1.0, 2.0, 9.7, 11.0, 15.0], events=[Event(RADIAL)])
     whole = propagate(**given)
