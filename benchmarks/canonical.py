@@ -16,11 +16,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "mechanics"))
 
 from map_collection import MAPS, NOTES, linear_symplectic
 
-from canon.mechanics.generating import (
-    GeneratingFunction,
-    NoGeneratingFunctionError,
-    generating_function,
-)
+from canon.mechanics.generating import GeneratingFunction, NoGeneratingFunctionError
+from canon.mechanics.recovery import generating_function
 
 
 def timed(function, *arguments, **keywords):

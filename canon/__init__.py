@@ -61,13 +61,13 @@ if TYPE_CHECKING:
     from canon.mechanics.force import lagrangian_of as lagrangian_of
     from canon.mechanics.generated import generated_transformation as generated_transformation
     from canon.mechanics.generating import GeneratingFunction as GeneratingFunction
-    from canon.mechanics.generating import generating_function as generating_function
     from canon.mechanics.hamiltonian import Hamiltonian as Hamiltonian
     from canon.mechanics.hamiltonian import legendre as legendre
     from canon.mechanics.implicit import ImplicitTransformation as ImplicitTransformation
     from canon.mechanics.inverse import inverse_transformation as inverse_transformation
     from canon.mechanics.lagrangian import Lagrangian as Lagrangian
     from canon.mechanics.new_hamiltonian import new_hamiltonian as new_hamiltonian
+    from canon.mechanics.recovery import generating_function as generating_function
     from canon.mechanics.routh import routhian as routhian
     from canon.mechanics.symmetry import is_constant_of_motion as is_constant_of_motion
     from canon.mechanics.symmetry import is_gauge_equivalent as is_gauge_equivalent
@@ -207,7 +207,8 @@ _ROOMS = {
     "canon.mechanics.constraint": ("ConstrainedLagrangian",),
     "canon.mechanics.force": ("lagrangian_of",),
     "canon.mechanics.generated": ("generated_transformation",),
-    "canon.mechanics.generating": ("GeneratingFunction", "generating_function"),
+    "canon.mechanics.generating": ("GeneratingFunction",),
+    "canon.mechanics.recovery": ("generating_function",),
     "canon.mechanics.hamiltonian": ("Hamiltonian", "legendre"),
     "canon.mechanics.implicit": ("ImplicitTransformation",),
     "canon.mechanics.inverse": ("inverse_transformation",),

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from canon.exercise.diagnosis import judged_to_hold
-from canon.mechanics.generating import GeneratingFunction, generating_function
+from canon.mechanics.generating import GeneratingFunction
+from canon.mechanics.recovery import generating_function
 from canon.mechanics.transformation import CanonicalTransformation
 
 if TYPE_CHECKING:

@@ -25,8 +25,6 @@ from canon.expression.given import counted, given_expression, given_kind, given_
 from canon.expression.symbol import time
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import is_regular
-from canon.mechanics.parametric import ParametricGeneratingFunction
-from canon.mechanics.recovery import Recovery
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain, as_domain
 from canon.proof.verdict import Verdict, all_hold
@@ -34,16 +32,14 @@ from canon.proof.verdict import Verdict, all_hold
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from sympy.logic.boolalg import Boolean
-
     from canon.mechanics.transformation import CanonicalTransformation
 
 __all__ = [
     "GeneratingFunction",
     "NoGeneratingFunctionError",
-    "ParametricGeneratingFunction",
     "Rule",
-    "generating_function",
+    "kind_name",
+    "kinds_of",
 ]
 
 
@@ -257,7 +253,7 @@ class GeneratingFunction:
 
     @property
     def _named_kind(self) -> str:
-        return _kind_name(self.kind)
+        return kind_name(self.kind)
 
     def _repr_latex_(self) -> str:
         arguments = ", ".join(sp.latex(s) for s in (*self.old, *self.new, self.t))
@@ -274,106 +270,6 @@ def kinds_of(kind: int | Sequence[int], n: int) -> tuple[int, ...]:
     return kinds
 
 
-def generating_function(
-    transformation: CanonicalTransformation,
-    kind: int | Sequence[int] = 1,
-    new_q: Sequence[Symbol] | Symbol | None = None,
-    new_p: Sequence[Symbol] | Symbol | None = None,
-    budget: float = 10.0,
-) -> GeneratingFunction | ParametricGeneratingFunction:
-    """Find the generating function of a canonical map, up to a constant and a function of time.
-
-    What is returned in closed form has been verified by the rules of its type on the map; its ``domain``
-    states the branch it holds on.
-
-    Parameters
-    ----------
-    transformation
-        A canonical transformation of valence 1.
-    kind
-        1, 2, 3 or 4; or one of them for each degree of freedom.
-    new_q, new_p
-        Symbols for the new variables; Q, P (or Q1, Q2 … and P1, P2 …) unless given.
-    budget
-        Seconds for the verification of closed forms.
-
-    Returns
-    -------
-    GeneratingFunction or ParametricGeneratingFunction
-        Parametric where the map could not be solved for the variables of the type.
-
-    Raises
-    ------
-    NoGeneratingFunctionError
-        Where the map is not canonical, or the type does not exist for it, with the null direction.
-
-    Examples
-    --------
-    >>> from sympy import symbols, acot
-    >>> from canon import CanonicalTransformation
-    >>> q, m, w = symbols("q m w", positive=True)
-    >>> p = symbols("p", real=True)
-    >>> T = CanonicalTransformation(q, p, acot(p/(m*w*q)), (p**2 + m**2*w**2*q**2)/(2*m*w))
-    >>> generating_function(T, 1).F
-    m*q**2*w*cot(Q)/2
-    """
-    from canon.mechanics.transformation import CanonicalTransformation
-
-    given_kind(transformation, CanonicalTransformation, "the map")
-    kinds = kinds_of(kind, len(transformation.q))
-    canonical = transformation.is_canonical()
-    if canonical.fails:
-        raise NoGeneratingFunctionError(
-            f"the map is not canonical, so it has no generating function; {canonical.feedback}", canonical
-        )
-    Q, P = _new_symbols(transformation, new_q, new_p)
-    recovery = Recovery(transformation, kinds, Q, P)
-    exists = recovery.exists()
-    if exists.fails:
-        raise NoGeneratingFunctionError(
-            f"the map has no generating function of type {_kind_name(kinds)}: {exists.feedback}; "
-            "try another type",
-            exists,
-        )
-    T = transformation
-    end = clock.monotonic() + budget
-    for F, conditions in recovery.closed_forms(clock.monotonic() + 0.3 * budget):
-        for domain in _narrowed(T.domain, conditions):
-            found = GeneratingFunction(kinds, F, T.q, T.p, Q, P, T.t, domain)
-            left = end - clock.monotonic()
-            if left > 0 and found.generates(T, domain, left).holds:
-                return found
-    relations = tuple((b, recovery.meaning[b]) for b in recovery.given)
-    return ParametricGeneratingFunction(kinds, recovery.converted_along_map(), relations, T)
-
-
-def _narrowed(domain: Domain, conditions: tuple[Boolean, ...]) -> Iterator[Domain]:
-    yield domain
-    if conditions:
-        yield Domain((*domain.conditions, *conditions), domain.box)
-
-
-def _new_symbols(
-    T: CanonicalTransformation,
-    new_q: Sequence[Symbol] | Symbol | None,
-    new_p: Sequence[Symbol] | Symbol | None,
-) -> tuple[tuple[Symbol, ...], tuple[Symbol, ...]]:
-    n = len(T.q)
-    taken = {s.name for f in (*T.variables, *T.images) for s in f.atoms(Symbol)}
-    found: list[tuple[Symbol, ...]] = []
-    for letter, given in (("Q", new_q), ("P", new_p)):
-        if given is not None:
-            found.append((given,) if isinstance(given, Symbol) else tuple(given))
-            continue
-        names = [letter if n == 1 else f"{letter}{i + 1}" for i in range(n)]
-        clash = sorted(taken & set(names))
-        if clash:
-            raise ValueError(
-                f"{', '.join(clash)} is used in the map already; name the new variables with new_q, new_p"
-            )
-        found.append(tuple(Symbol(name, real=True) for name in names))
-    return found[0], found[1]
-
-
-def _kind_name(kinds: tuple[int, ...]) -> str:
+def kind_name(kinds: tuple[int, ...]) -> str:
+    """Return the type as it is written: one number where all degrees of freedom are of one type."""
     return str(kinds[0]) if len(set(kinds)) == 1 else str(kinds)

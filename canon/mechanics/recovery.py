@@ -7,6 +7,7 @@ variables of the wanted type, on the branch that the domain determines.
 
 from __future__ import annotations
 
+import time as clock
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -14,11 +15,15 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.given import given_kind
+from canon.mechanics.generating import GeneratingFunction, NoGeneratingFunctionError, kind_name, kinds_of
 from canon.mechanics.inversion import Inversion, solve_system
 from canon.mechanics.linear import is_regular
+from canon.mechanics.parametric import ParametricGeneratingFunction
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import exchanged, shortened, substitute
 from canon.mechanics.witness import far_from_principal, witnesses
+from canon.proof.domain import Domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -28,7 +33,7 @@ if TYPE_CHECKING:
     from canon.mechanics.transformation import CanonicalTransformation
     from canon.proof.verdict import Verdict
 
-__all__ = ["Recovery"]
+__all__ = ["Recovery", "generating_function"]
 
 
 @dataclass(frozen=True)
@@ -134,3 +139,104 @@ class Recovery:
 
 def _listed(symbols: Sequence[Symbol]) -> str:
     return ", ".join(map(str, symbols))
+
+
+def generating_function(
+    transformation: CanonicalTransformation,
+    kind: int | Sequence[int] = 1,
+    new_q: Sequence[Symbol] | Symbol | None = None,
+    new_p: Sequence[Symbol] | Symbol | None = None,
+    budget: float = 10.0,
+) -> GeneratingFunction | ParametricGeneratingFunction:
+    """Find the generating function of a canonical map, up to a constant and a function of time.
+
+    What is returned in closed form has been verified by the rules of its type on the map; its ``domain``
+    states the branch it holds on.
+
+    Parameters
+    ----------
+    transformation
+        A canonical transformation of valence 1.
+    kind
+        1, 2, 3 or 4; or one of them for each degree of freedom.
+    new_q, new_p
+        Symbols for the new variables; Q, P (or Q1, Q2 … and P1, P2 …) unless given.
+    budget
+        Seconds for the verification of closed forms.
+
+    Returns
+    -------
+    GeneratingFunction or ParametricGeneratingFunction
+        Parametric where the map could not be solved for the variables of the type.
+
+    Raises
+    ------
+    NoGeneratingFunctionError
+        Where the map is not canonical, or the type does not exist for it, with the null direction.
+
+    Examples
+    --------
+    >>> from sympy import symbols, acot
+    >>> from canon import CanonicalTransformation
+    >>> q, m, w = symbols("q m w", positive=True)
+    >>> p = symbols("p", real=True)
+    >>> T = CanonicalTransformation(q, p, acot(p/(m*w*q)), (p**2 + m**2*w**2*q**2)/(2*m*w))
+    >>> generating_function(T, 1).F
+    m*q**2*w*cot(Q)/2
+    """
+    from canon.mechanics.transformation import CanonicalTransformation
+
+    given_kind(transformation, CanonicalTransformation, "the map")
+    kinds = kinds_of(kind, len(transformation.q))
+    canonical = transformation.is_canonical()
+    if canonical.fails:
+        raise NoGeneratingFunctionError(
+            f"the map is not canonical, so it has no generating function; {canonical.feedback}", canonical
+        )
+    Q, P = _new_symbols(transformation, new_q, new_p)
+    recovery = Recovery(transformation, kinds, Q, P)
+    exists = recovery.exists()
+    if exists.fails:
+        raise NoGeneratingFunctionError(
+            f"the map has no generating function of type {kind_name(kinds)}: {exists.feedback}; "
+            "try another type",
+            exists,
+        )
+    T = transformation
+    end = clock.monotonic() + budget
+    for F, conditions in recovery.closed_forms(clock.monotonic() + 0.3 * budget):
+        for domain in _narrowed(T.domain, conditions):
+            found = GeneratingFunction(kinds, F, T.q, T.p, Q, P, T.t, domain)
+            left = end - clock.monotonic()
+            if left > 0 and found.generates(T, domain, left).holds:
+                return found
+    relations = tuple((b, recovery.meaning[b]) for b in recovery.given)
+    return ParametricGeneratingFunction(kinds, recovery.converted_along_map(), relations, T)
+
+
+def _narrowed(domain: Domain, conditions: tuple[Boolean, ...]) -> Iterator[Domain]:
+    yield domain
+    if conditions:
+        yield Domain((*domain.conditions, *conditions), domain.box)
+
+
+def _new_symbols(
+    T: CanonicalTransformation,
+    new_q: Sequence[Symbol] | Symbol | None,
+    new_p: Sequence[Symbol] | Symbol | None,
+) -> tuple[tuple[Symbol, ...], tuple[Symbol, ...]]:
+    n = len(T.q)
+    taken = {s.name for f in (*T.variables, *T.images) for s in f.atoms(Symbol)}
+    found: list[tuple[Symbol, ...]] = []
+    for letter, given in (("Q", new_q), ("P", new_p)):
+        if given is not None:
+            found.append((given,) if isinstance(given, Symbol) else tuple(given))
+            continue
+        names = [letter if n == 1 else f"{letter}{i + 1}" for i in range(n)]
+        clash = sorted(taken & set(names))
+        if clash:
+            raise ValueError(
+                f"{', '.join(clash)} is used in the map already; name the new variables with new_q, new_p"
+            )
+        found.append(tuple(Symbol(name, real=True) for name in names))
+    return found[0], found[1]

@@ -10,7 +10,8 @@ import sympy as sp
 from flint import fmpq, fmpz_poly
 
 from canon.proof.lattice import Angle, Lattice
-from canon.proof.tower import Fraction, TooLarge
+from canon.proof.limits import TooLarge
+from canon.proof.tower import Fraction
 from canon.proof.typed import rational
 
 if TYPE_CHECKING:

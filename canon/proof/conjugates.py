@@ -8,12 +8,13 @@ import sympy as sp
 from flint import arb, fmpq
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.tower import Fraction, TooLarge
+from canon.proof.limits import TooLarge
 
 if TYPE_CHECKING:
     from flint import fmpq_mpoly
 
     from canon.proof.normal_form import NormalForm
+    from canon.proof.tower import Fraction
 
 __all__ = ["radicals_cancel"]
 

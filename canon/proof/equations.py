@@ -17,7 +17,7 @@ from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, valu
 from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import with_example_functions
 from canon.proof.generic import is_analytic, proved_sign
-from canon.proof.split import defined_nowhere
+from canon.proof.replacement import defined_nowhere
 from canon.proof.typed import arguments
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Verdict

@@ -15,10 +15,10 @@ from sympy.polys.polyerrors import PolynomialError
 
 from canon.proof.angles import Refine
 from canon.proof.domain import Domain, linear, parts_of
+from canon.proof.limits import QUICK, Full, OutOfTime, TooLarge
 from canon.proof.normal_form import NormalForm
 from canon.proof.prove import MOST_STARTS, REFUSALS
 from canon.proof.split import certainly_real
-from canon.proof.tower import QUICK, Full, OutOfTime, TooLarge
 from canon.proof.typed import arguments
 
 if TYPE_CHECKING:

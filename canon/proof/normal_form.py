@@ -16,9 +16,10 @@ from sympy.core.function import AppliedUndef, Derivative, Subs
 from canon.proof import angles, arcs, elliptic, powers
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import declared_complex
+from canon.proof.limits import THOROUGH, Limits, TooLarge
 from canon.proof.signs import Signs
 from canon.proof.split import certainly_real
-from canon.proof.tower import THOROUGH, Fraction, Limits, TooLarge, Tower
+from canon.proof.tower import Fraction, Tower
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable

@@ -16,10 +16,11 @@ from canon.proof.angles import Refine
 from canon.proof.conjugates import radicals_cancel
 from canon.proof.domain import Domain
 from canon.proof.groups import groups
+from canon.proof.limits import QUICK, THOROUGH, Full, Limits, OutOfTime, TooLarge
 from canon.proof.normal_form import NormalForm
 from canon.proof.phases import arcs_cancel
-from canon.proof.split import KINKED, cases, settle_equalities
-from canon.proof.tower import QUICK, THOROUGH, Full, Limits, OutOfTime, TooLarge
+from canon.proof.replacement import KINKED
+from canon.proof.split import cases, settle_equalities
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Sequence

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar, cast
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
-from sympy.concrete.expr_with_limits import ExprWithLimits
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
-from sympy.functions.elementary.hyperbolic import HyperbolicFunction
-from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction, TrigonometricFunction
 from sympy.logic.boolalg import Boolean
 
 from canon.proof.anatomy import anatomy
 from canon.proof.domain import Domain, declared_complex
+from canon.proof.replacement import KINKED, NoValue, defined_nowhere, replaced
 from canon.proof.typed import arguments, by_name, free_symbols
 
 if TYPE_CHECKING:
@@ -22,12 +20,10 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["KINKED", "Case", "cases", "settle_equalities"]
+__all__ = ["Case", "cases", "certainly_real", "settle_equalities"]
 
 MOST_VALUES = 24
 """Values or residues of an integer that are gone through one by one."""
-
-KINKED = (sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside)
 
 MONOTONIC = (sp.exp, sp.sinh, sp.tanh, sp.atan, sp.asinh)
 """Functions that grow on the whole real line."""
@@ -49,26 +45,6 @@ REAL_ON_REALS = (
 )
 """Functions that take real values at real arguments."""
 
-LARGEST_WRITTEN = 1000
-"""Exponents and arguments of factorials and the like that SymPy may write out when a number is put in."""
-
-UNWRITTEN = (
-    TrigonometricFunction,
-    HyperbolicFunction,
-    InverseTrigonometricFunction,
-    AppliedUndef,
-    sp.exp,
-    sp.log,
-    sp.Piecewise,
-    *KINKED,
-)
-"""Functions that stay as they are at large numbers."""
-
-NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity)
-
-LAZY = (sp.Piecewise, ExprWithLimits, sp.Derivative, sp.Subs, sp.Max, sp.Min)
-"""Expressions that may have a value though one of their parts has none."""
-
 
 @dataclass(frozen=True)
 class Case:
@@ -77,72 +53,6 @@ class Case:
     expr: Expr | None
     domain: Domain
     where: str
-
-
-_B = TypeVar("_B", bound=sp.Basic)
-
-
-class _NoValue(Exception):
-    """SymPy gives no value to an expression after a substitution, or one too long to write out."""
-
-
-def _replaced(expr: _B, by: Mapping[sp.Basic, Expr]) -> _B:
-    """Return ``expr`` after a substitution, every distinct part being rebuilt once.
-
-    Raises
-    ------
-    _NoValue
-        Where SymPy refuses a part (Max of an imaginary number, a derivative by an expression, …) or would
-        write out a number of very many digits.
-    """
-    done: dict[sp.Basic, sp.Basic] = {}
-    for part in anatomy([expr]).parts:  # what a part consists of comes before it
-        inner = tuple(done[a] for a in part.args)
-        if part in by:
-            done[part] = by[part]
-        elif all(new is old for new, old in zip(inner, part.args, strict=True)):
-            done[part] = part
-        elif _too_long(part, inner):
-            raise _NoValue
-        else:
-            try:
-                done[part] = _rebuilt(part, inner)
-            except (ValueError, TypeError) as reason:
-                raise _NoValue from reason
-    return cast("_B", done[expr])
-
-
-def _rebuilt(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> sp.Basic:
-    """Put a part together again; relations stay unevaluated, for SymPy may think about them without end."""
-    if isinstance(part, Relational) and not all(isinstance(a, sp.Rational | sp.Symbol) for a in inner):
-        return part.func(*inner, evaluate=False)
-    return part.func(*inner)
-
-
-def _too_long(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> bool:
-    """Tell whether SymPy may write out a power, factorial or sum of very many digits or terms."""
-    if isinstance(part, sp.Pow):
-        base, exponent = inner
-        new = exponent is not part.exp or (base.is_number and base not in (0, 1, -1))
-        return isinstance(exponent, sp.Rational) and abs(exponent) > LARGEST_WRITTEN and new
-    if isinstance(part, sp.exp) and inner[0].has(sp.log):
-        return any(abs(r) > LARGEST_WRITTEN for r in inner[0].atoms(sp.Rational))
-    if isinstance(part, sp.Function) and not isinstance(part, UNWRITTEN):
-        return any(isinstance(a, sp.Rational) and abs(a) > LARGEST_WRITTEN for a in inner)
-    return False
-
-
-def defined_nowhere(expr: sp.Basic) -> bool:
-    """Tell whether a part that is not a finite number leaves the whole without a value.
-
-    A piece that does not apply, a bound of a sum or an argument of Max that loses need not have one.
-    """
-    poisoned: set[sp.Basic] = set()
-    for part in anatomy([expr]).parts:  # what a part consists of comes before it
-        itself = part in NOT_NUMBERS or isinstance(part, sp.AccumBounds)
-        if itself or not (isinstance(part, LAZY) or poisoned.isdisjoint(part.args)):
-            poisoned.add(part)
-    return expr in poisoned
 
 
 def cases(expr: Expr, domain: Domain) -> list[Case] | None:
@@ -155,7 +65,7 @@ def cases(expr: Expr, domain: Domain) -> list[Case] | None:
         return None
     try:
         return _cut(expr, domain)
-    except _NoValue:
+    except NoValue:
         return None
 
 
@@ -261,9 +171,9 @@ def _without_monotonic(larger: Expr, smaller: Expr, *, strict: bool) -> Boolean:
     return cast("Boolean", sp.Gt(larger, smaller) if strict else sp.Ge(larger, smaller))
 
 
-def _case(expr: Expr, replaced: Mapping[sp.Basic, Expr], domain: Domain, condition: sp.Basic) -> Case:
-    known = Domain(tuple(_replaced(c, replaced) for c in domain.conditions), domain.box)
-    return settle_equalities(_replaced(expr, replaced), _narrowed(known, condition), str(condition))
+def _case(expr: Expr, by: Mapping[sp.Basic, Expr], domain: Domain, condition: sp.Basic) -> Case:
+    known = Domain(tuple(replaced(c, by) for c in domain.conditions), domain.box)
+    return settle_equalities(replaced(expr, by), _narrowed(known, condition), str(condition))
 
 
 def _narrowed(domain: Domain, *conditions: sp.Basic) -> Domain:
@@ -284,7 +194,7 @@ def _pieces(expr: Expr, domain: Domain, function: sp.Basic) -> Iterator[Case]:
         alternatives = sp.to_dnf(applies) if len(applies.atoms(Relational)) <= 8 else applies
         for alternative in alternatives.args if isinstance(alternatives, sp.Or) else (alternatives,):
             if alternative != sp.false:
-                chosen, narrowed = _replaced(expr, {function: piece}), _narrowed(domain, alternative)
+                chosen, narrowed = replaced(expr, {function: piece}), _narrowed(domain, alternative)
                 if defined_nowhere(chosen):
                     yield Case(None, narrowed, str(alternative))
                 else:
@@ -323,9 +233,9 @@ def _by_symbol(deciding: Expr, domain: Domain, whole: Expr | None = None) -> lis
 
 def _substituted(expr: Expr, domain: Domain, symbol: Symbol, by: Expr, where: str) -> Case:
     box = {s: ends for s, ends in domain.box.items() if s != symbol}
-    conditions = [_replaced(c, {symbol: by}) for c in domain.conditions]
+    conditions = [replaced(c, {symbol: by}) for c in domain.conditions]
     narrowed = Domain(tuple(c for c in conditions if c != sp.true), box)
-    value = _replaced(expr, {symbol: by})
+    value = replaced(expr, {symbol: by})
     return Case(None if defined_nowhere(value) else value, narrowed, where)
 
 
@@ -348,10 +258,10 @@ def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
             if s in differentiated:
                 continue
             try:
-                solution = -_replaced(gap, {s: sp.Integer(0)}) / slope
-                others = [_replaced(c, {s: solution}) for c in domain.conditions if c != condition]
-                value = _replaced(expr, {s: solution})
-            except _NoValue:
+                solution = -replaced(gap, {s: sp.Integer(0)}) / slope
+                others = [replaced(c, {s: solution}) for c in domain.conditions if c != condition]
+                value = replaced(expr, {s: solution})
+            except NoValue:
                 continue
             box = {name: ends for name, ends in domain.box.items() if name != s}
             narrowed = Domain(tuple(c for c in (*others, *_assumed(s, solution)) if c != sp.true), box)

@@ -15,58 +15,16 @@ from typing import TYPE_CHECKING, Any
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from flint.utils.flint_exceptions import DomainError
 
+from canon.proof.limits import THOROUGH, Full, Limits, OutOfTime, TooLarge
+
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable
 
-__all__ = ["QUICK", "THOROUGH", "Fraction", "Full", "Limits", "OutOfTime", "TooLarge", "Tower"]
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Sizes that are checked before an operation that cannot be interrupted.
-
-    Parameters
-    ----------
-    product
-        Products of terms in one multiplication.
-    factored_terms, factored_degree
-        Size of a polynomial that is still factored; larger ones are kept whole.
-    eliminated_degree
-        Product of the degrees of the radicals in one number.
-    killable
-        Whether this process may be killed, so that SymPy's own evaluation may take its time.
-    """
-
-    product: int
-    factored_terms: int
-    factored_degree: int
-    eliminated_degree: int
-    killable: bool
-
-
-QUICK = Limits(product=100_000, factored_terms=40, factored_degree=16, eliminated_degree=48, killable=False)
-"""Limits in the user's own process: no operation takes more than some milliseconds."""
-
-THOROUGH = Limits(
-    product=20_000_000, factored_terms=200, factored_degree=40, eliminated_degree=128, killable=True
-)
-"""Limits in the worker, which can be killed."""
+__all__ = ["Fraction", "Tower"]
 
 
 LARGEST_POWER = 2000
 """Whole powers that are written out; flint ends the process where a coefficient overflows the memory."""
-
-
-class TooLarge(Exception):
-    """The normal form would not fit."""
-
-
-class Full(Exception):
-    """More generators are needed than there is room for; start again with more room."""
-
-
-class OutOfTime(Exception):
-    """The deadline has passed."""
 
 
 @dataclass(frozen=True)

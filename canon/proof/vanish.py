@@ -17,9 +17,9 @@ from canon.proof.anatomy import anatomy
 from canon.proof.budget import prove_in_worker
 from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import evaluated
+from canon.proof.limits import QUICK
 from canon.proof.prove import REFUSALS, Attempt, is_empty, prove_each, prove_zero
 from canon.proof.refute import Search, first_counterexample, look_for_counterexample, search_widely
-from canon.proof.tower import QUICK
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:

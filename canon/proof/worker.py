@@ -48,8 +48,8 @@ def read_message(stream: BinaryIO) -> object:
 
 def attempt(exprs: tuple[Expr, ...], domain: Domain, seconds: float) -> list[Attempt]:
     """Try to prove that each expression vanishes, with the caps on sizes that fit a killable process."""
+    from canon.proof.limits import THOROUGH
     from canon.proof.prove import prove_each
-    from canon.proof.tower import THOROUGH
 
     return prove_each(exprs, domain, time.monotonic() + seconds, THOROUGH)
 

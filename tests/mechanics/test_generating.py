@@ -38,11 +38,11 @@ from canon.mechanics.generated import (
 from canon.mechanics.generating import (
     GeneratingFunction,
     NoGeneratingFunctionError,
-    ParametricGeneratingFunction,
-    generating_function,
 )
 from canon.mechanics.inverse import NoClosedInverseError
 from canon.mechanics.linear import is_regular
+from canon.mechanics.parametric import ParametricGeneratingFunction
+from canon.mechanics.recovery import generating_function
 from canon.mechanics.transformation import CanonicalTransformation
 from canon.proof.domain import Domain
 from canon.proof.vanish import vanishes

@@ -6,13 +6,14 @@ from map_collection import MAPS, MOVING, NOTES, E, linear_symplectic, m, p, px, 
 
 from canon.mechanics.bilinear import bilinear_covariant, canonical_covariant, displacements, is_exact
 from canon.mechanics.canonicity import disagreement
-from canon.mechanics.generating import NoGeneratingFunctionError, generating_function
+from canon.mechanics.generating import NoGeneratingFunctionError
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.implicit import ImplicitTransformation
 from canon.mechanics.inverse import NoClosedInverseError, inverse_transformation
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.mending import constant_value
 from canon.mechanics.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
+from canon.mechanics.recovery import generating_function
 from canon.mechanics.step import midpoint_step, runge_kutta_step, splitting_step
 from canon.mechanics.transformation import CanonicalTransformation, point_transformation
 from canon.proof.domain import Domain
