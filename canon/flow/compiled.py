@@ -30,6 +30,10 @@ _KEPT = 64
 _INTERLEAVED = 4
 """SIMD registers' worth of orbits stepped together: while one waits for a root or a quotient, others compute."""
 
+_PLANE, _STAGES, _MANY = 2, 5, 1000
+"""Of so many orbits twice as many are stepped together where roots and quotients are what takes the time, as in
+Kepler's problem: in up to so many degrees of freedom, which the registers just hold, through so many stages a step."""
+
 _SMALL = 200
 """Up to this many operations in the force the registers hold that many orbits."""
 
@@ -54,7 +58,10 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
         method = SolvableSplitting(method.scheme, parts=method.parts)
     if isinstance(method, SolvableSplitting):
         return solvable_loop_of(system, method, precision)
-    number = _with_lanes(precision.number, system) if orbits > 1 else precision.number
+    number = precision.number
+    if orbits > 1:
+        stages = len(method.scheme.b) if isinstance(method, Splitting) and not precision.compensated else 0
+        number = _with_lanes(number, system, orbits, stages)
     if isinstance(method, Gauss):
         return _kept_gauss(system, method.stages, precision.number, compensated=precision.compensated)
     if isinstance(method, RK4):
@@ -75,13 +82,15 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
     )
 
 
-def _with_lanes(number: MachineType, system: Equations) -> MachineType:
+def _with_lanes(number: MachineType, system: Equations, orbits: int, stages: int) -> MachineType:
     if number.scalar == "x86_fp80":  # x87 numbers have no SIMD instructions
         return number
-    small = len(system.program(system.force).instructions) <= _SMALL
-    return dataclasses.replace(
-        number, lanes=simd_bytes() // number.alignment * (_INTERLEAVED if small else 1)
-    )
+    registers, force = 1, system.program(system.force)
+    if len(force.instructions) <= _SMALL:
+        waiting = force.count("sqrt") + force.count("div") > 0 and not number.pair
+        many = waiting and len(system.q) <= _PLANE and stages >= _STAGES and orbits >= _MANY
+        registers = 2 * _INTERLEAVED if many else _INTERLEAVED
+    return dataclasses.replace(number, lanes=simd_bytes() // number.alignment * registers)
 
 
 @functools.lru_cache(maxsize=_KEPT)

@@ -242,6 +242,20 @@ def test_orbits_together_give_the_bits_of_each_alone(method, precision):
         np.testing.assert_array_equal(together.energy_error[:, orbit], alone.energy_error)
 
 
+@pytest.mark.parametrize("precision", ["single", "double", "compensated"])
+def test_a_thousand_orbits_give_the_bits_of_each_alone(precision):
+    """So many are stepped in more registers."""
+    many = starts(kepler_start(0.3), 1003)
+    arguments = {"method": Splitting("kahan-li-8"), "step": 0.05, "precision": precision, "samples": 1}
+    together = propagate(KEPLER, many, (0, 2), **arguments)
+    few = propagate(KEPLER, many[:, :7], (0, 2), **arguments)
+    np.testing.assert_array_equal(together.y[:, :, :7], few.y)
+    for orbit in (0, 500, 1002):
+        alone = propagate(KEPLER, many[:, orbit], (0, 2), **arguments)
+        np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
+        np.testing.assert_array_equal(together.carried[:, :, orbit], alone.carried)
+
+
 @pytest.mark.parametrize("method", [Splitting("kahan-li-6"), RK4(), Gauss(3), Taylor(), DOP853()], ids=str)
 def test_ensembles_of_every_method_and_of_transcendental_hamiltonians(method):
     fixed = {"step": 0.05} if isinstance(method, Splitting | RK4 | Gauss) else {}
