@@ -19,6 +19,7 @@ from canon.expression.symbol import Coordinate, Rate
 from canon.mechanics.substitution import substitute
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import Domain
+from canon.proof.smooth import PIECED
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ POINTS = 2
 MOST_ORDERS = 4
 MOST_OPERATIONS = 400
 _ORDINALS = ("zeroth", "first", "second", "third")
-_KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside, sp.atan2)
+_KINKED = (*PIECED, sp.atan2)
 
 
 @dataclass(frozen=True)

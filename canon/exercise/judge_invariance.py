@@ -21,7 +21,7 @@ from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.bracket import lagrange_bracket, poisson_bracket
 from canon.mechanics.substitution import exchanged, substitute
-from canon.proof.smooth import KINKED, where_differentiable, without_pieces
+from canon.proof.smooth import PIECED, where_differentiable, without_pieces
 from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def _hamiltonian_form(
 
 def _constancy(valence: Expr, moving: Sequence[Symbol], domain: Domain) -> Iterator[Part]:
     """Yield slopes that vanish where the valence is constant; one with pieces is compared with its value at a point."""
-    point = next(domain.points(moving, 1), None) if valence.has(*KINKED) else None
+    point = next(domain.points(moving, 1), None) if valence.has(*PIECED) else None
     if point is not None:
         yield Part("{Q, P}", valence, substitute(valence, {z: point[z] for z in moving}))
         return
@@ -172,7 +172,7 @@ def _point_transformation(reading: Reading) -> Question:
         why = "new coordinates that hold velocities are no point transformation: the equations get third derivatives"
         return Verdict(Status.FAILS, "a point transformation", "structure", feedback=why)
     jacobian = sp.Matrix([[f.diff(x) for x in q] for f in Q])
-    if jacobian.has(*KINKED) and not without_pieces(jacobian.flat(), reading.domain):
+    if jacobian.has(*PIECED) and not without_pieces(jacobian.flat(), reading.domain):
         raise Undecided(
             "∂Q/∂q has pieces, and may be singular on one of them; narrow the domain to one piece"
         )

@@ -16,7 +16,7 @@ from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.routh import routhian as routh
 from canon.mechanics.substitution import substitute
-from canon.proof.smooth import KINKED, where_differentiable
+from canon.proof.smooth import PIECED, where_differentiable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -169,7 +169,7 @@ def _affine_in(f: Expr, velocities: Sequence[Symbol]) -> Expr:
 def _total_derivative_conditions(difference: Expr, q: Sequence[Symbol], t: Symbol) -> Iterator[Part]:
     """Σ aᵢ q̇ᵢ + b is dF/dt of some F(q, t), locally, exactly where the form Σ aᵢ dqᵢ + b dt is closed."""
     velocities = [velocity(x) for x in q]
-    if any(part.has(*velocities) for part in difference.atoms(*KINKED)):
+    if any(part.has(*velocities) for part in difference.atoms(*PIECED)):
         affine, difference = difference, _affine_in(difference, velocities)
         yield Part("L2 − L1 is affine in the velocities", affine, difference)
     slopes = [difference.diff(v) for v in velocities]

@@ -22,6 +22,7 @@ from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import exchanged, substitute
 from canon.proof.domain import Domain
 from canon.proof.generic import proved_sign
+from canon.proof.smooth import PIECED
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
@@ -36,7 +37,7 @@ __all__ = ["first_order", "linearisation"]
 
 MOST_ORDERS = 8
 _ORDINALS = ("zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
-_KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside, sp.atan2, sp.LambertW)
+_KINKED = (*PIECED, sp.atan2, sp.LambertW)
 
 
 def first_order(reading: Reading) -> Iterator[Question]:

@@ -22,7 +22,7 @@ from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.generic import proved_sign
-from canon.proof.smooth import KINKED
+from canon.proof.smooth import PIECED
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def _check_smooth(value: Expr, t: Symbol, domain: Domain) -> None:
     for part in sp.preorder_traversal(value):
         if not isinstance(part, Expr) or not part.has(t):
             continue
-        kink = isinstance(part, KINKED)
+        kink = isinstance(part, PIECED)
         if isinstance(part, sp.Abs):
             kink = proved_sign(arguments(part)[0], domain) not in ("+", "-")
         elif isinstance(part, sp.Pow) and part.exp.is_integer is not True and part.base.has(t):

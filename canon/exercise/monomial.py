@@ -19,6 +19,7 @@ from sympy.core.function import AppliedUndef
 from canon.exercise.tree import symbols_of
 from canon.expression.symbol import Rate
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, value
+from canon.proof.smooth import PIECED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -31,7 +32,6 @@ MOST_SYMBOLS = 14
 MOST_FACTORS = 9
 MOST_EXPONENT = 4
 MOST_FORGOTTEN = 3
-_KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise, sp.Heaviside)
 _NO_VALUE = (Undefined, NotDecided, Unmodelled, ZeroDivisionError)
 
 
@@ -105,7 +105,7 @@ class Monomials:
         """1, the replaced symbols and the functions, and products of two of them; those claimed come first."""
         part = self._part
         whole = sp.Tuple(part.claimed, part.right, *part.through.values())
-        found = whole.atoms(AppliedUndef, sp.Derivative, sp.Function) - whole.atoms(*_KINKED)
+        found = whole.atoms(AppliedUndef, sp.Derivative, sp.Function) - whole.atoms(*PIECED)
         functions: list[Expr] = list(found)
         factors = sorted(
             [*part.through, *functions], key=lambda f: (not part.claimed.has(f), not f.is_Symbol, str(f))

@@ -24,7 +24,7 @@ from canon.mechanics.potential import potential
 from canon.mechanics.substitution import exchanged
 from canon.proof.domain import Domain, as_domain
 from canon.proof.equations import equivalent_equations
-from canon.proof.smooth import KINKED, may_jump, where_differentiable
+from canon.proof.smooth import PIECED, may_jump, where_differentiable
 from canon.proof.verdict import Status, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -191,7 +191,7 @@ def is_gauge_equivalent(
     curvature = [(f"∂²(L2 − L1)/∂{a}∂{b} = 0", A[i].diff(b)) for i, a in enumerate(v) for b in v[i:]]
     at_rest = dict.fromkeys(v, sp.S.Zero)
     coefficients = [*(exchanged(a, at_rest) for a in A), exchanged(difference, at_rest)]
-    if any(part.has(*v) for part in difference.atoms(*KINKED)):  # slopes in pieces may be constant and differ
+    if any(part.has(*v) for part in difference.atoms(*PIECED)):  # slopes in pieces may be constant and differ
         affine = sp.Add(*(a * b for a, b in zip(coefficients, (*v, sp.S.One), strict=True)))
         curvature.insert(0, ("L2 − L1 is affine in the velocities", difference - affine))
     closed = [

@@ -15,6 +15,7 @@ from sympy.core.relational import Relational
 from canon.proof.anatomy import anatomy
 from canon.proof.domain import EVERYWHERE, Domain
 from canon.proof.generic import is_analytic
+from canon.proof.replacement import KINKED
 from canon.proof.typed import arguments
 from canon.proof.vanish import vanishes
 
@@ -24,10 +25,10 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["KINKED", "may_jump", "where_differentiable", "without_pieces"]
+__all__ = ["PIECED", "may_jump", "where_differentiable", "without_pieces"]
 
 JUMPS = (sp.sign, sp.Heaviside)
-KINKED = (sp.Abs, sp.Max, sp.Min, sp.Piecewise, *JUMPS)
+PIECED = (*KINKED, sp.Piecewise)
 """Functions that are made of pieces: one that is not zero at one point may vanish on a whole piece."""
 
 
@@ -85,7 +86,7 @@ def may_jump(f: Expr, variables: Iterable[Symbol], domain: Domain) -> bool:
     """
     moving = tuple(variables)
     f = cast("Expr", f.replace(lambda e: isinstance(e, sp.Mul), _with_moduli))
-    kinked = [part for part in f.atoms(*KINKED) if part.has(*moving)]
+    kinked = [part for part in f.atoms(*PIECED) if part.has(*moving)]
     if not kinked or without_pieces([f], domain):
         return False
     if any(isinstance(part, JUMPS) for part in kinked):
@@ -116,7 +117,7 @@ def _pieces_meet(function: sp.Piecewise, domain: Domain) -> bool:
 
 def _gaps(functions: Iterable[Expr]) -> Iterator[Expr]:
     """Yield what vanishes at the kinks."""
-    for part in anatomy(functions).of(*KINKED):
+    for part in anatomy(functions).of(*PIECED):
         if isinstance(part, sp.Max | sp.Min):
             yield from (a - b for a, b in combinations(arguments(part), 2))
         elif isinstance(part, sp.Piecewise):
