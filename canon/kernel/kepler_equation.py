@@ -183,21 +183,27 @@ def _reversion(c: Arithmetic, bend: str, twist: str, curl: str) -> str:
 
 
 def _moved_on(c: Arithmetic, x: str, trial: _Trial, beta: str) -> tuple[str, str, str]:
-    """Return X + a, G₂(X + a) and G₃(X + a), by their Taylor series in the small a: G_k' = G_{k−1}, G₀' = −βG₁."""
+    """Return X + a, G₂(X + a) and G₃(X + a), by their Taylor series in the small a: G_k' = G_{k−1}, G₀' = −βG₁.
+
+    What is added to G_k is rounded to it once: twice would make the energy drift.
+    """
     g0, g1, g2, g3 = trial.g
     fall, rise = c.mul(beta, g0), c.mul(beta, g1)
     square = c.mul(trial.step, trial.step)
 
-    def series(values: Sequence[str], signs: Sequence[int]) -> str:
-        terms = [
-            c.mul(c.number(Fraction(sign, math.factorial(k))), value) if k > 1 else value
-            for k, (value, sign) in enumerate(zip(values, signs, strict=True))
-        ]
-        first, second = (c.fma(trial.step, terms[k + 1], terms[k]) for k in (0, 2))
-        return c.fma(square, c.fma(square, terms[4], second), first)
+    def moved(start: str, first: str, values: Sequence[str], signs: Sequence[int]) -> str:
+        second, third, fourth = (
+            c.mul(c.number(Fraction(sign, math.factorial(k))), value)
+            for k, (value, sign) in enumerate(zip(values, signs, strict=True), start=2)
+        )
+        slope = c.fma(square, c.fma(trial.step, fourth, third), c.fma(trial.step, second, first))
+        return c.fma(trial.step, slope, start)
 
-    second = series((g2, g1, g0, rise, fall), (1, 1, 1, -1, -1))
-    return c.add(x, trial.step), second, series((g3, g2, g1, g0, rise), (1, 1, 1, 1, -1))
+    g2_moved, g3_moved = (
+        moved(g2, g1, (g0, rise, fall), (1, -1, -1)),
+        moved(g3, g2, (g1, g0, rise), (1, 1, -1)),
+    )
+    return c.add(x, trial.step), g2_moved, g3_moved
 
 
 # the search --------------------------------------------------------------------------------------------
