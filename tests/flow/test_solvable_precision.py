@@ -127,9 +127,10 @@ def test_keplers_motion_ends_at_the_round_off_of_each_precision(precision):
     motion = propagate(
         KEPLER, kepler_start(0.25), (0, n), method=WisdomHolman(), step=1.0, precision=precision, samples=20
     )
-    floor = FLOORS[precision] * n**0.5
-    assert abs(motion.energy_error).max() < 12 * floor
-    assert abs(motion.energy_error).max() > 0.02 * floor
+    error, floor = abs(motion.energy_error).max(), FLOORS[precision]
+    # Sums and products of pairs of doubles are not rounded to nearest: 0.4 units a step, always to one side.
+    assert error < (n if precision == "double-double" else 12 * n**0.5) * floor
+    assert error > 0.02 * n**0.5 * floor
 
 
 @pytest.mark.parametrize("precision", FIXED)
