@@ -6,7 +6,7 @@ import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from canon.kernel.perturbed import ABA, corrector, saba, sbab, wisdom_holman, with_commutator
+from canon.kernel.perturbed import ABA, LASKAR_ROBUTEL, corrector, saba, sbab, wisdom_holman, with_commutator
 from canon.kernel.planets import Centres, Planets, UnsolvableError, named_part, solvable_part
 from canon.kernel.solvable import solvable_loop
 
@@ -24,6 +24,13 @@ Parts = tuple["Expr", "Expr"] | None
 
 COORDINATES = ("jacobi", "democratic-heliocentric")
 """Coordinates of planets about a star."""
+
+_CORRECTORS = "J. Wisdom, M. Holman, J. Touma, Symplectic correctors, Fields Inst. Commun. 10 (1996) 217–244"
+
+_DEMOCRATIC = (
+    "M. J. Duncan, H. F. Levison, M. H. Lee, A multiple time step symplectic algorithm for integrating close "
+    "encounters, Astron. J. 116 (1998) 2067–2077, doi:10.1086/300541"
+)
 
 
 @dataclass(frozen=True)
@@ -98,8 +105,14 @@ class SolvableSplitting:
 
     @property
     def citation(self) -> str:
-        """Where the scheme was published."""
-        return self.scheme.citation
+        """Where the scheme was published, and what else it uses."""
+        used = [
+            self.scheme.citation,
+            _CORRECTORS if self.corrector else "",
+            LASKAR_ROBUTEL if self.commutator and self.scheme.citation != LASKAR_ROBUTEL else "",
+            _DEMOCRATIC if self.coordinates != "jacobi" else "",
+        ]
+        return "; ".join(filter(None, used))
 
 
 def WisdomHolman(

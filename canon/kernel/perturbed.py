@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ABA",
     "HIGHEST_CORRECTOR",
+    "LASKAR_ROBUTEL",
     "Corrector",
     "corrector",
     "saba",
@@ -42,7 +43,7 @@ __all__ = [
 HIGHEST_STAGES = 8
 HIGHEST_CORRECTOR = 17
 
-_LASKAR_ROBUTEL = (
+LASKAR_ROBUTEL = (
     "J. Laskar, P. Robutel, High order symplectic integrators for perturbed Hamiltonian systems, Celest. Mech. Dyn. "
     "Astron. 80 (2001) 39–62, doi:10.1023/A:1012098603882"
 )
@@ -70,7 +71,7 @@ def saba(stages: int) -> Scheme:
     nodes = [Fraction(0), *tableau.c, Fraction(1)]
     a = [right - left for left, right in itertools.pairwise(nodes)]
     b = list(tableau.b)
-    return Scheme(f"saba-{stages}", 2, _symmetric(a), _symmetric(b), _LASKAR_ROBUTEL)
+    return Scheme(f"saba-{stages}", 2, _symmetric(a), _symmetric(b), LASKAR_ROBUTEL)
 
 
 @functools.cache
@@ -86,7 +87,7 @@ def sbab(stages: int) -> Scheme:
     a = [Fraction(0), *(right - left for left, right in itertools.pairwise(nodes)), Fraction(0)]
     moments = [Fraction(1, k + 1) for k in range(stages + 1)]
     b = _solve([[node**k for node in nodes] for k in range(stages + 1)], moments)
-    return Scheme(f"sbab-{stages}", 2, _symmetric(a), _symmetric(b), _LASKAR_ROBUTEL)
+    return Scheme(f"sbab-{stages}", 2, _symmetric(a), _symmetric(b), LASKAR_ROBUTEL)
 
 
 def _stages(stages: int, family: str) -> int:

@@ -156,3 +156,7 @@ def test_what_is_no_planetary_system_is_refused():
 def test_they_say_what_they_are():
     assert str(SABA(2, **DEMOCRATIC)) == "saba-2, democratic-heliocentric"
     assert SABA(2, **DEMOCRATIC) != SABA(2)
+    assert "doi:10.1086/300541" in SABA(2, **DEMOCRATIC).citation
+    assert "Symplectic correctors" in WisdomHolman(corrector=5).citation
+    assert WisdomHolman(commutator=True).citation.count("doi:") == 2
+    assert SABA(2, commutator=True).citation == SABA(2).citation
