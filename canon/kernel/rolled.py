@@ -10,13 +10,13 @@ a register; and what few others read of such a family is computed again.
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from canon.kernel.family import LEAVES, families_of, is_regular, operand_places
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-    from fractions import Fraction
 
     from canon.kernel.program import Program
     from canon.kernel.writer import Writer
@@ -27,57 +27,11 @@ _REGULAR, _BESIDE, _IRREGULAR = 100, 16, 12_000
 """Programs with fewer operations are written out: the compiler then sees every one of them. Irregular ones, which need
 tables, run faster written out, and are rolled only where compiling them would take very long."""
 
-_LEAVES = ("input", "time", "constant")
-
 _WRITTEN_OUT = 3
 """Families up to this size are written out."""
 
 _CHEAP, _AGAIN = ("add", "sub", "mul", "neg"), 16
 """What is computed again rather than read from memory, and up to how many operations."""
-
-
-@dataclass
-class _Family:
-    """Operations of one kind on operands of the same families.
-
-    ``members`` are the registers they write; a member's place in the family's array is its position here.
-    """
-
-    operation: str
-    value: Fraction | None
-    operands: tuple[int, ...]
-    members: list[int] = field(default_factory=list[int])
-
-
-def _families(steps: Program) -> tuple[list[_Family], list[tuple[int, int]]]:
-    """Return the families, operands' before their users', and each register's family and place in it."""
-    found: list[_Family] = []
-    number: dict[Any, int] = {}
-    family_of: list[int] = []
-    operands_of: list[tuple[int, ...]] = []
-    for register, (operation, operands, value) in enumerate(steps.instructions):
-        if operation in ("add", "mul"):
-            operands = tuple(sorted(operands, key=lambda o: family_of[o]))
-        kinds = tuple(family_of[o] for o in operands)
-        is_time = operation == "input" and value == len(steps.inputs) - 1
-        key = (operation, kinds, value if operation == "constant" or is_time else None)
-        if key not in number:
-            number[key] = len(found)
-            found.append(
-                _Family("time" if is_time else operation, value if operation == "constant" else None, kinds)
-            )
-        family_of.append(number[key])
-        operands_of.append(operands)
-        found[number[key]].members.append(register)
-    place = [0] * len(family_of)
-    for family in found:
-        # In the order of their operands, members tend to read and to be read with a stride.
-        if family.operation != "input":
-            family.members.sort(key=lambda register: [place[o] for o in operands_of[register]])
-        for position, register in enumerate(family.members):
-            value = steps.instructions[register].value
-            place[register] = int(value) if family.operation == "input" else position
-    return found, list(zip(family_of, place, strict=True))
 
 
 def is_worth_rolling(steps: Program, beside: Program | None = None) -> bool:
@@ -89,9 +43,9 @@ def is_worth_rolling(steps: Program, beside: Program | None = None) -> bool:
     shortest = _BESIDE if beside is not None and is_worth_rolling(beside) else _REGULAR
     if count <= shortest:
         return False
-    families, location = _families(steps)
-    places = _operand_places(steps, families, location)
-    tables = sum(not _is_regular(column) for columns in places for column in columns)
+    families, location = families_of(steps)
+    places = operand_places(steps, families, location)
+    tables = sum(not is_regular(column) for columns in places for column in columns)
     return count > _IRREGULAR or tables == 0
 
 
@@ -112,27 +66,6 @@ def write_rolled(w: Writer, steps: Program, state: str, clock: str, take: Callab
     _Rolling(w, steps, state, clock).write(take)
 
 
-def _operand_places(
-    steps: Program, families: Sequence[_Family], location: Sequence[tuple[int, int]]
-) -> list[list[list[int]]]:
-    """Return, by family and operand, where each member finds the operand in the operand's family."""
-    found: list[list[list[int]]] = []
-    for family in families:
-        columns: list[list[int]] = [[] for _ in family.operands]
-        for register in family.members:
-            operands = steps.instructions[register].operands
-            if family.operation in ("add", "mul"):
-                operands = tuple(sorted(operands, key=lambda o: location[o][0]))
-            for column, operand in zip(columns, operands, strict=True):
-                column.append(location[operand][1])
-        found.append(columns)
-    return found
-
-
-def _is_regular(places: Sequence[int]) -> bool:
-    return len(places) < 3 or all(b - a == places[1] - places[0] for a, b in itertools.pairwise(places))
-
-
 @dataclass
 class _Loop:
     """Families of one size whose members, one by one, read what the same loop wrote just before, or older arrays.
@@ -148,8 +81,8 @@ class _Loop:
 class _Rolling:
     def __init__(self, w: Writer, steps: Program, state: str, clock: str) -> None:
         self.w, self.steps, self.state, self.clock = w, steps, state, clock
-        self.families, self.location = _families(steps)
-        self.places = _operand_places(steps, self.families, self.location)
+        self.families, self.location = families_of(steps)
+        self.places = operand_places(steps, self.families, self.location)
         self.loops = self._together(self._separate())
         self.outputs = self._outputs()
         self.arrays = {kind: w.array(len(self.families[kind].members)) for kind in sorted(self._kept())}
@@ -193,7 +126,7 @@ class _Rolling:
         loops: list[_Loop] = []
         loop_of: dict[int, int] = {}
         for number, family in enumerate(self.families):
-            if family.operation in _LEAVES:
+            if family.operation in LEAVES:
                 continue
             size, earliest = len(family.members), 0
             for operand, places in zip(family.operands, self.places[number], strict=True):
@@ -237,7 +170,7 @@ class _Rolling:
             operand
             for number in families
             for operand in self.families[number].operands
-            if self.families[operand].operation not in _LEAVES
+            if self.families[operand].operation not in LEAVES
         }
 
     # what lies in memory -------------------------------------------------------------------------
@@ -255,7 +188,7 @@ class _Rolling:
     def _is_taken_at_once(self, kind: int) -> bool:
         """Return whether every member of a family is one output, in order: then none waits for the others."""
         family = self.families[kind]
-        return family.operation not in _LEAVES and self.outputs[kind][1] == list(range(len(family.members)))
+        return family.operation not in LEAVES and self.outputs[kind][1] == list(range(len(family.members)))
 
     def _kept(self) -> set[int]:
         """Return the families that are read from memory: by other loops, or as outputs later.
@@ -267,7 +200,7 @@ class _Rolling:
             own = {*loop.families, *loop.after}
             others = self._read_by(sorted(own)) - own
             kept |= others if loop.size > _WRITTEN_OUT else {each for each in others if self._is_dear(each)}
-        return {kind for kind in kept if self.families[kind].operation not in _LEAVES}
+        return {kind for kind in kept if self.families[kind].operation not in LEAVES}
 
     def _is_dear(self, number: int) -> bool:
         """Return whether members are better read than computed again: there are few, or functions in them."""
@@ -319,7 +252,7 @@ class _Rolling:
     def _again(self, kind: int, place: int, done: dict[tuple[int, int], str]) -> str:
         """Read a member whose place is known, or compute it again where it is not in memory."""
         family = self.families[kind]
-        if family.operation in _LEAVES or kind in self.arrays:
+        if family.operation in LEAVES or kind in self.arrays:
             return self._operand(kind, str(place))
         if (kind, place) not in done:
             operands = [
@@ -342,7 +275,7 @@ class _Rolling:
     def _index(self, places: Sequence[int], k: str) -> str:
         """Write the place that belongs to member k: a stride, or an entry of a table."""
         stride = places[1] - places[0] if len(places) > 1 else 0
-        if _is_regular(places):
+        if is_regular(places):
             if stride == 0:
                 return str(places[0])
             scaled = k if stride == 1 else self.w.let(f"mul i64 {k}, {stride}")

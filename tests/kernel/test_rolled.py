@@ -9,6 +9,7 @@ import sympy as sp
 from canon.expression.symbol import coordinates, time
 from canon.kernel import loop as loops
 from canon.kernel import rolled
+from canon.kernel.family import families_of
 from canon.kernel.machine import DOUBLE, MachineType
 from canon.kernel.structure import equations
 from canon.kernel.writer import Writer
@@ -109,7 +110,7 @@ def test_long_chains_are_rolled_without_tables_and_small_systems_are_not():
     q, H = bodies(12)
     system = equations(H, q, tuple(s.momentum for s in q), time, {})
     assert not rolled.is_worth_rolling(system.program(system.force))
-    families, _ = rolled._families(force(100))
+    families, _ = families_of(force(100))
     assert len(families) < 40
 
 
