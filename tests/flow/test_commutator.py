@@ -20,6 +20,7 @@ METHODS = [
     SBAB(3, commutator=True),
     WisdomHolman(corrector=5, commutator=True),
 ]
+FIRST = [*METHODS[:2], *(pytest.param(method, marks=pytest.mark.slow) for method in METHODS[2:])]
 
 
 def without(method):
@@ -49,7 +50,7 @@ def test_it_remains_quadratic_in_the_perturbation():
     assert np.diff(np.log10(linear)) == pytest.approx(2, abs=0.02)
 
 
-@pytest.mark.parametrize("method", METHODS, ids=str)
+@pytest.mark.parametrize("method", FIRST, ids=str)
 def test_errors_are_smaller_than_without(method):
     with_it, plain = (energy_errors("1e-2", each, (0.12,))[0] for each in (method, without(method)))
     assert with_it < plain / 10
@@ -65,7 +66,7 @@ def test_the_wrong_sign_is_noticed():
     assert energy_slope("1e-2", uncorrected, SHORT) == pytest.approx(2, abs=0.2)
 
 
-@pytest.mark.parametrize("method", METHODS, ids=str)
+@pytest.mark.parametrize("method", FIRST, ids=str)
 def test_the_discrete_map_is_symplectic(method):
     system, masses = planets("0.5")
     m = compiled_jacobian(system, planets_start(masses), method, 0.2, delta=2.0**-8)

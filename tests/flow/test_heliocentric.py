@@ -27,6 +27,7 @@ METHODS = [
     SBAB(2, **DEMOCRATIC),
     SABA("8-6-4", **DEMOCRATIC),
 ]
+FIRST = [*METHODS[:2], *(pytest.param(method, marks=pytest.mark.slow) for method in METHODS[2:])]
 
 
 @pytest.mark.parametrize(
@@ -60,7 +61,7 @@ def test_errors_grow_as_the_perturbation_and_as_its_square():
     assert np.diff(np.log10(square)) == pytest.approx(3, abs=0.1)
 
 
-@pytest.mark.parametrize("method", METHODS, ids=str)
+@pytest.mark.parametrize("method", FIRST, ids=str)
 def test_the_discrete_map_is_symplectic(method):
     system, masses = planets("0.5")
     m = compiled_jacobian(system, planets_start(masses), method, 0.2, delta=2.0**-8)
@@ -68,7 +69,7 @@ def test_the_discrete_map_is_symplectic(method):
     assert abs(m.T @ j @ m - j).max() < 2e-10
 
 
-@pytest.mark.parametrize("method", METHODS, ids=str)
+@pytest.mark.parametrize("method", FIRST, ids=str)
 def test_time_reversal(method):
     system, masses = planets("1e-2")
     bound = 1e-5 if method.corrector else 1e-12
