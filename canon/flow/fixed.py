@@ -143,8 +143,7 @@ def _on_threads(
                 raise Interruption
             with lock:
                 done[k] = fraction
-                if k == 0:
-                    progress(min(done))
+                progress(min(done))
 
         chosen = parts[k].ravel()
         own = None if watch is None else dataclasses.replace(watch, start=watch.start[chosen])
