@@ -140,19 +140,20 @@ def bodies(count: int) -> Case:
     )
 
 
-def c_function(case: Case, folder: Path) -> ctypes._CFuncPtr | None:
-    """Compile the hand-written loop."""
+def c_function(case: Case, folder: Path, *flags: str) -> ctypes._CFuncPtr | None:
+    """Compile the hand-written loop, with further flags where given."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     if compiler is None:
         return None
     n = len(case.q)
-    source, library = folder / f"{case.name}.c", folder / f"{case.name}.so"
+    source, library = folder / f"{case.name}.c", folder / f"{case.name}{''.join(flags)}.so"
     masses = ", ".join(map(repr, case.masses))
     source.write_text(PROGRAM.format(n=n, bodies=len(case.masses), masses=masses, force=case.force))
     subprocess.run(
         [
             compiler,
             "-O3",
+            *flags,
             "-march=native",
             "-fno-math-errno",
             "-shared",
@@ -222,26 +223,34 @@ def measure(case: Case, scheme: str, folder: Path) -> str:
 
 
 def ensemble(case: Case, scheme: str, folder: Path) -> str:
-    """Time a step of each of 10⁴ orbits side by side on one processor, beside C's step of one orbit."""
-    c_call = c_caller(case, scheme, folder)
-    if c_call is None:
+    """Time a step of each of 10⁴ orbits side by side on one processor, beside C's step of one orbit.
+
+    And beside that of C without SIMD instructions, a scalar trajectory: along a chain C uses them itself.
+    """
+    c_call, scalar = c_caller(case, scheme, folder), c_caller(case, scheme, folder, "-fno-tree-vectorize")
+    if c_call is None or scalar is None:
         return f"{case.name:14} {scheme:12} no C compiler"
     system = equations(case.H, case.q, tuple(s.momentum for s in case.q), t, {})
     begun = time.process_time()
     calls = {name: _many(system, case, scheme, name) for name in ("double", "compensated", "double-double")}
     spent = time.process_time() - begun
-    times: dict[str, list[float]] = {name: [] for name in ("C", *calls)}
+    times: dict[str, list[float]] = {name: [] for name in ("C", "scalar C", *calls)}
     steps = enough_steps(c_call)
     many = max(1, steps // ORBITS + 1)
     for _ in range(REPEATS):
-        begun = time.thread_time()
-        c_call(steps)
-        times["C"].append((time.thread_time() - begun) / steps)
+        for name, one in (("C", c_call), ("scalar C", scalar)):
+            begun = time.thread_time()
+            one(steps)
+            times[name].append((time.thread_time() - begun) / steps)
         for name, call in calls.items():
             times[name].append(call(many) / many / ORBITS)
     median = {name: statistics.median(found) for name, found in times.items()}
-    ratios = " ".join(f"{name} {median[name] / median['C']:6.3f} × C" for name in calls)
-    return f"{case.name:14} {scheme:12} C {1e9 * median['C']:8.1f} ns a step; {ratios}; compiled in {spent:.2f} s"
+    ratios = " ".join(
+        f"{name} {median[name] / median['C']:6.3f} ({median[name] / median['scalar C']:5.3f})"
+        for name in calls
+    )
+    times_of_c = f"C {1e9 * median['C']:7.1f} (scalar {1e9 * median['scalar C']:7.1f}) ns a step"
+    return f"{case.name:14} {scheme:12} {times_of_c}; {ratios} × C (scalar C); compiled in {spent:.2f} s"
 
 
 def _many(system: Equations, case: Case, scheme: str, precision: str) -> Callable[[int], float]:
@@ -270,9 +279,9 @@ def coefficients_of(case: Case, scheme: str) -> np.ndarray:
     return np.array([0.0, case.step, *(x for pair in zip(a, b, strict=False) for x in pair), a[-1]])
 
 
-def c_caller(case: Case, scheme: str, folder: Path) -> Callable[[int], np.ndarray] | None:
+def c_caller(case: Case, scheme: str, folder: Path, *flags: str) -> Callable[[int], np.ndarray] | None:
     """Return what runs the hand-written loop and returns the state it ends in."""
-    c_run, n = c_function(case, folder), len(case.q)
+    c_run, n = c_function(case, folder, *flags), len(case.q)
     if c_run is None:
         return None
     a, b = (np.array([float(x) * case.step for x in half]) for half in (SCHEMES[scheme].a, SCHEMES[scheme].b))
