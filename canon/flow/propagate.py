@@ -64,7 +64,8 @@ def propagate(
     precision
         Fixed steps: ``"single"``, ``"double"``, ``"compensated"`` (the default: doubles, what rounding takes
         from the state being carried along so that little is lost), ``"extended"`` (64 bits, x86 only),
-        ``"double-double"`` (106 bits; all functions but the inverse hyperbolic ones). Taylor: ``"double"``, ``"extended"``, ``"quad"`` or decimal digits.
+        ``"double-double"`` (106 bits; all functions but the inverse hyperbolic ones). Taylor: ``"double"``,
+        ``"extended"``, ``"quad"`` or decimal digits.
     parameters
         A number for every parameter of H, by symbol or name; or, where it differs from orbit to orbit, an array
         of shape (orbits,).
