@@ -20,6 +20,7 @@ from canon.expression.symbol import velocity
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
 from canon.proof.generic import proved_sign
+from canon.proof.polynomial import polynomial_factors
 from canon.proof.prove import is_empty
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Undecided
@@ -172,7 +173,7 @@ def check_whole(constraints: Sequence[Expr], velocities: Sequence[Symbol], domai
     canon.proof.verdict.Undecided: the constraint holds for all velocities where y = 0; ...
     """
     for g in constraints:
-        for factor, _ in sp.factor_list(sp.numer(sp.together(g)))[1] if g.has(*velocities) else ():
+        for factor, _ in polynomial_factors(g) if g.has(*velocities) else ():
             if (
                 not factor.has(*velocities)
                 and factor.is_nonzero is not True
@@ -282,10 +283,8 @@ def _factors(expression: Expr, prefer: Sequence[Symbol]) -> list[Expr]:
 
     Where some hold what is solved for, such as velocities, the others vanish in singular points only.
     """
-    numerator = sp.numer(sp.together(expression))
-    factors = cast("list[tuple[Expr, int]]", sp.factor_list(numerator)[1])
-    able = [f for f, _ in factors if f.is_nonzero is not True and f.is_positive is not True]
-    return [f for f in able if prefer and f.has(*prefer)] or able or [numerator]
+    able = [f for f, _ in polynomial_factors(expression) if not (f.is_nonzero or f.is_positive)]
+    return [f for f in able if prefer and f.has(*prefer)] or able or [sp.numer(sp.together(expression))]
 
 
 def _solutions(c: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]) -> Iterator[_Solution]:

@@ -6,7 +6,7 @@ redundant, its multiplier undetermined, or the rows contradict one another. For 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -14,6 +14,7 @@ from sympy import Expr, Symbol
 from canon.mechanics.claim import differ
 from canon.mechanics.linear import eliminate
 from canon.proof.domain import Domain, as_domain
+from canon.proof.polynomial import polynomial_factors
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
@@ -99,8 +100,8 @@ def _refuse_power(a: int, f: Expr) -> None:
     """Refuse f = hᵏ, whose gradient vanishes where f does, so that no reaction follows from it."""
     if f.has(sp.Piecewise):  # SymPy factors no polynomials in these
         return
-    _, factors = cast("Any", sp.factor_list(f))
-    repeated = [h for h, power in factors if power > 1 and h.free_symbols]
+    factors = polynomial_factors(f)
+    repeated = [h for h, power in factors if power > 1]
     if repeated:
         raise DependentConstraintsError(
             f"constraint {a} ({f} = 0) holds a power, so its gradient vanishes where it does; write "

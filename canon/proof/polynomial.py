@@ -1,0 +1,53 @@
+"""Factors of polynomials over the integers, by FLINT: SymPy's own factorisation may take hours in several variables."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import cast
+
+import sympy as sp
+from flint import Ordering, fmpz_mpoly_ctx
+from sympy import Expr
+
+__all__ = ["polynomial_factors"]
+
+
+def polynomial_factors(expression: Expr) -> list[tuple[Expr, int]]:
+    """Return the irreducible factors of an expression's numerator that are not numbers, and how often each occurs.
+
+    The numerator is taken as a polynomial in symbols and in whatever else it holds, such as sin x. A factor of it
+    whose coefficients are not rational stays whole.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y")
+    >>> polynomial_factors((x**2 - y**2) * sp.sin(x) ** 2 / 2)
+    [(x - y, 1), (x + y, 1), (sin(x), 2)]
+    """
+    numerator = cast("Expr", sp.numer(sp.together(expression)))
+    counts = Counter[Expr]()
+    for part in sp.Mul.make_args(numerator):
+        base, power = part.as_base_exp()
+        if not (power.is_Integer and power > 0):
+            base, power = part, sp.S.One
+        for factor, times in _factors(base):
+            counts[factor] += times * int(power)
+    return sorted(counts.items(), key=lambda item: sp.default_sort_key(item[0]))
+
+
+def _factors(base: Expr) -> list[tuple[Expr, int]]:
+    if not base.free_symbols:
+        return []
+    try:
+        poly = sp.Poly(base)
+    except sp.PolynomialError:
+        return [(base, 1)]
+    if not (poly.domain.is_ZZ or poly.domain.is_QQ):
+        return [(base, 1)]
+    whole = poly.clear_denoms(convert=True)[1]
+    context = fmpz_mpoly_ctx.get([f"x{i}" for i in range(len(whole.gens))], Ordering.lex)
+    _, found = context.from_dict({powers: int(c) for powers, c in whole.terms()}).factor()
+    return [
+        (sp.Poly({powers: int(c) for powers, c in f.to_dict().items()}, *whole.gens).as_expr(), int(times))
+        for f, times in found
+    ]
