@@ -52,6 +52,9 @@ _MEANINGLESS = 0.1
 _CHAOTIC = math.log(100.0)
 """Growth by less than 100 in the latter half of the time may be that of a regular motion, a power of time."""
 
+_OFTEN = 4
+"""Of the latter six eighths of the time so many have growth where it is chaotic; it may pause in the others."""
+
 _FEWEST = 8
 """Samples from which growth is judged."""
 
@@ -357,8 +360,9 @@ def _e_folding(t: Array, condition: Array) -> float | None:
     if used.sum() < _FEWEST:
         return None
     times, logarithm = t[used], np.log(condition[used])
-    growth = np.diff(np.interp(times[-1] * np.arange(5) / 4, times, logarithm))
-    # A power of t grows in the first quarter of the time, a single close encounter in one of them.
-    if growth[2:].sum() < _CHAOTIC or growth[1:].min() < logarithm[-1] / 12:
+    growth = np.diff(np.interp(times[-1] * np.arange(9) / 8, times, logarithm))
+    # A power of t grows in the first quarter of the time, a single close encounter in one or two of the eighths.
+    often = (growth[2:] >= logarithm[-1] / 24).sum()
+    if growth[4:].sum() < _CHAOTIC or often < _OFTEN:
         return None
     return float(1 / np.polyfit(times, logarithm, 1)[0])

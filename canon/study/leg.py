@@ -260,7 +260,7 @@ def _evenly(case: Case) -> bool:
     """Tell whether even samples do, from the period where it is known, else from a look at the first few intervals."""
     interval = case.span / case.samples
     if isinstance(case.method, TimeTransformed):
-        return True  # it keeps even samples only
+        return True  # even in steps, which vary with the motion; landing at scattered times would cost more than they
     if (period := case.period) is not None and interval * FEWEST_A_PERIOD <= period:
         return True
     every, step = FINE, case.step

@@ -112,9 +112,9 @@ def test_a_collision_that_taylor_s_method_can_not_pass_is_an_error():
         propagate(KEPLER, [2.0, 0.0, 0.0, 7e-7], (0, 100), samples=50)
 
 
-def test_chaos_is_said():
+def double_pendulum():
     a, b = coordinates("a b")
-    double = Hamiltonian(
+    return Hamiltonian(
         (a.momentum**2 - 2 * sp.cos(a - b) * a.momentum * b.momentum + 2 * b.momentum**2)
         / (2 + 2 * sp.sin(a - b) ** 2)
         - 2 * sp.cos(a)
@@ -122,16 +122,26 @@ def test_chaos_is_said():
         [a, b],
         [a.momentum, b.momentum],
     )
-    motion = propagate(double, [2.003, 2.5, 0.0, 0.0], (0, 150), samples=150)
+
+
+@pytest.mark.parametrize("angle", [1.994, 2.0, 2.003, 2.008])
+def test_chaos_is_said(angle):
+    double, start = double_pendulum(), [angle, 2.5, 0.0, 0.0]
+    motion = propagate(double, start, (0, 150), samples=150)
     estimate = motion.error_estimate()
     assert 1.5 < estimate.lyapunov_time < 6
     assert 60 < estimate.meaningful_until < 160
     assert "this single trajectory means nothing" in str(estimate)
-    truth = propagate(double, [2.003, 2.5, 0.0, 0.0], (0, 150), samples=150, precision="quad")
+    truth = propagate(double, start, (0, 150), samples=150, precision="quad")
     with_meaning = motion.t < estimate.meaningful_until
     error = abs(motion.y - truth.y - truth.carried)
     assert (error <= estimate.error)[:, with_meaning].all()
     assert error[:, ~with_meaning].max() > 0.1
+
+
+def test_small_oscillations_are_no_chaos():
+    motion = propagate(double_pendulum(), [0.2, 0.3, 0.0, 0.0], (0, 600), samples=150)
+    assert motion.error_estimate().lyapunov_time is None
 
 
 def test_one_close_encounter_is_no_chaos():
