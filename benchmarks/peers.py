@@ -123,8 +123,8 @@ def canon_methods(problem: Problem) -> Iterator[Contender]:
     if problem.scene == "kepler":
         methods.append(WisdomHolman())
     if problem.scene == "outer-solar-system":
-        methods = [WisdomHolman(), WisdomHolman(corrector=17), SABA(2), SABA(4),
-                   SABA("8-6-4"), SABA("10-6-4")]  # fmt: skip
+        methods = [WisdomHolman(), WisdomHolman(corrector=11), WisdomHolman(corrector=11, commutator=True),
+                   SABA(2), SABA(4), SABA("8-6-4"), SABA("10-6-4")]  # fmt: skip
     if problem.scene == "henon-heiles":
         methods += [SABA("8-6-4"), SABA("10-6-4")]
     if problem.scene == "double-pendulum":
