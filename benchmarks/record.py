@@ -27,6 +27,7 @@ BENCHMARKS = {
     "kernels": "Compiled loops, beside a C program",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",
+    "peers": "Work at a wanted accuracy, beside other libraries",
     "planets": "The planets, by methods for small perturbations",
     "scale_out": "Studies on two processes",
     "drift_calibration": "The drift statistics on series of known growth",
