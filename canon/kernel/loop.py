@@ -22,8 +22,6 @@ from typing import TYPE_CHECKING
 
 from canon.kernel.llvm import MachineCode, compiled
 from canon.kernel.machine import DOUBLE, MachineType
-from canon.kernel.pairwise import pair_forces, write_pair_forces
-from canon.kernel.rolled import is_worth_rolling, write_rolled
 from canon.kernel.writer import LIBRARY, Writer
 
 if TYPE_CHECKING:
@@ -39,7 +37,6 @@ __all__ = [
     "Loop",
     "field_function",
     "runge_kutta_loop",
-    "splitting_loop",
 ]
 
 _POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
@@ -47,8 +44,6 @@ SIGNATURE = (_POINTER, _POINTER, _POINTER, _INTEGER, _INTEGER, _INTEGER)
 PARAMETERS = "ptr noalias %y, ptr noalias %e, ptr noalias %c, i64 %first, i64 %steps, i64 %blocks"
 METHOD = 2
 """Where the method's own coefficients start in c."""
-
-_LONG, _ALIGNED, _APART = 64, 8, 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,98 +76,6 @@ class Loop:
     carry: int
     implicit: bool = False
     coefficients: Callable[[Fraction], list[Fraction]] | None = None
-
-
-def splitting_loop(
-    system: Equations,
-    stages: int,
-    *,
-    compensated: bool,
-    number: MachineType = DOUBLE,
-    kick_first: bool = False,
-) -> Loop:
-    """Compile drift–kick–…–drift steps for H = T(p, t) + V(q, t).
-
-    The coefficients are h·a₁, h·b₁, …, h·a_s, h·b_s, h·a_{s+1}. Two clocks make time-dependent parts exact
-    splittings of the extended phase space: a kick reads the clock that drifts advance, and the other way
-    round.
-
-    Parameters
-    ----------
-    system, stages
-        The equations, and the number s of kicks.
-    compensated, number
-        The arithmetic.
-    kick_first
-        Whether a₁ = a_{s+1} = 0 and t is absent from H: a step's first kick then uses the force of the last one.
-    """
-    n = len(system.q)
-    w = Writer(number)
-    gap = _gap(n)
-    y, e = w.array(2 * n + gap), w.array(2 * n + gap) if compensated else ""
-    force = w.array(n)
-    drift_clock, kick_clock = w.array(1), w.array(1)
-    pairs = pair_forces(system)
-
-    def evaluate(nodes: Sequence[int], reads: int, clock: str, take: Callable[[str, str], None]) -> None:
-        steps = system.program(nodes)
-        state = w.at(y, gap) if reads else y
-        if is_worth_rolling(steps, system.program(system.force) if reads else None):
-            write_rolled(w, steps, state, clock, take)
-            return
-        arguments = ["poison"] * (2 * n + 1)
-        for i in range(n):
-            arguments[reads + i] = w.load(state, reads + i)
-        arguments[2 * n] = w.load(clock, 0)
-        for i, value in enumerate(w.program(steps, arguments)):
-            take(str(i), value)
-
-    def evaluate_force(take: Callable[[str, str], None]) -> None:
-        if pairs is None:
-            evaluate(system.force, 0, drift_clock, take)
-            return
-        others = pairs.rest
-        write_pair_forces(w, pairs, y, lambda each: evaluate(others, 0, drift_clock, each), take)
-
-    def moving(first: int, coefficient: str) -> Callable[[str, str], None]:
-        """Return what adds coefficient · rate to the components from ``first`` on."""
-        return lambda i, rate: increase(w, y, e, w.let(f"add i64 {i}, {first}"), coefficient, rate)
-
-    def advance_clock(clock: str, coefficient: str) -> None:
-        if not system.autonomous:
-            w.store(w.algebra("add", w.load(clock, 0), coefficient), clock, 0)
-
-    def drift(coefficient: str) -> None:
-        evaluate(system.velocity, n, kick_clock, moving(0, coefficient))
-        advance_clock(drift_clock, coefficient)
-
-    def kick(coefficient: str) -> None:
-        if kick_first:
-            evaluate_force(lambda i, rate: w.store(rate, force, i))
-            kick_again(coefficient)
-        else:
-            evaluate_force(moving(n + gap, coefficient))
-        advance_clock(kick_clock, coefficient)
-
-    def kick_again(coefficient: str) -> None:
-        with w.loop(0, n) as i:
-            moving(n + gap, coefficient)(i, w.load(force, i))
-
-    with blocks_of(w, y, e, 2 * n, 2 * n, gap):
-        if kick_first:
-            evaluate_force(lambda i, rate: w.store(rate, force, i))
-        with steps_of(w, system) as time:
-            w.store(time, drift_clock, 0)
-            w.store(time, kick_clock, 0)
-            if kick_first:
-                kick_again(w.load("%c", METHOD + 1))
-            with w.loop(int(kick_first), stages) as s:
-                pair = w.let(f"shl i64 {s}, 1")
-                drift(w.load("%c", w.let(f"add i64 {pair}, {METHOD}")))
-                kick(w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}")))
-            if not kick_first:
-                drift(w.load("%c", METHOD + 2 * stages))
-    return finished(w, n, compensated=compensated)
 
 
 def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
@@ -215,15 +118,6 @@ def field_function(field: Program) -> MachineCode:
 
 
 # pieces of loops -------------------------------------------------------------------------------------
-
-
-def _gap(n: int) -> int:
-    """Return how many numbers to leave free between q and p.
-
-    Where they are many, q starts where SIMD stores do and p one number before: it is the inner members of a chain that
-    are moved together. Both are set apart, for addresses that differ by a multiple of 4096 bytes delay each other.
-    """
-    return _APART + -(n + 1) % _ALIGNED if n >= _LONG else 0
 
 
 @contextlib.contextmanager

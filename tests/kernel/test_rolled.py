@@ -1,4 +1,4 @@
-"""Rolled loops give the bits of the same program written out."""
+"""Rolled splitting give the bits of the same program written out."""
 
 import itertools
 
@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbol import coordinates, time
-from canon.kernel import loop as loops
+from canon.kernel import splitting
 from canon.kernel import rolled
 from canon.kernel.family import families_of
 from canon.kernel.machine import DOUBLE, MachineType
@@ -51,7 +51,7 @@ def driven(n):
 
 
 def stepped(system, number=DOUBLE, *, compensated, kick_first=False, steps=20):
-    made = loops.splitting_loop(system, 3, compensated=compensated, number=number, kick_first=kick_first)
+    made = splitting.splitting_loop(system, 3, compensated=compensated, number=number, kick_first=kick_first)
     n = len(system.q)
     y = np.random.default_rng(5).normal(size=(2 * n, number.lanes)).ravel() / 3
     e = np.zeros(y.size)
@@ -79,14 +79,14 @@ def test_rolled_and_written_out_programs_agree_bit_for_bit(make, lanes, compensa
     q, H = make()
     system = equations(H, q, tuple(s.momentum for s in q), time, {})
     number = MachineType("double", 53, "float64", "", lanes=lanes)
-    monkeypatch.setattr(loops, "is_worth_rolling", lambda *_: False)
+    monkeypatch.setattr(splitting, "is_worth_rolling", lambda *_: False)
     out = stepped(system, number, compensated=compensated)
-    monkeypatch.setattr(loops, "is_worth_rolling", lambda *_: True)
+    monkeypatch.setattr(splitting, "is_worth_rolling", lambda *_: True)
     np.testing.assert_array_equal(stepped(system, number, compensated=compensated), out)
     assert np.isfinite(out).all()
     if system.autonomous:
         shared = stepped(system, number, compensated=compensated, kick_first=True)
-        monkeypatch.setattr(loops, "is_worth_rolling", lambda *_: False)
+        monkeypatch.setattr(splitting, "is_worth_rolling", lambda *_: False)
         np.testing.assert_array_equal(
             stepped(system, number, compensated=compensated, kick_first=True), shared
         )
@@ -118,7 +118,7 @@ def test_a_chains_forces_run_one_behind_its_bonds_and_nothing_lies_in_memory():
     q, H = chain(100)
     system = equations(H, q, tuple(s.momentum for s in q), time, {})
     made = rolled._Rolling(Writer(DOUBLE), system.program(system.force), "%q", "%t")
-    assert [loop.size for loop in made.loops if loop.after] == [99]
+    assert [loop.size for loop in made.splitting if loop.after] == [99]
     # The squares of the two ends.
     assert [len(made.families[kind].members) for kind in made.arrays] == [2]
     q, H = toda(100)
