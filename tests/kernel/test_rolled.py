@@ -1,4 +1,4 @@
-"""Rolled splitting give the bits of the same program written out."""
+"""Rolled loops give the bits of the same program written out."""
 
 import itertools
 
@@ -7,8 +7,7 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbol import coordinates, time
-from canon.kernel import splitting
-from canon.kernel import rolled
+from canon.kernel import rolled, splitting
 from canon.kernel.family import families_of
 from canon.kernel.machine import DOUBLE, MachineType
 from canon.kernel.structure import equations
@@ -118,7 +117,7 @@ def test_a_chains_forces_run_one_behind_its_bonds_and_nothing_lies_in_memory():
     q, H = chain(100)
     system = equations(H, q, tuple(s.momentum for s in q), time, {})
     made = rolled._Rolling(Writer(DOUBLE), system.program(system.force), "%q", "%t")
-    assert [loop.size for loop in made.splitting if loop.after] == [99]
+    assert [loop.size for loop in made.loops if loop.after] == [99]
     # The squares of the two ends.
     assert [len(made.families[kind].members) for kind in made.arrays] == [2]
     q, H = toda(100)
