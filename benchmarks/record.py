@@ -33,6 +33,7 @@ BENCHMARKS = {
     "drift_calibration": "The drift statistics on series of known growth",
     "choose": "What `choose` foretells, beside what came of it",
 }
+ARGUMENTS = {"kernels": ["--large"], "drift_calibration": ["200"]}
 HEAD = """\
 # What was measured
 
@@ -43,7 +44,7 @@ one run are what counts.
 
 def section(name: str) -> str:
     done = subprocess.run(
-        [sys.executable, str(HERE / f"{name}.py")],
+        [sys.executable, str(HERE / f"{name}.py"), *ARGUMENTS.get(name, [])],
         capture_output=True,
         text=True,
         cwd=HERE.parent,
@@ -53,8 +54,9 @@ def section(name: str) -> str:
     if done.returncode:
         sys.exit(f"benchmarks/{name}.py ended with status {done.returncode}:\n{done.stderr}")
     tools = ", ".join(f"{name} {version(name)}" for name in ("sympy", "python-flint", "llvmlite", "heyoka"))
+    command = " ".join([f"{name}.py", *ARGUMENTS.get(name, [])])
     where = f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
-    return f"## {BENCHMARKS[name]}\n\n`python benchmarks/{name}.py` ({where})\n\n```text\n{printed}\n```\n"
+    return f"## {BENCHMARKS[name]}\n\n`python benchmarks/{command}` ({where})\n\n```text\n{printed}\n```\n"
 
 
 def main(names: list[str]) -> None:
