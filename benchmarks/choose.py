@@ -1,6 +1,7 @@
 """Whether `choose` keeps its promises: error kept, cost as predicted, and near the best of an exhaustive search.
 
-Run:  python -m benchmarks.choose [part of a scene's name]
+``python -m benchmarks.choose`` prints the stored table; ``--run`` computes it anew (a quarter of an hour of processor
+time), ``--run PART`` the scenes whose names hold a text.
 
 Every case is a scene, a start, a span in periods, an observable and an accuracy. The chosen setting is run over the
 whole span: its cost (least of three runs without samples) and its largest error (followed at every step). The
@@ -11,6 +12,7 @@ cost more than the best already found. Times are processor times, without compil
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 import time
@@ -31,6 +33,8 @@ from canon.study.choose_search import widest_step
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+STORED = Path(__file__).parent / "results" / "choose.txt"
 
 CASES: tuple[tuple[str, str | None, str, float, tuple[float, ...]], ...] = (
     ("simple-pendulum", "small", "energy", 3e3, (1e-4, 1e-8, 1e-11)),
@@ -215,7 +219,14 @@ def near(found: Outcome) -> bool:
 
 
 def main() -> None:
-    part = sys.argv[1] if len(sys.argv) > 1 else ""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--run", nargs="?", const="", metavar="PART")
+    part = parser.parse_args().run
+    if part is None:
+        print(STORED.read_text(encoding="utf-8"), end="")
+        return
     started = time.process_time()
     print(
         "error and cost: predicted, measured; cost in ms; measured over the best of the search; s it took to choose"
