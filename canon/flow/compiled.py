@@ -10,10 +10,11 @@ from canon.flow.method import RK4, FixedStep, Gauss, Splitting
 from canon.flow.partial import PartialSteps
 from canon.flow.solvable import SolvableSplitting
 from canon.flow.solvable import loop_of as solvable_loop_of
-from canon.kernel.gauss import gauss_coefficients, gauss_loop
+from canon.kernel.gauss import gauss_loop
 from canon.kernel.llvm import simd_bytes
 from canon.kernel.loop import Loop, runge_kutta_loop
 from canon.kernel.splitting import splitting_loop
+from canon.kernel.tableau import gauss_coefficients
 
 if TYPE_CHECKING:
     from fractions import Fraction

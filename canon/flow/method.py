@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from canon.expression.given import counted
 from canon.flow.solvable import SolvableSplitting
-from canon.kernel.gauss import HIGHEST_STAGES
 from canon.kernel.order import order
 from canon.kernel.scheme import SCHEMES, Scheme
+from canon.kernel.tableau import HIGHEST_STAGES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

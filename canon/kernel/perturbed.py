@@ -22,8 +22,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.gauss import gauss_tableau
 from canon.kernel.scheme import Scheme, palindrome
+from canon.kernel.tableau import gauss_tableau
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,7 +11,7 @@ from canon.flow.event import Event
 from canon.flow.measure import AccuracyWarning
 from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
-from canon.kernel.gauss import gauss_tableau
+from canon.kernel.tableau import gauss_tableau
 from tests.flow.systems import KEPLER, PENDULUM, System, kepler_start, x, y
 
 FALL_TIME = math.pi / math.sqrt(8)
