@@ -94,7 +94,7 @@ class Guard:
         -------
         tuple
             The state where the motion goes on, or where it stopped; which part of the step that is, 1 where
-            all of it was passed; what the compiled loop is to know.
+            all of it was passed; what the compiled loop is to know, empty where the motion stopped.
         """
         base, begin, end = before, Fraction(0), after
         self.legs = [(begin, base)]

@@ -97,7 +97,7 @@ def run_with_events(
                     raise job.lost(*safe, first, n - first, np.array(system.rows))
                 old = State(*job.states(), job.beyond())
                 new, part, known = guard.through(n - 1, _state_in(job, before), old)
-                if part < 1:
+                if not known:  # stopped, maybe at the very end of the step
                     states.append((new.high, new.low))
                     beyond.append(job.beyond())
                     return _run(states, beyond, loop, started), tuple(guard.met), n - 1 + part

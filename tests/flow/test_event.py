@@ -49,6 +49,18 @@ def test_a_stop_ends_the_motion_at_the_event(method, how, forward):
         motion.resume(7 * forward)
 
 
+@pytest.mark.parametrize("below", [50, 54, 58, 60, 62, 70])
+@pytest.mark.parametrize("action", ["stop", "record"])
+def test_a_stop_within_round_off_of_the_end_of_a_step(below, action):
+    """A free body is at 1 − 2⁻ᵏ as the fourth step ends, or the fifth begins."""
+    free = System(px**2 / 2, (x,), (px,))
+    event = Event(x - 1 + sp.Rational(1, 2**below), +1, action)
+    motion = propagate(free, [0.0, 1.0], (0, 3), method=VERLET, step=0.25, events=[event])
+    assert motion.stopped == (action == "stop")
+    assert times(motion) == pytest.approx([1.0], abs=2e-15)
+    assert motion.t[-1] == pytest.approx(1.0 if motion.stopped else 3.0, abs=2e-15)
+
+
 @pytest.mark.parametrize(("method", "how"), EVERY, ids=IDS)
 @pytest.mark.parametrize("action", ["bounce", {px: -px}, {px: -px, x: sp.Integer(0)}], ids=str)
 def test_a_bounce_keeps_the_energy_and_its_times(method, how, action):
