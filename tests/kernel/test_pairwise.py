@@ -16,7 +16,7 @@ from canon.flow.compiled import compiled_loop
 from canon.flow.method import Splitting
 from canon.flow.precision import FIXED
 from canon.flow.propagate import propagate
-from canon.kernel import loop
+from canon.kernel import splitting
 from canon.kernel.pairwise import PairForces, pair_forces
 from canon.kernel.structure import Equations, equations
 from canon.mechanics.hamiltonian import Hamiltonian
@@ -107,7 +107,7 @@ def test_loops_give_the_written_out_motion(
         return motion.y[:, -1]
 
     rolled = end()
-    monkeypatch.setattr(loop, "pair_forces", lambda system: None)
+    monkeypatch.setattr(splitting, "pair_forces", lambda system: None)
     written_out = end()
     bound = {"single": 2e-5, "double": 1e-13, "compensated": 1e-13}.get(precision, 2e-15)
     assert not np.array_equal(rolled, start(len(q))[:, 0])
@@ -134,7 +134,7 @@ def test_a_wrong_strength_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = replace(found, strengths=tuple(tuple(2 * c for c in row) for row in found.strengths))
     ends = []
     for forces in (found, wrong):
-        monkeypatch.setattr(loop, "pair_forces", lambda system, forces=forces: forces)
+        monkeypatch.setattr(splitting, "pair_forces", lambda system, forces=forces: forces)
         made = compiled_loop(
             system_of(attraction(bodies), flat(bodies)), Splitting("verlet"), FIXED["double"]
         )
