@@ -1,6 +1,6 @@
 """Energy error over 10⁸ steps of Kepler's motion, e = 0.2: does it grow as Brouwer's law says, and how fast?
 
-``python benchmarks/brouwer.py`` prints the stored results; ``--run`` computes and stores them anew (about twenty
+``python benchmarks/brouwer.py`` prints the stored results; ``--run`` computes and stores them anew (about eleven
 minutes of processor time; ``--steps`` and ``--orbits`` make it shorter, and then nothing is stored), ``--run Gauss``
 those of methods whose names begin so.
 

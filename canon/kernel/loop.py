@@ -9,7 +9,7 @@ Compensation (W. Kahan, Comm. ACM 8 (1965) 40): d ← c·f + e by ``fma``, round
 y ← s. Where |y| ≥ |d| that e is the error of y + d exactly (T. J. Dekker, Numer. Math. 18 (1971) 224–242). Where a
 component passes zero, |y| < |d|, the difference s − y = d + δ with |δ| ≤ 2u|d| is rounded by at most u|d|(1 + 2u), and
 what d lacks of it is exact: e errs by little more than d has been rounded by already, in these steps only and to either
-side. Knuth's sum, which errs nowhere, takes six additions instead of three, and steps of long chains a third longer.
+side. Knuth's sum, which errs nowhere, takes six additions instead of three.
 """
 
 from __future__ import annotations

@@ -170,8 +170,8 @@ def taylor_integrator(
     """Return heyoka's adaptive integrator of Hamilton's equations.
 
     In doubles the terms of a Taylor coefficient may be added in any order, and quotients by one number become
-    products with its reciprocal, which errs as little and takes up to a third less time: not where events are looked
-    for, whose search counts on the order of operations, and not in compact mode, which does not gain.
+    products with its reciprocal, which errs as little and takes less time (benchmarks/peers.py has both): not where
+    events are looked for, whose search counts on the order of operations, and not in compact mode, which does not gain.
 
     Parameters
     ----------
