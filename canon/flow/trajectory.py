@@ -223,7 +223,7 @@ class Trajectory:
     def error_estimate(self, orbits: Sequence[int] | None = None) -> ErrorEstimate:
         """Return how far this motion is from the true one, by a companion run that is more exact.
 
-        A method of fixed steps is repeated with half the step in wider numbers, which takes about ten times as long
+        A method of fixed steps is repeated with half the step in wider numbers, which takes many times as long
         as the motion did; others are compared with Taylor's method in wider numbers. See :mod:`canon.flow.error`.
 
         Parameters
