@@ -14,6 +14,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.affine import solved
 from canon.exercise.implicit_point import refuted_at_a_point
+from canon.exercise.inversion import named
 from canon.exercise.judge_constrained import is_one_of, jets_of, with_jets
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.manifold import (
@@ -31,6 +32,7 @@ from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import substitute
 from canon.proof.generic import proved_sign
+from canon.proof.polynomial import polynomial_factors
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
@@ -221,11 +223,15 @@ def _follows(
     given: Expr, wanted: Expr, feedback: str, branch: Branch, q: Sequence[Symbol], deadline: Deadline
 ) -> Verdict:
     """Tell whether one expression vanishes wherever another does."""
+    place = ""
     try:
-        parts = on_manifold([given], branch.domain)
-        verdict = all_hold(
-            decide(Same((Part("the reaction", wanted, through=b.values),), b.domain), deadline) for b in parts
-        )
+        verdicts: list[Verdict] = []
+        for b in on_manifold([given], branch.domain):
+            verdicts.append(_vanishes_there(wanted, b, deadline))
+            if verdicts[-1].fails:
+                place = _place(b, q)
+                break
+        verdict = all_hold(verdicts)
     except EmptyDomainError:  # it vanishes nowhere
         return Verdict(Status.HOLDS, certificate="structure")
     except Undecided as reason:
@@ -244,5 +250,21 @@ def _follows(
         verdict.certificate,
         verdict.residual,
         verdict.counterexample,
-        feedback=feedback,
+        feedback=feedback + place,
     )
+
+
+def _vanishes_there(wanted: Expr, branch: Branch, deadline: Deadline) -> Verdict:
+    """Tell whether an expression vanishes on a branch; one factor that does is enough."""
+    factors = polynomial_factors(wanted)
+    for factor, _ in factors if len(factors) > 1 else ():
+        found = vanishes(substitute(factor, branch.values), branch.domain, budget=deadline.left / 4)
+        if found.holds:
+            return found
+    return decide(Same((Part("the reaction", wanted, through=branch.values),), branch.domain), deadline)
+
+
+def _place(branch: Branch, q: Sequence[Symbol]) -> str:
+    """Say where coordinates are at a place that is given by parameters."""
+    known = {x: named(f) for x, f in branch.values.items() if x in q and not f.has(*q)}
+    return f", as at {', '.join(f'{x} = {shown_short(f)}' for x, f in known.items())}" if known else ""

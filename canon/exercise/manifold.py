@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.inversion import Root, real_solutions
 from canon.exercise.tree import symbols_of
 from canon.expression.symbol import velocity
 from canon.mechanics.substitution import substitute
@@ -65,11 +66,10 @@ class Branch:
 
 @dataclass(frozen=True)
 class _Solution:
-    """One way to solve a constraint: a symbol, its values, and what must not be negative for them."""
+    """One way to solve a constraint: a symbol, and its values with what must not be negative for them."""
 
     symbol: Symbol
-    values: tuple[Expr, ...]
-    conditions: tuple[Expr, ...]
+    roots: tuple[Root, ...]
     cost: tuple[int, int]
     everywhere: bool = True
     """Whether what it is divided by vanishes nowhere."""
@@ -245,7 +245,7 @@ def _restricted(
         yield branch
         return
     for factor in _factors(here, prefer):
-        solution = min(_solutions(factor, keep, prefer), key=lambda s: s.cost, default=None)
+        solution = min(_solutions(factor, branch.domain, keep, prefer), key=lambda s: s.cost, default=None)
         if solution is None:
             raise Undecided(
                 f"{factor} = 0 could not be solved for any of its symbols in closed form; "
@@ -257,9 +257,9 @@ def _restricted(
                 "exclude them in the domain"
             )
         found = False
-        for value in solution.values:
+        for root in solution.roots:
             try:
-                part = branch.and_then(solution.symbol, value, solution.conditions)
+                part = branch.and_then(solution.symbol, root.value, root.conditions)
             except EmptyDomainError:
                 continue
             found = True
@@ -287,17 +287,25 @@ def _factors(expression: Expr, prefer: Sequence[Symbol]) -> list[Expr]:
     return [f for f in able if prefer and f.has(*prefer)] or able or [sp.numer(sp.together(expression))]
 
 
-def _solutions(c: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]) -> Iterator[_Solution]:
-    for symbol in symbols_of(c):
-        if symbol.is_integer or symbol in keep:
-            continue
-        try:
-            poly = sp.Poly(c, symbol)
-        except sp.PolynomialError:
-            continue
-        if any(coefficient.has(symbol) for coefficient in poly.all_coeffs()):
-            continue
-        wanted = 0 if symbol in prefer else 1
+def _solutions(
+    c: Expr, domain: Domain, keep: Sequence[Symbol], prefer: Sequence[Symbol]
+) -> Iterator[_Solution]:
+    able = [s for s in symbols_of(c) if not s.is_integer and s not in keep]
+    found = [solution for s in able for solution in _of_polynomial_in(c, s, 0 if s in prefer else 1)]
+    yield from found
+    for symbol in () if found else able:
+        roots = real_solutions(c, symbol, domain)
+        if roots is not None:
+            cost = (0 if symbol in prefer else 1, int(sp.count_ops(c)))
+            yield _Solution(symbol, tuple(roots), cost, everywhere=len(symbols_of(c)) == 1)
+
+
+def _of_polynomial_in(c: Expr, symbol: Symbol, wanted: int) -> Iterator[_Solution]:
+    try:
+        poly = sp.Poly(c, symbol)
+    except sp.PolynomialError:
+        return
+    if not any(coefficient.has(symbol) for coefficient in poly.all_coeffs()):
         solution = _of_polynomial(poly, symbol, wanted)
         if solution is not None:
             yield solution
@@ -313,19 +321,20 @@ def _of_polynomial(poly: sp.Poly, symbol: Symbol, wanted: int) -> _Solution | No
     if top == 1:
         rest = terms.get(0, sp.S.Zero)
         cost = (generic, 10 * wanted + size)
-        return _Solution(symbol, (-rest / lead,), (), cost, certain, (rest, lead))
+        return _Solution(symbol, (Root(-rest / lead),), cost, certain, (rest, lead))
     if set(terms) <= {0, top}:
         power = -terms.get(0, sp.S.Zero) / lead
         if symbol.is_positive:
-            return _Solution(
-                symbol, (power ** sp.Rational(1, top),), (), (generic + 1, 10 * wanted + size), certain
-            )
+            root = power ** sp.Rational(1, top)
+            return _Solution(symbol, (Root(root),), (generic + 1, 10 * wanted + size), certain)
         if top == 2:
-            root = sp.sqrt(power)
-            return _Solution(symbol, (root, -root), (power,), (generic + 4, 10 * wanted + size), certain)
+            roots = tuple(Root(sign * sp.sqrt(power), (power,)) for sign in (1, -1))
+            return _Solution(symbol, roots, (generic + 4, 10 * wanted + size), certain)
     if top == 2:
         b, c = terms.get(1, sp.S.Zero), terms.get(0, sp.S.Zero)
         discriminant = b**2 - 4 * lead * c
-        roots = tuple((-b + sign * sp.sqrt(discriminant)) / (2 * lead) for sign in (1, -1))
-        return _Solution(symbol, roots, (discriminant,), (generic + 5, 10 * wanted + size), certain)
+        roots = tuple(
+            Root((-b + sign * sp.sqrt(discriminant)) / (2 * lead), (discriminant,)) for sign in (1, -1)
+        )
+        return _Solution(symbol, roots, (generic + 5, 10 * wanted + size), certain)
     return None
