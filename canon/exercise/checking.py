@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from canon.exercise.report import Report
 from canon.exercise.sheet import Sheet, read_sheet
 from canon.exercise.worker import Worker
-from canon.expression.given import given_kind
+from canon.expression.described import given_kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

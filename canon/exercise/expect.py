@@ -9,13 +9,9 @@ from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-import sympy as sp
-from sympy.core.function import AppliedUndef
-
 from canon.exercise.sheet import DEFAULT_BUDGET, SheetError, claim_from
 from canon.exercise.worker import Worker
-from canon.expression.symbol import coordinates
-from canon.mechanics.dynamicsymbols import plain
+from canon.expression.described import of_sympy
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -87,6 +83,24 @@ def _worker(pid: int) -> Worker:  # noqa: ARG001
 
 def _written(value: Any, q: list[str]) -> Any:
     """Return a value as a sheet would hold it."""
+    if of_sympy(value):
+        return _written_by_sympy(value, q)
+    if isinstance(value, Mapping):
+        return {str(name): _written(item, q) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_written(item, q) for item in value]
+    if isinstance(value, bool | int | str):
+        return value
+    return str(value)
+
+
+def _written_by_sympy(value: Any, q: list[str]) -> Any:
+    import sympy as sp
+    from sympy.core.function import AppliedUndef
+
+    from canon.expression.symbol import coordinates
+    from canon.mechanics.dynamicsymbols import plain
+
     if isinstance(value, sp.Equality):
         return f"{_written(value.lhs, q)} = {_written(value.rhs, q)}"
     if isinstance(value, sp.MatrixBase):
@@ -94,10 +108,6 @@ def _written(value: Any, q: list[str]) -> Any:
     if isinstance(value, sp.Expr):
         clocked = q and value.has(AppliedUndef)
         return str(plain(value, coordinates(" ".join(q))) if clocked else value)
-    if isinstance(value, Mapping):
-        return {str(name): _written(item, q) for name, item in value.items()}
     if isinstance(value, list | tuple):
         return [_written(item, q) for item in value]
-    if isinstance(value, bool | int | str):
-        return value
     return str(value)

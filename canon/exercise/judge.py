@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
@@ -137,7 +138,7 @@ def examine(claim: Claim) -> Finding:
         raise InvalidClaim(claim.errors[0])
     for key, reason in faults(claim.kind, claim.keys):  # a claim made by hand was not looked at before
         raise InvalidClaim(ClaimError(claim.id, key, reason, file=claim.file))
-    deadline = Deadline.after(claim.budget)
+    start, deadline = time.monotonic(), Deadline.after(claim.budget)
     reading = Reading(claim)
     answered: list[Verdict] = []
     asked: list[tuple[Question, Verdict]] = []
@@ -160,8 +161,7 @@ def examine(claim: Claim) -> Finding:
         raise InvalidClaim(ClaimError(claim.id, "", str(error), file=claim.file)) from error
     if not answered:
         raise InvalidClaim(ClaimError(claim.id, "", "nothing is claimed", file=claim.file))
-    seconds = claim.budget - (deadline.left if deadline.left > 0.05 else 0.0)
-    verdict = replace(all_hold(answered, named), seconds=seconds)
+    verdict = replace(all_hold(answered, named), seconds=time.monotonic() - start)
     verdict = verdict if verdict.question else verdict.about(_title(claim))
     held = len(answered) - 1 if turned is not None else 0
     return Finding(reading, verdict, turned, held, tuple(asked))

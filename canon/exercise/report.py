@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from canon.display import preformatted
-from canon.expression.given import counted
+from canon.expression.described import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from canon.exercise.form import MAX_DIGITS, faults
-from canon.expression.given import counted, given_kind
+from canon.expression.described import counted, given_kind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -1,31 +1,27 @@
 """Claims judged in a process of its own, which is killed when a claim's budget is spent.
 
-Parent and worker exchange JSON lines over pipes. The worker answers each claim with its verdict first and with
-the feedback afterwards, so that a feedback that takes too long costs no verdict. A worker has at most 2 GB
-of memory (where the system can limit it) and no way to pass anything but text back. It is killed together with
-the process in which it lets proofs run, so that nothing goes on computing what nobody waits for.
+Parent and worker exchange JSON. The worker answers each claim with its verdict first and with the feedback
+afterwards, so that a feedback that takes too long costs no verdict. A worker has at most 2 GB of memory (where the
+system can limit it) and no way to pass anything but text back. It is killed together with the process in which it
+lets proofs run, so that nothing goes on computing what nobody waits for.
 """
 
 from __future__ import annotations
 
 import json
-import os
-import queue
-import signal
-import subprocess
 import sys
-import threading
 import time
-from contextlib import suppress
+from dataclasses import replace
 from decimal import Decimal
-from pathlib import Path
 from types import MappingProxyType
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 from canon.exercise.report import Judgement, invalid
 from canon.exercise.sheet import Claim
+from canon.process import Child, Ended, Late, serve
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from types import TracebackType
 
 __all__ = ["Worker"]
@@ -33,10 +29,8 @@ __all__ = ["Worker"]
 MEMORY = 2 * 1024**3
 START = 60.0
 """Seconds that a worker may take to start, on a slow or busy machine."""
-GRACE = 0.7
+GRACE = 0.35
 """Seconds beyond its budget that a judgement may take to come to its own end before it is killed."""
-
-
 FEEDBACK = 1.8
 """Seconds after the verdict for which its feedback is waited for."""
 
@@ -52,9 +46,7 @@ class Worker:
     """
 
     def __init__(self) -> None:
-        self._owner = os.getpid()
-        self._process: subprocess.Popen[str] | None = None
-        self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._child: Child | None = None
 
     def __enter__(self) -> Worker:
         return self
@@ -65,102 +57,53 @@ class Worker:
         self.stop()
 
     def judge(self, claim: Claim) -> Judgement:
-        """Judge one claim within its budget; never raises for what stands in the claim."""
+        """Judge one claim within its budget; never raises for what stands in the claim.
+
+        ``seconds`` of the judgement is how long its verdict was waited for, without the start of a process.
+        """
         if claim.errors:
             return invalid(claim, "\n".join(error.brief for error in claim.errors))
-        self._run()
-        start = time.monotonic()
-        process = self._process
-        if process is None or process.stdin is None:
-            return _open(claim, "no process could be started to judge it", 0.0)
         try:
-            process.stdin.write(_encoded(claim) + "\n")
-            process.stdin.flush()
-        except BrokenPipeError:
+            child = self._running()
+        except (Late, Ended):
             self.stop()
-            return _open(claim, "the process that judged it broke off", 0.0)
-        return self._answer(claim, start)
+            return _open(claim, "no process could be started to judge it", 0.0)
+        start = time.monotonic()
+        child.send(lambda: _encoded(claim), claim.budget)
+        return self._answer(child, claim, start)
 
-    def _answer(self, claim: Claim, start: float) -> Judgement:
+    def _answer(self, child: Child, claim: Claim, start: float) -> Judgement:
+        """Return the last that is said of a claim before it must have been said."""
         deadline = start + claim.budget + GRACE
         verdict: Judgement | None = None
-        while True:
-            try:
-                line = self._lines.get(timeout=max(0.0, deadline - time.monotonic()))
-            except queue.Empty:
-                self.stop()
-                spent = time.monotonic() - start
-                return verdict or _open(claim, f"its budget of {claim.budget:g} s was spent", spent)
-            if not line:
-                self.stop()
-                spent = time.monotonic() - start
-                return verdict or _open(
-                    claim, "the process that judged it broke off (memory, or a fault)", spent
-                )
-            answer = json.loads(line)
-            verdict = Judgement.from_dict(answer)
-            if answer["last"]:
-                return verdict
-            deadline = min(deadline, time.monotonic() + FEEDBACK)
-
-    def _run(self) -> None:
-        """Start a process unless one is running."""
-        if self._process is not None and self._process.poll() is None:
-            return
-        self.stop()
-        self._lines = queue.SimpleQueue()
-        self._process = subprocess.Popen(  # the interpreter that runs now, and nothing of the claim
-            [sys.executable, "-P", "-m", "canon.exercise.worker"],  # -P: no module of the folder it is run in
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-            encoding="utf-8",
-            start_new_session=True,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)},
-        )
-        assert self._process.stdout is not None  # it is a pipe
-        threading.Thread(target=_listen, args=(self._process.stdout, self._lines), daemon=True).start()
         try:
-            ready = self._lines.get(timeout=START)
-        except queue.Empty:
-            ready = ""
-        if not ready:  # it ended, or could not begin
+            while True:
+                answer = json.loads(child.receive(deadline))
+                seconds = verdict.seconds if verdict else time.monotonic() - start
+                verdict = replace(Judgement.from_dict(answer), seconds=seconds)
+                if answer["last"]:
+                    return verdict
+                deadline = min(deadline, time.monotonic() + FEEDBACK)
+        except Late:
+            why = f"its budget of {claim.budget:g} s was spent"
+        except Ended:
+            why = "the process that judged it broke off (memory, or a fault)"
+        self.stop()
+        return verdict or _open(claim, why, time.monotonic() - start)
+
+    def _running(self) -> Child:
+        """Return the process once it is ready, a new one unless one is running."""
+        if self._child is None or not self._child.usable:
             self.stop()
+            self._child = Child("canon.exercise.worker", leads=True)
+            self._child.receive(time.monotonic() + START)
+        return self._child
 
     def stop(self) -> None:
-        """Kill the process, whatever it is doing; the next claim starts another one.
-
-        A forked child leaves the process of its parent alone.
-        """
-        process, self._process = self._process, None
-        if process is None or os.getpid() != self._owner:
-            return
-        _kill(process)
-        process.wait()
-        for pipe in (process.stdin, process.stdout):
-            if pipe is not None:
-                with suppress(BrokenPipeError):
-                    pipe.close()
-
-
-def _kill(process: subprocess.Popen[str]) -> None:
-    """Kill a worker and the process of its proofs, which is of its group."""
-    if sys.platform == "win32" or process.returncode is not None:
-        process.kill()
-        return
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)
-
-
-def _listen(pipe: IO[str], lines: queue.SimpleQueue[str]) -> None:
-    """Pass on what the worker says; an empty line when it has ended."""
-    try:
-        for line in pipe:
-            lines.put(line)
-    except ValueError:  # the pipe was closed when the worker was stopped
-        return
-    lines.put("")
+        """Kill the process, whatever it is doing; the next claim starts another one."""
+        child, self._child = self._child, None
+        if child is not None:
+            child.kill()
 
 
 def _open(claim: Claim, why: str, seconds: float) -> Judgement:
@@ -168,7 +111,7 @@ def _open(claim: Claim, why: str, seconds: float) -> Judgement:
     return Judgement(claim.id, claim.kind, "undecided", seconds, known=why, title=title, expect=claim.expect)
 
 
-def _encoded(claim: Claim) -> str:
+def _encoded(claim: Claim) -> bytes:
     said = {
         "id": claim.id,
         "kind": claim.kind,
@@ -176,7 +119,7 @@ def _encoded(claim: Claim) -> str:
         "expect": claim.expect,
         "budget": claim.budget,
     }
-    return json.dumps(said, default=_plain)
+    return json.dumps(said, default=_plain).encode()
 
 
 def _plain(value: Any) -> Any:
@@ -185,37 +128,23 @@ def _plain(value: Any) -> Any:
     return str(value)
 
 
+def _decoded(message: bytes) -> Claim:
+    said: dict[str, Any] = json.loads(message, object_hook=_restored)
+    said["keys"] = MappingProxyType(said["keys"])
+    return Claim(**said)
+
+
 def _restored(found: dict[str, Any]) -> Any:
     return Decimal(found["decimal"]) if set(found) == {"decimal"} else found
 
 
-def _limit_memory() -> None:
-    try:
-        import resource
-    except ImportError:  # a system that can't limit it
-        return
-    _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    limit = MEMORY if hard == resource.RLIM_INFINITY else min(MEMORY, hard)
-    resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
-
-
-def _serve() -> None:
+def main() -> None:
     """Judge what comes in until the parent closes the pipe."""
-    answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
-    sys.stdout = sys.stderr
-    _limit_memory()
-    sys.set_int_max_str_digits(0)  # what follows from long numbers is longer; here its time is limited anyway
     from canon.exercise.judging import judgements
 
-    answers.write("ready\n")
-    answers.flush()
-    for line in sys.stdin:
-        said = json.loads(line, object_hook=_restored)
-        said["keys"] = MappingProxyType(said["keys"])
-        for judgement, last in judgements(Claim(**said)):
-            answers.write(json.dumps({**judgement.to_dict(), "last": last}) + "\n")
-            answers.flush()
+    def answers(message: bytes) -> Iterator[bytes]:
+        for judgement, last in judgements(_decoded(message)):
+            yield json.dumps({**judgement.to_dict(), "last": last}).encode()
 
-
-if __name__ == "__main__":
-    _serve()
+    sys.set_int_max_str_digits(0)  # what follows from long numbers is longer; here its time is limited anyway
+    serve(answers, MEMORY)

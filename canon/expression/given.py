@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from numbers import Real
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
+
+from canon.expression.described import counted, described, given_kind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -13,10 +15,6 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
 __all__ = ["all_of", "counted", "given_expression", "given_kind", "given_seconds", "given_symbols"]
-
-Kind = TypeVar("Kind")
-
-_SHOWN = 60
 
 
 def given_expression(f: Any, name: str = "") -> Expr:
@@ -85,41 +83,8 @@ def given_symbols(x: Any, name: str = "") -> tuple[Symbol, ...]:
     for each in several:
         if not isinstance(each, sp.Symbol):
             said = "symbols, as coordinates('q') or parameters('m') make them"
-            raise TypeError(f"{name or 'the variables'} should be {said}, not {_described(each)}")
+            raise TypeError(f"{name or 'the variables'} should be {said}, not {described(each)}")
     return several
-
-
-def given_kind(x: Any, kinds: type[Kind] | tuple[type[Any], ...], name: str, instead: str = "") -> Any:
-    """Return what was given if it is of one of these kinds.
-
-    Parameters
-    ----------
-    x
-        What was given.
-    kinds
-        What it may be.
-    name
-        What it is called where it was given.
-    instead
-        What to write instead.
-
-    Raises
-    ------
-    TypeError
-        Where it is something else.
-
-    Examples
-    --------
-    >>> given_kind("fast", int, "jobs")
-    Traceback (most recent call last):
-        ...
-    TypeError: jobs should be an int, not the text 'fast'
-    """
-    if isinstance(x, kinds):
-        return x
-    several = kinds if isinstance(kinds, tuple) else (kinds,)
-    wanted = " or ".join(_with_article(kind.__name__) for kind in several)
-    raise TypeError(f"{name} should be {wanted}, not {_described(x)}{f'; {instead}' if instead else ''}")
 
 
 def given_seconds(budget: Any) -> float:
@@ -138,7 +103,7 @@ def given_seconds(budget: Any) -> float:
     TypeError: budget should be a number of seconds, not the text '3'
     """
     if not isinstance(budget, Real):
-        raise TypeError(f"budget should be a number of seconds, not {_described(budget)}")
+        raise TypeError(f"budget should be a number of seconds, not {described(budget)}")
     if budget != budget:
         raise ValueError("budget should be a number of seconds, not NaN")
     return float(budget)
@@ -161,29 +126,11 @@ def all_of(x: Any, count: int, name: str, of: str) -> Sequence[Any]:
     """
     if isinstance(x, str) or not hasattr(x, "__len__"):
         raise TypeError(
-            f"{name} should be a list with one entry for each of {count} {of}, not {_described(x)}"
+            f"{name} should be a list with one entry for each of {count} {of}, not {described(x)}"
         )
     if len(x) != count:
         raise ValueError(f"{name} has {counted(len(x), 'entry', 'entries')} for {count} {of}; give one each")
     return x
-
-
-def counted(number: int, one: str, many: str = "") -> str:
-    """Return a number of things in words: ``1 momentum``, ``2 momenta``.
-
-    Parameters
-    ----------
-    number
-        How many there are.
-    one, many
-        What one of them is called, and several; one with an s unless given.
-
-    Examples
-    --------
-    >>> counted(1, "momentum", "momenta"), counted(0, "step")
-    ('1 momentum', '0 steps')
-    """
-    return f"{number} {one if number == 1 else many or f'{one}s'}"
 
 
 def _not_an_expression(f: Any, name: str) -> str:
@@ -198,20 +145,4 @@ def _not_an_expression(f: Any, name: str) -> str:
         held = [letter for letter in ("H", "L", "F") if isinstance(getattr(f, letter, None), sp.Expr)]
         remedy = f"; give its .{held[0]}" if held else ""
     wanted = f"{name} should be an expression" if name else "an expression is needed"
-    return f"{wanted}, not {_described(f)}{remedy}"
-
-
-def _described(x: Any) -> str:
-    shown = str(x) if isinstance(x, sp.Basic) else repr(x)
-    shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}…"
-    if isinstance(x, str):
-        return f"the text {shown}"
-    if isinstance(x, sp.Expr | int | float) or x is None:
-        return shown
-    if isinstance(x, sp.Basic):
-        return f"the condition {shown}" if isinstance(x, sp.logic.boolalg.Boolean) else shown
-    return f"{_with_article(type(x).__name__)} ({shown})"
-
-
-def _with_article(word: str) -> str:
-    return f"{'an' if word[0] in 'AEIOUaeiou' else 'a'} {word}"
+    return f"{wanted}, not {described(f)}{remedy}"

@@ -6,12 +6,12 @@ import enum
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-import sympy as sp
-
 from canon.display import preformatted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    import sympy as sp
 
 __all__ = ["Counterexample", "Evidence", "Status", "Undecided", "Verdict", "all_hold"]
 
@@ -192,7 +192,9 @@ LONGEST_PRINTED = 60
 
 
 def _short(residual: sp.Basic | sp.MatrixBase) -> str:
-    operations = int(sp.count_ops(residual))
+    from sympy import count_ops
+
+    operations = int(count_ops(residual))
     if operations <= LONGEST_PRINTED:
         return str(residual)
     return f"an expression of {operations} operations (in .residual)"

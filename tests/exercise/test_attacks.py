@@ -140,6 +140,7 @@ def test_modules_in_the_folder_of_the_answers_are_not_run(tmp_path):
         text=True,
         check=False,
         timeout=120,
+        env={name: value for name, value in os.environ.items() if name != "PYTHONPATH"},
     )  # as the installed command does, which has no folder of its own on its path
     assert not marker.exists()
     assert done.returncode == 0, done.stdout + done.stderr
@@ -155,7 +156,7 @@ def test_a_killed_worker_leaves_no_process_behind():
     }
     with Worker() as worker:
         worker.judge(claim_from(GOOD))
-        group = worker._process.pid
+        group = worker._child.pid
         limits = Path(f"/proc/{group}/limits")
         if limits.exists():
             assert f"Max address space         {MEMORY}" in limits.read_text("utf-8")
@@ -271,7 +272,7 @@ def attack(name, budget):
 
 def answered(worker, name, budget):
     """Judge an attack, and tell how long that took beyond the start of a process."""
-    worker._run()
+    worker._running()
     start = time.monotonic()
     told = worker.judge(attack(name, budget))
     return told, time.monotonic() - start

@@ -66,16 +66,16 @@ def test_threads_wait_for_one_another_no_longer_than_their_budgets():
 def test_a_forked_child_has_a_worker_of_its_own_and_leaves_the_parents_alone():
     assert proved(prove_in_worker([EASY], Domain(), 20.0))
     worker = _worker(os.getpid())
-    process = worker._process
+    process = worker._child
 
     def child():
         worker.stop()  # what the exit handlers of a child that ends by sys.exit do
         return proved(prove_in_worker([EASY], Domain(), 20.0))
 
     assert in_a_child(child) == 0
-    assert process.poll() is None
+    assert process.usable
     assert proved(prove_in_worker([EASY], Domain(), 20.0))
-    assert worker._process is process
+    assert worker._child is process
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
@@ -83,14 +83,14 @@ def test_a_forked_child_leaves_the_judge_of_its_parent_alone():
     claim = Claim("a", "equality-only", {"lhs": "1 + 1", "rhs": "2"})
     with Worker() as worker:
         assert worker.judge(claim).status == "holds"
-        process = worker._process
+        process = worker._child
 
         def child():
             worker.stop()
             return True
 
         assert in_a_child(child) == 0
-        assert process.poll() is None
+        assert process.usable
         assert worker.judge(claim).status == "holds"
 
 

@@ -1,0 +1,293 @@
+"""A child process that can be killed: it runs a module of canon, and no file of the folder it is started in.
+
+Parent and child exchange messages of bytes over pipes. The child finds nothing but the standard library, canon and
+what canon rests on, each in the folder from which the parent has it; neither ``PYTHONPATH`` nor the working folder
+nor what an interpreter usually runs at its start (``sitecustomize``, ``.pth`` files) reaches it. Each message says
+for how long its answer is waited for, and a child whose parent has gone ends by itself then.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import queue
+import signal
+import site
+import struct
+import subprocess
+import sys
+import threading
+import time
+from contextlib import suppress
+from importlib.machinery import ModuleSpec, PathFinder
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO, cast
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+__all__ = ["Child", "Ended", "Late", "folders", "serve"]
+
+RESTS_ON = ("sympy", "mpmath", "numpy", "flint", "lark")
+"""What proofs and judgements import beside the standard library."""
+
+HOME = Path(__file__).absolute().parents[1]
+"""The folder, or the archive, that holds canon."""
+
+POLL = 0.1
+"""Seconds between looks for an interrupt while waiting."""
+
+DEATH = 0.05
+"""Seconds for which the end of a killed process is waited for; one with much memory takes longer to vanish."""
+
+ABANDONED = 5.0
+"""Seconds after which a child ends by itself once nobody waits for its answer any more."""
+
+LONGEST = 1e6
+"""Seconds that a timer of the system is set to at most."""
+
+LENGTH = struct.Struct(">Q")
+SECONDS = struct.Struct(">d")
+
+# The interpreter starts bare (-S); the packages come after the standard library, canon from its folder alone.
+START = """
+import sys
+from importlib.machinery import PathFinder
+from importlib.util import module_from_spec
+module, home, *folders = sys.argv[1:]
+sys.path += folders
+found = PathFinder.find_spec("canon", [home])
+canon = sys.modules["canon"] = module_from_spec(found)
+found.loader.exec_module(canon)
+__import__(module, fromlist=["main"]).main()
+"""
+
+
+class Late(Exception):
+    """No message came before the deadline."""
+
+
+class Ended(Exception):
+    """The process has ended, or nothing could be sent to it."""
+
+
+class Child:
+    """A process that runs ``main()`` of a module of canon, which calls :func:`serve`.
+
+    Its first message is empty and says that it is ready.
+
+    Parameters
+    ----------
+    module
+        Full name of the module.
+    leads
+        Whether it leads a group of processes: what it starts is killed with it, and an interrupt from the terminal
+        does not reach it.
+    """
+
+    def __init__(self, module: str, *, leads: bool = False) -> None:
+        self._owner = os.getpid()
+        self._leads = leads and sys.platform != "win32"
+        self._killed = False
+        self._heard: queue.SimpleQueue[bytes | Ended] = queue.SimpleQueue()
+        self._sender: threading.Thread | None = None
+        self._process = subprocess.Popen(  # the interpreter that runs now, and nothing that a stranger wrote
+            [sys.executable, "-P", "-s", "-S", "-c", START, module, str(HOME), *folders()],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            start_new_session=leads,
+            env={name: value for name, value in os.environ.items() if name != "PYTHONPATH"},
+        )
+        self._listener = threading.Thread(target=self._listen, daemon=True)
+        self._listener.start()
+
+    @property
+    def pid(self) -> int:
+        """The number by which the system knows the process."""
+        return self._process.pid
+
+    @property
+    def usable(self) -> bool:
+        """Whether it is running, and this process started it: a forked child has none of its parent's."""
+        return not self._killed and os.getpid() == self._owner and self._process.poll() is None
+
+    def send(self, encode: Callable[[], bytes], seconds: float) -> None:
+        """Send what ``encode`` returns, without waiting for it.
+
+        Parameters
+        ----------
+        encode
+            Returns the message.
+        seconds
+            How long its answer is waited for.
+        """
+        self._sender = threading.Thread(target=self._send, args=(encode, seconds), daemon=True)
+        self._sender.start()
+
+    def receive(self, deadline: float) -> bytes:
+        """Return the next message.
+
+        Parameters
+        ----------
+        deadline
+            Until when it is waited for, by ``time.monotonic()``.
+
+        Raises
+        ------
+        Late
+            Where it did not come.
+        Ended
+            Where it will not come.
+        """
+        while True:
+            left = deadline - time.monotonic()
+            try:
+                heard = self._heard.get(timeout=min(POLL, left)) if left > 0 else self._heard.get_nowait()
+            except queue.Empty:
+                if left > 0:
+                    continue
+                raise Late from None
+            if isinstance(heard, Ended):
+                raise heard
+            return heard
+
+    def kill(self) -> None:
+        """Kill the process with all that it started; a forked child leaves that of its parent alone."""
+        if self._killed or os.getpid() != self._owner:
+            return
+        self._killed = True
+        if self._leads and self._process.returncode is None:
+            with suppress(ProcessLookupError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+        else:
+            self._process.kill()
+        self._listener.join(DEATH)
+
+    def _send(self, encode: Callable[[], bytes], seconds: float) -> None:
+        try:
+            _write(cast("BinaryIO", self._process.stdin), SECONDS.pack(seconds) + encode())
+        except (OSError, ValueError, RecursionError, MemoryError) as reason:
+            self._heard.put(Ended(f"the message could not be sent: {type(reason).__name__}"))
+
+    def _listen(self) -> None:
+        """Pass on the messages; when the process has ended, say so and put its remains away."""
+        pipe = cast("BinaryIO", self._process.stdout)
+        try:
+            while True:
+                self._heard.put(_read(pipe))
+        except (EOFError, OSError):
+            self._heard.put(Ended("the process has ended"))
+        self._process.wait()
+        if self._sender is not None:
+            self._sender.join()
+        for stream in (pipe, self._process.stdin):
+            if stream is not None:
+                with suppress(OSError):
+                    stream.close()
+
+
+def folders() -> list[str]:
+    """Return the folders from which a child imports what canon rests on.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> str(Path(sympy.__file__).parents[1]) in folders()
+    True
+    """
+    trusted = [entry for entry in sys.path if entry and not _is_working_folder(entry)]
+    found = (_folder(name, trusted) for name in RESTS_ON)
+    return list(dict.fromkeys(folder for folder in found if folder))
+
+
+def _folder(name: str, trusted: list[str]) -> str:
+    """Return the folder of a package: that of the one in use, if it is not what lies in the working folder."""
+    loaded = sys.modules.get(name)
+    in_use = _place(loaded.__spec__) if loaded is not None else ""
+    if in_use and not _is_working_folder(in_use):
+        return in_use
+    return _place(PathFinder.find_spec(name, trusted)) or in_use or _place(importlib.util.find_spec(name))
+
+
+def _place(found: ModuleSpec | None) -> str:
+    if found is None or not found.origin or not found.has_location:
+        return ""
+    module = Path(found.origin)
+    return str(module.parents[1] if found.submodule_search_locations is not None else module.parent)
+
+
+def _is_working_folder(entry: str) -> bool:
+    """Whether a folder is on the path because it is worked in, not because packages are installed there."""
+    if sys.flags.no_site:  # a child like these, whose path was chosen
+        return False
+    try:
+        if not Path(entry).samefile(Path.cwd()):
+            return False
+    except OSError:  # one of them is gone
+        return False
+    installed = (*site.getsitepackages(), site.getusersitepackages())
+    return not any(Path(folder).exists() and Path(folder).samefile(entry) for folder in installed)
+
+
+def serve(answers: Callable[[bytes], Iterable[bytes]], memory: int) -> None:
+    """Answer the messages of the parent until it closes the pipe; an interrupt is the parent's to handle.
+
+    Parameters
+    ----------
+    answers
+        Returns the answers to a message.
+    memory
+        Bytes of address space that the process may have, where the system can limit it.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform != "win32":
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    told = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    _limit_memory(memory)
+    _write(told, b"")
+    while True:
+        try:
+            message = _read(sys.stdin.buffer)
+        except EOFError:
+            return
+        (seconds,) = SECONDS.unpack_from(message)
+        _end_in(seconds + ABANDONED)
+        for answer in answers(message[SECONDS.size :]):
+            _write(told, answer)
+        _end_in(0.0)
+
+
+def _end_in(seconds: float) -> None:
+    """Let the system end this process after some time, whatever it is doing then; 0 takes that back."""
+    if sys.platform != "win32":
+        signal.setitimer(signal.ITIMER_REAL, min(seconds, LONGEST))
+
+
+def _limit_memory(memory: int) -> None:
+    """Limit the address space, so that what grows ends itself and not the machine."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    wanted = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
+    resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
+
+
+def _write(stream: BinaryIO, body: bytes) -> None:
+    stream.write(LENGTH.pack(len(body)) + body)
+    stream.flush()
+
+
+def _read(stream: BinaryIO) -> bytes:
+    """Return one message; raises EOFError where the stream has ended."""
+    head = stream.read(LENGTH.size)
+    if len(head) < LENGTH.size:
+        raise EOFError
+    (length,) = LENGTH.unpack(head)
+    body = stream.read(length)
+    if len(body) < length:
+        raise EOFError
+    return body

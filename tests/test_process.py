@@ -1,0 +1,229 @@
+"""The processes that judge and prove run canon and what it rests on, and nothing else, wherever they start."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import sysconfig
+import time
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from canon.process import RESTS_ON, Child, Ended, Late, folders
+
+ROOT = Path(__file__).parents[1]
+TRAP = "import pathlib; pathlib.Path({marker!r}).open('a').write({name!r})\nraise SystemExit('owned')\n"
+CUSTOM = ("sitecustomize", "usercustomize")
+STANDARD = (
+    "json",
+    "queue",
+    "decimal",
+    "signal",
+    "struct",
+    "subprocess",
+    "importlib",
+    "pickle",
+    "site",
+    "canon",
+)
+JUDGE = """
+import canon
+keys = {"lhs": "$\\\\sin(2 x)$", "rhs": "2*sin(x)*cos(x)", "parameters": {"x": "real"}}
+print(canon.check(canon.Sheet("s", (canon.Claim("a", "equality-only", keys),))).counts)
+canon.expect("equality-only", **keys)
+"""
+PROVE = """
+import sympy, canon
+from canon.proof.budget import prove_in_worker
+x = sympy.Symbol("x", real=True)
+print(prove_in_worker([sympy.sin(x)**2 + sympy.cos(x)**2 - 1], canon.Domain(), 30.0)[0].holds)
+"""
+
+
+@pytest.fixture
+def hostile(tmp_path):
+    """Return a folder in which modules lie in wait, and the file that says which of them ran."""
+    folder, marker = tmp_path / "answers", tmp_path / "owned"
+    folder.mkdir()
+
+    def lay(*names):
+        for name in names:
+            (folder / f"{name}.py").write_text(TRAP.format(marker=str(marker), name=name), "utf-8")
+        return folder, marker
+
+    return lay
+
+
+def run(arguments, folder, code="", **environment):
+    kept = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONSAFEPATH")}
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=folder,
+        input=code,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={**kept, "PYTHONPATH": str(ROOT), **environment},
+        check=False,
+    )
+
+
+STARTS = {"-c": ["-c", JUDGE], "stdin": ["-"], "REPL": ["-i", "-q"]}
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_nothing_in_the_working_folder_runs(hostile, start):
+    """There it is that python -c, a REPL and a notebook look first."""
+    folder, marker = hostile(*RESTS_ON, *CUSTOM)
+    done = run(STARTS[start], folder, JUDGE)
+    assert not marker.exists(), marker.read_text("utf-8")
+    assert "{'holds': 1}" in done.stdout, done.stderr
+    assert "Error" not in done.stderr
+
+
+@pytest.mark.parametrize(("asked", "said"), [(JUDGE, "{'holds': 1}"), (PROVE, "True")])
+def test_nothing_runs_in_a_folder_entered_later(hostile, asked, said):
+    folder, marker = hostile(*RESTS_ON, *CUSTOM, *STANDARD)
+    enter = f"{asked}\nfrom canon.proof.budget import _worker\nimport os\n_worker(os.getpid()).stop()\n"
+    done = run(["-c", f"{enter}os.chdir({str(folder)!r})\n{asked}"], folder.parent)
+    assert not marker.exists(), marker.read_text("utf-8")
+    assert done.stdout.split("\n")[:2] == [said, said], done.stderr
+
+
+def test_the_proofs_of_a_session_run_nothing_at_their_start(hostile):
+    folder, marker = hostile(*CUSTOM)
+    assert run(["-c", PROVE], folder).stdout.strip() == "True"
+    assert not marker.exists()
+
+
+def test_the_traps_do_spring(hostile):
+    """The wrong twin: where Python itself is told to look there, it does."""
+    folder, marker = hostile("sitecustomize")
+    run(["-c", ""], folder, PYTHONPATH=str(folder))
+    assert marker.read_text("utf-8") == "sitecustomize"
+
+
+def test_it_works_among_the_installed_packages():
+    assert "holds" in run(["-c", JUDGE], sysconfig.get_path("purelib")).stdout
+
+
+def test_it_works_with_a_safe_path(hostile):
+    folder, marker = hostile(*RESTS_ON, *CUSTOM, *STANDARD)
+    assert "holds" in run(["-c", JUDGE], folder, PYTHONSAFEPATH="1").stdout
+    assert not marker.exists()
+
+
+def copied(folder):
+    shutil.copytree(ROOT / "canon", folder / "canon", ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+def test_it_works_where_canon_lies_in_the_working_folder_and_runs_nothing_beside_it(hostile):
+    folder, marker = hostile(*RESTS_ON, *CUSTOM)
+    done = run(["-c", JUDGE + "print(canon.__file__)"], copied(folder), PYTHONPATH="")
+    assert str(folder) in done.stdout, done.stderr
+    assert "holds" in done.stdout
+    assert not marker.exists()
+
+
+def test_it_works_from_a_folder_whose_name_would_divide_a_path(tmp_path):
+    folder = tmp_path / f"a{os.pathsep}b"
+    folder.mkdir()
+    code = f"import sys; sys.path.insert(0, {str(copied(folder))!r}){JUDGE}print(canon.__file__)"
+    done = run(["-P", "-c", code], tmp_path, PYTHONPATH="")
+    assert str(folder) in done.stdout, done.stderr
+    assert "holds" in done.stdout
+
+
+def test_it_works_from_an_archive(tmp_path):
+    archive = tmp_path / "canon.zip"
+    with zipfile.ZipFile(archive, "w") as packed:
+        for path in sorted((ROOT / "canon").rglob("*.py")):
+            packed.write(path, path.relative_to(ROOT))
+    done = run(["-P", "-c", f"{JUDGE}{PROVE}print(canon.__file__)"], tmp_path, PYTHONPATH=str(archive))
+    assert done.stdout.split("\n")[1:3] == ["True", f"{archive / 'canon' / '__init__.py'}"], done.stderr
+    assert "holds" in done.stdout
+
+
+def test_what_canon_rests_on_comes_from_where_it_is_in_use(tmp_path, monkeypatch):
+    """A SymPy that stands first on the path is that of the child too; one that lies in the working folder is not."""
+    import sympy
+
+    here = Path(sympy.__file__).parent
+    (tmp_path / "sympy").symlink_to(here, target_is_directory=True)
+    code = "import canon.process; print(*canon.process.folders(), sep='\\n')"
+    told = run(["-c", f"import sympy; {code}"], ROOT, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]))
+    assert told.stdout.split("\n")[0] == str(tmp_path)
+    told = run(["-c", code], tmp_path)
+    assert told.stdout.split("\n")[0] == str(here.parent)
+    assert str(here.parent) in folders()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no groups of processes")
+def test_a_killed_child_is_gone_and_says_so():
+    child = Child("canon.proof.worker", leads=True)
+    assert child.receive(time.monotonic() + 60) == b""
+    assert child.usable
+    with pytest.raises(Late):
+        child.receive(time.monotonic() + 0.2)
+    child.kill()
+    assert not child.usable
+    with pytest.raises(Ended):
+        child.receive(time.monotonic() + 5)
+    with pytest.raises(ProcessLookupError):
+        os.killpg(child.pid, 0)
+
+
+def test_a_child_that_cannot_start_says_so():
+    child = Child("canon.no_such_module")
+    with pytest.raises(Ended):
+        child.receive(time.monotonic() + 60)
+    child.kill()
+    assert not child.usable
+
+
+def test_what_cannot_be_sent_is_told():
+    child = Child("canon.proof.worker")
+    assert child.receive(time.monotonic() + 60) == b""
+
+    def too_deep():
+        raise RecursionError
+
+    child.send(too_deep, 1.0)
+    with pytest.raises(Ended, match="RecursionError"):
+        child.receive(time.monotonic() + 10)
+    child.kill()
+
+
+ORPHAN = """
+import os, sys, time
+sys.path.insert(0, {root!r})
+from canon.exercise.worker import Worker
+from canon.exercise.sheet import Claim
+worker = Worker()
+child = worker._running()
+print(child.pid, flush=True)
+keys = {{"lhs": "(x + t + cos(x) + 1)**60*sin(x)**40", "rhs": "(x + t + cos(x) + 1)**60*(1 - cos(x)**2)**20 + x*0",
+         "parameters": {{"x": "real", "t": "real"}}}}
+worker.judge(Claim("long", "equality-only", keys, budget=1.0))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no timers of the system")
+def test_a_child_whose_parent_was_killed_ends_by_itself():
+    with subprocess.Popen(
+        [sys.executable, "-c", ORPHAN.format(root=str(ROOT))], stdout=subprocess.PIPE, text=True
+    ) as parent:
+        group = int(parent.stdout.readline())
+        os.kill(parent.pid, signal.SIGKILL)
+    deadline = time.monotonic() + 20.0
+    while time.monotonic() < deadline:
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.1)
+    pytest.fail("the orphan goes on")
