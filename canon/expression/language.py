@@ -66,14 +66,18 @@ def parse_expression(text: str, scope: Scope) -> Expr:
 
 
 def parse_condition(text: str, scope: Scope) -> Boolean:
-    """Return the SymPy condition that a text spells, such as ``0 < theta < pi`` or ``Ne(q, 0)``.
+    """Return the SymPy condition that a text spells, such as ``0 < theta < pi``, ``Ne(q, 0)`` or ``a*d - b*c = 1``.
 
     Raises
     ------
     LanguageError
         With the column, the reason and a remedy.
     """
-    return _Builder(text, scope).condition(syntax_of(text, scope))
+    node = syntax_of(text, scope)
+    if isinstance(node, syntax.Comparison) and "=" in node.relations:
+        relations = tuple("==" if relation == "=" else relation for relation in node.relations)
+        node = syntax.Comparison(node.operands, relations, node.column)
+    return _Builder(text, scope).condition(node)
 
 
 def parse_equation(text: str, scope: Scope) -> Expr:
@@ -269,12 +273,14 @@ class _Builder:
         return sp.Piecewise(*pieces)
 
     def condition(self, node: syntax.Node) -> Boolean:
-        """Return the condition of a tree: a chain of comparisons, ``Ne(a, b)``, or True."""
+        """Return the condition of a tree: a chain of comparisons, ``Ne(a, b)``, ``Eq(a, b)``, or True."""
         match node:
             case syntax.Name(text="True"):
                 return sp.true
             case syntax.Call(function="Ne", arguments=(left, right)) if "Ne" not in self.scope.functions:
                 return self.condition(syntax.Comparison((left, right), ("!=",), node.column))
+            case syntax.Call(function="Eq", arguments=(left, right)) if "Eq" not in self.scope.functions:
+                return self.condition(syntax.Comparison((left, right), ("==",), node.column))
             case syntax.Comparison(operands, relations):
                 if "=" in relations:
                     self.refuse(

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, ctx, fmpq, fmpz
 from sympy.core.relational import Relational
 
 if TYPE_CHECKING:
@@ -134,12 +134,26 @@ def _monomial(term: Expr, point: Mapping[Symbol, sp.Rational]) -> fmpq | None:
     for factor in sp.Mul.make_args(term):
         base, exponent = factor.as_base_exp()
         number = point.get(base) if isinstance(base, sp.Symbol) else base
-        if not isinstance(number, sp.Rational) or not isinstance(exponent, sp.Integer):
+        if not isinstance(number, sp.Rational) or not isinstance(exponent, sp.Rational):
             return None
-        if abs(int(exponent)) > SHORT or (number == 0 and exponent < 0):
+        if abs(int(exponent.p)) > SHORT or (number == 0 and exponent < 0):
             return None
-        total *= fmpq(int(number.p), int(number.q)) ** int(exponent)
+        root = _root(number, int(exponent.q))
+        if root is None:
+            return None
+        total *= root ** int(exponent.p)
     return total
+
+
+def _root(number: sp.Rational, degree: int) -> fmpq | None:
+    """Return the principal root of a rational number, None where it is not rational."""
+    above, below = fmpz(int(number.p)), fmpz(int(number.q))
+    if degree == 1:
+        return fmpq(above, below)
+    if above < 0 or degree > SHORT:
+        return None
+    roots = above.root(degree), below.root(degree)
+    return fmpq(*roots) if roots[0] ** degree == above and roots[1] ** degree == below else None
 
 
 def _sum(terms: list[acb]) -> acb:

@@ -19,6 +19,8 @@ from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
+from canon.proof.polynomial import polynomial_factors
+from canon.proof.rational_points import rational_solution
 from canon.proof.relaxation import moved_inside
 from canon.proof.typed import free_symbols, rational
 
@@ -220,7 +222,7 @@ class Domain:
         left_open = self.on_functions if but_functions else ()
         settled = [c for c in self.conditions if c not in left_open]
         steering = random.Random(seed)
-        found = moved = moves = 0
+        found = moved = moves = unsolved = 0
         for attempt in range(40 * count + 200):
             if found + moved == count or time.monotonic() > deadline:
                 return
@@ -229,9 +231,11 @@ class Domain:
             marked = [s for s in ordered if marks.get(s)]
             for s in chance.sample(marked, k=min(len(marked), 1 + attempt % 2)):
                 point[s] = chance.choice(marks[s])
-            allowed = self._settle_equalities(point) and all(
-                _allows(facts[s], number) for s, number in point.items()
-            )
+            solved = self._settle_equalities(point, steering)
+            unsolved += not solved
+            if unsolved > MOST_UNSOLVED and found + moved == 0:
+                return
+            allowed = solved and all(_allows(facts[s], number) for s, number in point.items())
             if allowed and conditions_hold(settled, point):
                 found += 1
                 yield point
@@ -306,23 +310,19 @@ class Domain:
         sign = 1 if symbol.is_nonnegative else -1 if symbol.is_nonpositive else chance.choice((1, -1))
         return rational(sign * magnitude)
 
-    def _settle_equalities(self, point: dict[Symbol, Rational]) -> bool:
-        """Solve each equality for a symbol it holds linearly; say whether rational values were found."""
-        for condition in self.conditions:
-            if not isinstance(condition, Eq):
-                continue
-            gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
-            linear = [s for s in point if (slope := gap.diff(s)) != 0 and s not in slope.free_symbols]
-            for s in linear:
-                others = {name: number for name, number in point.items() if name != s}
-                slope = cast("Expr", gap.diff(s).xreplace(others))
-                rest = cast("Expr", gap.xreplace({s: Integer(0)}).xreplace(others))
-                if slope.is_Rational and rest.is_Rational and slope != 0:
-                    point[s] = rational(-rest / slope)
-                    break
-            else:
-                return False
-        return True
+    def _settle_equalities(self, point: dict[Symbol, Rational], chance: random.Random) -> bool:
+        """Move a point to where the equalities hold; say whether rational numbers were found."""
+        gaps = [chance.choice(factors) for factors in self._gaps]
+        found = rational_solution(gaps, point, chance) if gaps else point
+        point.update(found or {})
+        return found is not None
+
+    @cached_property
+    def _gaps(self) -> tuple[tuple[Expr, ...], ...]:
+        """The factors of what vanishes on the domain, equality by equality."""
+        equal = (c for c in self.conditions if isinstance(c, Eq))
+        gaps = (cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in equal)
+        return tuple(tuple(f for f, _ in polynomial_factors(gap)) or (gap,) for gap in gaps)
 
 
 EVERYWHERE = Domain()
@@ -362,6 +362,9 @@ PATIENCE = 40
 """Attempts without a point after which points are moved to where the conditions hold."""
 
 MOST_MOVES = 40
+
+MOST_UNSOLVED = 12
+"""Attempts without rational numbers that satisfy the equalities after which none are looked for."""
 
 
 def conditions_hold(conditions: Iterable[Boolean], point: Mapping[Symbol, Rational]) -> bool:

@@ -94,7 +94,7 @@ class NormalForm:
         elif isinstance(condition, sp.Eq) and isinstance(condition.lhs, sp.Expr):
             gap = self.form(condition.lhs - cast("Expr", condition.rhs))
             if not self._may_be_infinite(gap):
-                self.tower.learn_zero(gap.num)
+                powers.learn_zero(self, gap.num)
         elif isinstance(condition, sp.Ne) and isinstance(condition.lhs, sp.Expr):
             gap = self.form(condition.lhs - condition.rhs)
             if gap.num.is_zero():

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from canon.proof.normal_form import NormalForm
 
-__all__ = ["exponential", "logarithm", "modulus", "root"]
+__all__ = ["exponential", "learn_zero", "logarithm", "modulus", "root"]
 
 MOST_ROOTS_MULTIPLIED = 3
 MOST_ROOTS_KNOWN = 7
@@ -111,6 +111,26 @@ def root(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
     else:
         factors.append(_root_kernel(n, rest, r, ""))
     return t.times(*factors)
+
+
+def learn_zero(n: NormalForm, p: fmpq_mpoly) -> None:
+    """Take p = 0; where that is s² = R with a real symbol s and R in earlier ones, s² is replaced, and √R = |s|."""
+    t = n.tower
+    t.learn_zero(p)
+    if p.is_constant():
+        n.empty = n.empty or not p.is_zero()
+        return
+    last = t.used(p)[-1]
+    coefficients = t.coefficients(p, last)
+    square = len(coefficients) == 3 and coefficients[1].is_zero() and coefficients[2].is_constant()
+    free = t.generators[last][0] == "symbol" and t.relation(last) is None
+    if not (square and free and n.signs.real(t.monomial(last))):
+        return
+    other = t.reduce(-coefficients[0] * t.constant(1 / coefficients[2].leading_coefficient()))
+    if n.signs.real(other):
+        t.relate(last, 2, other)
+        n.signs.learn(other, strict=False)
+        n.known_roots[n.fraction_key(Fraction(other))] = modulus(n, Fraction(t.monomial(last)))
 
 
 def _root_of_nonnegative(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:

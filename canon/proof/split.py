@@ -12,6 +12,7 @@ from sympy.logic.boolalg import Boolean
 
 from canon.proof.anatomy import anatomy
 from canon.proof.domain import Domain, declared_complex
+from canon.proof.polynomial import polynomial_factors
 from canon.proof.replacement import KINKED, NoValue, defined_nowhere, replaced
 from canon.proof.typed import arguments, by_name, free_symbols
 
@@ -20,7 +21,15 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["Case", "cases", "certainly_real", "settle_equalities"]
+__all__ = [
+    "Case",
+    "cases",
+    "certainly_real",
+    "eliminations",
+    "settle_equalities",
+    "under_derivatives",
+    "without_symbol",
+]
 
 MOST_VALUES = 24
 """Values or residues of an integer that are gone through one by one."""
@@ -83,7 +92,7 @@ def _cut(expr: Expr, domain: Domain) -> list[Case] | None:
             if by_symbol is not None:
                 return by_symbol
         return _by_kind(expr, domain, innermost)
-    return _by_integer(expr, domain) or _by_symbol(expr, domain)
+    return _by_integer(expr, domain) or _by_symbol(expr, domain) or _by_slope(expr, domain)
 
 
 def _by_integer(expr: Expr, domain: Domain) -> list[Case] | None:
@@ -240,38 +249,127 @@ def _substituted(expr: Expr, domain: Domain, symbol: Symbol, by: Expr, where: st
 
 
 def settle_equalities(expr: Expr, domain: Domain, where: str = "") -> Case:
-    """Use an equality of the domain to remove a symbol that it holds linearly with a constant slope.
+    """Use equalities of the domain to remove symbols that they hold linearly, with a slope that is not zero.
 
     A symbol that is differentiated by, or for which SymPy takes no such value, stays.
     """
-    differentiated = _under_derivatives(expr, domain)
-    for condition in (*domain.conditions, *_pinched(domain)):
-        if not isinstance(condition, sp.Eq):
+    for s, solution, narrowed in eliminations(domain, under_derivatives(expr, domain)):
+        try:
+            value = replaced(expr, {s: solution})
+        except NoValue:
             continue
-        if not isinstance(condition.lhs, sp.Expr) or not isinstance(condition.rhs, sp.Expr):
-            continue
-        gap = condition.lhs - condition.rhs
-        for s in by_name(gap):
-            slope = gap.diff(s)
-            if slope.free_symbols or slope.is_zero is not False:
-                continue
-            if s in differentiated:
-                continue
-            try:
-                solution = -replaced(gap, {s: sp.Integer(0)}) / slope
-                others = [replaced(c, {s: solution}) for c in domain.conditions if c != condition]
-                value = replaced(expr, {s: solution})
-            except NoValue:
-                continue
-            box = {name: ends for name, ends in domain.box.items() if name != s}
-            narrowed = Domain(tuple(c for c in (*others, *_assumed(s, solution)) if c != sp.true), box)
-            if defined_nowhere(value):
-                return Case(None, narrowed, where)
-            return settle_equalities(value, narrowed, where)
+        if defined_nowhere(value):
+            return Case(None, narrowed, where)
+        return settle_equalities(value, narrowed, where)
     return Case(expr, domain, where)
 
 
-def _under_derivatives(expr: Expr, domain: Domain) -> set[sp.Basic]:
+def eliminations(
+    domain: Domain, staying: set[sp.Basic], *, constant: bool = False
+) -> Iterator[tuple[Symbol, Expr, Domain]]:
+    """Yield a symbol, what an equality of the domain says that it is, and the domain of the others.
+
+    Parameters
+    ----------
+    domain
+        With equalities among its conditions, or with g ≥ 0 and g ≤ 0.
+    staying
+        Symbols that are not removed.
+    constant
+        Only where the slope is a number.
+
+    Examples
+    --------
+    >>> a = sp.Symbol("a", positive=True)
+    >>> b, d = sp.symbols("b d", real=True)
+    >>> [(s, value) for s, value, _ in eliminations(Domain((sp.Eq(a * d - b, 1),)), set())]
+    [(b, a*d - 1), (d, (b + 1)/a)]
+    """
+    found: list[tuple[bool, Symbol, Expr, sp.Basic]] = []
+    for condition in (*domain.conditions, *_pinched(domain)):
+        for s, slope, rest in _linear_in(condition, staying):
+            if slope.free_symbols and (constant or not _known_nonzero(slope, domain)):
+                continue
+            if slope.free_symbols or slope.is_zero is False:
+                found.append((bool(slope.free_symbols), s, -rest / slope, condition))
+    for _, s, solution, condition in sorted(found, key=lambda one: one[0]):
+        narrowed = without_symbol(domain, condition, s, solution)
+        if narrowed is not None:
+            yield s, solution, narrowed
+
+
+def without_symbol(domain: Domain, equality: sp.Basic, s: Symbol, solution: Expr) -> Domain | None:
+    """Return the domain of the other symbols where an equality gives one; None where SymPy takes no such value."""
+    try:
+        others = [replaced(c, {s: solution}) for c in domain.conditions if c != equality]
+    except NoValue:
+        return None
+    box = {name: ends for name, ends in domain.box.items() if name != s}
+    return Domain(tuple(c for c in (*others, *_assumed(s, solution)) if c != sp.true), box)
+
+
+def _linear_in(condition: sp.Basic, staying: set[sp.Basic]) -> Iterator[tuple[Symbol, Expr, Expr]]:
+    """Yield each symbol that an equality holds linearly, its slope, and the rest."""
+    if (
+        not isinstance(condition, sp.Eq)
+        or not isinstance(condition.lhs, sp.Expr)
+        or not isinstance(condition.rhs, sp.Expr)
+    ):
+        return
+    gap = condition.lhs - condition.rhs
+    for s in by_name(gap):
+        slope = gap.diff(s)
+        if s in staying or slope == 0 or s in slope.free_symbols:
+            continue
+        try:
+            yield s, slope, replaced(gap, {s: sp.Integer(0)})
+        except NoValue:
+            continue
+
+
+def _known_nonzero(slope: Expr, domain: Domain) -> bool:
+    """Tell whether assumptions or conditions say of every factor that it does not vanish."""
+    said = set(domain.conditions)
+    strict = ((sp.Ne(f, 0), sp.Gt(f, 0), sp.Lt(f, 0)) for f in _vanishing(slope))
+    return all(said.intersection(ways) for ways in strict)
+
+
+def _vanishing(product: Expr) -> list[Expr]:
+    """Return the factors that may vanish, without their powers."""
+    factors = sp.Mul.make_args(sp.factor_terms(product))
+    bases = [f.base if isinstance(f, sp.Pow) else f for f in factors]
+    return [cast("Expr", base) for base in bases if base.is_zero is not False]
+
+
+def _by_slope(expr: Expr, domain: Domain) -> list[Case] | None:
+    """Cut by the factors of an equality, or by whether the slope of a symbol in it vanishes."""
+    staying = under_derivatives(expr, domain)
+    for condition in domain.conditions:
+        if not isinstance(condition, sp.Eq) or not isinstance(condition.lhs, sp.Expr):
+            continue
+        gap = condition.lhs - cast("Expr", condition.rhs)
+        others = Domain(tuple(c for c in domain.conditions if c != condition), domain.box)
+        factors = [f for f, _ in polynomial_factors(gap)]
+        if len(factors) > 1 or (factors and sp.expand(gap / factors[0]).free_symbols):
+            vanishing = (_equality(f) for f in factors)
+            return [settle_equalities(expr, _narrowed(others, c), str(c)) for c in vanishing]
+        for s, slope, rest in _linear_in(condition, staying):
+            if slope.free_symbols and not declared_complex(s) and not _known_nonzero(slope, domain):
+                regular = _narrowed(domain, *(sp.Ne(f, 0) for f in _vanishing(slope)))
+                singular = _narrowed(others, _equality(slope), _equality(rest))
+                return [
+                    settle_equalities(expr, regular, f"{slope} ≠ 0"),
+                    settle_equalities(expr, singular, f"{slope} = 0"),
+                ]
+    return None
+
+
+def _equality(gap: Expr) -> Boolean:
+    return cast("Boolean", sp.Eq(gap, 0))
+
+
+def under_derivatives(expr: sp.Basic, domain: Domain) -> set[sp.Basic]:
+    """Return the symbols that are differentiated by, or that stand inside a derivative."""
     derivatives = anatomy([expr, *domain.conditions]).of(sp.Derivative, sp.Subs)
     return set[sp.Basic]().union(*(d.free_symbols for d in derivatives))
 
@@ -285,7 +383,7 @@ def _pinched(domain: Domain) -> list[sp.Basic]:
 
 def _assumed(s: Symbol, solution: Expr) -> tuple[Boolean, ...]:
     """Return what the assumptions of a removed symbol say of its value."""
-    said: list[Boolean] = []
+    said: list[sp.Basic] = []
     if s.is_positive:
         said.append(sp.Gt(solution, 0))
     elif s.is_nonnegative:
@@ -294,4 +392,6 @@ def _assumed(s: Symbol, solution: Expr) -> tuple[Boolean, ...]:
         said.append(sp.Lt(solution, 0))
     elif s.is_nonpositive:
         said.append(sp.Le(solution, 0))
-    return tuple(said)
+    elif s.is_nonzero:
+        said.append(sp.Ne(solution, 0))
+    return cast("tuple[Boolean, ...]", tuple(said))

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from flint.utils.flint_exceptions import DomainError
 
+from canon.proof.ideal import Ideal
 from canon.proof.limits import THOROUGH, Full, Limits, OutOfTime, TooLarge
 
 if TYPE_CHECKING:
@@ -56,6 +57,7 @@ class Tower:
         self._index: dict[Hashable, int] = {}
         self._relations: dict[int, tuple[int, fmpq_mpoly]] = {}
         self._zeros: list[fmpq_mpoly] = []
+        self._ideal: Ideal | None = None
         self._bases: list[fmpq_mpoly] = []
         self._base_index: dict[Hashable, int] = {}
         self._capacity = capacity
@@ -335,12 +337,25 @@ class Tower:
         for zero in self._zeros:
             if not num.is_zero():
                 num = divmod(num, zero)[1]
-        return num.is_zero()
+        return num.is_zero() or (len(self._zeros) > 1 and self._in_ideal(num))
 
     def learn_zero(self, p: fmpq_mpoly) -> None:
         """Record a polynomial that vanishes identically though it does not reduce to zero."""
-        if not p.is_zero():
-            self._zeros.append(p)
+        if p.is_zero():
+            return
+        reduced = self.constant(1)
+        for factor, _ in self.factors(p)[1]:
+            reduced = reduced * factor
+        self._zeros.append(reduced)
+        self._ideal = None
+
+    def _in_ideal(self, p: fmpq_mpoly) -> bool:
+        """Tell whether a polynomial is a combination of those known to vanish and of the relations."""
+        if self._ideal is None:
+            related = (self._gens[k] ** degree - power for k, (degree, power) in self._relations.items())
+            self._ideal = Ideal.of([*self._zeros, *related])
+        self.check_time()
+        return self._ideal.holds(p)
 
     def canonical(self, f: Fraction) -> Fraction:
         """Return ``f`` with the common factors of numerator and denominator cancelled."""

@@ -14,6 +14,7 @@ import sympy as sp
 
 from canon.expression.given import given_expression, given_seconds
 from canon.proof.anatomy import anatomy
+from canon.proof.branches import search_branches
 from canon.proof.budget import prove_in_worker
 from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import evaluated
@@ -203,6 +204,8 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
         return replace(_proved(proof), assumed=(EMPTY,)) if nothing else _proved(proof)
     now = time.monotonic()
     search = search_widely(left, right, domain, now + SEARCH_SHARE * (deadline - now))
+    if search.agreements == 0 and search.counterexample is None:
+        search = search_branches(left, right, domain, now + SEARCH_SHARE * (deadline - now))
     if search.counterexample is not None:
         return _refuted(left, right, search)
     obstacles = proof.obstacles
