@@ -19,8 +19,8 @@ from canon.expression.symbol import Coordinate, Rate
 from canon.mechanics.substitution import substitute
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import Domain
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.smooth import PIECED
-from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -151,6 +151,6 @@ def _vanishes_to(f: Expr, epsilon: Symbol, order: int, domain: Domain) -> bool:
         coefficient = f.diff(epsilon, k).subs(epsilon, 0)
         if coefficient.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
             return False
-        if coefficient != 0 and not vanishes(coefficient, domain, budget=0.3).holds:
+        if coefficient != 0 and not vanishes_off_kinks(coefficient, domain, budget=0.3).holds:
             return False
     return True

@@ -13,7 +13,7 @@ from canon.exercise.repair import common_ratio
 from canon.exercise.variants import times
 from canon.mechanics.mending import mending
 from canon.mechanics.transformation import CanonicalTransformation
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -89,7 +89,7 @@ def _proved_factor(parts: Sequence[Part], domain: Domain) -> sp.Expr | None:
 
 def _proved(parts: Sequence[Part], factor: sp.Expr, domain: Domain) -> bool:
     residuals = (factor * part.seen(part.claimed) - part.right for part in parts)
-    return all(r == 0 or vanishes(r, domain, budget=PROOF_SECONDS).holds for r in residuals)
+    return all(r == 0 or vanishes_off_kinks(r, domain, budget=PROOF_SECONDS).holds for r in residuals)
 
 
 def _rescaled(reading: Reading, parts: Sequence[Part], domain: Domain) -> Iterator[Diagnosis]:
@@ -134,7 +134,7 @@ def _time_derivative(parts: Sequence[Part], domain: Domain) -> str:
     if _proved([part for part in parts if part.right != 0], sp.S.Zero, domain):
         return ""
     still = (part.seen(part.claimed) for part in parts)
-    if all(f == 0 or vanishes(f, domain, budget=PROOF_SECONDS).holds for f in still):
+    if all(f == 0 or vanishes_off_kinks(f, domain, budget=PROOF_SECONDS).holds for f in still):
         return "K is H in the new variables; ∂F/∂t is missing: K = H + ∂F/∂t"
     return ""
 

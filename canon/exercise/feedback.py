@@ -23,7 +23,7 @@ from canon.exercise.repair import Screen, repairs
 from canon.exercise.tree import replaced, shown, symbols_of
 from canon.mechanics.linear import SingularMatrixError
 from canon.mechanics.substitution import substitute
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -239,7 +239,9 @@ def _part_by_part(
     """Yield what is wrong with each component that is wrong."""
     wrong = [(part, hint) for part, hint in zip(parts, hints, strict=True) if _is_wrong(part, domain)]
     if not wrong:
-        if all(part.through and vanishes(part.residual, domain, budget=0.5).holds for part in parts):
+        if all(
+            part.through and vanishes_off_kinks(part.residual, domain, budget=0.5).holds for part in parts
+        ):
             yield Diagnosis(
                 "each equation is right, but together they do not determine the motion: an equation is missing"
             )

@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.judge_energy import exactly, places
+from canon.exercise.judge_energy import exactly
 from canon.exercise.question import Part, Question, Same, SameEquations
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.substitution import substitute
-from canon.proof.smooth import where_differentiable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -68,7 +67,7 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
             tuple(
                 Part(f"∂S/∂{a}", claimed.diff(a), s) for a, s in zip(kinematics.u_dot, slopes, strict=True)
             ),
-            where_differentiable(places(reading, "bodies"), (*kinematics.q, kinematics.t), reading.domain),
+            reading.domain,
         )
     if reading.has("claim"):
         equations = tuple(s - Q for s, Q in zip(slopes, forces, strict=True))

@@ -17,7 +17,6 @@ from canon.expression.given import counted
 from canon.mechanics.bilinear import bilinear_covariant, displacements
 from canon.mechanics.bracket import lagrange_bracket, lie_bracket, poisson_bracket, symplectic_unit
 from canon.mechanics.substitution import substitute
-from canon.proof.smooth import where_differentiable
 from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
@@ -45,8 +44,7 @@ def poisson_brackets(reading: Reading) -> Iterator[Question]:
         Part(f"{{f, g}} of pair {i}", value, poisson_bracket(f, g, q, p), key=f"pairs[{i - 1}].value")
         for i, (f, g, value) in enumerate(pairs, 1)
     )
-    differentiated = [side for f, g, _ in pairs for side in (f, g)]
-    yield Same(parts, where_differentiable(differentiated, (*q, *p), reading.domain))
+    yield Same(parts, reading.domain)
 
 
 def lagrange_brackets(reading: Reading) -> Iterator[Question]:
@@ -62,7 +60,7 @@ def lagrange_brackets(reading: Reading) -> Iterator[Question]:
                 reading.fault(f"pairs[{i}].{letter}", f"{symbol} is not one of the variables")
         bracket = sp.Add(*(a.diff(u) * b.diff(v) - a.diff(v) * b.diff(u) for a, b in zip(q, p, strict=True)))
         parts.append(Part(f"[{u}, {v}]", value, bracket, key=f"pairs[{i}].value"))
-    yield Same(tuple(parts), where_differentiable((*q, *p), variables, reading.domain))
+    yield Same(tuple(parts), reading.domain)
 
 
 def lie_brackets(reading: Reading) -> Iterator[Question]:
@@ -74,7 +72,7 @@ def lie_brackets(reading: Reading) -> Iterator[Question]:
         Part(f"component {s}", c, r, key=f"claim[{i}]")
         for i, (s, c, r) in enumerate(zip(x, claim, right, strict=True))
     )
-    yield Same(parts, where_differentiable((*X, *Y), x, reading.domain), lambda: right)
+    yield Same(parts, reading.domain, lambda: right)
 
 
 def canonicity(reading: Reading) -> Iterator[Question]:
@@ -89,8 +87,7 @@ def canonicity(reading: Reading) -> Iterator[Question]:
         yield from _implicit_canonicity(reading, q, p, valence)
     else:
         Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
-        domain = where_differentiable((*Q, *P), (*q, *p), reading.domain)
-        yield Same(canonical_parts(Q, P, q, p, valence), domain)
+        yield Same(canonical_parts(Q, P, q, p, valence), reading.domain)
 
 
 def canonical_parts(
@@ -132,8 +129,7 @@ def _implicit_canonicity(
         return
     keep = set(reading.scope.names.values()) - {*old, *new} | {reading.time}
     try:
-        domain = where_differentiable(equations, (*old, *new), reading.domain)
-        branches = on_manifold(equations, domain, keep=tuple(keep), prefer=(*new, *old))
+        branches = on_manifold(equations, reading.domain, keep=tuple(keep), prefer=(*new, *old))
     except Undecided:
         wanted = {f"M J Mᵀ − c J, {i + 1}": entry for i, entry in enumerate(entries)}
         found = refuted_at_a_point(equations, old, new, wanted, reading.domain)
@@ -157,7 +153,7 @@ def bilinear(reading: Reading) -> Iterator[Question]:
         right = bilinear_covariant(form, x, d, delta)
         yield Same(
             (Part("the bilinear covariant", extended.expression("claim"), right, key="claim"),),
-            where_differentiable(form, x, reading.domain),
+            reading.domain,
             lambda: right,
         )
         return
@@ -172,7 +168,7 @@ def bilinear(reading: Reading) -> Iterator[Question]:
         )
         for i, j in sorted(combinations(range(2 * n), 2), key=lambda pair: pair[1] - pair[0] != n)
     )
-    yield Same(parts, where_differentiable((*Q, *P), z, reading.domain))
+    yield Same(parts, reading.domain)
 
 
 def generating(reading: Reading) -> Iterator[Question]:
@@ -180,8 +176,6 @@ def generating(reading: Reading) -> Iterator[Question]:
     kind, F = int(reading.claim.kind[-1]), reading.expression("F")
     there, domain = map_values(reading)
     rules = rules_of(reading, kind, F)
-    independent = [z for key in ("q", "p", "new_q", "new_p") for z in reading.symbols(key)]
-    domain = where_differentiable([substitute(F, there)], independent, domain)
     yield Same(rules.on(there), domain, lambda: generating_function_of(reading, kind))
     yield Regular(
         rules.mixed_hessian.applyfunc(lambda entry: substitute(entry, there)),
@@ -276,13 +270,11 @@ def new_hamiltonian(reading: Reading) -> Iterator[Question]:
     names = (*reading.symbols(new[0]), *reading.symbols(new[1]))
     images = [there[name] for name in names]
     n = len(q)
-    domain = where_differentiable(images, (*q, *p, t), domain)
     yield from wrong_variables(
         reading.expression("K"), (*reading.symbols("q"), *reading.symbols("p")), "K", "Q, P and t"
     )
     yield Same(canonical_parts(images[:n], images[n:], q, p), domain)
     difference = substitute(after, there) - before
-    domain = where_differentiable([difference], (*q, *p), domain)
     parts = tuple(
         Part(f"the equation of {name}", poisson_bracket(image, difference, q, p), image.diff(t))
         for name, image in zip(names, images, strict=True)

@@ -14,7 +14,6 @@ from canon.exercise.question import Part, Question, Regular, Same, wrong_variabl
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian, legendre
 from canon.mechanics.substitution import substitute
-from canon.proof.smooth import where_differentiable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -34,8 +33,7 @@ def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
         yield from wrong_variables(reading.expression("H"), lagrangian.velocities, "H", "q, p and t")
         through = dict(zip(p, lagrangian.momenta, strict=True))
         part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through, "H")
-        smooth = where_differentiable([lagrangian.L], lagrangian.velocities, domain)
-        yield Same((part,), transported(smooth, through), lambda: legendre(lagrangian, p, domain).H)
+        yield Same((part,), transported(domain, through), lambda: legendre(lagrangian, p, domain).H)
 
 
 def hamilton_equations(reading: Reading) -> Iterator[Question]:
@@ -50,8 +48,7 @@ def hamilton_equations(reading: Reading) -> Iterator[Question]:
             Part(f"d{z}/dt", rate, right, through, key)
             for z, rate, right, key in zip((*q, *p), claimed, system.vector_field, keys, strict=True)
         )
-        domain = where_differentiable([system.H], (*q, *p), reading.domain)
-        yield Same(parts, domain, lambda: system.vector_field)
+        yield Same(parts, reading.domain, lambda: system.vector_field)
     if reading.has("solution"):
         yield _solution(reading, system)
 
@@ -80,8 +77,7 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
     restrictions = reading.equations("restrict") if reading.has("restrict") else ()
     for branch in on_manifold(restrictions, reading.domain):
         there = substitute(I, branch.values)
-        here = where_differentiable([there], (*rates, t), branch.domain)
-        yield Same((Part("dI/dt", rate, through=branch.values),), here)
+        yield Same((Part("dI/dt", rate, through=branch.values),), branch.domain)
         check_continuous(there, (*rates, t), branch.domain)
 
 

@@ -21,7 +21,8 @@ from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.bracket import lagrange_bracket, poisson_bracket
 from canon.mechanics.substitution import exchanged, substitute
-from canon.proof.smooth import PIECED, where_differentiable, without_pieces
+from canon.proof.kinks import off_kinks
+from canon.proof.smooth import PIECED, without_pieces
 from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def invariance(reading: Reading) -> Iterator[Question]:
         return
     q, p = reading.phase_space("q", "p")
     Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
-    domain = where_differentiable((*Q, *P), (*q, *p), reading.domain)
+    domain = reading.domain
     if subject == "phase-volume":
         M = sp.Matrix([[f.diff(z) for z in (*q, *p)] for f in (*Q, *P)])
         part = Part("the square of the determinant", cast("Expr", M.det(method="berkowitz")) ** 2, sp.S.One)
@@ -97,7 +98,8 @@ def _hamiltonian_form(
 
 def _constancy(valence: Expr, moving: Sequence[Symbol], domain: Domain) -> Iterator[Part]:
     """Yield slopes that vanish where the valence is constant; one with pieces is compared with its value at a point."""
-    point = next(domain.points(moving, 1), None) if valence.has(*PIECED) else None
+    beside = off_kinks([valence], domain).strictly
+    point = next(beside.points(moving, 1), None) if valence.has(*PIECED) else None
     if point is not None:
         yield Part("{Q, P}", valence, substitute(valence, {z: point[z] for z in moving}))
         return
@@ -132,7 +134,7 @@ def _generated(reading: Reading) -> Iterator[Question]:
     if F.has(*((*p, *P) if kind == 1 else (*p, *Q) if kind == 2 else (*q, *P) if kind == 3 else (*q, *Q))):
         reading.fault("F", f"depends on variables that a generating function of type {kind} can't depend on")
     rules = rules_of(reading, kind, F)
-    domain = where_differentiable([F], (*rules.old, *rules.new), reading.domain)
+    domain = reading.domain
     hessian = _with_free_jets(rules.mixed_hessian)
     yield Regular(hessian, "the mixed Hessian", domain, "the mixed Hessian is singular: F generates no map")
     given: Mapping[Symbol, Expr] = dict(zip(rules.foreign, rules.values, strict=True))
@@ -184,8 +186,6 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
     x = reading.symbols("x")
     J = _structure(reading, x)
     n = len(x)
-    structure = [J(i, j) for i, j in combinations(range(n), 2)]
-    domain = where_differentiable(structure, x, reading.domain)
 
     def turned(i: int, j: int, k: int) -> Expr:
         return sp.Add(*(J(i, m) * J(j, k).diff(x[m]) for m in range(n)))
@@ -195,7 +195,7 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
         for i, j, k in combinations(range(n), 3)
     ]
     if parts:
-        yield Same(tuple(parts), domain, _no_answer, is_instead)
+        yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
     else:
         yield Stated(Verdict(Status.HOLDS, "Jacobi's identity of two variables", "structure"))
     for i, C in enumerate(reading.expressions("casimirs") if reading.has("casimirs") else ()):
@@ -203,7 +203,7 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
             Part(f"{{{x[k]}, casimirs[{i}]}}", sp.Add(*(J(k, m) * C.diff(x[m]) for m in range(n))))
             for k in range(n)
         ]
-        yield Same(tuple(kept), where_differentiable([C], x, reading.domain), _no_answer, is_instead)
+        yield Same(tuple(kept), reading.domain, _no_answer, is_instead)
 
 
 def _structure(reading: Reading, x: Sequence[Symbol]) -> Callable[[int, int], Expr]:

@@ -16,7 +16,7 @@ from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.routh import routhian as routh
 from canon.mechanics.substitution import substitute
-from canon.proof.smooth import PIECED, where_differentiable
+from canon.proof.smooth import PIECED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -45,10 +45,7 @@ def dissipative(reading: Reading) -> Iterator[Question]:
         claimed = reading.expression("energy_rate")
         rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
         part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed), "energy_rate")
-        moving = (*q, *lagrangian.velocities, t)
-        yield Same(
-            (part,), where_differentiable([lagrangian.L, damping], moving, reading.domain), lambda: rate
-        )
+        yield Same((part,), reading.domain, lambda: rate)
 
 
 def routhian(reading: Reading) -> Iterator[Question]:
@@ -67,12 +64,11 @@ def routhian(reading: Reading) -> Iterator[Question]:
     lagrangian = lagrangian_of(reading)
     L, velocities = lagrangian.L, tuple(velocity(c) for c in ignorable)
     absent = tuple(Part(f"∂L/∂{c} of the ignorable coordinate {c}", L.diff(c)) for c in ignorable)
-    domain = where_differentiable([L], (*q, *lagrangian.velocities), reading.domain)
-    yield Same(absent, domain, said=_not_ignorable)
+    yield Same(absent, reading.domain, said=_not_ignorable)
     yield Regular(
         sp.Matrix([[L.diff(a, b) for b in velocities] for a in velocities]),
         "the Hessian in the ignorable velocities",
-        domain,
+        reading.domain,
     )
     through = {p: L.diff(v) for p, v in zip(momenta, velocities, strict=True)}
     if reading.has("R"):
@@ -83,7 +79,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
         part = Part("the Routhian", reading.expression("R"), right, through, "R")
         yield Same(
             (part,),
-            transported(domain, through),
+            transported(reading.domain, through),
             lambda: routhian_in_momenta(lagrangian, velocities, through, sign),
         )
     if reading.has("claim"):
@@ -118,8 +114,7 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         reading.fault("relation", "write gauge or equations")
     elif reading.has("F"):
         F = reading.expression("F")
-        domain = where_differentiable([F], (*q, t), reading.domain)
-        yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), domain)
+        yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
     else:
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
 

@@ -32,8 +32,8 @@ from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import substitute
 from canon.proof.generic import proved_sign
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.polynomial import polynomial_factors
-from canon.proof.vanish import vanishes
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
     for motion in _motions(reading, (contact, *others), multipliers, (leaves,)):
         force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
         claimed = motion.seen(leaves)
-        if claimed == 0 or vanishes(claimed, motion.branch.domain, budget=1.0).holds:
+        if claimed == 0 or vanishes_off_kinks(claimed, motion.branch.domain, budget=1.0).holds:
             reading.fault("leaves", "holds all along the contact")
         if claimed.is_nonzero or proved_sign(claimed, motion.branch.domain) in ("+", "-"):
             reading.fault("leaves", "holds nowhere along the contact")
@@ -258,7 +258,7 @@ def _vanishes_there(wanted: Expr, branch: Branch, deadline: Deadline) -> Verdict
     """Tell whether an expression vanishes on a branch; one factor that does is enough."""
     factors = polynomial_factors(wanted)
     for factor, _ in factors if len(factors) > 1 else ():
-        found = vanishes(substitute(factor, branch.values), branch.domain, budget=deadline.left / 4)
+        found = vanishes_off_kinks(substitute(factor, branch.values), branch.domain, budget=deadline.left / 4)
         if found.holds:
             return found
     return decide(Same((Part("the reaction", wanted, through=branch.values),), branch.domain), deadline)

@@ -22,8 +22,8 @@ from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import exchanged, substitute
 from canon.proof.domain import Domain
 from canon.proof.generic import proved_sign
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.smooth import PIECED
-from canon.proof.vanish import vanishes
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ def _same_to_order(
     verdicts: list[Verdict] = []
     for k in range(max(0, order + start + 1)):
         coefficient = _coefficient(above, epsilon, k)
-        verdict = vanishes(coefficient, domain, budget=deadline.left)
+        verdict = vanishes_off_kinks(coefficient, domain, budget=deadline.left)
         if verdict.fails:
             shown = shown_short(coefficient / lowest * _power_of(small, k - start))
             return Verdict(
@@ -228,11 +228,11 @@ def _check_analytic(f: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> No
             bad = part.exp.has(*moving) and not part.base.is_positive
             bad = bad or proved_sign(substitute(part.base, place), domain) != "+"
         elif isinstance(part, sp.Pow) and part.exp.is_negative:
-            bad = not vanishes(substitute(part.base, place), domain, budget=0.5).fails
+            bad = not vanishes_off_kinks(substitute(part.base, place), domain, budget=0.5).fails
         elif isinstance(part, sp.tan | sp.sec | sp.cot | sp.csc):
             below = sp.cos if isinstance(part, sp.tan | sp.sec) else sp.sin
             there = substitute(arguments(part)[0], place)
-            bad = not vanishes(below(there), domain, budget=0.5).fails
+            bad = not vanishes_off_kinks(below(there), domain, budget=0.5).fails
         elif isinstance(part, sp.log):
             bad = proved_sign(substitute(arguments(part)[0], place), domain) != "+"
         elif isinstance(part, sp.asin | sp.acos | sp.atanh | sp.acosh | sp.acot | sp.acoth):
@@ -247,7 +247,7 @@ def _order_of(f: Expr, epsilon: Symbol, domain: Domain, deadline: Deadline) -> t
     """Return the lowest order of f at ε = 0, and its coefficient."""
     for k in range(MOST_ORDERS + 1):
         coefficient = _coefficient(f, epsilon, k)
-        verdict = vanishes(coefficient, domain, budget=deadline.left)
+        verdict = vanishes_off_kinks(coefficient, domain, budget=deadline.left)
         if verdict.fails:
             return k, coefficient
         if verdict.undecided:

@@ -21,9 +21,9 @@ from canon.expression.symbol import velocity
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
 from canon.proof.generic import proved_sign
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.polynomial import polynomial_factors
 from canon.proof.prove import is_empty
-from canon.proof.vanish import vanishes
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -241,7 +241,7 @@ def _restricted(
     here = substitute(constraint, branch.values)
     if here.is_nonzero:
         return
-    if here == 0 or vanishes(here, branch.domain, budget=1.0).holds:
+    if here == 0 or vanishes_off_kinks(here, branch.domain, budget=1.0).holds:
         yield branch
         return
     for factor in _factors(here, prefer):

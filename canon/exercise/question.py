@@ -16,6 +16,7 @@ from canon.expression.symbol import Momentum
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.equations import equivalent_equations, without_solution
+from canon.proof.kinks import off_kinks, vanishes_off_kinks
 from canon.proof.vanish import equal, vanishes
 from canon.proof.verdict import Status, Undecided, Verdict
 
@@ -224,7 +225,7 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
         case Stated(verdict):
             return verdict
         case Differ(part, domain, feedback):
-            verdict = replace(vanishes(part.residual, domain, budget=deadline.left), feedback="")
+            verdict = replace(vanishes_off_kinks(part.residual, domain, deadline.left), feedback="")
             return opposite(verdict.about(part.name), feedback)
         case Same(parts, domain, said=said):
             return _all_vanish(parts, domain, deadline, said)
@@ -232,7 +233,9 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             verdict = _same_equations(claimed, right, unknowns, domain, deadline)
             return replace(verdict, feedback=_in_our_words(verdict.feedback, before))
         case Regular(matrix, name, domain, singular_is):
-            verdict = is_regular(matrix, domain, name)
+            off = off_kinks(matrix.flat(), domain)
+            seen = matrix.applyfunc(off.seen)
+            verdict = off.ask(lambda there: is_regular(seen, there, name), by_point=Status.HOLDS)
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
 
 
@@ -240,15 +243,19 @@ def _all_vanish(
     parts: Sequence[Part], domain: Domain, deadline: Deadline, said: Callable[[Part], str] | None
 ) -> Verdict:
     """Ask for all components at once, so that one that is easily refuted spares the long proofs of the others."""
-    residuals = [part.residual for part in parts]
-    verdict = replace(vanishes(sp.Matrix(residuals), domain, budget=deadline.left), feedback="")
+    sides = [(part.seen(part.claimed), part.right) for part in parts]
+    off = off_kinks([side for pair in sides for side in pair], domain)
+    residuals = [off.seen(claimed - right) for claimed, right in sides]
+    verdict = off.ask(lambda there: vanishes(sp.Matrix(residuals), there, budget=deadline.left))
+    verdict = replace(verdict, feedback="")
     if verdict.holds:
         return verdict
     turned = next((p for p, r in zip(parts, residuals, strict=True) if r == verdict.residual), None)
     if turned is None:
         return verdict
     if verdict.fails and turned.right != 0:  # ask again for the values of both sides
-        both = equal(turned.seen(turned.claimed), turned.right, domain, budget=1.0)
+        seen, right = (off.seen(side) for side in (turned.seen(turned.claimed), turned.right))
+        both = equal(seen, right, off.strictly, budget=1.0)
         verdict = replace(verdict, counterexample=both.counterexample or verdict.counterexample)
     if verdict.fails and said is not None:
         verdict = replace(verdict, feedback=said(turned))
@@ -264,7 +271,7 @@ def _same_equations(
 ) -> Verdict:
     for i, equation in enumerate(claimed, 1):
         slopes = sp.Matrix([[equation.diff(a).diff(b) for b in unknowns] for a in unknowns])
-        affine = vanishes(slopes, domain, budget=deadline.left)
+        affine = vanishes_off_kinks(slopes, domain, deadline.left)
         if not affine.holds:
             return replace(
                 affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}"

@@ -24,7 +24,7 @@ from canon.exercise.monomial import Monomials
 from canon.exercise.tree import symbols_of
 from canon.exercise.variants import Change, of_one_coefficient, times, variants
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -99,7 +99,7 @@ def common_ratio(parts: Sequence[Part], domain: Domain) -> Fraction | None:
 
 
 def _is_right(part: Part, expression: Expr, domain: Domain) -> bool:
-    return vanishes(replace(part, claimed=expression).residual, domain, budget=PROOF_SECONDS).holds
+    return vanishes_off_kinks(replace(part, claimed=expression).residual, domain, budget=PROOF_SECONDS).holds
 
 
 def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Repair]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from canon.proof.domain import Domain, as_domain
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.verdict import Evidence, Status, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ def all_vanish(
     budget
         Seconds for all of them together.
 
+    Kinks are no part of the domain: an expression may have any value there.
+
     Returns
     -------
     Verdict
@@ -54,7 +56,7 @@ def all_vanish(
                     evidence=(Evidence("budget", f"{budget:.1f} s were spent before {part}"),),
                 )
                 return
-            verdict = vanishes(expression, domain, left)
+            verdict = vanishes_off_kinks(expression, domain, left)
             if verdict.holds:
                 yield verdict
                 continue
@@ -73,4 +75,4 @@ def differ(expression: Expr, domain: Domain | None = None) -> bool:
     """Whether an expression certainly does not vanish identically on the domain."""
     if expression.is_Rational:
         return bool(expression != 0)
-    return vanishes(expression, as_domain(domain)).fails
+    return vanishes_off_kinks(expression, as_domain(domain)).fails

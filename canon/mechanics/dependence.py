@@ -14,8 +14,8 @@ from sympy import Expr, Symbol
 from canon.mechanics.claim import differ
 from canon.mechanics.linear import eliminate
 from canon.proof.domain import Domain, as_domain
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.polynomial import polynomial_factors
-from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -134,5 +134,5 @@ def _contradict(
 
 
 def _undecided_as_none(value: Expr, domain: Domain | None) -> bool | None:
-    verdict = vanishes(value, as_domain(domain))
+    verdict = vanishes_off_kinks(value, as_domain(domain))
     return None if verdict.undecided else verdict.fails

@@ -18,7 +18,7 @@ from canon.mechanics.legendre import LegendreError, eliminate_velocities, legend
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain, as_domain
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.verdict import Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ class Hamiltonian:
             )
         return all_hold(
             (
-                vanishes(claim - rate, domain).about(f"d{z}/dt = {claim}")
+                vanishes_off_kinks(claim - rate, domain).about(f"d{z}/dt = {claim}")
                 for z, rate, claim in zip((*self.q, *self.p), self.vector_field, claimed, strict=True)
             ),
             "these are Hamilton's equations",
@@ -144,7 +144,7 @@ class Hamiltonian:
             raise ValueError(f"the motion does not say what {', '.join(missing)} is; give every variable")
         return all_hold(
             (
-                vanishes(motion[z].diff(self.t) - substitute(rate, motion), domain).about(
+                vanishes_off_kinks(motion[z].diff(self.t) - substitute(rate, motion), domain).about(
                     f"{z}(t) satisfies its equation"
                 )
                 for z, rate in zip(variables, self.vector_field, strict=True)
@@ -261,6 +261,6 @@ def is_hamiltonian_of(
         yield has_hamiltonian(lagrangian, domain)
         momenta = coordinate_symbols(p)
         energy = plain(H, (*lagrangian.q, *momenta), lagrangian.t)
-        yield vanishes(legendre_residual(lagrangian, energy, momenta), domain)
+        yield vanishes_off_kinks(legendre_residual(lagrangian, energy, momenta), domain)
 
     return all_hold(verdicts(), question)

@@ -10,7 +10,7 @@ from sympy import Expr, Symbol
 from canon.mechanics.generator import low_degree_roots
 from canon.mechanics.linear import SingularMatrixError, eliminate, is_regular, solve
 from canon.mechanics.substitution import entry, exchanged, size, substitute
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -128,7 +128,8 @@ def _of_nonlinear(
     there = dict(zip(new, gradient, strict=True))
     for values, transformed in _candidates(f, gradient, old, new):
         if all(
-            vanishes(substitute(value, there) - x, domain).holds for value, x in zip(values, old, strict=True)
+            vanishes_off_kinks(substitute(value, there) - x, domain).holds
+            for value, x in zip(values, old, strict=True)
         ):
             return transformed
     return None

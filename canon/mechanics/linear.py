@@ -14,7 +14,7 @@ from sympy import Expr
 
 from canon.mechanics.substitution import size
 from canon.proof.domain import Domain, as_domain
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ def _pivot_row(
         entry = rows[i][column]
         if _plainly_nonzero(entry):
             return i
-        verdict = vanishes(entry, domain)
+        verdict = vanishes_off_kinks(entry, domain)
         if verdict.fails:
             assumed.update(dict.fromkeys(verdict.assumed))
             return i

@@ -12,7 +12,7 @@ from sympy.core.function import AppliedUndef
 
 from canon.mechanics.jacobian import is_large
 from canon.mechanics.substitution import exchanged
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -53,7 +53,7 @@ def constant_value(
             continue
         tried.add(candidate)
         candidate = _short(candidate)
-        verdict = vanishes(f - candidate, domain, min(10.0, deadline - time.monotonic()))
+        verdict = vanishes_off_kinks(f - candidate, domain, min(10.0, deadline - time.monotonic()))
         if verdict.holds:
             return candidate
     return None
@@ -113,7 +113,7 @@ def _of_one_pair(value: Expr | None, c: Expr) -> str:
 
 
 def _vanishes(f: Expr, domain: Domain) -> bool:
-    return f == 0 or vanishes(f, domain).holds
+    return f == 0 or vanishes_off_kinks(f, domain).holds
 
 
 def _short(candidate: Expr) -> Expr:

@@ -23,7 +23,7 @@ from canon.mechanics.integral import table_integral
 from canon.mechanics.quadrature import quadratures
 from canon.mechanics.substitution import exchanged, size
 from canon.mechanics.witness import Witness, witnesses
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -113,14 +113,14 @@ def _without_vanishing(a: Expr, z: Sequence[Symbol], domain: Domain) -> Expr:
         if not a.has(s):
             continue
         slope = a.diff(s)
-        if slope != 0 and not vanishes(slope, domain).holds:
+        if slope != 0 and not vanishes_off_kinks(slope, domain).holds:
             continue
         for place in (sp.S.Zero, sp.S.One):
             simpler = exchanged(a, {s: place})
             if not simpler.has(sp.nan, sp.zoo, sp.oo):
                 a = simpler
                 break
-    if a == 0 or vanishes(a, domain).holds:
+    if a == 0 or vanishes_off_kinks(a, domain).holds:
         return sp.S.Zero
     return _lowest_terms(a)
 

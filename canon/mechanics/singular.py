@@ -23,7 +23,7 @@ from canon.mechanics.legendre import LegendreError, eliminate_velocities
 from canon.mechanics.linear import SingularMatrixError, eliminate
 from canon.mechanics.substitution import exchanged, substitute
 from canon.proof.domain import Domain, as_domain
-from canon.proof.vanish import vanishes
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -153,7 +153,7 @@ def _by_elimination(
                 *(substitute(f, there) for f in primary),
                 substitute(H, there) - lagrangian.jacobi_energy,
             ]
-            if all(vanishes(claim, domain).holds for claim in claims):
+            if all(vanishes_off_kinks(claim, domain).holds for claim in claims):
                 return primary, _simplest(H, domain)
     raise ValueError(
         f"L is singular (its Hessian has the rank {rank} for {counted(n, 'coordinate')}), "
@@ -192,7 +192,7 @@ def _partial(
 
 def _simplest(f: Expr, domain: Domain) -> Expr:
     """Return 0 where f certainly vanishes, and else f with common factors taken out."""
-    return sp.S.Zero if vanishes(f, domain).holds else sp.factor_terms(f)
+    return sp.S.Zero if vanishes_off_kinks(f, domain).holds else sp.factor_terms(f)
 
 
 def _along(direction: Sequence[Expr], components: Sequence[Expr]) -> Expr:

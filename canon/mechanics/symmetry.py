@@ -24,7 +24,7 @@ from canon.mechanics.potential import potential
 from canon.mechanics.substitution import exchanged
 from canon.proof.domain import Domain, as_domain
 from canon.proof.equations import equivalent_equations
-from canon.proof.smooth import PIECED, may_jump, where_differentiable
+from canon.proof.smooth import PIECED, may_jump
 from canon.proof.verdict import Status, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -76,10 +76,8 @@ def is_constant_of_motion(
         function = plain(I, system.q, system.t)
         found = dict(zip(map(acceleration, system.q), system.accelerations, strict=True))
         rate = exchanged(time_derivative(function, system.q, system.t), found)
-    everywhere, moving = as_domain(domain), (*state, system.t)
-    smooth = where_differentiable([function], moving, everywhere)
-    verdict = all_vanish([("dI/dt = 0", rate)], f"{I} is a constant of motion", smooth, budget)
-    if verdict.holds and may_jump(function, moving, everywhere):
+    verdict = all_vanish([("dI/dt = 0", rate)], f"{I} is a constant of motion", domain, budget)
+    if verdict.holds and may_jump(function, (*state, system.t), as_domain(domain)):
         why = f"{I} may jump, which its rate does not show; narrow the domain to where it does not"
         return Verdict(Status.UNDECIDED, verdict.question, seconds=verdict.seconds, feedback=why)
     return verdict
@@ -184,8 +182,7 @@ def is_gauge_equivalent(
     if F is not None:
         function = plain(F, q, t)
         gap = difference - time_derivative(function, q, t)
-        smooth = where_differentiable([function], (*q, t), as_domain(domain))
-        return all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", smooth)
+        return all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", domain)
     v = [velocity(s) for s in q]
     A = [difference.diff(a) for a in v]
     curvature = [(f"∂²(L2 − L1)/∂{a}∂{b} = 0", A[i].diff(b)) for i, a in enumerate(v) for b in v[i:]]

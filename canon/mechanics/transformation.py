@@ -27,7 +27,6 @@ from canon.mechanics.mending import constant_value, mending
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import as_tuple, entry, substitute
 from canon.proof.domain import Domain, as_domain
-from canon.proof.smooth import where_differentiable
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
@@ -196,8 +195,7 @@ class CanonicalTransformation:
         deadline = clock.monotonic() + given_seconds(budget)
         test = by or ("poisson" if self.jacobian.has(*self.variables) else "symplectic")
         left = deadline - clock.monotonic()
-        smooth = where_differentiable(self.images, self.variables, self.domain)
-        verdict = all_vanish(residuals(self, test, c), question, smooth, left)
+        verdict = all_vanish(residuals(self, test, c), question, self.domain, left)
         if verdict.fails:
             left = deadline - clock.monotonic()
             return replace(verdict, feedback=mending(self, c, left) or verdict.feedback)

@@ -17,6 +17,7 @@ from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, valu
 from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import with_example_functions
 from canon.proof.generic import is_analytic, proved_sign
+from canon.proof.kinks import off_kinks
 from canon.proof.replacement import defined_nowhere
 from canon.proof.typed import arguments
 from canon.proof.vanish import vanishes
@@ -106,20 +107,39 @@ def equivalent_equations(
         given_kind(system, (list, tuple), name, "put a single equation into brackets")
     start = time.monotonic()
     deadline = start + given_seconds(budget)
+    given = [
+        [given_expression(e, f"equation {i} of the {which} system") for i, e in enumerate(system, start=1)]
+        for which, system in (("first", system_a), ("second", system_b))
+    ]
+    off = off_kinks([e for system in given for e in system], domain)
+    first, second = ([off.seen(e) for e in system] for system in given)
+    return replace(
+        off.ask(lambda there: _equivalent(first, second, unknowns, there, deadline)),
+        seconds=time.monotonic() - start,
+    )
+
+
+def _equivalent(
+    system_a: Sequence[Expr],
+    system_b: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    domain: Domain,
+    deadline: float,
+) -> Verdict:
     a = _augmented(system_a, unknowns, domain, "first", deadline)
     b = _augmented(system_b, unknowns, domain, "second", deadline)
     unknown = [system for system in (a, b) if isinstance(system, str)]
     if isinstance(a, str) or isinstance(b, str):
         verdict = Verdict(Status.UNDECIDED, evidence=tuple(Evidence("affine", text) for text in unknown))
-        return replace(verdict, question=SAME_SOLUTIONS, seconds=time.monotonic() - start)
+        return replace(verdict, question=SAME_SOLUTIONS)
     field = is_analytic([entry for system in (a, b) for row in system.rows for entry in row], domain)
     extra = _rows_follow(b, a, system_b, ("second", "first"), domain, deadline, field=field)
     if extra.fails:
-        return replace(extra, question=SAME_SOLUTIONS, seconds=time.monotonic() - start)
+        return replace(extra, question=SAME_SOLUTIONS)
     missing = _rows_follow(a, b, system_a, ("first", "second"), domain, deadline, field=field)
     worst = missing if missing.fails or extra.holds else extra
     assumed = tuple(dict.fromkeys((*extra.assumed, *missing.assumed))) if worst.holds else worst.assumed
-    return replace(worst, question=SAME_SOLUTIONS, assumed=assumed, seconds=time.monotonic() - start)
+    return replace(worst, question=SAME_SOLUTIONS, assumed=assumed)
 
 
 def without_solution(system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain = EVERYWHERE) -> bool:
@@ -151,7 +171,7 @@ def _augmented(
     at_rest: dict[sp.Basic, Expr] = dict.fromkeys(unknowns, sp.Integer(0))
     rows: list[tuple[Expr, ...]] = []
     for number, equation in enumerate(system, start=1):
-        expr = _off_the_kinks(given_expression(equation, f"equation {number} of the {which} system"))
+        expr = given_expression(equation, f"equation {number} of the {which} system")
         row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
         row.append(cast("Expr", expr.xreplace(at_rest)))
         if not _is_affine(expr, set(unknowns)):
@@ -167,11 +187,6 @@ def _augmented(
                 return f"equation {number} of the {which} system was not proved affine in the unknowns"
         rows.append(tuple(row))
     return _System(tuple(rows))
-
-
-def _off_the_kinks(expr: Expr) -> Expr:
-    """Leave out the impulses that SymPy writes into the derivative of sign(u): generic points have u ≠ 0."""
-    return cast("Expr", expr.replace(lambda e: isinstance(e, sp.DiracDelta), lambda _: sp.Integer(0)))
 
 
 def _is_affine(expr: sp.Basic, unknowns: set[Symbol]) -> bool:
@@ -214,7 +229,7 @@ def _rows_follow(
             if verdict.fails and not sure:
                 verdict = vanishes(minor * determinant, domain, max(0.1, deadline - time.monotonic()))
             if verdict.fails and _minor_is_largest(basis, pivots, domain, deadline):
-                equation = _off_the_kinks(equations[number])
+                equation = equations[number]
                 return replace(
                     verdict,
                     residual=equation,

@@ -13,6 +13,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef, Derivative
 from sympy.polys.polyerrors import PolynomialError
 
+from canon.proof.anatomy import anatomy
 from canon.proof.angles import Refine
 from canon.proof.domain import Domain, linear, parts_of
 from canon.proof.limits import QUICK, Full, OutOfTime, TooLarge
@@ -41,7 +42,8 @@ def is_analytic(exprs: Iterable[Expr], domain: Domain) -> bool:
 
     The set is convex: what the symbols' signs and the linear conditions leave. Roots and logarithms count
     where the radicand is proved positive there, square roots also where it is a nonnegative polynomial
-    without square factors, whose zeros then have codimension 2 and cut nothing in two. Nonlinear
+    without square factors, whose zeros then have codimension 2 and cut nothing in two. What has more than one
+    branch may not be taken of poles, which cut a line in two: atan(1/x) jumps where 1/x has one. Nonlinear
     equalities leave several sheets and are declined.
 
     Examples
@@ -77,17 +79,21 @@ def _fresh(expr: sp.Basic, hull: Domain, seen: dict[sp.Basic, bool]) -> bool:
         case sp.Pow():
             return expr.exp.is_integer is True or _uncut(expr.base, expr.exp, hull)
         case sp.log() if len(expr.args) == 1:
-            return proved_sign(arguments(expr)[0], hull) == "+"
+            return proved_sign(arguments(expr)[0], hull) == "+" and _without_poles(arguments(expr)[0], hull)
         case sp.atan() | sp.asinh():
-            return certainly_real(arguments(expr)[0])
+            return certainly_real(arguments(expr)[0]) and _without_poles(arguments(expr)[0], hull)
         case _:
             return isinstance(expr, (*ENTIRE, AppliedUndef)) or (isinstance(expr, sp.Expr) and expr.is_number)
 
 
 def _uncut(base: Expr, exponent: Expr, hull: Domain) -> bool:
     """Tell whether a power with an exponent that is not whole has one analytic branch on the hull."""
+    if base.is_number:
+        return True
     sign = "+" if base.is_positive else proved_sign(base, hull)
-    if sign == "+" or base.is_number:
+    if not sign or not _without_poles(base, hull):
+        return False
+    if sign == "+":
         return True
     if sign != "0+" or not isinstance(exponent, sp.Rational) or exponent.q != 2:
         return False
@@ -95,6 +101,15 @@ def _uncut(base: Expr, exponent: Expr, hull: Domain) -> bool:
         return all(e == 1 for _, e in sp.Poly(base, *base.free_symbols, domain="QQ").factor_list()[1])
     except PolynomialError:
         return False
+
+
+def _without_poles(expr: Expr, hull: Domain) -> bool:
+    """Tell whether no denominator of an expression, written as a tangent perhaps, vanishes on the hull."""
+    found = anatomy([expr])
+    denominators: list[Expr] = [e.base for e in found.of(sp.Pow) if not e.exp.is_nonnegative]
+    denominators += [sp.cos(e.args[0]) for e in found.of(sp.tan, sp.sec)]
+    denominators += [sp.sin(e.args[0]) for e in found.of(sp.cot, sp.csc)]
+    return all(d.is_nonzero or proved_sign(d, hull) in ("+", "-") for d in denominators)
 
 
 def proved_sign(expr: Expr, domain: Domain) -> str:

@@ -1,62 +1,29 @@
-"""Where functions are differentiable and continuous: the kinks and jumps of moduli, maxima and pieces.
-
-The derivative of |u| is sign(u) where u ≠ 0; where u = 0 it has none, though SymPy's sign(0) is 0. A claim about
-derivatives says nothing of such points, so they are taken out of its domain. Nor do derivatives show a jump.
-"""
+"""Where functions made of pieces are continuous: derivatives do not show a jump."""
 
 from __future__ import annotations
 
-from itertools import combinations
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy.core.relational import Relational
 
-from canon.proof.anatomy import anatomy
-from canon.proof.domain import EVERYWHERE, Domain
+from canon.proof.domain import Domain
 from canon.proof.generic import is_analytic
 from canon.proof.replacement import KINKED
 from canon.proof.typed import arguments
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["PIECED", "may_jump", "where_differentiable", "without_pieces"]
+__all__ = ["PIECED", "may_jump", "without_pieces"]
 
 JUMPS = (sp.sign, sp.Heaviside)
 PIECED = (*KINKED, sp.Piecewise)
 """Functions that are made of pieces: one that is not zero at one point may vanish on a whole piece."""
-
-
-def where_differentiable(
-    functions: Iterable[Expr], variables: Iterable[Symbol], domain: Domain = EVERYWHERE
-) -> Domain:
-    """Return the part of a domain off the kinks that functions have in some variables.
-
-    Kinks that depend on other symbols only take nothing away: abs(k)*x has a derivative by x at k = 0 too.
-
-    Parameters
-    ----------
-    functions
-        What is differentiated.
-    variables
-        By which symbols.
-    domain
-        The domain to be narrowed.
-
-    Examples
-    --------
-    >>> x, k = sp.symbols("x k", real=True)
-    >>> where_differentiable([abs(k) * abs(k * x), sp.Max(x, 1)], [x]).conditions
-    (Ne(x, 0), Ne(1 - x, 0))
-    """
-    moving = tuple(variables)
-    found = {c: None for gap in _gaps(functions) if gap.has(*moving) for c in _nonzero(gap, moving)}
-    return Domain((*domain.conditions, *found), domain.box) if found else domain
 
 
 def without_pieces(functions: Iterable[Expr], domain: Domain) -> bool:
@@ -113,23 +80,3 @@ def _pieces_meet(function: sp.Piecewise, domain: Domain) -> bool:
         return False
     at_bound = cast("Boolean", sp.Eq(bound.lhs, bound.rhs, evaluate=False))
     return vanishes(pieces[0][0] - pieces[1][0], Domain((*domain.conditions, at_bound), domain.box)).holds
-
-
-def _gaps(functions: Iterable[Expr]) -> Iterator[Expr]:
-    """Yield what vanishes at the kinks."""
-    for part in anatomy(functions).of(*PIECED):
-        if isinstance(part, sp.Max | sp.Min):
-            yield from (a - b for a, b in combinations(arguments(part), 2))
-        elif isinstance(part, sp.Piecewise):
-            bounds = sorted(part.atoms(Relational), key=sp.default_sort_key)
-            yield from (cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in bounds)
-        else:
-            yield arguments(part)[0]
-
-
-def _nonzero(gap: Expr, moving: tuple[Symbol, ...]) -> Iterator[Boolean]:
-    """Yield f ≠ 0 for the factors f that depend on the variables, unless that is known."""
-    for factor in sp.Mul.make_args(gap):
-        base = factor.base if isinstance(factor, sp.Pow) else factor
-        if base.has(*moving) and not base.is_nonzero:
-            yield cast("Boolean", sp.Ne(base, 0, evaluate=False))

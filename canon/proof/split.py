@@ -138,11 +138,24 @@ def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | Non
     below, at_zero = (sp.Integer(-1), sp.Integer(0))
     if isinstance(function, sp.Heaviside):
         below, at_zero = sp.Integer(0), arguments(function)[1]
-    return [
+    off_zero = [
         _case(expr, {function: sp.Integer(1)}, domain, sp.Gt(u, 0)),
         _case(expr, {function: below}, domain, sp.Lt(u, 0)),
-        _case(expr, {function: at_zero}, domain, sp.Eq(u, 0)),
     ]
+    if _is_left_out(u, domain):
+        return off_zero
+    return [*off_zero, _case(expr, {function: at_zero}, domain, sp.Eq(u, 0))]
+
+
+def _is_left_out(u: Expr, domain: Domain) -> bool:
+    """Tell whether the domain says f ≠ 0 of each factor f of u."""
+    said = [c.lhs for c in domain.conditions if isinstance(c, sp.Ne) and c.rhs == 0]
+    nonzero = {base for f in said for base in _bases(cast("Expr", f))}
+    return all(base in nonzero or base.is_nonzero for base in _bases(u))
+
+
+def _bases(u: Expr) -> list[Expr]:
+    return [f.base if isinstance(f, sp.Pow) else f for f in sp.Mul.make_args(u)]
 
 
 def certainly_real(u: Expr) -> bool:

@@ -1,0 +1,282 @@
+"""Questions asked off the kinks of moduli, maxima and pieces: a claim about mechanics is never wrong only there.
+
+The derivative of |u| is sign(u) where u ≠ 0; where u = 0 it has none, though SymPy's sign(0) is 0. The set u = 0 may be
+left out of a domain only where it is thin, that is without inner points: |max(0, x)| has its kinks at all x ≤ 0 by that
+rule, and at x = 0 in truth.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from sympy.core.relational import Relational
+
+from canon.proof.anatomy import Anatomy, anatomy
+from canon.proof.domain import Domain
+from canon.proof.examples import evaluated
+from canon.proof.generic import is_analytic
+from canon.proof.limits import QUICK
+from canon.proof.prove import REFUSALS, is_empty, prove_zero
+from canon.proof.refute import look_for_counterexample
+from canon.proof.replacement import KINKED, NoValue, replaced
+from canon.proof.split import certainly_real
+from canon.proof.typed import arguments
+from canon.proof.vanish import vanishes
+from canon.proof.verdict import Evidence, Status, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from sympy import Expr, Symbol
+    from sympy.logic.boolalg import Boolean
+
+__all__ = ["OffKinks", "off_kinks", "vanishes_off_kinks"]
+
+WITH_PIECES = (*KINKED, sp.Piecewise, sp.DiracDelta)
+"""Functions with kinks, and what SymPy writes for the derivative of a jump."""
+
+MOST_VARIANTS = 32
+"""Ways to choose pieces and signs of roots in one function that are looked at."""
+
+MOST_KINKS = 40
+"""Kinks that are looked at; those of more parts are only left out where a claim would fail there."""
+
+SECONDS = 0.3
+"""Time to find out whether one function vanishes on a piece of the domain."""
+
+POINTS = 6
+BITS = 128
+
+ONLY_AT_KINKS = (
+    "points where the claim is wrong were found only at kinks, which may fill a piece of the domain"
+)
+
+
+@dataclass(frozen=True)
+class OffKinks:
+    """A domain without the kinks of some functions.
+
+    Parameters
+    ----------
+    whole
+        The domain itself.
+    domain
+        The domain without the kinks that are certainly thin.
+    strictly
+        The domain without those either of which it is not known.
+    impulses
+        The derivatives of jumps, which vanish off the kinks.
+    """
+
+    whole: Domain
+    domain: Domain
+    strictly: Domain
+    impulses: tuple[Expr, ...] = ()
+
+    def seen(self, f: Expr) -> Expr:
+        """Return an expression as it is off the kinks."""
+        return replaced(f, dict.fromkeys(self.impulses, sp.Integer(0))) if self.impulses else f
+
+    def ask(self, question: Callable[[Domain], Verdict], by_point: Status = Status.FAILS) -> Verdict:
+        """Return the answer to a question off the kinks.
+
+        Parameters
+        ----------
+        question
+            Gives the answer for a domain.
+        by_point
+            The answer that one point is enough for: such a point must not be at a kink.
+        """
+        verdict = question(self.domain)
+        if (
+            verdict.holds
+            and self.domain is not self.whole
+            and is_empty(self.domain, time.monotonic() + SECONDS)
+        ):
+            return question(self.whole)
+        if verdict.status is not by_point or self.strictly is self.domain:
+            return verdict
+        strict = question(self.strictly)
+        if strict.status is by_point:
+            return strict
+        return replace(
+            strict,
+            status=Status.UNDECIDED,
+            certificate="",
+            evidence=(*strict.evidence, Evidence("kinks", ONLY_AT_KINKS)),
+        )
+
+
+def off_kinks(functions: Iterable[Expr], domain: Domain) -> OffKinks:
+    """Return a domain without the kinks that some functions have.
+
+    Examples
+    --------
+    >>> x, k = sp.symbols("x k", real=True)
+    >>> off_kinks([abs(k * x), sp.Max(x, 1)], Domain()).domain.conditions
+    (Ne(k, 0), Ne(x, 0), Ne(1 - x, 0))
+    >>> off_kinks([abs(sp.Max(x, 0))], Domain()).domain.conditions
+    (Ne(x, 0),)
+    """
+    found = anatomy([evaluated(f) for f in functions])
+    if not found.has(*WITH_PIECES):
+        return OffKinks(domain, domain, domain)
+    thin: dict[Boolean, None] = {}
+    doubtful: dict[Boolean, None] = {}
+    settled: dict[Expr, bool | None] = {}
+    impulses: list[Expr] = []
+    for part, gap in _gaps(found):
+        if not gap.free_symbols <= found.symbols or not _varies(gap):
+            continue
+        variants = _variants(gap) if len(settled) < MOST_KINKS else None
+        known = True
+        for factor in _factors(variants if variants is not None else [gap]):
+            if factor not in settled:
+                settled[factor] = _is_thin(factor, domain) if variants is not None else False
+            condition = cast("Boolean", sp.Ne(factor, 0, evaluate=False))
+            if settled[factor] is True:
+                thin[condition] = None
+            elif settled[factor] is False:
+                doubtful[condition] = None
+            known = known and settled[factor] is True
+        if known and isinstance(part, sp.DiracDelta):
+            impulses.append(part)
+    narrowed = Domain((*domain.conditions, *thin), domain.box) if thin else domain
+    strictly = Domain((*narrowed.conditions, *doubtful), domain.box) if doubtful else narrowed
+    return OffKinks(domain, narrowed, strictly, tuple(impulses))
+
+
+def vanishes_off_kinks(expr: Expr | sp.MatrixBase, domain: Domain, budget: float = 10.0) -> Verdict:
+    """Decide whether an expression, or every entry of a matrix, is zero off its kinks.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> vanishes_off_kinks(sp.sign(x) ** 2 - 1, Domain()).status.name
+    'HOLDS'
+    >>> vanishes_off_kinks(sp.sign(x) - 1, Domain()).status.name
+    'FAILS'
+    """
+    deadline = time.monotonic() + budget
+    off = off_kinks(expr.flat() if isinstance(expr, sp.MatrixBase) else [expr], domain)
+    seen = expr.applyfunc(off.seen) if isinstance(expr, sp.MatrixBase) else off.seen(expr)
+    return off.ask(lambda narrowed: vanishes(seen, narrowed, max(0.05, deadline - time.monotonic())))
+
+
+def _gaps(found: Anatomy) -> Iterator[tuple[Expr, Expr]]:
+    """Yield each function with kinks, and what vanishes at them."""
+    for part in found.of(*WITH_PIECES):
+        if isinstance(part, sp.Max | sp.Min):
+            yield from ((part, a - b) for a, b in combinations(arguments(part), 2))
+        elif isinstance(part, sp.Piecewise):
+            bounds = sorted(part.atoms(Relational), key=sp.default_sort_key)
+            yield from ((part, cast("Expr", c.lhs) - cast("Expr", c.rhs)) for c in bounds)
+        else:
+            yield part, arguments(part)[0]
+
+
+def _varies(f: Expr) -> bool:
+    """Tell whether a function may go through zero: it depends on something that is not a whole number."""
+    return not all(s.is_integer for s in f.free_symbols)
+
+
+def _variants(gap: Expr) -> list[Expr] | None:
+    """Return a function with each choice of its pieces, of which one holds near every point off inner kinks."""
+    chosen: list[Expr] = [gap]
+    done: list[Expr] = []
+    while chosen:
+        f = chosen.pop()
+        inner = next((e for e in anatomy([f]).of(*WITH_PIECES) if not _nested(e)), None)
+        pieces = [] if inner is None else _pieces(inner)
+        if pieces is None or len(chosen) + len(done) > MOST_VARIANTS:
+            return None
+        if inner is None:
+            done.append(f)
+            continue
+        try:
+            chosen += [replaced(f, {inner: piece}) for piece in pieces]
+        except NoValue:
+            return None
+    return done
+
+
+def _nested(function: sp.Basic) -> bool:
+    return any(a.has(*WITH_PIECES) for a in function.args)
+
+
+def _pieces(function: sp.Basic) -> list[Expr] | None:
+    """Return what a function without inner kinks may be off its own kinks, None where that is not known."""
+    if isinstance(function, sp.Piecewise):
+        return [piece for piece, _ in cast("tuple[tuple[Expr, sp.Basic], ...]", function.args)]
+    if isinstance(function, sp.Max | sp.Min):
+        return list(arguments(function))
+    if isinstance(function, sp.DiracDelta):
+        return [sp.Integer(0)]
+    u = arguments(function)[0]
+    if not certainly_real(u):
+        return None
+    if isinstance(function, sp.Abs):
+        return [u, -u]
+    return [sp.Integer(1), sp.Integer(0) if isinstance(function, sp.Heaviside) else sp.Integer(-1)]
+
+
+def _factors(variants: list[Expr]) -> Iterator[Expr]:
+    """Yield what vanishes where one of some functions does, without what is known not to vanish."""
+    for variant in variants:
+        for factor in sp.Mul.make_args(variant):
+            base = factor.base if isinstance(factor, sp.Pow) else factor
+            if _varies(base) and not base.is_nonzero:
+                yield base
+
+
+def _is_thin(f: Expr, domain: Domain) -> bool | None:
+    """Tell whether f = 0 has no inner points on the domain; None where f vanishes on all of it.
+
+    An analytic function on a connected set that is not zero at one point vanishes on a thin set. One with square roots
+    divides the product of its conjugates, which has none: at one point all of these must be different from zero.
+    """
+    deadline = time.monotonic() + SECONDS
+    try:
+        conjugates = _conjugates(f)
+        if conjugates and _is_analytic_but_for_roots(f, domain):
+            points = domain.points(anatomy([f]).symbols, POINTS, deadline=deadline, but_functions=True)
+            if any(all(_nonzero_at(g, point, domain, deadline) for g in conjugates) for point in points):
+                return True
+        return None if prove_zero(f, domain, deadline, QUICK).holds else False
+    except (*REFUSALS, NoValue):
+        return False
+
+
+def _roots(f: Expr) -> list[sp.Pow]:
+    """Return the square roots in a function, outer ones before those inside them."""
+    found = anatomy([f]).of(sp.Pow)[::-1]
+    return [e for e in found if e.free_symbols and isinstance(e.exp, sp.Rational) and e.exp.q == 2]
+
+
+def _conjugates(f: Expr) -> list[Expr]:
+    """Return a function with each choice of signs of its square roots; none where there are too many."""
+    found = [f]
+    for root in _roots(f):
+        if 2 * len(found) > MOST_VARIANTS:
+            return []
+        sign = sp.Dummy()
+        marked = [replaced(g, {root: sign * root}) for g in found]
+        found = [replaced(g, {sign: sp.Integer(s)}) for g in marked for s in (1, -1)]
+    return found
+
+
+def _is_analytic_but_for_roots(f: Expr, domain: Domain) -> bool:
+    roots = _roots(f)
+    signs: dict[sp.Basic, Expr] = {root: sp.Dummy(complex=True) for root in roots}
+    return is_analytic([replaced(f, signs), *(replaced(root.base, signs) for root in roots)], domain)
+
+
+def _nonzero_at(f: Expr, point: dict[Symbol, sp.Rational], domain: Domain, deadline: float) -> bool:
+    search = look_for_counterexample(
+        f, sp.Integer(0), [point], highest=BITS, deadline=deadline, conditions=domain.on_functions
+    )
+    return search.counterexample is not None
