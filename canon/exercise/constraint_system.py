@@ -17,8 +17,7 @@ from canon.mechanics.frobenius import Pfaffian, curl
 from canon.mechanics.linear import eliminate
 from canon.mechanics.substitution import exchanged, substitute
 from canon.proof.domain import Domain
-from canon.proof.generic import is_analytic
-from canon.proof.smooth import PIECED
+from canon.proof.smooth import PIECED, without_pieces
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -151,7 +150,7 @@ class ConstraintSystem:
     def rank(self, rows: Sequence[Sequence[Expr]]) -> int:
         """Return the rank of some rows, the same off the constraints and on them."""
         matrix = sp.Matrix([list(row) for row in rows])
-        if matrix.has(*PIECED) and not is_analytic(matrix.flat(), self.domain):
+        if matrix.has(*PIECED) and not without_pieces(matrix.flat(), self.domain):
             raise Undecided(
                 "the constraints hold functions with pieces, whose rank may differ from piece to piece; "
                 "narrow the domain to one piece"

@@ -16,6 +16,7 @@ from sympy import Symbol
 from canon.exercise.tree import symbols_of
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
 from canon.proof.domain import Domain
+from canon.proof.kinks import off_kinks
 from canon.proof.verdict import Counterexample, Status, Verdict
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ def refuted_at_a_point(
     >>> print(refuted_at_a_point(step, (q, p), (Q, P), {"0": P - P, "P": P}, Domain()).question)
     P
     """
+    domain = off_kinks((*equations, *should_vanish.values()), domain).strictly
     named = {s for condition in domain.conditions for s in condition.free_symbols if isinstance(s, Symbol)}
     given = [s for s in symbols_of(*equations, *should_vanish.values(), *old, *named) if s not in new]
     conditions = [c for c in domain.conditions if c.free_symbols <= set(given)]

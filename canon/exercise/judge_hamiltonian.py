@@ -61,6 +61,7 @@ def _solution(reading: Reading, system: Hamiltonian) -> Same:
     for z, value in motion.items():
         if value.has(*motion):
             reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
+        check_continuous(value, (system.t,), reading.domain)
     domain = transported(reading.domain, motion)
     rates = zip((*system.q, *system.p), system.vector_field, strict=True)
     parts = (
@@ -83,9 +84,9 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
 
 def equality(reading: Reading) -> Iterator[Question]:
     """Both sides are equal on the whole domain."""
-    yield Same(
-        (Part("lhs", reading.expression("lhs"), reading.expression("rhs"), key="lhs"),), reading.domain
-    )
+    lhs, rhs = reading.expression("lhs"), reading.expression("rhs")
+    pointwise = not any(side.has(sp.Derivative, sp.Subs, sp.DiracDelta) for side in (lhs, rhs))
+    yield Same((Part("lhs", lhs, rhs, key="lhs"),), reading.domain, pointwise=pointwise)
 
 
 def _in_phase_space(reading: Reading, key: str, q: Sequence[Symbol]) -> Expr:

@@ -18,6 +18,7 @@ from sympy import Expr, Rational, Symbol
 from canon.exercise.question import Question, Stated
 from canon.exercise.tree import replaced, symbols_of
 from canon.proof.generic import proved_sign
+from canon.proof.kinks import OffKinks, off_kinks
 from canon.proof.verdict import Counterexample, Status, Undecided, Verdict
 
 if TYPE_CHECKING:
@@ -52,8 +53,9 @@ def positive_real(reading: Reading) -> Iterator[Question]:
         reading.fault("variables", "should be one name, that of the complex frequency")
     (s,) = reading.symbols("variables")
     above, below = _polynomials(reading, s)
+    off = off_kinks([above.as_expr(), below.as_expr()], reading.domain)
     for word in words:
-        yield Stated(_judged(above, below, s, reading.domain, negated=word.startswith("not")).about(word))
+        yield Stated(_judged(above, below, s, off, negated=word.startswith("not")).about(word))
 
 
 def is_positive_real_at(above: sp.Poly, below: sp.Poly) -> _Fault | None:
@@ -83,9 +85,9 @@ def is_positive_real_at(above: sp.Poly, below: sp.Poly) -> _Fault | None:
     return None
 
 
-def _judged(above: sp.Poly, below: sp.Poly, s: Symbol, domain: Domain, *, negated: bool) -> Verdict:
+def _judged(above: sp.Poly, below: sp.Poly, s: Symbol, off: OffKinks, *, negated: bool) -> Verdict:
     parameters = [x for x in symbols_of(above.as_expr(), below.as_expr()) if x != s]
-    for point in domain.points(parameters, POINTS, seed=5) if parameters else ({},):
+    for point in off.strictly.points(parameters, POINTS, seed=5) if parameters else ({},):
         pair = [sp.Poly(replaced(f.as_expr(), point), s) for f in (above, below)]
         if pair[1].is_zero or not all(c.is_Rational for f in pair for c in f.all_coeffs()):
             continue
@@ -94,7 +96,7 @@ def _judged(above: sp.Poly, below: sp.Poly, s: Symbol, domain: Domain, *, negate
             return _refuted(point, fault, str(s))
         if not parameters:
             return Verdict(Status.HOLDS, certificate="exact")
-    proved = _never(above, below, domain) if negated else _always(above, below, domain)
+    proved = _never(above, below, off.domain) if negated else _always(above, below, off.domain)
     if proved:
         return Verdict(Status.HOLDS, certificate="exact")
     raise Undecided(

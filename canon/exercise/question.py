@@ -99,12 +99,15 @@ class Same:
         What would be right.
     said
         A sentence on a component that was refuted, where no better diagnosis is found.
+    pointwise
+        Whether values are compared as they are written, so that sign(x²) = 1 is wrong at x = 0.
     """
 
     parts: tuple[Part, ...]
     domain: Domain
     answer: Answer | None = None
     said: Callable[[Part], str] | None = None
+    pointwise: bool = False
 
 
 @dataclass(frozen=True)
@@ -227,8 +230,8 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
         case Differ(part, domain, feedback):
             verdict = replace(vanishes_off_kinks(part.residual, domain, deadline.left), feedback="")
             return opposite(verdict.about(part.name), feedback)
-        case Same(parts, domain, said=said):
-            return _all_vanish(parts, domain, deadline, said)
+        case Same():
+            return _all_vanish(question, deadline)
         case SameEquations(claimed, right, unknowns, domain, before=before):
             verdict = _same_equations(claimed, right, unknowns, domain, deadline)
             return replace(verdict, feedback=_in_our_words(verdict.feedback, before))
@@ -239,12 +242,13 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
 
 
-def _all_vanish(
-    parts: Sequence[Part], domain: Domain, deadline: Deadline, said: Callable[[Part], str] | None
-) -> Verdict:
+def _all_vanish(question: Same, deadline: Deadline) -> Verdict:
     """Ask for all components at once, so that one that is easily refuted spares the long proofs of the others."""
+    parts, said = question.parts, question.said
     sides = [(part.seen(part.claimed), part.right) for part in parts]
-    off = off_kinks([side for pair in sides for side in pair], domain)
+    off = off_kinks(
+        [side for pair in sides for side in pair], question.domain, touching=not question.pointwise
+    )
     residuals = [off.seen(claimed - right) for claimed, right in sides]
     verdict = off.ask(lambda there: vanishes(sp.Matrix(residuals), there, budget=deadline.left))
     verdict = replace(verdict, feedback="")

@@ -19,7 +19,8 @@ from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain, as_domain
 from canon.proof.kinks import vanishes_off_kinks
-from canon.proof.verdict import Verdict, all_hold
+from canon.proof.smooth import may_jump
+from canon.proof.verdict import Status, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -142,6 +143,10 @@ class Hamiltonian:
         missing = [str(z) for z in variables if z not in motion]
         if missing:
             raise ValueError(f"the motion does not say what {', '.join(missing)} is; give every variable")
+        jumping = [z for z in variables if may_jump(motion[z], [self.t], domain)]
+        if jumping:
+            why = f"{jumping[0]}(t) may jump, which its rate does not show; narrow the domain to where it does not"
+            return Verdict(Status.UNDECIDED, "the motion solves Hamilton's equations", feedback=why)
         return all_hold(
             (
                 vanishes_off_kinks(motion[z].diff(self.t) - substitute(rate, motion), domain).about(

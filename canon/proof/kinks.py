@@ -111,8 +111,17 @@ class OffKinks:
         )
 
 
-def off_kinks(functions: Iterable[Expr], domain: Domain) -> OffKinks:
+def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = True) -> OffKinks:
     """Return a domain without the kinks that some functions have.
+
+    Parameters
+    ----------
+    functions
+        What is differentiated, or follows from derivatives.
+    domain
+        The domain to be narrowed.
+    touching
+        Leave out the points too where u does not change its sign, as in sign(x²) at x = 0.
 
     Examples
     --------
@@ -134,7 +143,7 @@ def off_kinks(functions: Iterable[Expr], domain: Domain) -> OffKinks:
             continue
         variants = _variants(gap) if len(settled) < MOST_KINKS else None
         known = True
-        for factor in _factors(variants if variants is not None else [gap]):
+        for factor in _factors(variants if variants is not None else [gap], touching=touching):
             if factor not in settled:
                 settled[factor] = _is_thin(factor, domain) if variants is not None else False
             condition = cast("Boolean", sp.Ne(factor, 0, evaluate=False))
@@ -224,12 +233,12 @@ def _pieces(function: sp.Basic) -> list[Expr] | None:
     return [sp.Integer(1), sp.Integer(0) if isinstance(function, sp.Heaviside) else sp.Integer(-1)]
 
 
-def _factors(variants: list[Expr]) -> Iterator[Expr]:
+def _factors(variants: list[Expr], *, touching: bool) -> Iterator[Expr]:
     """Yield what vanishes where one of some functions does, without what is known not to vanish."""
     for variant in variants:
         for factor in sp.Mul.make_args(variant):
-            base = factor.base if isinstance(factor, sp.Pow) else factor
-            if _varies(base) and not base.is_nonzero:
+            base, exponent = factor.as_base_exp()
+            if _varies(base) and not base.is_nonzero and (touching or not exponent.is_even):
                 yield base
 
 

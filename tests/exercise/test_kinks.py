@@ -1,39 +1,40 @@
-"""|u|, sign(u), Max and pieces in what is differentiated: nothing is claimed at the kink, everything beside it."""
+"""|u|, sign(u), Max and pieces: no claim of any kind is wrong at a kink only, one that is wrong on a piece fails."""
 
 import pytest
+import sympy as sp
 
+from canon import Hamiltonian, Lagrangian, coordinates, vanishes
 from canon.exercise.feedback import corrected
-from canon.exercise.judge import examine
+from canon.exercise.judge import JUDGES, examine
 from canon.exercise.sheet import Claim
+from canon.mechanics.linear import is_regular
+from canon.mechanics.symmetry import have_same_equations
+from canon.proof.domain import Domain
+from canon.proof.kinks import off_kinks, vanishes_off_kinks
 
-RIGHT = [
-    (
-        "legendre-hamiltonian",
-        {"q": "x", "p": "p", "L": "x_dot**2/2 + Abs(x_dot)"},
-        "H",
-        "(Abs(p) - 1)**2/2",
-        "p**2/2",
-    ),
-    (
-        "routhian",
-        {
-            "q": ["x", "y"],
-            "cyclic": "y",
-            "momenta": "b",
-            "convention": "L-pq",
-            "L": "(x_dot**2 + y_dot**2)/2 + Abs(y_dot)",
-        },
-        "R",
-        "x_dot**2/2 - (Abs(b) - 1)**2/2",
-        "x_dot**2/2 - b**2/2",
-    ),
-    (
-        "dissipative",
-        {"q": "x", "L": "x_dot**2/2", "F": "Max(x_dot, 0)"},
-        "energy_rate",
-        "-Max(x_dot, 0)",
-        "-x_dot",
-    ),
+FALLING = {"q": "y", "parameters": {"m": "positive", "g": "positive"}, "L": "m*y_dot**2/2 - m*g*Abs(y)"}
+WALL = {"q": ["x", "y"], "L": "(x_dot**2 + y_dot**2)/2 - Abs(y)", "multipliers": "lam"}
+CYCLIC = {"q": ["x", "y"], "cyclic": "y", "momenta": "b", "convention": "L-pq"}
+BODY = {"q": "x", "bodies": [{"m": "m", "r": ["Abs(x)"]}], "parameters": {"m": "positive"}}
+PHASE = {"q": "q", "p": "p"}
+NEW = {**PHASE, "new_q": "Q", "new_p": "P"}
+ROPE = {
+    "q": ["r", "th"],
+    "parameters": {"m": "positive", "g": "positive", "a": "positive"},
+    "L": "m*(r_dot**2 + r**2*th_dot**2)/2 - m*g*r*cos(th)",
+    "contact": "r - a",
+}
+UP = "Piecewise((1, {0} > 0), (-1, True))"
+"""What sign is off the kink, and at the kink is not."""
+
+
+def up(u):
+    return UP.format(u)
+
+
+CLAIMS = [
+    ("euler-lagrange", FALLING | {"domain": ["y >= 0"]}, "claim", "y_ddot + g", "y_ddot - g"),
+    ("euler-lagrange", FALLING, "claim", f"y_ddot + g*{up('y')}", "y_ddot + g"),
     ("euler-lagrange", {"q": "x", "L": "x_dot*Abs(x_dot)"}, "claim", "x_ddot", "x_ddot + x"),
     (
         "euler-lagrange",
@@ -42,33 +43,154 @@ RIGHT = [
         ["r_ddot - r*f_dot**2", "Abs(r)*f_ddot + 2*r_dot*f_dot*sign(r)"],
         ["r_ddot - r*f_dot**2", "Abs(r)*f_ddot + 2*r_dot*f_dot"],
     ),
-    ("lie-bracket", {"x": "x", "X": "sign(x)", "Y": "x**2"}, "claim", "2*x*sign(x)", "-2*x*sign(x)"),
     (
-        "poisson-bracket",
-        {"q": "q", "p": "p"},
-        "pairs",
-        [{"f": "q*sign(q)", "g": "p", "value": "sign(q)"}],
-        [{"f": "q*sign(q)", "g": "p", "value": "-sign(q)"}],
+        "dissipative",
+        {"q": "x", "L": "x_dot**2/2", "F": "Abs(x_dot)"},
+        "claim",
+        f"x_ddot + {up('x_dot')}",
+        "x_ddot + Piecewise((1, x_dot > -1), (-1, True))",
+    ),
+    (
+        "dissipative",
+        {"q": "x", "L": "x_dot**2/2", "F": "Max(x_dot, 0)"},
+        "energy_rate",
+        "-Max(x_dot, 0)",
+        "-x_dot",
+    ),
+    (
+        "multiplier-holonomic",
+        WALL | {"constraints": "x - y"},
+        "claim",
+        [f"2*x_ddot + {up('y')}"],
+        ["2*x_ddot + 1"],
+    ),
+    (
+        "nonholonomic",
+        WALL | {"constraints": "x_dot - y_dot"},
+        "claim",
+        [f"2*x_ddot + {up('y')}"],
+        [f"2*x_ddot - {up('y')}"],
+    ),
+    (
+        "legendre-hamiltonian",
+        {"q": "x", "p": "p", "L": "x_dot**2/2 + Abs(x_dot)"},
+        "H",
+        "(Abs(p) - 1)**2/2",
+        "p**2/2",
+    ),
+    (
+        "legendre-hamiltonian",
+        {"q": "x", "p": "p", "L": "x_dot**2/2 + Abs(x_dot)"},
+        "H",
+        "Piecewise(((p - 1)**2/2, p > 1), ((p + 1)**2/2, True))",
+        "Piecewise(((p - 1)**2/2, p > 3), ((p + 1)**2/2, True))",
+    ),
+    (
+        "hamilton-equations",
+        PHASE | {"H": "p**2/2 + Max(q, 0)", "q_dot": ["p"]},
+        "p_dot",
+        ["-Piecewise((1, q > 0), (0, True))"],
+        ["-Piecewise((1, q > -1), (0, True))"],
+    ),
+    (
+        "hamilton-equations",
+        PHASE | {"H": "p + Abs(q)"},
+        "solution",
+        {"q": "t", "p": "-Abs(t)"},
+        {"q": "t", "p": "-t"},
+    ),
+    ("routhian", CYCLIC | {"L": "(x_dot**2 + y_dot**2)/2 + Abs(y_dot)"}, "R",
+     "x_dot**2/2 - (Abs(b) - 1)**2/2", "x_dot**2/2 - b**2/2"),
+    ("routhian", CYCLIC | {"L": "(x_dot**2 + y_dot**2)/2 - Abs(x)"}, "claim",
+     [f"x_ddot + {up('x')}"], ["x_ddot + 1"]),
+    ("gibbs-appell", BODY, "S", "m*x_ddot**2/2", "m*x_ddot**2*sign(x)/2"),
+    ("gibbs-appell", BODY | {"V": "Abs(x)"}, "claim", f"m*x_ddot + {up('x')}", "m*x_ddot + 1"),
+    ("poisson-bracket", PHASE, "pairs",
+     [{"f": "q*sign(q)", "g": "p", "value": up("q")}], [{"f": "q*sign(q)", "g": "p", "value": "-sign(q)"}]),
+    ("lagrange-bracket", {"variables": ["a", "b"], "q": "Abs(a)", "p": "b"}, "pairs",
+     [{"u": "a", "v": "b", "value": up("a")}], [{"u": "a", "v": "b", "value": "1"}]),
+    ("lie-bracket", {"x": "x", "X": "1", "Y": "Abs(x)"}, "claim", up("x"), "1"),
+    ("lie-bracket", {"x": "x", "X": "sign(x)", "Y": "x**2"}, "claim", "2*x*sign(x)", "-2*x*sign(x)"),
+    ("canonicity", PHASE | {"Q": "q*sign(q)"}, "P", "p*sign(q)", "p"),
+    ("canonicity", NEW, "implicit", ["Q - Abs(q)", f"P*{up('q')} - p"], ["Q - Abs(q)", "P - p"]),
+    ("canonicity-time-dependent", PHASE | {"Q": "q*sign(t)"}, "P", f"p*{up('t')}", "p"),
+    ("bilinear-covariant", {"x": ["x", "y"], "form": ["Abs(y)", "0"]}, "claim",
+     f"{up('y')}*(delta_y*d_x - d_y*delta_x)", "delta_y*d_x - d_y*delta_x"),
+    ("bilinear-covariant", PHASE | {"Q": "Abs(q)", "factor": "1"}, "P", f"p*{up('q')}", "p"),
+    ("generating-F1", NEW | {"F": "Abs(q)*Q"}, "map",
+     {"Q": f"p*{up('q')}", "P": "-Abs(q)"}, {"Q": "p", "P": "-Abs(q)"}),
+    ("generating-F2", NEW | {"F": "Abs(q)*P"}, "map",
+     {"Q": "Abs(q)", "P": f"p*{up('q')}"}, {"Q": "Abs(q)", "P": "p"}),
+    ("generating-F3", NEW | {"F": "-Abs(p)*Q"}, "map",
+     {"Q": f"q*{up('p')}", "P": "Abs(p)"}, {"Q": "q", "P": "Abs(p)"}),
+    ("generating-F4", NEW | {"F": "Abs(p)*P"}, "map",
+     {"Q": "Abs(p)", "P": f"-q*{up('p')}"}, {"Q": "Abs(p)", "P": "-q"}),
+    (
+        "transformed-hamiltonian-K",
+        NEW | {"H": "p**2/2 + Abs(q)", "map": {"Q": "q + Abs(t)", "P": "p"}},
+        "K",
+        f"P**2/2 + Abs(Q - Abs(t)) + P*{up('t')}",
+        "P**2/2 + Abs(Q - Abs(t)) + P",
     ),
     (
         "constant-of-motion",
-        {"q": "q", "p": "p", "parameters": {"q": "positive"}, "H": "p**2*q**2/2", "domain": ["Ne(p, 0)"]},
+        {**PHASE, "parameters": {"q": "positive"}, "H": "p**2*q**2/2", "domain": ["Ne(p, 0)"]},
         "I",
         "q*p*sign(p)",
         "q*sign(p)",
     ),
-    ("canonicity", {"q": "q", "p": "p", "Q": "q*sign(q)"}, "P", "p*sign(q)", "p"),
-]
+    ("constant-of-motion", PHASE | {"H": "p**2/2 + Abs(q)"}, "I", "p**2/2 + Max(q, -q)", "p**2/2 + Max(q, 0)"),
+    ("lagrangian-equivalence", {"q": "x", "relation": "equations", "L1": "x_dot**2/2 - Abs(x)"}, "L2",
+     "x_dot**2 - 2*Max(x, -x)", "x_dot**2 - 2*Max(x, 0)"),
+    ("lagrangian-equivalence",
+     {"q": "x", "relation": "gauge", "L1": "x_dot**2/2", "L2": f"x_dot**2/2 + x_dot*{up('x')}"}, "F",
+     "Abs(x)", "x"),
+    ("equality-only", {"parameters": {"x": "real"}, "lhs": "Derivative(Abs(x), x)"}, "rhs", up("x"), "1"),
+    ("equality-only", {"parameters": {"x": "real"}, "lhs": "sign(x)**2"}, "rhs", "1", "sign(x)"),
+    ("kinetic-energy", {**BODY, "q": "r", "bodies": [{"m": "m", "r": ["Abs(r)"]}]}, "T",
+     "m*r_dot**2/2", "m*r_dot**2*Piecewise((1, r > 0), (2, True))/2"),
+    ("generalized-force", {"q": "x", "V": "Abs(x)"}, "Q", f"-{up('x')}", "-1"),
+    ("constraint-class", {"q": ["x", "y"], "constraints": ["y_dot - x_dot*sign(t)**2"]}, "class",
+     ["scleronomic"], ["rheonomic"]),
+    ("degrees-of-freedom", {"q": ["x", "y"], "constraints": ["y - Abs(x)"], "domain": ["x > 0"]}, "dof",
+     "1", "2"),
+    ("reaction", WALL | {"constraints": "x - y"}, "values", {"lam": f"-{up('y')}/2"}, {"lam": "-1/2"}),
+    ("leaving-condition", ROPE, "leaves", "a*th_dot**2*sign(th)**2 - g*cos(th)", "a*th_dot**2*sign(th) - g*cos(th)"),
+    ("conserved-or-not", PHASE | {"H": "p**2/2 + Abs(q)"}, "conserved",
+     ["p**2/2 + Max(q, -q)"], ["p**2/2 + Max(q, 0)"]),
+    ("conserved-or-not", PHASE | {"H": "p**2/2 + Abs(q)"}, "not_conserved",
+     ["p**2/2 + Max(q, 0)"], ["p**2/2 + Max(q, -q)"]),
+    ("solution", {"q": "x", "L": "x_dot**2/2 - Abs(x)", "domain": ["t >= 0", "t <= 2"]}, "solution",
+     {"x": "t*(2 - t)/2"}, {"x": "t*(1 - t)/2"}),
+    ("solution", {"q": "x", "equations": ["x_ddot - sign(x)"]}, "solution", {"x": "t**2/2"}, {"x": "t**2"}),
+    ("linearisation", {"q": "x", "parameters": {"k": "real"}, "L": "x_dot**2/2 - k**2*x**2/2",
+     "equilibrium": {"x": "0"}}, "claim", "x_ddot*sign(k)**2 + k**2*x", "x_ddot + k*Abs(k)*x"),
+    ("first-order", {"exact": ["Abs(a)*exp(h)"], "small": "h", "parameters": {"a": "real", "h": "real"}}, "claim",
+     [f"a*{up('a')}*(1 + h)"], ["a*(1 + h)"]),
+    ("invariance", PHASE | {"of": "phase-volume", "P": "p"}, "Q", "Abs(q)", "Max(q, 0)"),
+    ("invariance", PHASE | {"of": "hamilton-equations", "Q": "Abs(q)"}, "P", f"p*{up('q')}", "p"),
+    ("jacobi-identity", {"x": ["x", "y", "z"], "pairs": [{"u": "x", "v": "y", "value": "Abs(z)"}]}, "casimirs",
+     ["Abs(z)"], ["Abs(x)"]),
+    ("positive-real", {"variables": "s", "is": ["positive-real"], "parameters": {"a": "real"}, "domain": ["a >= 0"]},
+     "H", "1/(s + Abs(a))", f"{up('a - 1')}/(s + 1)"),
+    ("variation", {"q": "x", "L": "x_dot**2/2 - Abs(x)", "boundary": "x_dot*delta_x"}, "integrand",
+     f"-(x_ddot + {up('x')})*delta_x", "-(x_ddot + 1)*delta_x"),
+    ("differential", {"x": "x", "f": "Abs(x)"}, "claim", f"{up('x')}*d_x", "d_x"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    ("kind", "keys", "key", "right", "wrong"), RIGHT, ids=[f"{r[0]}-{r[3]}"[:50] for r in RIGHT]
+    ("kind", "keys", "key", "right", "wrong"), CLAIMS, ids=[f"{c[0]}-{c[3]}"[:50] for c in CLAIMS]
 )
 def test_beside_the_kink(kind, keys, key, right, wrong):
     assert examine(Claim("a", kind, {**keys, key: right})).verdict.holds
     finding = examine(Claim("a", kind, {**keys, key: wrong}))
     assert finding.verdict.fails
     assert "DiracDelta" not in corrected(finding) + finding.verdict.feedback
+
+
+def test_every_kind_is_tried():
+    assert {c[0] for c in CLAIMS} == set(JUDGES)
 
 
 def test_a_factor_that_vanishes_on_a_piece_is_no_equation():
@@ -82,9 +204,74 @@ def test_a_sign_alone_is_still_no_constant():
     assert not examine(Claim("a", "constant-of-motion", {**keys, "I": "sign(p)"})).verdict.holds
 
 
+def test_a_motion_that_jumps_is_no_solution_though_its_rate_is_right():
+    keys = {**PHASE, "H": "p**2/2", "solution": {"q": "Abs(t)", "p": "sign(t)"}}
+    assert not examine(Claim("a", "hamilton-equations", keys)).verdict.holds
+    q, p = sp.symbols("q p", real=True)
+    free = Hamiltonian(p**2 / 2, q, p)
+    assert not free.is_solution({q: abs(free.t), p: sp.sign(free.t)}).holds
+    assert free.is_solution({q: free.t, p: sp.Integer(1)}).holds
+
+
 @pytest.mark.parametrize("sign", ["+", "-"])
 def test_conditions_on_functions_in_equations_of_motion(sign):
     keys = {"q": "x", "functions": {"V": ["x"]}, "L": "V(x)*x_dot**2/2", "domain": ["V(x) > 0"]}
     claim = f"V(x)*x_ddot {sign} Derivative(V(x), x)*x_dot**2/2"
     verdict = examine(Claim("a", "euler-lagrange", {**keys, "claim": claim})).verdict
     assert (verdict.holds, verdict.fails) == (sign == "+", sign == "-")
+
+
+x, y, k = sp.symbols("x y k", real=True)
+n = sp.Symbol("n", integer=True)
+FAT = [
+    abs(sp.Max(x, 0)),
+    abs(abs(x) + x),
+    abs((x + 1) ** 2 - x**2 - 2 * x - 1),
+    sp.sign(sp.Max(x, 0)),
+    abs(sp.sqrt(x**2 - 2 * x + 1) - x + 1),
+    sp.sign(sp.atan(sp.tan(x)) - x),
+    sp.sign(sp.Piecewise((x, x > 1), (0, True))),
+    sp.Max(abs(x), x, 0) + sp.Max(abs(x), x),
+    abs(sp.acot(x) + sp.acot(y) - sp.acot(y) - sp.atan(1 / x)),
+    sp.sign(sp.log(x**2) - 2 * sp.log(x)),
+]
+"""Functions whose argument vanishes on a whole piece: that is no kink."""
+
+
+@pytest.mark.parametrize("f", FAT, ids=str)
+def test_a_piece_where_an_argument_vanishes_is_not_left_out(f):
+    there = off_kinks([f], Domain()).domain
+    drawn = [{x: sp.Rational(a, 7), y: sp.Rational(3, 5)} for a in (-15, -10, -4, 3, 5, 9, 12, 31)]
+    assert all(there.contains(point) for point in drawn)
+    wrong = sp.Piecewise((1, x < sp.Rational(-1, 3)), (1, x > 3), (0, True))
+    assert not vanishes_off_kinks(wrong * (1 + f), Domain()).holds
+
+
+@pytest.mark.parametrize("condition", [sp.Eq(x, 0), sp.Eq(x, y), sp.And(x >= 0, x <= 0), x**2 <= 0])
+def test_a_domain_is_not_emptied(condition):
+    gap = x - y if condition == sp.Eq(x, y) else x
+    domain = Domain((condition,))
+    assert not vanishes_off_kinks(1 + sp.sign(gap), domain).holds
+    assert not vanishes_off_kinks(sp.sign(gap) ** 2 - 1, domain).holds
+
+
+def test_whole_numbers_have_no_kinks():
+    assert vanishes_off_kinks(sp.sign(n) ** 2 - 1, Domain()).fails
+    assert vanishes_off_kinks(sp.sign(x) ** 2 - 1, Domain()).holds
+    assert not vanishes_off_kinks(sp.sign(n * x) ** 2 - 1, Domain()).holds
+
+
+def test_the_library_leaves_out_kinks_where_it_differentiates_and_only_there():
+    assert vanishes(sp.sign(x) ** 2 - 1).fails
+    (s,) = coordinates("s")
+    moduli = Lagrangian(s.dot**2 / 2 - abs(s), [s])
+    pieces = Lagrangian(s.dot**2 / 2 - sp.Piecewise((s, s > 0), (-s, True)), [s])
+    half = Lagrangian(s.dot**2 / 2 - sp.Piecewise((s, s > 0), (0, True)), [s])
+    assert have_same_equations(moduli, pieces).holds
+    assert have_same_equations(moduli, half).fails
+    q, p = sp.symbols("q p", real=True)
+    kicked = Hamiltonian(p**2 / 2 + sp.Max(q, 0), q, p)
+    assert kicked.has_equations([p], [-sp.Piecewise((1, q > 0), (0, True))]).holds
+    assert kicked.has_equations([p], [-sp.Piecewise((1, q > -1), (0, True))]).fails
+    at_an_instant = sp.Matrix([[sp.Piecewise((1, sp.Eq(x, 0)), (0, True))]])
+    assert is_regular(at_an_instant).fails
