@@ -50,10 +50,10 @@ def hamilton_equations(reading: Reading) -> Iterator[Question]:
         )
         yield Same(parts, reading.domain, lambda: system.vector_field)
     if reading.has("solution"):
-        yield _solution(reading, system)
+        yield from _solution(reading, system)
 
 
-def _solution(reading: Reading, system: Hamiltonian) -> Same:
+def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
     table, names = reading.table("solution"), {z.name: z for z in (*system.q, *system.p)}
     if set(table) != set(names):
         reading.fault("solution", f"should say what each of {', '.join(names)} is, and nothing else")
@@ -61,13 +61,14 @@ def _solution(reading: Reading, system: Hamiltonian) -> Same:
     for z, value in motion.items():
         if value.has(*motion):
             reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
-        check_continuous(value, (system.t,), reading.domain)
     domain = transported(reading.domain, motion)
     rates = zip((*system.q, *system.p), system.vector_field, strict=True)
     parts = (
         Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
     )
-    return Same(tuple(parts), domain)
+    yield Same(tuple(parts), domain)
+    for value in motion.values():
+        check_continuous(value, (system.t,), reading.domain)
 
 
 def constant_of_motion(reading: Reading) -> Iterator[Question]:

@@ -143,11 +143,7 @@ class Hamiltonian:
         missing = [str(z) for z in variables if z not in motion]
         if missing:
             raise ValueError(f"the motion does not say what {', '.join(missing)} is; give every variable")
-        jumping = [z for z in variables if may_jump(motion[z], [self.t], domain)]
-        if jumping:
-            why = f"{jumping[0]}(t) may jump, which its rate does not show; narrow the domain to where it does not"
-            return Verdict(Status.UNDECIDED, "the motion solves Hamilton's equations", feedback=why)
-        return all_hold(
+        verdict = all_hold(
             (
                 vanishes_off_kinks(motion[z].diff(self.t) - substitute(rate, motion), domain).about(
                     f"{z}(t) satisfies its equation"
@@ -156,6 +152,11 @@ class Hamiltonian:
             ),
             "these functions solve Hamilton's equations",
         )
+        jumping = [z for z in variables if may_jump(motion[z], [self.t], domain)] if verdict.holds else []
+        if jumping:
+            why = f"{jumping[0]}(t) may jump, which its rate does not show; narrow the domain to where it does not"
+            return Verdict(Status.UNDECIDED, verdict.question, seconds=verdict.seconds, feedback=why)
+        return verdict
 
     def lagrangian(self, domain: Domain | None = None) -> Lagrangian:
         """Return L = Σ p q̇ − H with the momenta eliminated.
