@@ -12,18 +12,17 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.analytic import check_analytic, coefficient, without_kinks
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.manifold import transported
 from canon.exercise.question import Deadline, Part, Question, Same, SameEquations, Stated, decide
-from canon.exercise.tree import arguments, symbols_of
+from canon.exercise.tree import symbols_of
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.substitution import exchanged, substitute
 from canon.proof.domain import Domain
-from canon.proof.generic import proved_sign
 from canon.proof.kinks import vanishes_off_kinks
-from canon.proof.smooth import PIECED
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -37,7 +36,6 @@ __all__ = ["first_order", "linearisation"]
 
 MOST_ORDERS = 8
 _ORDINALS = ("zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
-_KINKED = (*PIECED, sp.atan2, sp.LambertW)
 
 
 def first_order(reading: Reading) -> Iterator[Question]:
@@ -109,7 +107,7 @@ def linearisation(reading: Reading) -> Iterator[Question]:
         )  # fmt: skip
         return
     yield at_rest
-    linear = tuple(_linear(e, q, rates, place) for e in equations)
+    linear = tuple(_linear(e, q, rates, place, domain) for e in equations)
     written = reading.equations("claim")
     unknowns = tuple(acceleration(x) for x in q)
     yield SameEquations(written, linear, unknowns, domain, lambda: tuple(map(shown_short, linear)), written)
@@ -132,11 +130,12 @@ def _check_real(place: Mapping[Symbol, Expr], domain: Domain) -> None:
 
 
 def _linear(
-    equation: Expr, q: Sequence[Symbol], rates: Sequence[Symbol], place: Mapping[Symbol, Expr]
+    equation: Expr, q: Sequence[Symbol], rates: Sequence[Symbol], place: Mapping[Symbol, Expr], domain: Domain
 ) -> Expr:
     """Return the terms of first order in the deviations from a place."""
     still = {**place, **dict.fromkeys(rates, sp.S.Zero)}
-    _check_analytic(equation, still, Domain())
+    equation = without_kinks(equation, still, domain)
+    check_analytic(equation, still, domain)
     terms = [substitute(equation.diff(s), still) * s for s in (*q, *rates)]
     if any(term.has(sp.nan, sp.zoo, sp.oo, -sp.oo) for term in terms):
         raise Undecided(
@@ -166,10 +165,10 @@ def _same_to_order(
     start, lowest = _order_of(below, epsilon, domain, deadline)
     verdicts: list[Verdict] = []
     for k in range(max(0, order + start + 1)):
-        coefficient = _coefficient(above, epsilon, k)
-        verdict = vanishes_off_kinks(coefficient, domain, budget=deadline.left)
+        found = coefficient(above, epsilon, k)
+        verdict = vanishes_off_kinks(found, domain, budget=deadline.left)
         if verdict.fails:
-            shown = shown_short(coefficient / lowest * _power_of(small, k - start))
+            shown = shown_short(found / lowest * _power_of(small, k - start))
             return Verdict(
                 Status.FAILS, "", verdict.certificate, shown, verdict.counterexample, verdict.assumed
             ), k - start
@@ -202,10 +201,10 @@ def _power_of(small: Sequence[Symbol], k: int) -> Expr:
 def _quotient(f: Expr, small: Sequence[Symbol], epsilon: Symbol, domain: Domain) -> tuple[Expr, Expr]:
     """Return numerator and denominator, both analytic at ε = 0, of f with every small quantity s as ε s."""
     size = {s: epsilon * (s if len(small) > 1 else 1) for s in small}
-    scaled = substitute(f, size)
+    scaled = without_kinks(substitute(f, size), {epsilon: sp.S.Zero}, domain)
     above, below = sp.fraction(sp.together(scaled)) if _singular(scaled, epsilon) else (scaled, sp.S.One)
     for side in (above, below):
-        _check_analytic(side, {epsilon: sp.S.Zero}, domain)
+        check_analytic(side, {epsilon: sp.S.Zero}, domain)
     return above, below
 
 
@@ -217,53 +216,18 @@ def _singular(f: Expr, epsilon: Symbol) -> bool:
     ) or bool(f.has(sp.tan, sp.cot, sp.sec, sp.csc))
 
 
-def _check_analytic(f: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> None:
-    """Refuse what is not certainly analytic where some symbols have these values."""
-    moving = tuple(place)
-    for part in sp.preorder_traversal(f):
-        if not isinstance(part, Expr) or not part.has(*moving):
-            continue
-        bad = isinstance(part, _KINKED)
-        if isinstance(part, sp.Pow) and not part.exp.is_integer:
-            bad = part.exp.has(*moving) and not part.base.is_positive
-            bad = bad or proved_sign(substitute(part.base, place), domain) != "+"
-        elif isinstance(part, sp.Pow) and part.exp.is_negative:
-            bad = not vanishes_off_kinks(substitute(part.base, place), domain, budget=0.5).fails
-        elif isinstance(part, sp.tan | sp.sec | sp.cot | sp.csc):
-            below = sp.cos if isinstance(part, sp.tan | sp.sec) else sp.sin
-            there = substitute(arguments(part)[0], place)
-            bad = not vanishes_off_kinks(below(there), domain, budget=0.5).fails
-        elif isinstance(part, sp.log):
-            bad = proved_sign(substitute(arguments(part)[0], place), domain) != "+"
-        elif isinstance(part, sp.asin | sp.acos | sp.atanh | sp.acosh | sp.acot | sp.acoth):
-            bad = substitute(arguments(part)[0], place) != 0 or isinstance(part, sp.acosh | sp.acot)
-        if bad:
-            raise Undecided(
-                f"{part} is not certainly analytic there, so no expansion of it is proved; narrow the domain"
-            )
-
-
 def _order_of(f: Expr, epsilon: Symbol, domain: Domain, deadline: Deadline) -> tuple[int, Expr]:
     """Return the lowest order of f at ε = 0, and its coefficient."""
     for k in range(MOST_ORDERS + 1):
-        coefficient = _coefficient(f, epsilon, k)
-        verdict = vanishes_off_kinks(coefficient, domain, budget=deadline.left)
+        found = coefficient(f, epsilon, k)
+        verdict = vanishes_off_kinks(found, domain, budget=deadline.left)
         if verdict.fails:
-            return k, coefficient
+            return k, found
         if verdict.undecided:
             break
     raise Undecided(
         "the order of a denominator in the small quantity was not decided; say the signs of the parameters"
     )
-
-
-def _coefficient(f: Expr, epsilon: Symbol, k: int) -> Expr:
-    found = substitute(f.diff(epsilon, k), {epsilon: sp.S.Zero}) / sp.factorial(k)
-    if found.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise Undecided(
-            f"the coefficient of order {k} is not finite, so this is no expansion in whole powers"
-        )
-    return found
 
 
 def _expanded(f: Expr, small: Sequence[Symbol], order: int, domain: Domain) -> Expr | None:
@@ -274,7 +238,7 @@ def _expanded(f: Expr, small: Sequence[Symbol], order: int, domain: Domain) -> E
         start, _ = _order_of(below, epsilon, domain, Deadline.after(1.0))
         above = sp.series(above / below, epsilon, 0, order + 1).removeO() if start < MOST_ORDERS else above
         return shown_short(substitute(above, {epsilon: small[0] if len(small) == 1 else sp.S.One}))
-    terms = (_coefficient(above, epsilon, k) * _power_of(small, k) for k in range(order + 1))
+    terms = (coefficient(above, epsilon, k) * _power_of(small, k) for k in range(order + 1))
     return sp.Add(*map(shown_short, terms))
 
 

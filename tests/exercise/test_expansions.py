@@ -1,0 +1,72 @@
+"""Expansions of named functions at places where they are analytic, to first order and beyond, and wrong twins."""
+
+import mpmath
+import pytest
+import sympy as sp
+
+from canon.exercise.analytic import coefficient
+from canon.exercise.judge import judge
+from canon.exercise.sheet import Claim
+
+NAMES = dict.fromkeys(("m", "x", "A"), "real") | dict.fromkeys(("a", "l", "g"), "positive")
+PERIOD = "4*sqrt(l/g)*elliptic_k(sin(A/2)**2)"
+
+
+def told(exact, small, claim, order=1, **more):
+    keys = {"exact": [exact], "small": [small], "claim": [claim], "order": order, "parameters": NAMES, **more}
+    return judge(Claim("a", "first-order", keys))
+
+
+@pytest.mark.parametrize(
+    ("exact", "small", "order", "right", "wrong"),
+    [
+        ("elliptic_k(m)", "m", 1, "pi/2*(1 + m/4)", "pi/2*(1 + m/2)"),
+        ("elliptic_k(m)", "m", 2, "pi/2*(1 + m/4 + 9*m**2/64)", "pi/2*(1 + m/4 + 9*m**2/32)"),
+        ("elliptic_e(m)", "m", 2, "pi/2*(1 - m/4 - 3*m**2/64)", "pi/2*(1 - m/4 + 3*m**2/64)"),
+        ("elliptic_e(x, m)", "m", 1, "x - m*(x/4 - sin(2*x)/8)", "x - m*(x/2 - sin(2*x)/4)"),
+        ("elliptic_k(1/2 + m)", "m", 1, "elliptic_k(1/2) + m*(2*elliptic_e(1/2) - elliptic_k(1/2))",
+         "elliptic_k(1/2) + m*(4*elliptic_e(1/2) - 2*elliptic_k(1/2))"),
+        (PERIOD, "A", 2, "2*pi*sqrt(l/g)*(1 + A**2/16)", "2*pi*sqrt(l/g)*(1 + A**2/8)"),
+        (PERIOD, "A", 4, "2*pi*sqrt(l/g)*(1 + A**2/16 + 11*A**4/3072)", "2*pi*sqrt(l/g)*(1 + A**2/16 + 11*A**4/1536)"),
+        (PERIOD, "A", 1, "2*pi*sqrt(l/g)", "pi*sqrt(l/g)"),
+        ("LambertW(x)", "x", 3, "x - x**2 + 3*x**3/2", "x - x**2 + x**3"),
+        ("asin(1/2 + x)", "x", 1, "pi/6 + 2*x/sqrt(3)", "pi/6 + x/sqrt(3)"),
+        ("acosh(2 + x)", "x", 1, "acosh(2) + x/sqrt(3)", "acosh(2) + x/sqrt(2)"),
+        ("atan2(x, a)", "x", 1, "x/a", "a*x"),
+        ("Abs(a + x)", "x", 2, "a + x", "a - x"),
+        ("Abs(x - a)*sign(x - a)", "x", 2, "x - a", "a - x"),
+        ("(elliptic_k(m) - elliptic_e(m))/m", "m", 1, "pi/4 + 3*pi*m/32", "pi/4 + pi*m/32"),
+    ],
+)  # fmt: skip
+def test_an_expansion_and_its_wrong_twin(exact, small, order, right, wrong):
+    assert told(exact, small, right, order).holds
+    verdict = told(exact, small, wrong, order)
+    assert verdict.fails
+    assert "order" in verdict.feedback
+
+
+@pytest.mark.parametrize(
+    "exact", ["elliptic_k(1 + m)", "elliptic_k(2 + m)", "elliptic_k(a + m)", "Abs(m)", "acot(m)", "asin(1 + m)",
+              "LambertW(m - exp(-1))", "acosh(1 + m)"],
+)  # fmt: skip
+def test_what_is_not_analytic_there_stays_undecided(exact):
+    assert told(exact, "m", "a", 1).undecided
+
+
+def test_where_the_domain_says_that_it_is_analytic():
+    claim = "elliptic_k(a) + m*(elliptic_e(a) - (1 - a)*elliptic_k(a))/(2*a*(1 - a))"
+    assert told("elliptic_k(a + m)", "m", claim, domain=["a < 1"]).holds
+    assert told("elliptic_k(a + m)", "m", claim.replace("2*a", "a"), domain=["a < 1"]).fails
+
+
+e = sp.Symbol("e", real=True)
+
+
+@pytest.mark.parametrize("f", [sp.elliptic_k(e), sp.elliptic_e(e), sp.LambertW(e), sp.elliptic_e(1, e)])
+def test_coefficients_against_numbers(f):
+    """Differences at many digits give the same."""
+    g = sp.lambdify(e, f, "mpmath")
+    with mpmath.workdps(60):
+        numbers = mpmath.taylor(g, 0, 5, singular=True)
+    for k, number in enumerate(numbers):
+        assert abs(complex(number) - complex(sp.N(coefficient(f, e, k), 20))) < 1e-9
