@@ -108,6 +108,8 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
     first, second = lagrangian_of(reading, "L1").L, lagrangian_of(reading, "L2").L
     relation = reading.word("relation")
     if relation == "equations":
+        if reading.has("F"):
+            reading.fault("F", "stands beside the relation gauge only; leave it out, or write gauge")
         systems = [Lagrangian(L, q, t).equations for L in (second, first)]
         yield SameEquations(systems[0], systems[1], tuple(acceleration(x) for x in q), reading.domain)
     elif relation != "gauge":

@@ -11,7 +11,8 @@ from canon.exercise.feedback import corrected, feedback
 from canon.exercise.judge import InvalidClaim, examine
 from canon.exercise.report import MAX_SHOWN, Judgement, invalid
 from canon.exercise.steps import steps
-from canon.proof.prove import REFUSALS
+from canon.expression.magnitude import written
+from canon.proof.prove import REFUSALS, refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,7 +40,7 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
         yield replace(invalid(claim, known), status="undecided"), True
         return
     except REFUSALS as error:
-        known = _cut(f"on the way SymPy meets what it can't build: {type(error).__name__}, {error}")
+        known = _cut(f"on the way SymPy meets what it can't build: {refusal(error)}")
         yield replace(invalid(claim, known), status="undecided"), True
         return
     judgement = replace(_told(claim, finding.verdict), warnings=finding.reading.warnings)
@@ -100,7 +101,7 @@ def _short(residual: sp.Basic | sp.MatrixBase | None) -> str:
         and sum(1 for _ in zip(sp.preorder_traversal(residual), range(5000), strict=False)) >= 5000
     ):
         return "(too long to be shown)"
-    return _cut(str(residual))
+    return _cut(written(residual))
 
 
 def _cut(text: str) -> str:

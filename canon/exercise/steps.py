@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.question import Differ, Regular, Same, SameEquations
+from canon.expression.magnitude import written
 from canon.expression.symbol import velocity
 from canon.proof.verdict import Verdict
 
@@ -127,5 +128,5 @@ def _answer(question: Question, verdict: Verdict) -> str:
 def shown(f: Basic) -> str:
     """Return an expression as text, nothing where it is longer than anyone reads."""
     nodes = sum(1 for _ in zip(sp.preorder_traversal(f), range(MOST_NODES), strict=False))
-    text = str(f) if nodes < MOST_NODES else ""
+    text = written(f) if nodes < MOST_NODES else ""
     return text if len(text) <= MOST_CHARACTERS else ""

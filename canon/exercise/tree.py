@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.magnitude import written
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -39,9 +41,9 @@ def shown(item: object) -> str:
     '-Derivative(V(q - X(t)), q)'
     """
     if not (isinstance(item, sp.Basic) and item.has(sp.Subs, sp.DiracDelta)):
-        return str(item)
+        return written(item)
     off_the_kinks = item.replace(lambda e: isinstance(e, sp.DiracDelta), lambda _: sp.S.Zero)
-    return str(off_the_kinks.replace(lambda e: isinstance(e, sp.Subs), _by_a_symbol))
+    return written(off_the_kinks.replace(lambda e: isinstance(e, sp.Subs), _by_a_symbol))
 
 
 def _by_a_symbol(there: sp.Subs) -> Expr:

@@ -15,6 +15,7 @@ from sympy import Expr, Rational, Symbol
 from canon.expression import syntax
 from canon.expression.given import given_kind
 from canon.expression.juxtaposition import parse_juxtaposed
+from canon.expression.magnitude import MOST_DIGITS, digits
 from canon.expression.scope import Scope
 from canon.expression.symbol import Coordinate
 from canon.expression.syntax import LanguageError, parse_syntax
@@ -171,6 +172,8 @@ class _Builder:
     def finite(self, node: syntax.Node, value: Expr) -> Expr:
         if isinstance(value, Rational) and _bits(value) > MAX_BITS:
             self.refuse(node, "a number too long to be meant")
+        if value.args and not value.free_symbols and digits(value) > MOST_DIGITS:
+            self.refuse(node, f"a number of more than {MOST_DIGITS:,.0f} digits before or behind the point")
         if value is sp.nan or value.has(sp.zoo, sp.oo, sp.S.NegativeInfinity, sp.nan):
             self.refuse(node, "this is infinite or undefined everywhere")
         return value

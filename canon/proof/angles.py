@@ -114,7 +114,7 @@ def divided(n: NormalForm, kind: str, key: Hashable, coefficient: fmpq) -> int:
         n.parts[(kind, key)] = need
         raise Refine
     if abs(coefficient) * need > LARGEST_MULTIPLE:
-        raise TooLarge(f"a multiple of {abs(coefficient) * need} of one argument")
+        raise TooLarge(f"a multiple of more than {LARGEST_MULTIPLE} of one argument")
     return need
 
 

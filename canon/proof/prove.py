@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from sympy import Expr
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["REFUSALS", "Attempt", "is_empty", "prove_each", "prove_zero"]
+__all__ = ["REFUSALS", "Attempt", "is_empty", "prove_each", "prove_zero", "refusal"]
 
 MOST_STARTS = 60
 """Times that the normal form is begun anew because a kernel had to be refined."""
@@ -89,8 +89,24 @@ def prove_zero(expr: Expr, domain: Domain, deadline: float, limits: Limits = THO
             or _prove(case.expr, case.domain, deadline, limits, attempt)
         )
     except REFUSALS as reason:
-        attempt.stop(f"no value could be given to a part: {reason}")
+        attempt.stop(f"no value could be given to a part: {refusal(reason)}")
     return attempt
+
+
+def refusal(reason: Exception) -> str:
+    """Return in words why SymPy or flint gave no meaning to an expression.
+
+    Examples
+    --------
+    >>> refusal(OverflowError("int too large to convert to float"))
+    'a number is too large to be computed with'
+    """
+    said = str(reason).strip().partition("\n")[0].rstrip(".")
+    if isinstance(reason, OverflowError) or "integer string conversion" in said:
+        return "a number is too large to be computed with"
+    if isinstance(reason, ZeroDivisionError):
+        return "a denominator vanishes"
+    return said or "it has no meaning there"
 
 
 def is_empty(domain: Domain, deadline: float) -> bool:

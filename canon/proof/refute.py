@@ -317,7 +317,14 @@ def _texts(left: acb, right: acb) -> tuple[str, str, int]:
 def _text(z: acb, digits: int) -> str:
     if z.is_zero():
         return "0"
-    real = z.real.str(digits, radius=False)
+    real = _real_text(z.real, digits)
     if z.imag.is_zero() or (z.imag.contains(0) and not z.real.contains(0)):
         return real
-    return f"{real} + ({z.imag.str(digits, radius=False)})*I"
+    return f"{real} + ({_real_text(z.imag, digits)})*I"
+
+
+def _real_text(x: arb, digits: int) -> str:
+    """Return a number as text; one of which no digit is certain as what it does not exceed, such as ``0 ± 1.0``."""
+    if x.rel_accuracy_bits() > 0 or x.is_zero():
+        return x.str(digits, radius=False)
+    return f"0 ± {arb(x.abs_upper()).str(2, radius=False)}"

@@ -19,7 +19,7 @@ from canon.proof.budget import prove_in_worker
 from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import evaluated
 from canon.proof.limits import QUICK
-from canon.proof.prove import REFUSALS, Attempt, is_empty, prove_each, prove_zero
+from canon.proof.prove import REFUSALS, Attempt, is_empty, prove_each, prove_zero, refusal
 from canon.proof.refute import Search, first_counterexample, look_for_counterexample, search_widely
 from canon.proof.verdict import Evidence, Status, Verdict
 
@@ -181,7 +181,7 @@ def _decide(left: object, right: object, domain: Domain, deadline: float) -> Ver
     except RecursionError:
         return too_deep
     except REFUSALS as reason:
-        said = f"no value could be given to a part of the expression or domain: {reason}"
+        said = f"no value could be given to a part of the expression or domain: {refusal(reason)}"
         return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", said),))
 
 

@@ -140,12 +140,14 @@ class Verdict:
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold of this verdict."""
+        from canon.expression.magnitude import written
+
         example = self.counterexample
         return {
             "status": self.status.value,
             "question": self.question,
             "certificate": self.certificate,
-            "residual": None if self.residual is None else str(self.residual),
+            "residual": None if self.residual is None else written(self.residual),
             "counterexample": None
             if example is None
             else {"point": dict(example.point), "left": example.left, "right": example.right},
@@ -194,9 +196,11 @@ LONGEST_PRINTED = 60
 def _short(residual: sp.Basic | sp.MatrixBase) -> str:
     from sympy import count_ops
 
+    from canon.expression.magnitude import written
+
     operations = int(count_ops(residual))
     if operations <= LONGEST_PRINTED:
-        return str(residual)
+        return written(residual)
     return f"an expression of {operations} operations (in .residual)"
 
 

@@ -201,6 +201,15 @@ ATTACKS = {
     "right to left": {"lhs": "\u202ex + 1\u202c"},
     "tower": {"lhs": "9**9**9"},
     "tower below": {"lhs": "2**-(9**9)"},
+    "tower of exponentials": {"lhs": "exp(exp(exp(exp(exp(10)))))"},
+    "tower of exponentials times x": {"lhs": "x*exp(exp(exp(exp(exp(10)))))"},
+    "tower in a sine": {"lhs": "sin(exp(exp(exp(3))))"},
+    "tower below a tower": {"lhs": "exp(-exp(exp(exp(exp(10)))))/cosh(cosh(cosh(cosh(9))))"},
+    "tower that is compared": {"lhs": "Max(x, exp(exp(exp(exp(10))))) + Abs(exp(exp(exp(exp(10)))) - x)"},
+    "tower in a domain": {"domain": ["x < exp(exp(exp(exp(exp(10)))))"]},
+    "tower over x": {"lhs": "exp(exp(exp(exp(exp(10 + x)))))"},
+    "tower at an instant": {"kind": "solution", "q": ["q"], "equations": ["q_ddot + q"],
+        "solution": {"q": "exp(exp(exp(exp(exp(10 + t)))))"}, "initial": {"q": "1", "q_dot": "0"}},
     "tower of symbols": {"lhs": "**".join(["x"] * 60)},
     "roots of large numbers": {"lhs": f"sqrt({'7' * 990})*sqrt({'3' * 990}) + {'9' * 990}**(1/3)"},
     "factors of large numbers": {"lhs": f"({10**900 + 7})**(1/2)"},
@@ -290,8 +299,7 @@ def test_attacks_are_answered_in_their_budget_and_the_next_claim_is_judged(tmp_p
                 name,
                 told,
             )
-            assert told.seconds < budget + 1, name
-            assert seconds < budget + 1 + 1.8, name  # and the feedback, which costs no verdict
+            assert told.seconds <= seconds < budget + 0.5, name
             for text in (told.known, told.feedback, *told.lines()):
                 assert "Traceback" not in text
                 assert "broke off" not in text, name
@@ -309,6 +317,21 @@ def test_some_attacks_are_invalid_at_once(worker, name):
     assert told.status == "invalid"
     assert "column" in told.known
     assert seconds < 2.0
+
+
+def test_numbers_too_large_to_be_computed_with_are_named(worker):
+    """Never by the words of Python; and what stands beside them is judged."""
+    for name in (name for name in ATTACKS if "tower" in name):
+        told, _ = answered(worker, name, 3.0)
+        assert told.status in ("invalid", "undecided", "fails"), name
+        for text in (told.known, told.feedback, *told.lines()):
+            assert "Error" not in text, (name, text)
+            assert "broke off" not in text, (name, text)
+            assert "int too large" not in text, (name, text)
+    for lhs, rhs in (("exp(1000)*exp(x)", "exp(x + 1000)"), ("sin(10**50 + x - x)", "sin(10**50)")):
+        keys = {"id": "r", "kind": "equality-only", "lhs": lhs, "rhs": rhs, "parameters": {"x": "real"}}
+        assert worker.judge(claim_from(keys)).status == "holds", lhs
+        assert worker.judge(claim_from({**keys, "rhs": f"{rhs} + 1"})).status == "fails", lhs
 
 
 def test_a_page_of_attacks_is_written_in_no_time():

@@ -200,6 +200,14 @@ def test_refuses_and_points(text, column, reason):
         "x**(1/1001)",
         "exp(1000000000*log(2))",
         "exp(1)**(1000000000*log(2))",
+        "exp(exp(exp(exp(exp(10)))))",
+        "exp(exp(13))",
+        "x*cosh(cosh(cosh(cosh(9))))",
+        "sin(exp(exp(exp(3))))",
+        "exp(-10**6)",
+        "pi**exp(20)",
+        "exp(exp(exp(10)))**x",
+        "Max(x, exp(exp(exp(exp(10)))))",
         "*".join(["9**900"] * 300),
         "9" * 1001,
         "1e1001",
@@ -231,6 +239,9 @@ def test_what_is_large_but_meant_is_read():
     deep = "sin(" * 60 + "x" + ")" * 60
     assert parse_expression(deep, SCOPE).has(x)
     assert parse_expression("10**100 + 2**1000", SCOPE) == 10**100 + 2**1000
+    assert parse_expression("exp(exp(12)) + exp(-1000)*x", SCOPE) == sp.exp(sp.exp(12)) + sp.exp(-1000) * x
+    assert parse_expression("sin(10**50)*exp(exp(exp(exp(x))))", SCOPE).has(x)
+    assert parse_expression("log(exp(10**5))", SCOPE) == 10**5
 
 
 def test_a_chain_of_signs_or_terms_does_not_exhaust_the_stack():

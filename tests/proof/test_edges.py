@@ -1,5 +1,7 @@
 """Where rewriting goes wrong: cuts, poles, negative radicands, boundaries of pieces."""
 
+import time
+
 import pytest
 import sympy as sp
 from sympy import (
@@ -191,3 +193,39 @@ AT_EXACT_POINTS = [
 @pytest.mark.parametrize(("left", "right", "conditions", "expected"), AT_EXACT_POINTS)
 def test_points_that_no_double_holds(left, right, conditions, expected):
     assert equal(left, sp.sympify(right), Domain(conditions)).status is expected
+
+
+TOWER = sp.exp(sp.exp(sp.exp(sp.exp(sp.exp(10)))))
+HUGE = [
+    TOWER,
+    sp.exp(sp.exp(sp.exp(sp.exp(10)))) * x,
+    sp.sin(TOWER) * x,
+    sp.sin(sp.exp(sp.exp(sp.exp(3)))) * x,
+    sp.sqrt(TOWER + x),
+    sp.asinh(TOWER),
+    sp.exp(sp.I * TOWER * x),
+    sp.Pow(9, sp.Pow(9, sp.Pow(9, 9, evaluate=False), evaluate=False), evaluate=False),
+    x ** (10**999),
+    sp.exp(10**999),
+    sp.gamma(TOWER),
+    x * 10**5000,
+]
+
+
+@pytest.mark.parametrize("number", range(len(HUGE)))
+def test_numbers_beyond_any_float_are_answered_and_shown(number):
+    """Nothing is raised, the budget is kept, and no exception of Python's is told."""
+    f = HUGE[number]
+    start = time.monotonic()
+    verdict = equal(f, x + 7, budget=2.0)
+    assert time.monotonic() - start < 2.5
+    assert not verdict.holds
+    shown = f"{verdict} {verdict!r} {verdict.to_dict()}"
+    assert "Error" not in shown
+    assert "int too large" not in shown
+    assert equal(f + x, x + f).holds
+
+
+def test_a_value_of_which_no_digit_is_certain_is_shown_as_a_bound():
+    assert equal(sp.sin(10**999), x + 7).counterexample.left == "0 ± 1.0"
+    assert equal(sp.sin(10**9), x + 7).counterexample.left == "0.545843449448700"
