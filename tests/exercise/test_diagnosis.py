@@ -78,6 +78,20 @@ def goes_further(claim, sentence):
     return False
 
 
+def is_not_positive_real_somewhere(claim):
+    """Whether the opposite holds with numbers for the parameters, those at which canon saw it."""
+    example = examine(changed(claim, **{"is": ["positive-real"]})).verdict.counterexample
+    if example is None:
+        return False
+    H, numbers = (
+        claim.keys["H"],
+        {k: v for k, v in example.point.items() if k in claim.keys.get("parameters", {})},
+    )
+    for name, number in numbers.items():
+        H = re.sub(rf"\b{name}\b", f"({number})", H)
+    return holds(changed(claim, H=H, parameters={}, **{"is": ["not positive-real"]}))
+
+
 def is_so(claim, sentence):
     """Whether what is stated of a claim is so: where an answer is named, the claim of that answer holds."""
     word = sentence.partition(":")[0]
@@ -90,9 +104,10 @@ def is_so(claim, sentence):
             return holds(changed(claim, conserved=[word.removesuffix(" is conserved")], not_conserved=None))
         case "positive-real" if sentence.endswith("for some values of the parameters"):
             return examine(changed(claim, **{"is": ["not positive-real"]})).verdict.fails
+        case "positive-real" if sentence == "H is positive real":
+            return holds(changed(claim, **{"is": ["positive-real"]}))
         case "positive-real":
-            right = "positive-real" if sentence == "H is positive real" else "not positive-real"
-            return holds(changed(claim, **{"is": [right]}))
+            return is_not_positive_real_somewhere(claim)
         case "first-order":
             return goes_further(claim, sentence)
         case _:
