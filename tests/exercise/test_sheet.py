@@ -216,6 +216,17 @@ def test_what_a_claim_says_is_invalid_for_that_claim_only(change, key, column):
         ),
         (
             {
+                "kind": "lagrangian-equivalence",
+                "q": ["x"],
+                "L1": "x",
+                "L2": "x",
+                "relation": "equations",
+                "F": "x",
+            },
+            "F",
+        ),
+        (
+            {
                 "kind": "generating-F1",
                 "q": ["x"],
                 "p": ["p"],
