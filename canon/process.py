@@ -18,15 +18,15 @@ import subprocess
 import sys
 import threading
 import time
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, cast
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Generator, Iterable
 
-__all__ = ["Child", "Ended", "Late", "folders", "serve"]
+__all__ = ["Child", "Ended", "Late", "folders", "safe_path", "serve"]
 
 RESTS_ON = ("sympy", "mpmath", "numpy", "flint", "lark")
 """What proofs and judgements import beside the standard library."""
@@ -228,6 +228,27 @@ def _is_working_folder(entry: str) -> bool:
         return False
     installed = (*site.getsitepackages(), site.getusersitepackages())
     return not any(Path(folder).exists() and Path(folder).samefile(entry) for folder in installed)
+
+
+@contextmanager
+def safe_path() -> Generator[None]:
+    """Let the interpreters that are started meanwhile, those of a pool for one, leave out the working folder.
+
+    Examples
+    --------
+    >>> with safe_path():
+    ...     os.environ["PYTHONSAFEPATH"]
+    '1'
+    """
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["PYTHONSAFEPATH"]
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
 
 
 def serve(answers: Callable[[bytes], Iterable[bytes]], memory: int) -> None:

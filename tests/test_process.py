@@ -116,6 +116,33 @@ def test_it_works_with_a_safe_path(hostile):
     assert not marker.exists()
 
 
+STUDY = """
+[system.free]
+H = "p**2/2"
+q = "q"
+p = "p"
+starts = { near = [0.5, 1.0] }
+[[study]]
+system = "free"
+method = ["verlet", "rk4"]
+step = 0.5
+until = 300
+"""
+
+
+def test_the_pool_of_a_study_runs_nothing_in_the_working_folder(hostile):
+    """As the installed command starts it: the folder of a script is on its path, and no option keeps others off."""
+    folder, marker = hostile("multiprocessing", "pickle", "struct", *CUSTOM)
+    (folder / "s.toml").write_text(STUDY, "utf-8")
+    command = folder.parent / "command.py"
+    command.write_text(
+        "import sys\nfrom canon.cli import main\nif __name__ == '__main__':\n    sys.exit(main())\n"
+    )
+    done = run([str(command), "study", "run", "s.toml", "--jobs", "2"], folder)
+    assert not marker.exists(), marker.read_text("utf-8")
+    assert "2 finished" in done.stdout, done.stderr
+
+
 def copied(folder):
     shutil.copytree(ROOT / "canon", folder / "canon", ignore=shutil.ignore_patterns("__pycache__"))
     return folder

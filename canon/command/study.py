@@ -231,7 +231,10 @@ def _executor(arguments: argparse.Namespace) -> Generator[tuple[Executor | None,
         import multiprocessing
         from concurrent.futures import ProcessPoolExecutor
 
-        with ProcessPoolExecutor(arguments.jobs, multiprocessing.get_context("spawn")) as pool:
+        from canon.process import safe_path
+
+        spawned = multiprocessing.get_context("spawn")
+        with safe_path(), ProcessPoolExecutor(arguments.jobs, spawned) as pool:
             yield pool, arguments.jobs + 1
     else:
         yield None, None
