@@ -40,7 +40,7 @@ def _factors(base: Expr) -> list[tuple[Expr, int]]:
         return []
     try:
         poly = sp.Poly(base)
-    except sp.PolynomialError:
+    except (sp.PolynomialError, sp.GeneratorsNeeded):  # the latter where everything cancels
         return [(base, 1)]
     if not (poly.domain.is_ZZ or poly.domain.is_QQ):
         return [(base, 1)]

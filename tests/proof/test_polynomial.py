@@ -31,3 +31,9 @@ def test_six_variables_take_no_time():
     found = polynomial_factors(sp.expand(sp.Mul(*factors)))
     assert len(found) == 3
     assert all(any(sp.expand(f - g) == 0 or sp.expand(f + g) == 0 for g, _ in found) for f in factors)
+
+
+def test_what_cancels_when_it_is_expanded_stays_whole():
+    nothing = sp.exp(x) * sp.exp(y) - sp.exp(x + y)
+    assert polynomial_factors(nothing) == [(nothing, 1)]
+    assert dict(polynomial_factors(sp.exp(x) * sp.exp(y) + sp.exp(x + y) + 1))
