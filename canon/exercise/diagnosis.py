@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from canon.exercise.question import Deadline, decide
+from canon.exercise.question import Deadline, Determines, decide
 from canon.proof.prove import REFUSALS
 from canon.proof.verdict import Undecided
 
@@ -58,13 +58,15 @@ def judged_to_hold(reading: Reading, seconds: float, held: int = 0, but: int | N
     but
         The number of a question that was answered otherwise.
     """
-    from canon.exercise.judge import JUDGES
+    from canon.exercise.judge import questions
 
     deadline = Deadline.after(seconds)
     try:
-        questions = enumerate(JUDGES[reading.claim.kind](reading))
+        asked = (question for i, question in islice(enumerate(questions(reading)), held, None) if i != but)
         return all(
-            decide(question, deadline).holds for i, question in islice(questions, held, None) if i != but
+            decide(question, deadline).holds
+            for question in asked
+            if not isinstance(question, Determines) or question.wanted
         )
     except (Undecided, *REFUSALS):  # a repair may make no sense: a singular matrix, an empty domain
         return False

@@ -59,6 +59,9 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if wanted.exclusive and len(complete) > 1:
         groups = " and ".join(" with ".join(group) for group in complete)
         yield complete[1][-1], f"{groups} both say what it is about; leave one out"
+    given = [key for key in wanted.answer if key in keys]
+    if given and all(keys[key] in ([], {}) and _fits(keys[key], known[key]) for key in given):
+        yield given[0], "nothing is claimed: the answer is empty"
     for key, value in keys.items():
         if key not in known:
             close = difflib.get_close_matches(key[:60], known, n=1, cutoff=0.6)
@@ -134,6 +137,8 @@ def _fits(value: Any, shape: Shape) -> bool:
             return isinstance(value, str)
         case Shape.TRUE:
             return value is True
+        case Shape.SWITCH:
+            return isinstance(value, bool)
         case Shape.NUMBER:
             return _number(value)
         case Shape.ASSUMPTIONS:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
@@ -23,9 +24,10 @@ from canon.exercise import (
     judge_solution,
     judge_variation,
 )
+from canon.exercise.answer import other_variables
 from canon.exercise.form import faults
 from canon.exercise.manifold import EmptyDomainError
-from canon.exercise.question import Deadline, Question, Stated, decide
+from canon.exercise.question import Deadline, Determines, Question, Stated, Tells, decide
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.sheet import Claim, ClaimError
 from canon.expression.given import given_kind
@@ -35,7 +37,7 @@ from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-__all__ = ["JUDGES", "Finding", "InvalidClaim", "examine", "judge"]
+__all__ = ["JUDGES", "Finding", "InvalidClaim", "examine", "judge", "questions"]
 
 Judge: TypeAlias = "Callable[[Reading], Iterator[Question]]"
 
@@ -87,7 +89,8 @@ JUDGES: Mapping[str, Judge] = MappingProxyType(
 class Finding:
     """A verdict on a claim, the question on which it turned where it FAILS, and how many held before it.
 
-    ``asked`` has every question with its answer, in the order they were asked.
+    ``asked`` has every question with its answer, in the order they were asked; ``beside`` what was not asked,
+    because no complete answer is wanted.
     """
 
     reading: Reading
@@ -95,6 +98,29 @@ class Finding:
     question: Question | None = None
     held: int = 0
     asked: tuple[tuple[Question, Verdict], ...] = ()
+    beside: tuple[Determines, ...] = ()
+
+    def left_open(self) -> tuple[str, ...]:
+        """Return in sentences what the answer leaves open, as far as that can be told."""
+        found: list[str] = []
+        for question in self.beside:
+            with suppress(Undecided):
+                found += question.left_open()
+        return tuple(dict.fromkeys(found))
+
+
+def questions(reading: Reading) -> Iterator[Question]:
+    """Yield everything that a claim comes down to.
+
+    Raises
+    ------
+    InvalidClaim
+        Where the claim does not say something that could be judged.
+    """
+    yield from other_variables(reading)
+    for question in JUDGES[reading.claim.kind](reading):
+        asked = isinstance(question, Determines)
+        yield replace(question, wanted=reading.complete) if asked else question
 
 
 def judge(claim: Claim) -> Verdict:
@@ -142,18 +168,24 @@ def examine(claim: Claim) -> Finding:
     reading = Reading(claim)
     answered: list[Verdict] = []
     asked: list[tuple[Question, Verdict]] = []
+    beside: list[Determines] = []
     turned: Question | None = None
-    named = ""
+    named, held = "", 0
     try:
-        for question in JUDGES[claim.kind](reading):
+        for number, question in enumerate(questions(reading)):
+            if isinstance(question, Determines) and not question.wanted:
+                beside.append(question)
+                continue
             verdict = decide(question, deadline)
+            if isinstance(question, Determines | Tells) and verdict.holds:
+                continue
             named = (
                 verdict.question if isinstance(question, Stated) and verdict.holds and not answered else ""
             )
             answered.append(verdict)
             asked.append((question, verdict))
             if verdict.fails:
-                turned = question
+                turned, held = question, number
                 break
     except Undecided as reason:
         answered.append(Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),)))
@@ -163,8 +195,7 @@ def examine(claim: Claim) -> Finding:
         raise InvalidClaim(ClaimError(claim.id, "", "nothing is claimed", file=claim.file))
     verdict = replace(all_hold(answered, named), seconds=time.monotonic() - start)
     verdict = verdict if verdict.question else verdict.about(_title(claim))
-    held = len(answered) - 1 if turned is not None else 0
-    return Finding(reading, verdict, turned, held, tuple(asked))
+    return Finding(reading, verdict, turned, held, tuple(asked), tuple(beside))
 
 
 def _title(claim: Claim) -> str:

@@ -14,7 +14,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judge_energy import exactly
-from canon.exercise.question import Part, Question, Same, SameEquations
+from canon.exercise.question import Part, Question, Same, SameEquations, more_than_zero
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.substitution import substitute
@@ -82,6 +82,7 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
             written,
             kinematics.through,
         )
+        yield more_than_zero(claims, reading.domain)
 
 
 def _kinematics(reading: Reading) -> _Kinematics:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.answer import open_brackets
 from canon.exercise.generating_answer import generating_function_of
 from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.manifold import on_manifold, transported
-from canon.exercise.question import Part, Question, Regular, Same, wrong_variables
+from canon.exercise.question import Determines, Part, Question, Regular, Same, wrong_variables
 from canon.expression.given import counted
 from canon.mechanics.bilinear import bilinear_covariant, displacements
 from canon.mechanics.bracket import lagrange_bracket, lie_bracket, poisson_bracket, symplectic_unit
@@ -45,6 +46,9 @@ def poisson_brackets(reading: Reading) -> Iterator[Question]:
         for i, (f, g, value) in enumerate(pairs, 1)
     )
     yield Same(parts, reading.domain)
+    firsts, seconds = (tuple(dict.fromkeys(pair[i] for pair in pairs)) for i in (0, 1))
+    wanted = tuple(product(firsts, seconds))
+    yield Determines(lambda: open_brackets(wanted, [(f, g) for f, g, _ in pairs]))
 
 
 def lagrange_brackets(reading: Reading) -> Iterator[Question]:
@@ -54,13 +58,16 @@ def lagrange_brackets(reading: Reading) -> Iterator[Question]:
     if len(p) != len(q):
         reading.fault("p", f"{counted(len(p), 'momentum', 'momenta')} for {counted(len(q), 'coordinate')}")
     parts: list[Part] = []
-    for i, (u, v, value) in enumerate(reading.brackets("u", "v")):
+    pairs = reading.brackets("u", "v")
+    for i, (u, v, value) in enumerate(pairs):
         for letter, symbol in (("u", u), ("v", v)):
             if symbol not in variables:
                 reading.fault(f"pairs[{i}].{letter}", f"{symbol} is not one of the variables")
         bracket = sp.Add(*(a.diff(u) * b.diff(v) - a.diff(v) * b.diff(u) for a, b in zip(q, p, strict=True)))
         parts.append(Part(f"[{u}, {v}]", value, bracket, key=f"pairs[{i}].value"))
     yield Same(tuple(parts), reading.domain)
+    wanted = tuple(combinations(variables, 2))
+    yield Determines(lambda: open_brackets(wanted, [(u, v) for u, v, _ in pairs]))
 
 
 def lie_brackets(reading: Reading) -> Iterator[Question]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.question import Differ, Part, Question, Same
+from canon.exercise.question import Differ, Part, Question, Same, Tells
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.lagrangian import Lagrangian
@@ -16,12 +17,14 @@ from canon.proof.smooth import may_jump
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.reading import Reading
     from canon.proof.domain import Domain
 
-__all__ = ["check_continuous", "conserved_or_not", "motion_of"]
+__all__ = ["NOT_OF_THE_STATE", "check_continuous", "conserved_or_not", "motion_of", "same_everywhere"]
+
+NOT_OF_THE_STATE = "what does not depend on the state is true of any system"
 
 
 def conserved_or_not(reading: Reading) -> Iterator[Question]:
@@ -30,7 +33,8 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
     for key in ("conserved", "not_conserved"):
         if not reading.has(key):
             continue
-        for i, I in enumerate(reading.expressions(key)):
+        quantities = reading.expressions(key)
+        for i, I in enumerate(quantities):
             if I.has(*(s for s in _accelerations(reading) if s not in rates)):
                 reading.fault(f"{key}[{i}]", "should depend on the state and the time only")
             rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
@@ -41,6 +45,19 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
                 check_continuous(I, (*rates, t), reading.domain)
                 why = f"{I} is conserved: its rate vanishes on every motion"
                 yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
+        yield Tells((same_everywhere(quantities, tuple(rates), reading.domain),), NOT_OF_THE_STATE)
+
+
+def same_everywhere(
+    quantities: Sequence[Expr],
+    state: Sequence[Symbol],
+    domain: Domain,
+    values: Mapping[Symbol, Expr] = MappingProxyType({}),
+) -> Same:
+    """Return the question whether quantities do not depend on the state at all, where some symbols have values."""
+    slopes = ((I, x, I.diff(x)) for I in quantities for x in state)
+    parts = tuple(Part(f"∂({I})/∂{x}", slope, through=values) for I, x, slope in slopes if slope != 0)
+    return Same(parts or (Part("0", sp.S.Zero),), domain)
 
 
 def check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:

@@ -10,13 +10,14 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.affine import solved
+from canon.exercise.answer import equations_missing
 from canon.exercise.judge_lagrangian import lagrangian_of
 from canon.exercise.manifold import on_manifold
-from canon.exercise.question import Part, Question, Same, SameEquations
+from canon.exercise.question import Determines, Part, Question, Same, SameEquations, Tells
 from canon.exercise.tree import replaced
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
-from canon.mechanics.linear import SingularMatrixError
+from canon.mechanics.linear import SingularMatrixError, eliminate
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
+    from canon.exercise.manifold import Branch
     from canon.exercise.reading import Reading
 
 __all__ = ["is_one_of", "jets_of", "multiplier_holonomic", "nonholonomic", "with_jets"]
@@ -74,11 +76,14 @@ def _on_every_motion(
     unknowns = (*(acceleration(x) for x in q), *multipliers)
     reactions = directions.T * sp.Matrix(multipliers)
     system = [equation - reaction for equation, reaction in zip(lagrangian.equations, reactions, strict=True)]
-    system += [time_derivative(g, q, t) for g in held]
+    rates = [time_derivative(g, q, t) for g in held]
+    system += rates
     claims = reading.equations("claim")
     jets = jets_of((*system, *manifold, *claims), t, reading.domain)
     functions = {symbol: function for function, symbol in jets.items()}
-    system, claims, manifold = ([replaced(e, jets) for e in given] for given in (system, claims, manifold))
+    system, rates, claims, manifold = (
+        [replaced(e, jets) for e in given] for given in (system, rates, claims, manifold)
+    )
     open_ = {i: claim for i, claim in enumerate(claims) if not is_one_of(claim, system)} or {0: sp.S.Zero}
     domain = with_jets(reading.domain, jets)
     branches = on_manifold(manifold, domain, keep=(t, *unknowns), prefer=lagrangian.velocities)
@@ -98,6 +103,41 @@ def _on_every_motion(
             for i, claim in open_.items()
         )
         yield Same(parts, branch.domain, partial(_shown, solution if len(branches) == 1 else {}))
+    free = "it is true of anything" if not any(claims) else "it follows from the constraints alone"
+    yield Tells(tuple(_on_any_motion(claims, rates, unknowns[: len(q)], branch) for branch in branches), free)
+    yield Determines(partial(_left_open, claims, rates, system, unknowns, branches))
+
+
+def _on_any_motion(
+    claims: Sequence[Expr], rates: Sequence[Expr], accelerations: Sequence[Symbol], branch: Branch
+) -> Same:
+    """Return the question whether claims hold on every motion that the constraints allow, whatever moves it."""
+    here = [substitute(rate, branch.values) for rate in rates]
+    slopes = sp.Matrix([[rate.diff(a) for a in accelerations] for rate in here])
+    rest = sp.Matrix([replaced(rate, dict.fromkeys(accelerations, sp.S.Zero)) for rate in here])
+    echelon = eliminate(slopes, rest, branch.domain)
+    rows = echelon.rows[: echelon.rank]
+    bound = [accelerations[j] for j in echelon.pivots]
+    left = [
+        sp.Add(*(a * slope for a, slope in zip(accelerations, row, strict=False)), row[-1]) for row in rows
+    ]
+    through = {**branch.values, **(solved(left, bound, branch.domain) if bound else {})}
+    return Same(tuple(Part(f"claim {i}", c, through=through) for i, c in enumerate(claims, 1)), branch.domain)
+
+
+def _left_open(
+    claims: Sequence[Expr],
+    rates: Sequence[Expr],
+    system: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    branches: Sequence[Branch],
+) -> tuple[str, ...]:
+    """Return what claims and constraints together leave open of the accelerations and multipliers."""
+    for branch in branches:
+        told, whole = ([substitute(e, branch.values) for e in some] for some in ((*rates, *claims), system))
+        if found := equations_missing(told, whole, unknowns, branch.domain):
+            return found
+    return ()
 
 
 def is_one_of(claim: Expr, system: Sequence[Expr]) -> bool:

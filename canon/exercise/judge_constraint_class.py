@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr
 
+from canon.exercise.answer import stay_open
 from canon.exercise.constraint_system import ConstraintSystem
-from canon.exercise.question import Deadline, Question, Stated, fails, opposite
+from canon.exercise.question import Deadline, Determines, Question, Stated, fails, opposite
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.proof.verdict import Status, Undecided, Verdict, all_hold
@@ -56,6 +57,9 @@ def constraint_class(reading: Reading) -> Iterator[Question]:
             yield Stated(said, lambda: ", ".join(right))
             return
     yield Stated(all_hold(verdicts))
+    words = reading.claim.keys["class"]
+    untold = [" or ".join(pair) for pair in _PAIRS if not set(pair) & set(words)]
+    yield Determines(lambda: stay_open(untold))
 
 
 def degrees_of_freedom(reading: Reading) -> Iterator[Question]:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.judge_conserved import check_continuous
+from canon.exercise.answer import stay_open
+from canon.exercise.judge_conserved import NOT_OF_THE_STATE, check_continuous, same_everywhere
 from canon.exercise.judge_lagrangian import lagrangian_of
 from canon.exercise.manifold import on_manifold, transported
-from canon.exercise.question import Part, Question, Regular, Same, wrong_variables
+from canon.exercise.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian, legendre
 from canon.mechanics.substitution import substitute
@@ -34,6 +35,8 @@ def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
         through = dict(zip(p, lagrangian.momenta, strict=True))
         part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through, "H")
         yield Same((part,), transported(domain, through), lambda: legendre(lagrangian, p, domain).H)
+    else:
+        yield Determines(lambda: stay_open(["H"]))
 
 
 def hamilton_equations(reading: Reading) -> Iterator[Question]:
@@ -42,10 +45,12 @@ def hamilton_equations(reading: Reading) -> Iterator[Question]:
     system = Hamiltonian(_in_phase_space(reading, "H", q), q, p, reading.time)
     if reading.has("q_dot"):
         claimed = (*reading.expressions("q_dot", like="q"), *reading.expressions("p_dot", like="p"))
+        motion = [rate(x) for x in q for rate in (velocity, acceleration)]
+        for z, rate in zip((*q, *p), claimed, strict=True):
+            yield from wrong_variables(rate, motion, f"d{z}/dt", "q, p and t")
         keys = [f"{key}[{i}]" for key in ("q_dot", "p_dot") for i in range(len(q))]
-        through: dict[Symbol, Expr] = {velocity(x): rate for x, rate in zip(q, system.q_dot, strict=True)}
         parts = tuple(
-            Part(f"d{z}/dt", rate, right, through, key)
+            Part(f"d{z}/dt", rate, right, key=key)
             for z, rate, right, key in zip((*q, *p), claimed, system.vector_field, keys, strict=True)
         )
         yield Same(parts, reading.domain, lambda: system.vector_field)
@@ -77,10 +82,13 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
     rates = _rates(reading, I)
     rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
     restrictions = reading.equations("restrict") if reading.has("restrict") else ()
-    for branch in on_manifold(restrictions, reading.domain):
+    branches = on_manifold(restrictions, reading.domain)
+    for branch in branches:
         there = substitute(I, branch.values)
         yield Same((Part("dI/dt", rate, through=branch.values),), branch.domain)
         check_continuous(there, (*rates, t), branch.domain)
+    trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
+    yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)
 
 
 def equality(reading: Reading) -> Iterator[Question]:

@@ -14,12 +14,15 @@ import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.exercise.answer import stay_open
 from canon.exercise.judge_canonical import canonical_parts, rules_of
+from canon.exercise.judge_conserved import same_everywhere
 from canon.exercise.judge_energy import shown_short
-from canon.exercise.question import Part, Question, Regular, Same, Stated
+from canon.exercise.question import Determines, Part, Question, Regular, Same, Stated, Tells
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.bracket import lagrange_bracket, poisson_bracket
+from canon.mechanics.linear import eliminate
 from canon.mechanics.substitution import exchanged, substitute
 from canon.proof.kinks import off_kinks
 from canon.proof.smooth import PIECED, without_pieces
@@ -198,12 +201,29 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
         yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
     else:
         yield Stated(Verdict(Status.HOLDS, "Jacobi's identity of two variables", "structure"))
-    for i, C in enumerate(reading.expressions("casimirs") if reading.has("casimirs") else ()):
+    casimirs = reading.expressions("casimirs") if reading.has("casimirs") else ()
+    for i, C in enumerate(casimirs):
         kept = [
             Part(f"{{{x[k]}, casimirs[{i}]}}", sp.Add(*(J(k, m) * C.diff(x[m]) for m in range(n))))
             for k in range(n)
         ]
         yield Same(tuple(kept), reading.domain, _no_answer, is_instead)
+    if casimirs:
+        yield Tells(
+            (same_everywhere(casimirs, x, reading.domain),), "a number has vanishing brackets in any system"
+        )
+    bracket = sp.Matrix(n, n, lambda i, j: J(i, j))
+    slopes = sp.Matrix([[C.diff(s) for s in x] for C in casimirs])
+    yield Determines(lambda: _casimirs_missing(bracket, slopes, reading.domain))
+
+
+def _casimirs_missing(bracket: sp.Matrix, slopes: sp.Matrix, domain: Domain) -> tuple[str, ...]:
+    """Return how many Casimir functions stay open: as many are independent as the bracket has null directions."""
+    there = bracket.rows - eliminate(bracket, domain=domain).rank
+    missing = there - (eliminate(slopes, domain=domain).rank if slopes.rows else 0)
+    return stay_open(
+        ["a Casimir function" if missing == 1 else f"{missing} Casimir functions"] * (missing > 0)
+    )
 
 
 def _structure(reading: Reading, x: Sequence[Symbol]) -> Callable[[int, int], Expr]:

@@ -9,8 +9,18 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.affine import solved
+from canon.exercise.answer import stay_open
 from canon.exercise.manifold import transported
-from canon.exercise.question import Part, Question, Regular, Same, SameEquations, wrong_variables
+from canon.exercise.question import (
+    Determines,
+    Part,
+    Question,
+    Regular,
+    Same,
+    SameEquations,
+    more_than_zero,
+    wrong_variables,
+)
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
@@ -29,7 +39,7 @@ __all__ = ["dissipative", "euler_lagrange", "lagrangian_equivalence", "lagrangia
 def euler_lagrange(reading: Reading) -> Iterator[Question]:
     """The claimed equations are equivalent to d/dt ∂L/∂q̇ − ∂L/∂q = 0."""
     lagrangian = lagrangian_of(reading)
-    yield same_motion(reading, lagrangian)
+    yield from same_motion(reading, lagrangian)
 
 
 def dissipative(reading: Reading) -> Iterator[Question]:
@@ -40,12 +50,16 @@ def dissipative(reading: Reading) -> Iterator[Question]:
     forces = [Q - damping.diff(velocity(x)) for x, Q in zip(q, applied, strict=True)]
     lagrangian = lagrangian_of(reading, forces=forces)
     if reading.has("claim"):
-        yield same_motion(reading, lagrangian)
+        yield from same_motion(reading, lagrangian)
+    else:
+        yield Determines(lambda: stay_open([acceleration(x) for x in q]))
     if reading.has("energy_rate"):
         claimed = reading.expression("energy_rate")
         rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
         part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed), "energy_rate")
         yield Same((part,), reading.domain, lambda: rate)
+        written = [a for a in map(acceleration, q) if claimed.has(a)]
+        yield Determines(lambda: (f"dE/dt stays open: it is written with {written[0]}",) if written else ())
 
 
 def routhian(reading: Reading) -> Iterator[Question]:
@@ -96,6 +110,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
             written,
             through,
         )
+        yield more_than_zero(written, reading.domain)
 
 
 def _not_ignorable(part: Part) -> str:
@@ -119,6 +134,7 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
     else:
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
+        yield Determines(lambda: stay_open(["F"]))
 
 
 def routhian_in_momenta(
@@ -140,12 +156,13 @@ def lagrangian_of(reading: Reading, key: str = "L", forces: Sequence[Expr] | Non
     return Lagrangian(L, q, reading.time, forces)
 
 
-def same_motion(reading: Reading, lagrangian: Lagrangian) -> SameEquations:
-    """Return the question whether the claimed equations are those of a Lagrangian."""
+def same_motion(reading: Reading, lagrangian: Lagrangian) -> Iterator[Question]:
+    """Yield the questions whether the claimed equations are those of a Lagrangian, and say something."""
     unknowns = tuple(acceleration(x) for x in lagrangian.q)
     right = lagrangian.equations
     claimed = reading.equations("claim")
-    return SameEquations(claimed, right, unknowns, reading.domain, lambda: right, claimed)
+    yield SameEquations(claimed, right, unknowns, reading.domain, lambda: right, claimed)
+    yield more_than_zero(claimed, reading.domain)
 
 
 def on_the_motion(lagrangian: Lagrangian, *expressions: Expr) -> dict[Symbol, Expr]:

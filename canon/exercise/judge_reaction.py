@@ -13,6 +13,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.affine import solved
+from canon.exercise.answer import stay_open
 from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.inversion import named
 from canon.exercise.judge_constrained import is_one_of, jets_of, with_jets
@@ -25,7 +26,17 @@ from canon.exercise.manifold import (
     inhabited,
     on_manifold,
 )
-from canon.exercise.question import Deadline, Part, Question, Same, Stated, decide
+from canon.exercise.question import (
+    TELLING,
+    Deadline,
+    Determines,
+    Part,
+    Question,
+    Same,
+    Stated,
+    decide,
+    fails,
+)
 from canon.exercise.tree import replaced, symbols_of
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
@@ -99,6 +110,8 @@ def reaction(reading: Reading) -> Iterator[Question]:
                 name = f"the force of constraint on {x}"
                 parts.append(motion.part(name, value, motion.seen(forces[i]), f"force[{i}]"))
         yield Same(tuple(parts), motion.branch.domain, lambda parts=parts: _answer(parts))
+    if not claimed:
+        yield Determines(lambda: stay_open([s for s in multipliers if s.name not in values]))
 
 
 def leaving_condition(reading: Reading) -> Iterator[Question]:
@@ -114,7 +127,8 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
         force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
         claimed = motion.seen(leaves)
         if claimed == 0 or vanishes_off_kinks(claimed, motion.branch.domain, budget=1.0).holds:
-            reading.fault("leaves", "holds all along the contact")
+            yield fails(TELLING, "this says nothing about the motion: it holds all along the contact")
+            return
         if claimed.is_nonzero or proved_sign(claimed, motion.branch.domain) in ("+", "-"):
             reading.fault("leaves", "holds nowhere along the contact")
         verdict = _same_zeros(force, claimed, motion.branch, reading.symbols("q"), deadline)

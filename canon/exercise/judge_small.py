@@ -15,7 +15,17 @@ from sympy import Expr, Symbol
 from canon.exercise.analytic import check_analytic, coefficient, without_kinks
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.manifold import transported
-from canon.exercise.question import Deadline, Part, Question, Same, SameEquations, Stated, decide
+from canon.exercise.question import (
+    Deadline,
+    Determines,
+    Part,
+    Question,
+    Same,
+    SameEquations,
+    Stated,
+    decide,
+    more_than_zero,
+)
 from canon.exercise.tree import symbols_of
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, velocity
@@ -75,6 +85,21 @@ def first_order(reading: Reading) -> Iterator[Question]:
             Status.HOLDS, said, f"exact to {_ordinal(order)} order in {names}", assumed=whole.assumed
         )
     yield Stated(whole)
+    exactly = tuple(
+        f"claim {i} is no sum of powers of {names}: expand it"
+        for i, g in enumerate(claimed, 1)
+        if not _is_expanded(g, small)
+    )
+    yield Determines(lambda: exactly)
+
+
+def _is_expanded(f: Expr, small: Sequence[Symbol]) -> bool:
+    """Whether an expression is a polynomial in what is small, divided perhaps by powers of it."""
+    above, below = sp.fraction(sp.together(f))
+    factors = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(below)]
+    return bool(above.is_polynomial(*small)) and all(
+        base in small or not base.has(*small) for base in factors
+    )
 
 
 def linearisation(reading: Reading) -> Iterator[Question]:
@@ -117,6 +142,7 @@ def linearisation(reading: Reading) -> Iterator[Question]:
         for a, b in combinations_with_replacement((*q, *rates), 2)
     )
     yield Same(bends, domain, None, lambda part: f"{part.name}: a claimed equation is not linear")
+    yield more_than_zero(written, domain)
 
 
 def _check_real(place: Mapping[Symbol, Expr], domain: Domain) -> None:

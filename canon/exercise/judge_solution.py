@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.answer import stay_open
 from canon.exercise.judge_conserved import motion_of
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.judge_invariance import is_instead
 from canon.exercise.manifold import transported
-from canon.exercise.question import Part, Question, Regular, Same, fails
+from canon.exercise.question import Determines, Part, Question, Regular, Same, fails
 from canon.exercise.tree import arguments
 from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
@@ -62,6 +63,8 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
     if reading.has("constants"):
         values = [motion[x] for x in _ordered(state)]
         yield from _general(reading, values, domain)
+    else:
+        yield Determines(lambda: _not_fixed(reading, _ordered(state)))
 
 
 def _check_smooth(value: Expr, t: Symbol, domain: Domain) -> None:
@@ -109,6 +112,18 @@ def _of_rates(reading: Reading) -> Iterator[Question]:
         yield from _initial_rates(reading, q, rates)
     if reading.has("constants"):
         yield from _general(reading, [rates[x] for x in q], domain)
+    else:
+        yield Determines(lambda: _not_fixed(reading, [*q, *v]))
+
+
+def _not_fixed(reading: Reading, state: Sequence[Symbol]) -> tuple[str, ...]:
+    """Return what is open of a motion that is one of many, unless its initial values are given."""
+    needed = _of_the_order(reading, state) if _second_order(reading) else state
+    given = reading.table("initial") if reading.has("initial") else {}
+    lacking = [str(x) for x in needed if str(x) not in given]
+    if len(lacking) == len(needed):
+        return (f"this is one motion of many: {counted(len(needed), 'constant')} of integration stay open",)
+    return stay_open([f"the initial value of {name}" for name in lacking])
 
 
 def _second_order(reading: Reading) -> bool:

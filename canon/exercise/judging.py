@@ -61,7 +61,8 @@ def _explained(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator
 def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator[tuple[Judgement, bool]]:
     judgement = replace(judgement, steps=steps(finding))
     if not finding.verdict.fails:
-        yield judgement, True
+        left = finding.left_open() if finding.verdict.holds else ()
+        yield replace(judgement, warnings=(*judgement.warnings, *left)), True
         return
     left = min(FEEDBACK_SECONDS, claim.budget - judgement.seconds)
     if left <= 0.1:

@@ -21,7 +21,7 @@ def junit(report: Report) -> str:
     """Return a report as JUnit XML.
 
     A claim that FAILS is a failure, an invalid one an error, an undecided one is skipped. Where a claim says what
-    its author expects, the test passes when the verdict is that, and fails when it is not.
+    its author expects, the test passes when the verdict is that, and fails when it is not. Warnings are its output.
 
     Examples
     --------
@@ -47,6 +47,8 @@ def junit(report: Report) -> str:
                 suite, "testcase", {"classname": name, "name": _text(judgement.id), "time": seconds}
             )
             _told(case, judgement)
+            if judgement.warnings:
+                SubElement(case, "system-out").text = _text("\n".join(judgement.warnings))
     indent(root)
     return tostring(root, encoding="utf-8", xml_declaration=True).decode("utf-8")
 

@@ -1,4 +1,4 @@
-"""The kinds of claims: which keys each takes, and what shape they have."""
+"""The kinds of claims: which keys each takes, what shape they have, where the answer stands and what it determines."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ class Shape(enum.Enum):
     NAMES = "a list of names"
     WORD = "a word"
     TRUE = "true"
+    SWITCH = "true or false"
     NUMBER = "a number"
     ASSUMPTIONS = "a table {name = assumption}"
     FUNCTIONS = "a table {function = [arguments]}"
@@ -45,12 +46,18 @@ class Kind:
         Alternatives: at least one whole group of keys must be there.
     exclusive
         Whether the alternatives say the same thing, so that only one of them can be there.
+    answer
+        The keys where the answer stands; all others say what is asked.
+    unknowns
+        What a complete answer determines.
     """
 
     required: Mapping[str, Shape]
     optional: Mapping[str, Shape] = field(default_factory=lambda: MappingProxyType({}))
     one_of: tuple[tuple[str, ...], ...] = ()
     exclusive: bool = False
+    answer: tuple[str, ...] = ()
+    unknowns: str = ""
 
 
 COMMON: Mapping[str, Shape] = MappingProxyType(
@@ -67,6 +74,8 @@ COMMON: Mapping[str, Shape] = MappingProxyType(
         "box": Shape.BOX,
         "budget": Shape.NUMBER,
         "implicit_multiplication": Shape.TRUE,
+        "complete": Shape.SWITCH,
+        "in": Shape.NAMES,
     }
 )
 """Keys that every claim may have."""
@@ -81,42 +90,81 @@ _CANONICITY = Kind(
     {"Q": _TS, "P": _TS, "valence": _T, **_NEW, "implicit": _TS},
     one_of=(("Q", "P"), ("new_q", "new_p", "implicit")),
     exclusive=True,
+    answer=("Q", "P", "valence", "implicit"),
+    unknowns="the map",
 )
-_GENERATING = Kind({**_PHASE, **_NEW, "F": _T}, _MAP_EITHER_WAY, (("map",), ("inverse_map",)), exclusive=True)
+_GENERATING = Kind(
+    {**_PHASE, **_NEW, "F": _T},
+    _MAP_EITHER_WAY,
+    (("map",), ("inverse_map",)),
+    exclusive=True,
+    answer=("F",),
+    unknowns="the generating function",
+)
 _MOTION = {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS}
-_CONSTRAINED = Kind({**_LAGRANGE, "constraints": _TS, "multipliers": _N, "claim": _TS})
+_CONSTRAINED = Kind(
+    {**_LAGRANGE, "constraints": _TS, "multipliers": _N, "claim": _TS},
+    answer=("claim",),
+    unknowns="all accelerations and multipliers, together with the constraints",
+)
 
 KINDS: Mapping[str, Kind] = MappingProxyType(
     {
-        "euler-lagrange": Kind({**_LAGRANGE, "claim": _TS}),
+        "euler-lagrange": Kind(
+            {**_LAGRANGE, "claim": _TS},
+            answer=("claim",),
+            unknowns="what Lagrange's equations determine: the accelerations",
+        ),
         "dissipative": Kind(
             _LAGRANGE,
             {"F": _T, "Qnc": _TS, "claim": _TS, "energy_rate": _T},
             one_of=(("claim",), ("energy_rate",)),
+            answer=("claim", "energy_rate"),
+            unknowns="the accelerations, and dE/dt without them where it is claimed",
         ),
         "multiplier-holonomic": _CONSTRAINED,
         "nonholonomic": _CONSTRAINED,
         "legendre-hamiltonian": Kind(
-            {**_PHASE, "L": _T}, {"H": _T, "exists": Shape.TRUE}, one_of=(("H",), ("exists",))
+            {**_PHASE, "L": _T},
+            {"H": _T, "exists": Shape.TRUE},
+            one_of=(("H",), ("exists",)),
+            answer=("H",),
+            unknowns="H",
         ),
         "hamilton-equations": Kind(
             {**_PHASE, "H": _T},
             {"q_dot": _TS, "p_dot": _TS, "solution": Shape.EXPRESSIONS},
             one_of=(("q_dot", "p_dot"), ("solution",)),
+            answer=("q_dot", "p_dot", "solution"),
+            unknowns="the rates of all coordinates and momenta, or a motion of all of them",
         ),
         "routhian": Kind(
             {**_LAGRANGE, "cyclic": _N, "momenta": _N, "convention": Shape.WORD},
             {"R": _T, "claim": _TS},
             one_of=(("R",), ("claim",)),
+            answer=("R", "claim"),
+            unknowns="R, or the accelerations of the other coordinates",
         ),
         "gibbs-appell": Kind(
             {"q": _N, "bodies": Shape.BODIES},
             {"quasi": _N, "q_dot": _TS, "V": _T, "S": _T, "claim": _TS},
             one_of=(("S",), ("claim",)),
+            answer=("S", "claim"),
+            unknowns="S up to terms without accelerations, or the accelerations",
         ),
-        "poisson-bracket": Kind({**_PHASE, "pairs": Shape.BRACKETS}),
-        "lagrange-bracket": Kind({"variables": _N, "q": _TS, "p": _TS, "pairs": Shape.BRACKETS}),
-        "lie-bracket": Kind({"x": _N, "X": _TS, "Y": _TS, "claim": _TS}),
+        "poisson-bracket": Kind(
+            {**_PHASE, "pairs": Shape.BRACKETS},
+            answer=("pairs",),
+            unknowns="the bracket of each f with each g in the list",
+        ),
+        "lagrange-bracket": Kind(
+            {"variables": _N, "q": _TS, "p": _TS, "pairs": Shape.BRACKETS},
+            answer=("pairs",),
+            unknowns="the brackets of all pairs of variables",
+        ),
+        "lie-bracket": Kind(
+            {"x": _N, "X": _TS, "Y": _TS, "claim": _TS}, answer=("claim",), unknowns="all components"
+        ),
         "canonicity": _CANONICITY,
         "canonicity-time-dependent": _CANONICITY,
         "bilinear-covariant": Kind(
@@ -124,6 +172,8 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             {"x": _N, "form": _TS, "claim": _T, **_PHASE, "Q": _TS, "P": _TS, "factor": _T},
             one_of=(("x", "form", "claim"), ("q", "p", "Q", "P", "factor")),
             exclusive=True,
+            answer=("claim", "factor"),
+            unknowns="the covariant, or the factor",
         ),
         "generating-F1": _GENERATING,
         "generating-F2": _GENERATING,
@@ -134,36 +184,64 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             _MAP_EITHER_WAY,
             one_of=(("map",), ("inverse_map",)),
             exclusive=True,
+            answer=("K",),
+            unknowns="K up to a function of the time",
         ),
         "constant-of-motion": Kind(
             {"I": _T},
             {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS, "restrict": _TS},
             one_of=(("q", "p", "H"), ("q", "L"), ("x", "X")),
             exclusive=True,
+            answer=("I",),
+            unknowns="one constant of the motion",
         ),
-        "lagrangian-equivalence": Kind({"q": _N, "L1": _T, "L2": _T, "relation": Shape.WORD}, {"F": _T}),
-        "equality-only": Kind({"lhs": _T, "rhs": _T}),
-        "kinetic-energy": Kind({"q": _N, "bodies": Shape.BODIES, "T": _T}, {"constraints": _TS}),
+        "lagrangian-equivalence": Kind(
+            {"q": _N, "L1": _T, "L2": _T, "relation": Shape.WORD},
+            {"F": _T},
+            answer=("F",),
+            unknowns="F up to a constant, where the relation is `gauge`",
+        ),
+        "equality-only": Kind({"lhs": _T, "rhs": _T}, answer=("rhs",), unknowns="the right side"),
+        "kinetic-energy": Kind(
+            {"q": _N, "bodies": Shape.BODIES, "T": _T}, {"constraints": _TS}, answer=("T",), unknowns="T"
+        ),
         "generalized-force": Kind(
             {"q": _N, "Q": _TS},
             {"forces": Shape.FORCES, "work": _T, "power": _T, "V": _T},
             one_of=(("forces",), ("work",), ("power",), ("V",)),
+            answer=("Q",),
+            unknowns="the force of each coordinate",
         ),
-        "constraint-class": Kind({"q": _N, "constraints": _TS, "class": Shape.WORDS}),
-        "degrees-of-freedom": Kind({"q": _N, "dof": _T}, {"constraints": _TS, "counting": Shape.WORD}),
+        "constraint-class": Kind(
+            {"q": _N, "constraints": _TS, "class": Shape.WORDS},
+            answer=("class",),
+            unknowns="a word of each of the three pairs",
+        ),
+        "degrees-of-freedom": Kind(
+            {"q": _N, "dof": _T},
+            {"constraints": _TS, "counting": Shape.WORD},
+            answer=("dof",),
+            unknowns="the number",
+        ),
         "reaction": Kind(
             {**_LAGRANGE, "constraints": _TS, "multipliers": _N},
             {"Qnc": _TS, "integrals": _TS, "values": Shape.EXPRESSIONS, "force": _TS},
             one_of=(("values",), ("force",)),
+            answer=("values", "force"),
+            unknowns="all multipliers, or the force on each coordinate",
         ),
         "leaving-condition": Kind(
             {**_LAGRANGE, "contact": _T, "leaves": _T},
             {"constraints": _TS, "Qnc": _TS, "integrals": _TS},
+            answer=("leaves",),
+            unknowns="where the reaction vanishes",
         ),
         "conserved-or-not": Kind(
             {},
             {**_MOTION, "conserved": _TS, "not_conserved": _TS, "Qnc": _TS},
             one_of=(("conserved",), ("not_conserved",)),
+            answer=("conserved", "not_conserved"),
+            unknowns="what is told of each quantity that is listed",
         ),
         "solution": Kind(
             {},
@@ -178,18 +256,51 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
                 "constants": _N,
             },
             one_of=(("solution",), ("rates",)),
+            answer=("solution", "rates"),
+            unknowns="the general solution (`constants`), or the one with given initial values of the whole state",
         ),
-        "linearisation": Kind({**_LAGRANGE, "equilibrium": Shape.EXPRESSIONS, "claim": _TS}, {"Qnc": _TS}),
-        "first-order": Kind({"exact": _TS, "small": _N, "claim": _TS}, {"q": _N, "order": Shape.NUMBER}),
+        "linearisation": Kind(
+            {**_LAGRANGE, "equilibrium": Shape.EXPRESSIONS, "claim": _TS},
+            {"Qnc": _TS},
+            answer=("equilibrium", "claim"),
+            unknowns="the accelerations to first order",
+        ),
+        "first-order": Kind(
+            {"exact": _TS, "small": _N, "claim": _TS},
+            {"q": _N, "order": Shape.NUMBER},
+            answer=("claim",),
+            unknowns="the expansions: sums of powers of what is small",
+        ),
         "invariance": Kind(
             {"q": _N, "of": Shape.WORD},
             {"p": _N, "Q": _TS, "P": _TS, **_NEW, "F": _T, "type": Shape.NUMBER},
             one_of=(("Q",), ("new_q", "new_p", "F", "type")),
+            answer=("Q", "P", "F"),
+            unknowns="the map",
         ),
-        "jacobi-identity": Kind({"x": _N, "pairs": Shape.BRACKETS}, {"casimirs": _TS}),
-        "positive-real": Kind({"variables": _N, "H": _T, "is": Shape.WORDS}),
-        "variation": Kind({**_LAGRANGE, "boundary": _T, "integrand": _T}, {"Qnc": _TS}),
-        "differential": Kind({"x": _N, "f": _T, "claim": _T}, {"given": Shape.EXPRESSIONS}),
+        "jacobi-identity": Kind(
+            {"x": _N, "pairs": Shape.BRACKETS},
+            {"casimirs": _TS},
+            answer=("pairs", "casimirs"),
+            unknowns="as many independent Casimir functions as there are",
+        ),
+        "positive-real": Kind(
+            {"variables": _N, "H": _T, "is": Shape.WORDS},
+            answer=("is",),
+            unknowns="whether H is positive real",
+        ),
+        "variation": Kind(
+            {**_LAGRANGE, "boundary": _T, "integrand": _T},
+            {"Qnc": _TS},
+            answer=("boundary", "integrand"),
+            unknowns="the boundary term and the integrand",
+        ),
+        "differential": Kind(
+            {"x": _N, "f": _T, "claim": _T},
+            {"given": Shape.EXPRESSIONS},
+            answer=("claim",),
+            unknowns="the coefficient of each differential",
+        ),
     }
 )
 """Every kind of claim that can stand in a sheet."""

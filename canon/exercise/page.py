@@ -167,6 +167,12 @@ def _claimed(card: Element, claim: Claim, scope: Scope) -> None:
     if "domain" in claim.keys:
         _put(given, "dt", "domain")
         _content(_put(given, "dd"), claim.keys["domain"], scope)
+    if "in" in claim.keys:
+        _put(given, "dt", "written in")
+        _content(_put(given, "dd"), claim.keys["in"], scope)
+    if claim.keys.get("complete") is True:
+        _put(given, "dt", "wanted")
+        _put(given, "dd", "a complete answer")
 
 
 def _content(parent: Element, value: Any, scope: Scope, *, word: bool = False) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import time
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
@@ -11,11 +10,10 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.tree import symbols_of
+from canon.exercise.systems import in_our_words, same_equations
 from canon.expression.symbol import Momentum
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
-from canon.proof.equations import equivalent_equations, without_solution
 from canon.proof.kinks import off_kinks, vanishes_off_kinks
 from canon.proof.vanish import equal, vanishes
 from canon.proof.verdict import Status, Undecided, Verdict
@@ -26,8 +24,11 @@ if TYPE_CHECKING:
     from canon.proof.domain import Domain
 
 __all__ = [
+    "COMPLETE",
+    "TELLING",
     "Answer",
     "Deadline",
+    "Determines",
     "Differ",
     "Part",
     "Question",
@@ -35,11 +36,16 @@ __all__ = [
     "Same",
     "SameEquations",
     "Stated",
+    "Tells",
     "decide",
     "fails",
+    "more_than_zero",
     "opposite",
     "wrong_variables",
 ]
+
+TELLING = "the answer says something about the motion"
+COMPLETE = "the answer determines every unknown"
 
 Answer: TypeAlias = "Callable[[], object]"
 """Finds the right answer; called only where a claim fails."""
@@ -168,7 +174,39 @@ class Differ:
     feedback: str
 
 
-Question: TypeAlias = Same | SameEquations | Regular | Stated | Differ | Verdict
+@dataclass(frozen=True)
+class Tells:
+    """An answer says something: not all of these questions, true of anything at all where they hold, hold.
+
+    Parameters
+    ----------
+    trivial
+        What would hold if the answer were true of every motion, whatever the system.
+    feedback
+        What an answer that says nothing follows from.
+    """
+
+    trivial: tuple[Same | SameEquations, ...]
+    feedback: str = "it is true of anything"
+
+
+@dataclass(frozen=True)
+class Determines:
+    """An answer leaves none of the unknowns of its kind open.
+
+    Parameters
+    ----------
+    left_open
+        Tells in sentences what stays open.
+    wanted
+        Whether a complete answer is wanted; otherwise what stays open is only told.
+    """
+
+    left_open: Callable[[], tuple[str, ...]]
+    wanted: bool = False
+
+
+Question: TypeAlias = Same | SameEquations | Regular | Stated | Differ | Tells | Determines | Verdict
 
 
 @dataclass(frozen=True)
@@ -196,6 +234,11 @@ def wrong_variables(f: Expr, foreign: Sequence[Symbol], name: str, variables: st
         yield Verdict(
             Status.FAILS, f"the variables of {name}", certificate="structure", residual=f, feedback=why
         )
+
+
+def more_than_zero(equations: Sequence[Expr], domain: Domain) -> Tells:
+    """Return the question whether equations say more than 0 = 0."""
+    return Tells((Same(tuple(Part(f"equation {i}", e) for i, e in enumerate(equations, 1)), domain),))
 
 
 def opposite(verdict: Verdict, feedback: str) -> Verdict:
@@ -230,16 +273,34 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
         case Differ(part, domain, feedback):
             verdict = replace(vanishes_off_kinks(part.residual, domain, deadline.left), feedback="")
             return opposite(verdict.about(part.name), feedback)
+        case Tells(trivial, feedback):
+            return _tells(trivial, feedback, deadline)
+        case Determines(left_open):
+            found = left_open()
+            why = "; ".join(found)
+            return fails(COMPLETE, why) if found else Verdict(Status.HOLDS, COMPLETE, "structure")
         case Same():
             return _all_vanish(question, deadline)
         case SameEquations(claimed, right, unknowns, domain, before=before):
-            verdict = _same_equations(claimed, right, unknowns, domain, deadline)
-            return replace(verdict, feedback=_in_our_words(verdict.feedback, before))
+            verdict = same_equations(claimed, right, unknowns, domain, deadline)
+            return replace(verdict, feedback=in_our_words(verdict.feedback, before))
         case Regular(matrix, name, domain, singular_is):
             off = off_kinks(matrix.flat(), domain)
             seen = matrix.applyfunc(off.seen)
             verdict = off.ask(lambda there: is_regular(seen, there, name), by_point=Status.HOLDS)
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
+
+
+def _tells(trivial: Sequence[Same | SameEquations], feedback: str, deadline: Deadline) -> Verdict:
+    open_ = False
+    for question in trivial:
+        verdict = decide(question, deadline)
+        if verdict.fails:
+            return Verdict(Status.HOLDS, TELLING, verdict.certificate)
+        open_ = open_ or verdict.undecided
+    if open_:
+        raise Undecided("whether the answer says more than what is true of every motion was not decided")
+    return fails(TELLING, f"this says nothing about the motion: {feedback}")
 
 
 def _all_vanish(question: Same, deadline: Deadline) -> Verdict:
@@ -264,75 +325,3 @@ def _all_vanish(question: Same, deadline: Deadline) -> Verdict:
     if verdict.fails and said is not None:
         verdict = replace(verdict, feedback=said(turned))
     return verdict.about(turned.name)
-
-
-def _same_equations(
-    claimed: tuple[Expr, ...],
-    right: tuple[Expr, ...],
-    unknowns: tuple[Symbol, ...],
-    domain: Domain,
-    deadline: Deadline,
-) -> Verdict:
-    for i, equation in enumerate(claimed, 1):
-        slopes = sp.Matrix([[equation.diff(a).diff(b) for b in unknowns] for a in unknowns])
-        affine = vanishes_off_kinks(slopes, domain, deadline.left)
-        if not affine.holds:
-            return replace(
-                affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}"
-            )
-    verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
-    if verdict.holds and without_solution(right, unknowns, domain):
-        return _equations_of_lower_order(claimed, right, unknowns, domain, deadline)
-    return verdict
-
-
-def _equations_of_lower_order(
-    claimed: tuple[Expr, ...],
-    right: tuple[Expr, ...],
-    unknowns: tuple[Symbol, ...],
-    domain: Domain,
-    deadline: Deadline,
-) -> Verdict:
-    """Compare systems that no accelerations solve at a generic state, as they bind velocities or coordinates.
-
-    With L = x ẏ − H both say ẋ = … and ẏ = …: what they determine are the velocities then.
-    """
-    known = {s.name: s for equation in (*claimed, *right) for s in symbols_of(equation)}
-    bases = [u.name.removesuffix("_ddot").removesuffix("_dot") for u in unknowns]
-    for ending in ("_dot", ""):
-        names = (f"{base}{ending}" for base in bases)
-        unknowns += tuple(known[n] for n in names if n in known and known[n] not in unknowns)
-        try:
-            verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
-        except ValueError:
-            break
-        if not verdict.holds or not without_solution(right, unknowns, domain):
-            return verdict
-    raise Undecided("the equations bind the state in a way that is not affine; solve them for the velocities")
-
-
-LONGEST_FORMULA = 200
-"""Characters of an equation that is still written out in a sentence."""
-
-
-def _in_our_words(feedback: str, before: int) -> str:
-    """Say "claimed" and "of motion" where the proof room says first and second, and count as the claim does."""
-    feedback = re.sub(
-        r"^equation (\d+) (?=of the first system|is not affine)",
-        lambda found: f"equation {int(found[1]) - before} ",
-        feedback,
-    )
-    sentence, _, formula = feedback.partition(": ")
-    if len(formula) > LONGEST_FORMULA:
-        feedback = sentence
-    words = {
-        "of the second system does not follow from the first": "of motion does not follow from the claimed ones",
-        "of the first system does not follow from the second": "of the claim does not follow from those of motion",
-    }
-    for theirs, ours in words.items():
-        feedback = feedback.replace(theirs, ours)
-    return feedback
-
-
-def _listed(symbols: Sequence[Symbol]) -> str:
-    return ", ".join(map(str, symbols))

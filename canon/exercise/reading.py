@@ -110,6 +110,15 @@ class Reading:
         """Return the same claim with another expression under one key."""
         return replace(self, instead=MappingProxyType({**self.instead, key: expression}))
 
+    def words(self, key: str) -> tuple[str, ...]:
+        """Return a list of words as written."""
+        return tuple(map(str, _as_list(self.claim.keys[key])))
+
+    @property
+    def complete(self) -> bool:
+        """Whether the answer should determine every unknown of its kind."""
+        return self.claim.keys.get("complete") is True
+
     @cached_property
     def time(self) -> Symbol:
         """The symbol of the time."""
@@ -250,6 +259,10 @@ class Reading:
         if not texts:
             self.fault(key, "at least one equation is needed")
         return tuple(self._parse(parse_equation, text, f"{key}[{i}]") for i, text in enumerate(texts))
+
+    def equation(self, where: str, text: object) -> Expr:
+        """Return one equation, or expression, that stands somewhere in the claim."""
+        return self._parse(parse_equation, text, where)
 
     def table(self, key: str) -> dict[str, Expr]:
         """Return the expressions of a table {name: expression}."""

@@ -66,7 +66,7 @@ class Judgement:
     steps
         How it was judged: pairs of a sentence and a formula, either of which may be empty.
     warnings
-        What was passed over in reading the claim, such as units.
+        What was passed over in reading the claim, such as units, and what a claim that holds leaves open.
     """
 
     id: str

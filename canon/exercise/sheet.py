@@ -40,7 +40,7 @@ MAX_CLAIMS = 10_000
 MAX_REASON = 2_000
 """Characters of what is told against a claim; only a stranger's name in it can make it longer."""
 MIN_BUDGET = Decimal("0.01")
-_FOR_ALL = ("implicit_multiplication",)
+_FOR_ALL = ("implicit_multiplication", "complete", "in")
 """Keys that may stand beside the claims and are meant for each of them."""
 DEFAULT_BUDGET = 10.0
 

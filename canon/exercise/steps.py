@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.exercise.question import Differ, Regular, Same, SameEquations
+from canon.exercise.question import Determines, Differ, Regular, Same, SameEquations, Tells
 from canon.expression.magnitude import written
 from canon.expression.symbol import velocity
 from canon.proof.verdict import Verdict
@@ -120,8 +120,8 @@ def _with(through: Mapping[Symbol, Basic]) -> Iterator[Step]:
 
 def _answer(question: Question, verdict: Verdict) -> str:
     said = _ANSWERS[verdict.status.value]
-    if isinstance(question, Verdict):
-        said = f"{question.question}: {said}" if question.question else said
+    if isinstance(question, Verdict | Tells | Determines):
+        said = f"{verdict.question}: {said}" if verdict.question else said
     return f"so {said}, decided by: {verdict.certificate}" if verdict.certificate else f"so {said}"
 
 
