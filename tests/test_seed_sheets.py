@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[1]
 SHEETS = sorted((ROOT / "examples" / "sheets" / "seeds").glob("*.toml"))
 CLAIMS = {c["id"]: c for path in SHEETS for c in tomllib.loads(path.read_text("utf-8"))["claim"]}
 ENTRIES = tomllib.loads((ROOT / "docs" / "seeds" / "entries.toml").read_text("utf-8"))["entry"]
-SLOW = {"piston-multiplier-eoms", "piston-rod-two-mass.T2", "piston-inertia-exact"}
+SLOW = {"piston-multiplier-eoms"}
 
 # Each of these answers is wrong as printed (or as read); the second route below refutes every one of them.
 FAILS = frozenset(
