@@ -448,7 +448,8 @@ def constraint_class(s):
     if any(f.has(*v) for f in given):
         (g,) = given
         form = [g.diff(x) for x in v] + [g.subs(dict.fromkeys(v, 0))]
-        right = {"holonomic" if zero(wedge(form, [*q, t], s.point())) else "nonholonomic"}
+        assert len(q) == 2 or (len(q) == 3 and form[3] == 0 and not g.has(t)), "three variables are wanted"
+        right = {"holonomic" if zero(wedge(form[:3], [*q, t][:3], s.point())) else "nonholonomic"}
         values = s.point()
     else:
         values = projected(given, q, s.point(), 60)
