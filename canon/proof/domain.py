@@ -293,6 +293,15 @@ class Domain:
         """Tell whether every condition certainly holds at an exact point."""
         return conditions_hold(self.conditions, point)
 
+    def admits(self, point: Mapping[Symbol, Rational]) -> bool:
+        """Tell whether a point certainly belongs to the domain, what was declared of its symbols included.
+
+        Conditions on arbitrary functions are left to the caller, who chooses the functions.
+        """
+        settled = [c for c in self.conditions if c not in self.on_functions]
+        declared = all(_allows(said_of(s), number) for s, number in point.items())
+        return declared and conditions_hold(settled, point)
+
     @cached_property
     def on_functions(self) -> tuple[Boolean, ...]:
         """The conditions on arbitrary functions, which hold or not as the functions are chosen."""

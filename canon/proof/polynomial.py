@@ -1,15 +1,18 @@
-"""Factors of polynomials over the integers, by FLINT: SymPy's own factorisation may take hours in several variables."""
+"""Factors, of polynomials by FLINT: SymPy's own factorisation may take hours in several variables."""
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import Ordering, fmpz_mpoly_ctx
 from sympy import Expr
 
-__all__ = ["polynomial_factors"]
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["is_left_out", "polynomial_factors"]
 
 
 def polynomial_factors(expression: Expr) -> list[tuple[Expr, int]]:
@@ -51,3 +54,21 @@ def _factors(base: Expr) -> list[tuple[Expr, int]]:
         (sp.Poly({powers: int(c) for powers, c in f.to_dict().items()}, *whole.gens).as_expr(), int(times))
         for f, times in found
     ]
+
+
+def is_left_out(f: Expr, conditions: Iterable[sp.Basic]) -> bool:
+    """Tell whether conditions say g ≠ 0 of every factor g of an expression.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y", real=True)
+    >>> is_left_out(x**2 * y, [sp.Ne(x * y, 0)]), is_left_out(x * y, [sp.Ne(x, 0)])
+    (True, False)
+    """
+    said = [cast("Expr", c.lhs) for c in conditions if isinstance(c, sp.Ne) and c.rhs == 0]
+    nonzero = {base for g in said for base in _bases(g)}
+    return all(base in nonzero or base.is_nonzero for base in _bases(f))
+
+
+def _bases(f: Expr) -> list[Expr]:
+    return [g.base if isinstance(g, sp.Pow) else g for g in sp.Mul.make_args(f)]

@@ -16,6 +16,7 @@ from sympy.core.relational import Relational
 
 from canon.proof.anatomy import Anatomy, anatomy
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.corners import corner_points
 from canon.proof.domain import conditions_hold
 from canon.proof.examples import with_example_functions
 from canon.proof.typed import free_symbols, rational
@@ -33,12 +34,15 @@ __all__ = [
     "Search",
     "first_counterexample",
     "look_for_counterexample",
+    "look_in_corners",
     "search_widely",
 ]
 
 HIGHEST_PRECISION = 3200
 """Bits after which a point that has not decided is left."""
 
+CORNER_BITS = 256
+"""Precision at points very close to others."""
 
 SCREEN_BITS = 128
 """Precision at which many expressions are screened together."""
@@ -194,6 +198,21 @@ def search_widely(left: Expr, right: Expr, domain: Domain, deadline: float) -> S
         if search.counterexample is not None or search.unmodelled:
             break
     return search
+
+
+def look_in_corners(left: Expr, right: Expr, domain: Domain, deadline: float, search: Search) -> Search:
+    """Look for a counterexample close to where formulas change, adding to what was found before."""
+    if search.unmodelled or search.counterexample is not None:
+        return search
+    return look_for_counterexample(
+        left,
+        right,
+        corner_points(anatomy([left, right]), domain, deadline),
+        highest=CORNER_BITS,
+        deadline=deadline,
+        search=search,
+        conditions=domain.on_functions,
+    )
 
 
 def _some(search: Search) -> Iterator[Mapping[Symbol, sp.Rational]]:

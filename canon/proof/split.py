@@ -12,7 +12,7 @@ from sympy.logic.boolalg import Boolean
 
 from canon.proof.anatomy import anatomy
 from canon.proof.domain import Domain, declared_complex
-from canon.proof.polynomial import polynomial_factors
+from canon.proof.polynomial import is_left_out, polynomial_factors
 from canon.proof.replacement import KINKED, NoValue, defined_nowhere, replaced
 from canon.proof.typed import arguments, by_name, free_symbols
 
@@ -142,20 +142,9 @@ def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | Non
         _case(expr, {function: sp.Integer(1)}, domain, sp.Gt(u, 0)),
         _case(expr, {function: below}, domain, sp.Lt(u, 0)),
     ]
-    if _is_left_out(u, domain):
+    if is_left_out(u, domain.conditions):
         return off_zero
     return [*off_zero, _case(expr, {function: at_zero}, domain, sp.Eq(u, 0))]
-
-
-def _is_left_out(u: Expr, domain: Domain) -> bool:
-    """Tell whether the domain says f ≠ 0 of each factor f of u."""
-    said = [c.lhs for c in domain.conditions if isinstance(c, sp.Ne) and c.rhs == 0]
-    nonzero = {base for f in said for base in _bases(cast("Expr", f))}
-    return all(base in nonzero or base.is_nonzero for base in _bases(u))
-
-
-def _bases(u: Expr) -> list[Expr]:
-    return [f.base if isinstance(f, sp.Pow) else f for f in sp.Mul.make_args(u)]
 
 
 def certainly_real(u: Expr) -> bool:

@@ -20,7 +20,13 @@ from canon.proof.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.examples import evaluated
 from canon.proof.limits import QUICK
 from canon.proof.prove import REFUSALS, Attempt, is_empty, prove_each, prove_zero, refusal
-from canon.proof.refute import Search, first_counterexample, look_for_counterexample, search_widely
+from canon.proof.refute import (
+    Search,
+    first_counterexample,
+    look_for_counterexample,
+    look_in_corners,
+    search_widely,
+)
 from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
@@ -37,6 +43,8 @@ WORKER_SHARE = 0.8
 SEARCH_SHARE = 0.3
 """Part of the time left that the wider search for a counterexample may use."""
 
+CORNER_SHARE = 0.1
+"""Part of the time left that the search near ends of the domain, kinks, poles and branch points may use."""
 
 EMPTY = "no point satisfies the conditions, so that anything holds there"
 
@@ -202,10 +210,12 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
     if proof.holds:
         nothing = search.agreements == 0 and domain.conditions and is_empty(domain, deadline)
         return replace(_proved(proof), assumed=(EMPTY,)) if nothing else _proved(proof)
-    now = time.monotonic()
-    search = search_widely(left, right, domain, now + SEARCH_SHARE * (deadline - now))
+    search = search_widely(left, right, domain, _share(SEARCH_SHARE, deadline))
     if search.agreements == 0 and search.counterexample is None:
-        search = search_branches(left, right, domain, now + SEARCH_SHARE * (deadline - now))
+        search = search_branches(left, right, domain, _share(SEARCH_SHARE, deadline))
+    if search.counterexample is not None:
+        return _refuted(left, right, search)
+    search = look_in_corners(left, right, domain, _share(CORNER_SHARE, deadline), search)
     if search.counterexample is not None:
         return _refuted(left, right, search)
     obstacles = proof.obstacles
@@ -220,6 +230,12 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
     tried = tuple(Evidence("tried", obstacle) for obstacle in obstacles)
     known = Evidence("balls", search.known)
     return Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, known))
+
+
+def _share(share: float, deadline: float) -> float:
+    """Return the point in time at which a part of the time that is left is over."""
+    now = time.monotonic()
+    return now + share * (deadline - now)
 
 
 def _refuted(left: Expr, right: Expr, search: Search) -> Verdict:
