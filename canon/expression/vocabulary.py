@@ -17,15 +17,23 @@ __all__ = ["CONSTANTS", "FUNCTIONS", "MAX_CHOICES", "OTHER_NAMES", "RELATIONS"]
 MAX_CHOICES = 16
 """Most arguments of Max and Min and most pieces of Piecewise: SymPy compares them pairwise."""
 
+
+def _acot(x: Expr) -> Expr:
+    """Return acot x as it was written: SymPy makes acot(−x) to −acot x, which is wrong at x = 0, where acot is π/2."""
+    extracted = bool(x.free_symbols) and x.could_extract_minus_sign()
+    return sp.acot(x, evaluate=False) if extracted else sp.acot(x)
+
+
 FUNCTIONS: Mapping[str, tuple[Callable[..., Expr], int, int]] = MappingProxyType(
     {
         **{
             name: (getattr(sp, name), 1, 1)
             for name in (
-                "sqrt", "exp", "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "acot",
+                "sqrt", "exp", "sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan",
                 "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "Abs", "sign", "LambertW", "elliptic_k",
             )
         },
+        "acot": (_acot, 1, 1),
         "log": (sp.log, 1, 2),
         "atan2": (sp.atan2, 2, 2),
         "elliptic_e": (sp.elliptic_e, 1, 2),

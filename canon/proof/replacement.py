@@ -78,8 +78,13 @@ def replaced(expr: _B, by: Mapping[sp.Basic, Expr]) -> _B:
 
 
 def _rebuilt(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> sp.Basic:
-    """Put a part together again; relations stay unevaluated, for SymPy may think about them without end."""
+    """Put a part together again; relations stay unevaluated, for SymPy may think about them without end.
+
+    SymPy makes acot(−x) to −acot x, which is wrong at x = 0.
+    """
     if isinstance(part, Relational) and not all(isinstance(a, sp.Rational | sp.Symbol) for a in inner):
+        return part.func(*inner, evaluate=False)
+    if isinstance(part, sp.acot) and inner[0].free_symbols:
         return part.func(*inner, evaluate=False)
     return part.func(*inner)
 
