@@ -100,7 +100,7 @@ def corner_points(
         return
     for base in bases:
         for s in moving:
-            yield from _moved(base, s, _values(gaps, s, base), domain, deadline)
+            yield from _moved(base, s, gaps, domain, deadline)
     for base in bases[:1]:
         for s in moving:
             own = [g for g in gaps if g.free_symbols == {s}]
@@ -108,13 +108,14 @@ def corner_points(
             for there in ({**base, s: v} for v in close):
                 for other in moving:
                     if other != s:
-                        yield from _moved(there, other, _values(gaps, other, there), domain, deadline)
+                        yield from _moved(there, other, gaps, domain, deadline)
 
 
-def _moved(
-    base: Point, s: Symbol, values: Iterable[sp.Rational], domain: Domain, deadline: float
-) -> Iterator[Point]:
-    for number in values:
+def _moved(base: Point, s: Symbol, gaps: Sequence[Expr], domain: Domain, deadline: float) -> Iterator[Point]:
+    """Yield a point with one symbol moved to where formulas change, until the deadline."""
+    if time.monotonic() > deadline:
+        return
+    for number in _values(gaps, s, base):
         if time.monotonic() > deadline:
             return
         point = {**base, s: number}
@@ -141,57 +142,61 @@ def _short(number: Expr, error: Expr) -> sp.Rational:
     exact = rational(number)
     if exact.q < MOST_SHOWN:
         return exact
-    digits = sp.Integer(10) ** len(str(int(1 / error)))
-    return rational(sp.Rational(round(exact * digits), digits))
+    digits = 10 ** len(str(int(1 / error)))
+    return rational(sp.Rational((2 * int(exact.p) * digits + int(exact.q)) // (2 * int(exact.q)), digits))
 
 
 def _places(gaps: Iterable[Expr], s: Symbol, base: Mapping[Symbol, sp.Rational]) -> list[sp.Rational]:
     """Return where functions of one symbol vanish, the others having the values of a point."""
-    others = {name: number for name, number in base.items() if name != s}
     found: set[sp.Rational] = set()
     with precision(BITS):
         for gap in gaps:
-            if s in gap.free_symbols:
-                here = cast("Expr", gap.xreplace(others))
-                found |= {
-                    root for f in sp.Mul.make_args(here) for root in islice(_roots(f, s), 3 * MOST_DEGREE)
-                }
+            roots = (root for f in sp.Mul.make_args(gap) for root in _roots(f, s, base))
+            found |= set(islice(roots, 3 * MOST_DEGREE))
     return sorted(found)
 
 
-def _roots(f: Expr, s: Symbol) -> Iterator[sp.Rational]:
+def _roots(f: Expr, s: Symbol, base: Mapping[Symbol, sp.Rational]) -> Iterator[sp.Rational]:
     """Yield real zeros of a polynomial, or of elementary functions of one, as rationals at or near them."""
+    if s not in f.free_symbols:
+        return
     if isinstance(f, sp.Pow) and f.exp.is_positive:
-        yield from _roots(f.base, s)
+        yield from _roots(f.base, s, base)
     elif f.is_polynomial(s):
-        yield from _polynomial_roots(f, s)
+        yield from _polynomial_roots(f, s, base)
     else:
         for inner in _peeled(f, s):
-            yield from _roots(inner, s)
+            yield from _roots(inner, s, base)
 
 
-def _polynomial_roots(f: Expr, s: Symbol) -> Iterator[sp.Rational]:
+def _polynomial_roots(f: Expr, s: Symbol, base: Mapping[Symbol, sp.Rational]) -> Iterator[sp.Rational]:
     poly = sp.Poly(f, s)
-    coefficients = [_number(c) for c in reversed(poly.all_coeffs())]
-    if not 1 <= len(coefficients) - 1 <= MOST_DEGREE or None in coefficients:
+    if poly.degree() > MOST_DEGREE:
+        return
+    coefficients = [_number(c, base) for c in reversed(poly.all_coeffs())]
+    if None in coefficients:
         return
     exact = cast("list[sp.Rational]", coefficients)
+    while exact and exact[-1] == 0:
+        exact.pop()
     if len(exact) == 2:
         yield rational(-exact[0] / exact[1])
-        return
-    common = int(sp.ilcm(*(c.q for c in exact)))
-    whole = fmpz_poly([int(c * common) for c in exact])
-    for root, _ in cast("list[tuple[acb, int]]", whole.complex_roots()):
-        if root.imag.contains(0):
-            yield _middle(root.real)
+    elif len(exact) > 2:
+        common = int(sp.ilcm(*(c.q for c in exact)))
+        whole = fmpz_poly([int(c * common) for c in exact])
+        for root, _ in cast("list[tuple[acb, int]]", whole.complex_roots()):
+            if root.imag.contains(0):
+                yield _middle(root.real)
 
 
-def _number(c: Expr) -> sp.Rational | None:
-    """Return a rational number itself, or one very near a real one."""
-    if isinstance(c, sp.Rational):
-        return c
+def _number(c: Expr, base: Mapping[Symbol, sp.Rational]) -> sp.Rational | None:
+    """Return the value at a point, where it is real: exactly for polynomials, otherwise very nearly."""
+    if c.is_polynomial() and not c.atoms(sp.NumberSymbol):
+        exact = c.xreplace(dict(base))
+        if isinstance(exact, sp.Rational):
+            return exact
     try:
-        ball = value(c, {})
+        ball = value(c, base)
     except (NotDecided, Undefined, Unmodelled):
         return None
     return _middle(ball.real) if ball.imag.contains(0) and ball.real.is_finite() else None
@@ -210,7 +215,7 @@ def _peeled(f: Expr, s: Symbol) -> Iterator[Expr]:
     """Yield u − c where f = 0 says h(u) = b for an elementary function h."""
     rest, outer = f.as_independent(s, as_Add=True)
     scale, function = outer.as_independent(s, as_Add=False)
-    if rest.free_symbols or scale.free_symbols or not function.args:
+    if not function.args:
         return
     b, u = -rest / scale, arguments(function)[0]
     match function:

@@ -26,7 +26,7 @@ from sympy import (
     tan,
 )
 
-from canon import Domain, equal
+from canon import Claim, Domain, equal, judge
 from canon.proof.anatomy import anatomy
 from canon.proof.corners import corner_points, places_of_change
 
@@ -104,6 +104,25 @@ def test_widths_between(k):
     assert decided("open end", Rational(3, 10**k)).fails
     assert decided("corner of a square", Rational(7, 10**k)).fails
     assert decided("irrational kink", Rational(2, 10**k)).fails
+
+
+ACOT = [
+    ("acot(x) + acot(-x)", "0", "Ne(x, 0)"),
+    ("acot(x)", "-acot(-x)", "x > 0"),
+    ("acot(x - y) + acot(y - x)", "0", "x > y"),
+    ("acot(1 - exp(x)) + acot(exp(x) - 1)", "0", "x < 0"),
+    ("$\\operatorname{arccot}(-x)$", "-acot(x)", "x < 0"),
+    ("acot(-x*y)", "-acot(x*y)", "x*y > 0"),
+]
+
+
+@pytest.mark.parametrize(("left", "right", "where"), ACOT, ids=[a[0] for a in ACOT])
+def test_acot_is_not_odd_at_zero(left, right, where):
+    keys = {"lhs": left, "rhs": right, "parameters": {"x": "real", "y": "real"}}
+    everywhere = judge(Claim("a", "equality-only", keys))
+    assert everywhere.fails
+    assert "1.57079632679490" in str(everywhere) or "3.14159265358979" in str(everywhere)
+    assert judge(Claim("a", "equality-only", {**keys, "domain": [where]})).holds
 
 
 def test_places_where_formulas_change():
