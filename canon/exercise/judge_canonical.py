@@ -145,6 +145,8 @@ def _implicit_canonicity(
         yield found
         return
     for branch in branches:
+        there = A.applyfunc(lambda entry, values=branch.values: substitute(entry, values))
+        yield Regular(there, "∂(equations)/∂(new variables)", branch.domain)
         yield Same(
             tuple(Part("M J Mᵀ − c J", entry, through=branch.values) for entry in entries), branch.domain
         )

@@ -11,7 +11,7 @@ import sympy as sp
 from canon.exercise.tree import symbols_of
 from canon.proof.equations import equivalent_equations, without_solution
 from canon.proof.kinks import vanishes_off_kinks
-from canon.proof.verdict import Undecided
+from canon.proof.verdict import Status, Undecided, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from canon.exercise.question import Deadline
     from canon.proof.domain import Domain
-    from canon.proof.verdict import Verdict
 
 __all__ = ["in_our_words", "same_equations"]
 
@@ -43,7 +42,12 @@ def same_equations(
             return replace(
                 affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}"
             )
-    verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
+    try:
+        verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
+    except ValueError as not_affine:  # |u| + 1 = 0 has no second derivative off its kink
+        return Verdict(
+            Status.FAILS, "affine", "exact", feedback=str(not_affine).replace("of the first system ", "")
+        )
     if verdict.holds and without_solution(right, unknowns, domain):
         return _equations_of_lower_order(claimed, right, unknowns, domain, deadline)
     return verdict

@@ -275,3 +275,33 @@ def test_the_library_leaves_out_kinks_where_it_differentiates_and_only_there():
     assert kicked.has_equations([p], [-sp.Piecewise((1, q > -1), (0, True))]).fails
     at_an_instant = sp.Matrix([[sp.Piecewise((1, sp.Eq(x, 0)), (0, True))]])
     assert is_regular(at_an_instant).fails
+
+
+@pytest.mark.parametrize(
+    "claim", ["Abs(x_ddot + x) = -1", "Abs(x_ddot + x) = 0", "x_ddot*sign(x_ddot) + x*sign(x_ddot)"]
+)
+def test_a_modulus_of_accelerations_is_not_affine(claim):
+    verdict = examine(
+        Claim("a", "euler-lagrange", {"q": "x", "L": "(x_dot**2 - x**2)/2", "claim": claim})
+    ).verdict
+    assert verdict.fails
+    assert verdict.feedback.startswith("equation 1 is not affine")
+
+
+def test_an_equation_that_is_zero_in_disguise_defines_no_map():
+    keys = {
+        "q": "q",
+        "p": "p",
+        "new_q": "Q",
+        "new_p": "P",
+        "parameters": {"h": "positive"},
+        "box": {"h": [0, 1]},
+    }
+    for first, right in (
+        ("Q - q - h*(p + P)/2", True),
+        ("sin(q + p) - sin(q)*cos(p) - cos(q)*sin(p)", False),
+    ):
+        verdict = examine(
+            Claim("a", "canonicity", {**keys, "implicit": [first, "P - p + h*(q + Q)/2"]})
+        ).verdict
+        assert (verdict.holds, verdict.fails) == (right, not right)
