@@ -287,6 +287,17 @@ def answered(worker, name, budget):
     return told, time.monotonic() - start
 
 
+@pytest.mark.parametrize(
+    "name", ["products of sums", "many coordinates", "derivatives of towers", "a large bracket"]
+)
+def test_a_verdict_is_there_within_half_a_second_of_its_budget(worker, name):
+    """Whatever SymPy is at work on; and the seconds that are told are those that were waited."""
+    for budget in (0.1, 0.4):
+        told, seconds = answered(worker, name, budget)
+        assert seconds < budget + 0.5
+        assert seconds - 0.1 < told.seconds <= seconds or told.status != "undecided"
+
+
 @pytest.mark.slow
 def test_attacks_are_answered_in_their_budget_and_the_next_claim_is_judged(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

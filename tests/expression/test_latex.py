@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from canon import coordinates, parameters, time
 from canon.expression.language import LanguageError, Scope, parse_condition, parse_equation, parse_expression
 from canon.expression.latex import parse_latex
+from canon.expression.magnitude import has_huge_number
 from canon.expression.symbol import Momentum
 
 COORDINATES = "theta theta_1 theta2 phi x y q_1 q_2 r q_12"
@@ -242,6 +243,9 @@ FUNCTIONS = [
 
 def is_readable(f):
     """Whether an expression has a place in the subset; SymPy prints exp(1) as a bare e, which is refused."""
+    exponents = [number for power in f.atoms(sp.Pow) for number in power.exp.atoms(sp.Rational)]
+    if has_huge_number(f) or any(max(abs(number.p), number.q) > 1000 for number in exponents):
+        return False
     return not f.has(sp.E, sp.zoo, sp.nan, sp.oo, sp.S.NegativeInfinity, sp.I, sp.Piecewise, sp.Heaviside)
 
 
