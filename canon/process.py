@@ -196,16 +196,16 @@ def folders() -> list[str]:
     >>> str(Path(sympy.__file__).parents[1]) in folders()
     True
     """
-    trusted = [entry for entry in sys.path if entry and not _is_working_folder(entry)]
+    trusted = [entry for entry in sys.path if entry and not _is_worked_in(entry)]
     found = (_folder(name, trusted) for name in RESTS_ON)
     return list(dict.fromkeys(folder for folder in found if folder))
 
 
 def _folder(name: str, trusted: list[str]) -> str:
-    """Return the folder of a package: that of the one in use, if it is not what lies in the working folder."""
+    """Return the folder of a package: that of the one in use, if it is not what lies where one works."""
     loaded = sys.modules.get(name)
     in_use = _place(loaded.__spec__) if loaded is not None else ""
-    if in_use and not _is_working_folder(in_use):
+    if in_use and not _is_worked_in(in_use):
         return in_use
     return _place(PathFinder.find_spec(name, trusted)) or in_use or _place(importlib.util.find_spec(name))
 
@@ -217,17 +217,23 @@ def _place(found: ModuleSpec | None) -> str:
     return str(module.parents[1] if found.submodule_search_locations is not None else module.parent)
 
 
-def _is_working_folder(entry: str) -> bool:
-    """Whether a folder is on the path because it is worked in, not because packages are installed there."""
+def _is_worked_in(folder: str) -> bool:
+    """Whether a folder is on the path because it is worked in, or has the script, and not for its packages."""
     if sys.flags.no_site:  # a child like these, whose path was chosen
         return False
-    try:
-        if not Path(entry).samefile(Path.cwd()):
-            return False
-    except OSError:  # one of them is gone
-        return False
+    script: str = getattr(sys.modules.get("__main__"), "__file__", None) or ""
+    worked_in = (Path(), Path(script).parent)
     installed = (*site.getsitepackages(), site.getusersitepackages())
-    return not any(Path(folder).exists() and Path(folder).samefile(entry) for folder in installed)
+    return any(_same(folder, other) for other in worked_in) and not any(
+        _same(folder, other) for other in installed
+    )
+
+
+def _same(folder: str, other: str | Path) -> bool:
+    try:
+        return Path(folder).samefile(other)
+    except OSError:  # one of them is not there
+        return False
 
 
 @contextmanager

@@ -71,17 +71,32 @@ def run(arguments, folder, code="", **environment):
     )
 
 
-STARTS = {"-c": ["-c", JUDGE], "stdin": ["-"], "REPL": ["-i", "-q"]}
+STARTS = {
+    "-c": ["-c", JUDGE],
+    "stdin": ["-"],
+    "REPL": ["-i", "-q"],
+    "module": ["-m", "code", "-q"],
+    "script": ["run.py"],
+}
 
 
 @pytest.mark.parametrize("start", STARTS)
 def test_nothing_in_the_working_folder_runs(hostile, start):
     """There it is that python -c, a REPL and a notebook look first."""
     folder, marker = hostile(*RESTS_ON, *CUSTOM)
+    (folder / "run.py").write_text(JUDGE, "utf-8")
     done = run(STARTS[start], folder, JUDGE)
     assert not marker.exists(), marker.read_text("utf-8")
     assert "{'holds': 1}" in done.stdout, done.stderr
     assert "Error" not in done.stderr
+
+
+def test_nothing_beside_a_script_runs(hostile):
+    folder, marker = hostile(*RESTS_ON, *CUSTOM)
+    (folder / "run.py").write_text(JUDGE, "utf-8")
+    done = run([str(folder / "run.py")], folder.parent)
+    assert not marker.exists(), marker.read_text("utf-8")
+    assert "{'holds': 1}" in done.stdout, done.stderr
 
 
 @pytest.mark.parametrize(("asked", "said"), [(JUDGE, "{'holds': 1}"), (PROVE, "True")])
