@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.exercise.kinds import KINDS, Shape
+from canon.exercise.kinds import KINDS, Shape, kind_of
 from canon.exercise.question import fails
 from canon.expression.given import counted
 from canon.expression.symbol import Coordinate, Rate
@@ -71,6 +71,10 @@ def _answers(reading: Reading) -> Iterator[Expr]:
         value: Any = reading.claim.keys[key]
         if shapes[key] is Shape.BRACKETS:
             texts = {f"{key}[{i}].value": pair["value"] for i, pair in enumerate(value)}
+        elif shapes[key] is Shape.VALUES:
+            texts = {
+                f"{key}[{i}].{name}": text for i, table in enumerate(value) for name, text in table.items()
+            }
         elif shapes[key] is Shape.EXPRESSIONS:
             texts = {f"{key}.{name}": text for name, text in value.items()}
         elif isinstance(value, list):
@@ -84,7 +88,7 @@ def _answers(reading: Reading) -> Iterator[Expr]:
 
 
 def _shapes(reading: Reading) -> dict[str, Shape]:
-    kind = KINDS[reading.claim.kind]
+    kind = kind_of(reading.claim.kind, reading.claim.keys)
     return {**kind.required, **kind.optional}
 
 

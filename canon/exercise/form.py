@@ -12,7 +12,7 @@ from decimal import Decimal
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.kinds import COMMON, KINDS, Shape
+from canon.exercise.kinds import COMMON, KINDS, OF_PARAMETERS, Shape, kind_of
 from canon.expression.tokens import GREEK
 
 if TYPE_CHECKING:
@@ -47,7 +47,10 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         remedy = f"is {' or '.join(close)} meant?" if close else f"known are {', '.join(KINDS)}"
         yield "kind", f"unknown kind {kind[:60]!r}; {remedy}" if kind else f"missing; {remedy}"
         return
-    wanted = KINDS[kind]
+    wanted = kind_of(kind, keys)
+    if kind == "parameters" and isinstance(keys.get("of"), str) and keys["of"] not in OF_PARAMETERS:
+        yield "of", f"should be one of {', '.join(OF_PARAMETERS)}"
+        return
     known = {**COMMON, **wanted.required, **wanted.optional}
     for key, shape in wanted.required.items():
         if key not in keys:
@@ -59,7 +62,7 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if wanted.exclusive and len(complete) > 1:
         groups = " and ".join(" with ".join(group) for group in complete)
         yield complete[1][-1], f"{groups} both say what it is about; leave one out"
-    given = [key for key in wanted.answer if key in keys]
+    given = [key for key in wanted.answer if key in keys and known[key] is not Shape.VALUES]
     if given and all(keys[key] in ([], {}) and _fits(keys[key], known[key]) for key in given):
         yield given[0], "nothing is claimed: the answer is empty"
     for key, value in keys.items():
@@ -159,6 +162,8 @@ def _fits(value: Any, shape: Shape) -> bool:
             return isinstance(value, list) and len(value) > 0 and all(_force(item) for item in value)
         case Shape.WORDS:
             return isinstance(value, list) and len(value) > 0 and all(isinstance(w, str) for w in value)
+        case Shape.VALUES:
+            return isinstance(value, list) and all(_fits(item, Shape.EXPRESSIONS) for item in value)
 
 
 def _interval(value: Any) -> bool:

@@ -18,6 +18,7 @@ from canon.exercise import (
     judge_hamiltonian,
     judge_invariance,
     judge_lagrangian,
+    judge_parameters,
     judge_passive,
     judge_reaction,
     judge_small,
@@ -78,6 +79,7 @@ JUDGES: Mapping[str, Judge] = MappingProxyType(
         "invariance": judge_invariance.invariance,
         "jacobi-identity": judge_invariance.jacobi_identity,
         "positive-real": judge_passive.positive_real,
+        "parameters": judge_parameters.parameters,
         "variation": judge_variation.variation,
         "differential": judge_variation.differential,
     }

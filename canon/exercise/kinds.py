@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["COMMON", "KINDS", "Kind", "Shape"]
+__all__ = ["COMMON", "KINDS", "OF_PARAMETERS", "Kind", "Shape", "kind_of"]
 
 
 class Shape(enum.Enum):
@@ -32,6 +32,7 @@ class Shape(enum.Enum):
     BODIES = "a list of tables {m, r, I, angle, omega}"
     FORCES = "a list of tables {F, r}, {torque, angle} or {torque, omega}"
     WORDS = "a list of words"
+    VALUES = "a list of tables {name = expression}"
 
 
 @dataclass(frozen=True)
@@ -289,6 +290,11 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             answer=("is",),
             unknowns="whether H is positive real",
         ),
+        "parameters": Kind(
+            {"of": Shape.WORD, "find": _N, "values": Shape.VALUES},
+            answer=("values",),
+            unknowns="all values, whether or not `complete` is said",
+        ),
         "variation": Kind(
             {**_LAGRANGE, "boundary": _T, "integrand": _T},
             {"Qnc": _TS},
@@ -304,3 +310,45 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
     }
 )
 """Every kind of claim that can stand in a sheet."""
+
+OF_PARAMETERS = (
+    "canonicity",
+    "canonicity-time-dependent",
+    "generating-F1",
+    "generating-F2",
+    "generating-F3",
+    "generating-F4",
+    "transformed-hamiltonian-K",
+    "bilinear-covariant",
+    "constant-of-motion",
+    "solution",
+    "hamilton-equations",
+    "legendre-hamiltonian",
+    "lagrangian-equivalence",
+    "poisson-bracket",
+    "lagrange-bracket",
+    "lie-bracket",
+    "jacobi-identity",
+)
+"""Kinds of claims whose parameters can be asked for."""
+
+
+def kind_of(kind: str, keys: Mapping[str, Any]) -> Kind:
+    """Return the kind of a claim; one about parameters has the keys of the claim that it is about as well.
+
+    Examples
+    --------
+    >>> sorted(kind_of("parameters", {"of": "constant-of-motion"}).required)
+    ['I', 'find', 'of', 'values']
+    """
+    own, of = KINDS[kind], keys.get("of")
+    if kind != "parameters" or of not in OF_PARAMETERS:
+        return own
+    inner = KINDS[of]
+    return replace(
+        own,
+        required={**own.required, **inner.required},
+        optional=inner.optional,
+        one_of=inner.one_of,
+        exclusive=inner.exclusive,
+    )

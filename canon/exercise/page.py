@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
-from canon.exercise.kinds import COMMON, KINDS, Shape
+from canon.exercise.kinds import COMMON, KINDS, Shape, kind_of
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.report import printable
 from canon.exercise.style import PAGE_STYLE, STYLE
@@ -148,9 +148,8 @@ def _scope(claim: Claim | None) -> Scope:
 
 
 def _claimed(card: Element, claim: Claim, scope: Scope) -> None:
-    shapes = (
-        {**COMMON, **KINDS[claim.kind].required, **KINDS[claim.kind].optional} if claim.kind in KINDS else {}
-    )
+    kind = kind_of(claim.kind, claim.keys) if claim.kind in KINDS else None
+    shapes = {**COMMON, **kind.required, **kind.optional} if kind is not None else {}
     given = _put(card, "dl")
     for key, value in claim.keys.items():
         if key not in _OWN_KEYS or (key in shapes and shapes[key] not in (Shape.NAMES, *COMMON.values())):

@@ -12,7 +12,7 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.exercise.form import ASSUMPTIONS
-from canon.exercise.kinds import KINDS, Shape
+from canon.exercise.kinds import Shape, kind_of
 from canon.exercise.sheet import Claim, ClaimError
 from canon.expression.given import counted
 from canon.expression.language import (
@@ -165,7 +165,7 @@ class Reading:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is passed over in reading the claim: units after numbers."""
-        kind = KINDS[self.claim.kind]
+        kind = kind_of(self.claim.kind, self.claim.keys)
         shapes = {**kind.required, **kind.optional, "domain": Shape.TEXTS}
         said = {
             key: value
@@ -306,7 +306,7 @@ class Reading:
 
     def is_names(self, key: str) -> bool:
         """Whether a list of names stands under a key."""
-        kind = KINDS[self.claim.kind]
+        kind = kind_of(self.claim.kind, self.claim.keys)
         return self.has(key) and {**kind.required, **kind.optional}.get(key) is Shape.NAMES
 
     def _assumptions(self, name: str) -> dict[str, bool]:

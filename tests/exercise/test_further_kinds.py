@@ -46,7 +46,7 @@ def test_the_page_names_every_key_of_its_kinds_and_has_a_true_and_a_false_claim_
             assert re.search(rf"`{key}`|\(`?{key}`?[,)]|`{key} ", section), (kind, key)
         said = re.findall(r"^# (holds|fails)", section, re.MULTILINE)
         assert {"holds", "fails"} <= set(said), kind
-    assert len(SECTIONS) == 15
+    assert len(SECTIONS) == 16
 
 
 @pytest.mark.parametrize(
@@ -77,6 +77,9 @@ def test_the_page_names_every_key_of_its_kinds_and_has_a_true_and_a_false_claim_
         ("jacobi-identity", {"x": ["a", "b"], "pairs": [{"u": "a", "v": "b", "value": "1"},
                                                         {"u": "b", "v": "a", "value": "1"}]},
          "invalid", "zero by antisymmetry"),
+        ("parameters", {"of": "equality", "find": ["a"], "values": []}, "invalid", "should be one of canonicity"),
+        ("parameters", {"of": "poisson-bracket", "q": ["q"], "p": ["p"], "find": ["q"], "values": [],
+                        "pairs": [{"f": "q", "g": "p", "value": "1"}]}, "invalid", "q is no parameter"),
         ("positive-real", {"variables": ["s"], "H": "1/(s**13 + 1)", "is": ["passive"]},
          "invalid", "a degree above 12"),
     ],

@@ -403,5 +403,5 @@ def test_the_answer_of_each_kind_stands_in_keys_of_its_own():
         assert kind.answer
         assert kind.unknowns
         for key in kind.answer:
-            texts = (Shape.TEXT, Shape.TEXTS, Shape.EXPRESSIONS, Shape.BRACKETS, Shape.WORDS)
+            texts = (Shape.TEXT, Shape.TEXTS, Shape.EXPRESSIONS, Shape.BRACKETS, Shape.WORDS, Shape.VALUES)
             assert shapes[key] in texts
