@@ -26,6 +26,7 @@ from canon.exercise.question import (
 )
 from canon.exercise.reading import InvalidClaim, Reading
 from canon.exercise.sheet import Claim
+from canon.exercise.tree import replaced
 from canon.mechanics.linear import SingularMatrixError
 from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
@@ -233,7 +234,7 @@ def _found(
 def _certainly_beyond(family: Family, claimed: Family, inner: Reading) -> bool:
     """Whether a family certainly has points that are none of another one."""
     for s, value in claimed.items():
-        part = Part(str(s), value.xreplace(family), family.get(s, s))
+        part = Part(str(s), replaced(value, family), family.get(s, s))
         if decide(Differ(part, inner.domain, ""), Deadline.after(1.0)).holds:
             return True
     return False

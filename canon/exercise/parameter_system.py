@@ -23,11 +23,14 @@ from canon.proof.domain import Domain
 from canon.proof.generic import proved_sign
 from canon.proof.polynomial import polynomial_factors
 from canon.proof.smooth import PIECED
+from canon.proof.typed import rational
 from canon.proof.vanish import vanishes
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+
+    from sympy.logic.boolalg import Boolean
 
     from canon.exercise.question import Deadline
 
@@ -43,7 +46,7 @@ MOST_ROUNDS = 8
 LONGEST = 300
 SECONDS, LAST = 0.7, 0.1
 """Time for one zero test, and what must be left for another round."""
-NICE = tuple(sp.Rational(*n) for n in ((0, 1), (1, 1), (2, 1), (-1, 1), (1, 2), (3, 1)))
+NICE = tuple(rational(sp.Rational(*n)) for n in ((0, 1), (1, 1), (2, 1), (-1, 1), (1, 2), (3, 1)))
 """Values of states at which logarithms, powers and sines are simple."""
 _TOTAL = (
     sp.Add, sp.Mul, sp.Symbol, sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh, AppliedUndef,
@@ -211,7 +214,7 @@ def _independent(residual: Expr) -> Iterator[Expr]:
     """Yield the coefficients of arbitrary functions and their derivatives, which take any values at a state."""
     unknown = [f for f in residual.atoms(sp.Derivative, sp.Subs, AppliedUndef) if f.has(AppliedUndef)]
     outer = [f for f in unknown if not any(f is not g and g.has(f) for g in unknown)]
-    names = {f: sp.Dummy(f"f{i}") for i, f in enumerate(sorted(outer, key=sp.default_sort_key))}
+    names: dict[Expr, Symbol] = {f: sp.Dummy("f") for f in sorted(outer, key=sp.default_sort_key)}
     numerator = sp.numer(sp.together(replaced(residual, names))) if names else residual
     if not names:
         yield residual
@@ -317,7 +320,8 @@ def _allowed(family: Mapping[Symbol, Expr], domain: Domain) -> bool:
 
 def _narrowed(domain: Domain, family: Mapping[Symbol, Expr]) -> Domain:
     conditions = (c.subs(list(family.items()), simultaneous=True) for c in domain.conditions)
-    return Domain(tuple(c for c in conditions if c != sp.true), domain.box)
+    kept = cast("tuple[Boolean, ...]", tuple(c for c in conditions if c != sp.true))
+    return Domain(kept, domain.box)
 
 
 def _simplicity(condition: Expr) -> tuple[int, int, str]:
