@@ -104,6 +104,8 @@ COMPLETE = {
     "invariance": ({**QP, **TURN, "of": "poisson-brackets"}, ["q", "p"]),
     "jacobi-identity": ({**BODY, "casimirs": ["a**2 + b**2 + c**2", "7"]}, ["a", "b", "c"]),
     "positive-real": ({"variables": ["s"], "H": "1/(s + 1)", "is": ["positive-real"]}, []),
+    "parameters": ({**QP, "of": "canonicity", "Q": ["a*q"], "P": ["b*p"], "find": ["a"],
+                    "parameters": {"a": "real", "b": "nonzero"}, "values": [{"a": "1/b"}]}, []),
     "variation": ({**SPRING, "boundary": "m*x_dot*delta_x", "integrand": "-(m*x_ddot + k*x)*delta_x"},
                   ["x", "x_dot", "x_ddot"]),
     "differential": ({"x": ["q", "p"], "f": "q**2*p", "claim": "2*q*p*d_q + q**2*d_p"}, ["q", "p"]),
