@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.continuous import is_continuous
 from canon.exercise.judge_energy import exactly
 from canon.exercise.question import Part, Question, Same, SameEquations, more_than_zero
 from canon.expression.given import counted
@@ -69,6 +70,8 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
             ),
             reading.domain,
         )
+        variables = (*kinematics.q, *kinematics.u, *kinematics.u_dot, kinematics.t)
+        yield is_continuous(claimed, variables, reading.domain, "S")
     if reading.has("claim"):
         equations = tuple(s - Q for s, Q in zip(slopes, forces, strict=True))
         written = reading.equations("claim")

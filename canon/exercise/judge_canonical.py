@@ -10,6 +10,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.answer import open_brackets
+from canon.exercise.continuous import is_continuous
 from canon.exercise.generating_answer import generating_function_of
 from canon.exercise.implicit_point import refuted_at_a_point
 from canon.exercise.manifold import on_manifold, transported
@@ -185,6 +186,8 @@ def generating(reading: Reading) -> Iterator[Question]:
     kind, F = int(reading.claim.kind[-1]), reading.expression("F")
     there, domain = map_values(reading)
     rules = rules_of(reading, kind, F)
+    on_the_map = substitute(F, there)
+    independent = [z for key in ("q", "p", "new_q", "new_p") for z in reading.symbols(key)]
     yield Same(rules.on(there), domain, lambda: generating_function_of(reading, kind))
     yield Regular(
         rules.mixed_hessian.applyfunc(lambda entry: substitute(entry, there)),
@@ -196,6 +199,8 @@ def generating(reading: Reading) -> Iterator[Question]:
     if foreign:
         why = f"F of type {kind} depends on {foreign}, and may depend on {rules.old + rules.new} only"
         yield Verdict(Status.FAILS, "the variables of F", certificate="structure", residual=F, feedback=why)
+        return
+    yield is_continuous(on_the_map, (*independent, reading.time), domain, "F", there.values())
 
 
 @dataclass(frozen=True)
@@ -289,3 +294,4 @@ def new_hamiltonian(reading: Reading) -> Iterator[Question]:
         for name, image in zip(names, images, strict=True)
     )
     yield Same(parts, domain)
+    yield is_continuous(difference, (*q, *p), domain, "K", images)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.continuous import constants_are_continuous, is_continuous
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.question import Differ, Part, Question, Same, Tells
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.lagrangian import Lagrangian
-from canon.proof.smooth import may_jump
 from canon.proof.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from canon.exercise.reading import Reading
     from canon.proof.domain import Domain
 
-__all__ = ["NOT_OF_THE_STATE", "check_continuous", "conserved_or_not", "motion_of", "same_everywhere"]
+__all__ = ["NOT_OF_THE_STATE", "conserved_or_not", "motion_of", "same_everywhere", "system_of"]
 
 NOT_OF_THE_STATE = "what does not depend on the state is true of any system"
 
@@ -40,9 +40,9 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
             rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
             if key == "conserved":
                 yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
-                check_continuous(I, (*rates, t), reading.domain)
+                yield from constants_are_continuous(I, (*rates, t), reading.domain, system_of(reading))
             else:
-                check_continuous(I, (*rates, t), reading.domain)
+                _check_continuous(I, (*rates, t), reading.domain)
                 why = f"{I} is conserved: its rate vanishes on every motion"
                 yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
         yield Tells((same_everywhere(quantities, tuple(rates), reading.domain),), NOT_OF_THE_STATE)
@@ -60,7 +60,7 @@ def same_everywhere(
     return Same(parts or (Part("0", sp.S.Zero),), domain)
 
 
-def check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
+def _check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
     """Refuse quantities such as |x|/x, whose rate vanishes where it exists and which jump all the same.
 
     Raises
@@ -68,8 +68,16 @@ def check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
     Undecided
         Where the quantity may jump.
     """
-    if may_jump(I, state, domain):
+    if not is_continuous(I, state, domain, str(I)).holds:
         raise Undecided(f"{I} may jump, which its rate does not show; narrow the domain to where it does not")
+
+
+def system_of(reading: Reading) -> tuple[Expr, ...]:
+    """Return the functions that give a system: H, L or the components of X."""
+    for key in ("H", "L"):
+        if reading.has(key):
+            return (reading.expression(key),)
+    return reading.expressions("X") if reading.has("X") else ()
 
 
 def motion_of(reading: Reading) -> dict[Symbol, Expr]:

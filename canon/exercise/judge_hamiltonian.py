@@ -8,12 +8,14 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.answer import stay_open
-from canon.exercise.judge_conserved import NOT_OF_THE_STATE, check_continuous, same_everywhere
+from canon.exercise.continuous import constants_are_continuous
+from canon.exercise.judge_conserved import NOT_OF_THE_STATE, same_everywhere, system_of
 from canon.exercise.judge_lagrangian import lagrangian_of
 from canon.exercise.manifold import on_manifold, transported
 from canon.exercise.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
 from canon.expression.symbol import acceleration, velocity
 from canon.mechanics.hamiltonian import Hamiltonian, legendre
+from canon.mechanics.possible import motion_is_continuous, motion_is_real
 from canon.mechanics.substitution import substitute
 
 if TYPE_CHECKING:
@@ -66,14 +68,14 @@ def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
     for z, value in motion.items():
         if value.has(*motion):
             reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
+    yield from motion_is_real(motion, reading.domain)
     domain = transported(reading.domain, motion)
     rates = zip((*system.q, *system.p), system.vector_field, strict=True)
     parts = (
         Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
     )
     yield Same(tuple(parts), domain)
-    for value in motion.values():
-        check_continuous(value, (system.t,), reading.domain)
+    yield from motion_is_continuous(motion, system.t, domain, [system.H], velocities=False)
 
 
 def constant_of_motion(reading: Reading) -> Iterator[Question]:
@@ -86,7 +88,7 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
     for branch in branches:
         there = substitute(I, branch.values)
         yield Same((Part("dI/dt", rate, through=branch.values),), branch.domain)
-        check_continuous(there, (*rates, t), branch.domain)
+        yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
     trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
     yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)
 

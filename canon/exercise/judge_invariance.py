@@ -15,6 +15,7 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.answer import stay_open
+from canon.exercise.continuous import constants_are_continuous, is_continuous
 from canon.exercise.judge_canonical import canonical_parts, rules_of
 from canon.exercise.judge_conserved import same_everywhere
 from canon.exercise.judge_energy import shown_short
@@ -95,7 +96,9 @@ def _hamiltonian_form(
     """M J Mᵀ = c J with the same c ≠ 0 at all points and times."""
     valence = poisson_bracket(Q[0], P[0], q, p)
     yield Regular(sp.Matrix([[valence]]), "{Q, P}", domain, "{Q, P} = 0: the map is singular")
-    yield Same(tuple(_constancy(valence, (*q, *p, reading.time), domain)), domain, _no_answer, is_instead)
+    moving = (*q, *p, reading.time)
+    yield Same(tuple(_constancy(valence, moving, domain)), domain, _no_answer, is_instead)
+    yield is_continuous(valence, moving, domain, "{Q, P}")
     yield Same(canonical_parts(Q, P, q, p, valence), domain, _no_answer, is_instead)
 
 
@@ -208,6 +211,7 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
             for k in range(n)
         ]
         yield Same(tuple(kept), reading.domain, _no_answer, is_instead)
+        yield from constants_are_continuous(C, x, reading.domain)
     if casimirs:
         yield Tells(
             (same_everywhere(casimirs, x, reading.domain),), "a number has vanishing brackets in any system"

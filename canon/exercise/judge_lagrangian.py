@@ -10,6 +10,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.affine import solved
 from canon.exercise.answer import stay_open
+from canon.exercise.continuous import is_continuous
 from canon.exercise.manifold import transported
 from canon.exercise.question import (
     Determines,
@@ -127,14 +128,27 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
             reading.fault("F", "stands beside the relation gauge only; leave it out, or write gauge")
         systems = [Lagrangian(L, q, t).equations for L in (second, first)]
         yield SameEquations(systems[0], systems[1], tuple(acceleration(x) for x in q), reading.domain)
+        yield from _no_steps(first, second, q, reading)
     elif relation != "gauge":
         reading.fault("relation", "write gauge or equations")
     elif reading.has("F"):
         F = reading.expression("F")
         yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
+        yield is_continuous(F, (*q, t), reading.domain, "F")
     else:
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
+        yield from _no_steps(first, second, q, reading)
         yield Determines(lambda: stay_open(["F"]))
+
+
+def _no_steps(first: Expr, second: Expr, q: Sequence[Symbol], reading: Reading) -> Iterator[Question]:
+    """Yield whether either Lagrangian at rest has a step that the other has not: it gives an impulse there."""
+    at_rest: dict[Symbol, Expr] = {velocity(x): sp.S.Zero for x in q}
+    rest = [substitute(L, at_rest) for L in (first, second)]
+    for mine, other, name in ((rest[0], rest[1], "L1"), (rest[1], rest[0], "L2")):
+        moves = [part for part in mine.atoms(*PIECED) if part.has(reading.time)]
+        if not moves:  # a step that moves may come from a kink of F
+            yield is_continuous(mine, q, reading.domain, f"{name} at rest", (other,))
 
 
 def routhian_in_momenta(

@@ -11,6 +11,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.answer import stay_open
+from canon.exercise.continuous import is_continuous
 from canon.exercise.judge_conserved import motion_of
 from canon.exercise.judge_energy import shown_short
 from canon.exercise.judge_invariance import is_instead
@@ -21,6 +22,7 @@ from canon.expression.given import counted
 from canon.expression.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.linear import is_regular
+from canon.mechanics.possible import motion_is_continuous, motion_is_real
 from canon.mechanics.substitution import substitute
 from canon.proof.generic import proved_sign
 from canon.proof.smooth import PIECED
@@ -50,6 +52,10 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
     for x, value in table.items():
         if value.has(*variables, *state.values()):
             reading.fault(f"solution.{x}", f"should depend on {t}, parameters and constants only")
+    yield from motion_is_real(table, reading.domain)
+    laws = _laws(reading)
+    bound = any(law.has(*map(acceleration, table)) for law in laws)
+    yield from motion_is_continuous(table, t, transported(reading.domain, table), laws, velocities=bound)
     motion: dict[Symbol, Expr] = {}
     for x, value in table.items():
         _check_smooth(value, t, reading.domain)
@@ -65,6 +71,13 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
         yield from _general(reading, values, domain)
     else:
         yield Determines(lambda: _not_fixed(reading, _ordered(state)))
+
+
+def _laws(reading: Reading) -> list[Expr]:
+    """Return what the equations of motion are made of, in terms of the state."""
+    if _second_order(reading):
+        return [e for _, e in _equations(reading, {})]
+    return list(motion_of(reading).values())
 
 
 def _check_smooth(value: Expr, t: Symbol, domain: Domain) -> None:
@@ -108,6 +121,8 @@ def _of_rates(reading: Reading) -> Iterator[Question]:
     domain = transported(reading.domain, motion)
     parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
     yield Same(parts, domain, _no_answer, _left_over)
+    for x, rate in rates.items():
+        yield is_continuous(rate, (*q, t), domain, f"{velocity(x)} = {rate}")
     if reading.has("initial"):
         yield from _initial_rates(reading, q, rates)
     if reading.has("constants"):

@@ -26,6 +26,7 @@ from canon.expression.symbol import time
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.linear import is_regular
 from canon.mechanics.substitution import substitute
+from canon.proof.continuity import continuity
 from canon.proof.domain import Domain, as_domain
 from canon.proof.verdict import Verdict, all_hold
 
@@ -233,6 +234,9 @@ class GeneratingFunction:
                 if verdict.undecided:
                     return
             yield is_regular(self.mixed_hessian.xreplace(there), domain, "the mixed Hessian")
+            variables = (*self.q, *self.p, *self.new_q, *self.new_p, self.t)
+            on_the_map = substitute(self.F, there)
+            yield continuity(on_the_map, variables, domain, name="F", given=there.values())
 
         return all_hold(verdicts(), f"F of type {self._named_kind} generates the map")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -16,11 +17,11 @@ from canon.mechanics.dynamicsymbols import coordinate_symbols, plain, plain_all,
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.legendre import LegendreError, eliminate_velocities, legendre_residual
 from canon.mechanics.linear import is_regular
+from canon.mechanics.possible import motion_is_continuous, motion_is_real
 from canon.mechanics.substitution import substitute
 from canon.proof.domain import Domain, as_domain
 from canon.proof.kinks import vanishes_off_kinks
-from canon.proof.smooth import may_jump
-from canon.proof.verdict import Status, Verdict, all_hold
+from canon.proof.verdict import Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -143,20 +144,15 @@ class Hamiltonian:
         missing = [str(z) for z in variables if z not in motion]
         if missing:
             raise ValueError(f"the motion does not say what {', '.join(missing)} is; give every variable")
-        verdict = all_hold(
-            (
-                vanishes_off_kinks(motion[z].diff(self.t) - substitute(rate, motion), domain).about(
-                    f"{z}(t) satisfies its equation"
-                )
-                for z, rate in zip(variables, self.vector_field, strict=True)
-            ),
-            "these functions solve Hamilton's equations",
+        satisfied = (
+            vanishes_off_kinks(motion[z].diff(self.t) - substitute(rate, motion), domain).about(
+                f"{z}(t) satisfies its equation"
+            )
+            for z, rate in zip(variables, self.vector_field, strict=True)
         )
-        jumping = [z for z in variables if may_jump(motion[z], [self.t], domain)] if verdict.holds else []
-        if jumping:
-            why = f"{jumping[0]}(t) may jump, which its rate does not show; narrow the domain to where it does not"
-            return Verdict(Status.UNDECIDED, verdict.question, seconds=verdict.seconds, feedback=why)
-        return verdict
+        real = motion_is_real(motion, domain)
+        continuous = motion_is_continuous(motion, self.t, domain, [self.H], velocities=False)
+        return all_hold(chain(satisfied, real, continuous), "these functions solve Hamilton's equations")
 
     def lagrangian(self, domain: Domain | None = None) -> Lagrangian:
         """Return L = Σ p q̇ − H with the momenta eliminated.

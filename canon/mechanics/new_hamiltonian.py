@@ -18,6 +18,7 @@ from canon.mechanics.claim import all_vanish
 from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import substitute
+from canon.proof.continuity import continuity
 from canon.proof.domain import as_domain
 from canon.proof.verdict import Verdict, all_hold
 
@@ -151,5 +152,6 @@ def is_new_hamiltonian(
     def verdicts() -> Iterator[Verdict]:
         yield T.is_canonical(valence=valence)
         yield all_vanish(claims, "the new Hamiltonian is right", domain)
+        yield continuity(gap, T.variables, domain, name="K", given=T.images)
 
     return all_hold(verdicts(), "the map is canonical and K is the new Hamiltonian")

@@ -10,7 +10,8 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.claim import all_vanish
 from canon.mechanics.substitution import entry, exchanged
-from canon.proof.verdict import Status, Verdict
+from canon.proof.continuity import continuity
+from canon.proof.verdict import Status, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -65,7 +66,11 @@ class ParametricGeneratingFunction:
             )
 
         claims = [(f"the coefficient of d{z} in dF", F.diff(z) - due(z)) for z in T.variables]
-        return all_vanish(claims, question, domain or T.domain)
+        verdict = all_vanish(claims, question, domain or T.domain)
+        if not verdict.holds:
+            return verdict
+        continuous = continuity(F, T.variables, domain or T.domain, name="F", given=T.images)
+        return all_hold([verdict, continuous], question)
 
     def evaluate(self, values: Mapping[Symbol, float], start: Mapping[Symbol, float]) -> float:
         """Return the number F(old, new) by solving the relations with Newton's method.

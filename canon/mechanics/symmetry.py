@@ -22,10 +22,11 @@ from canon.mechanics.hamiltonian import Hamiltonian
 from canon.mechanics.lagrangian import Lagrangian
 from canon.mechanics.potential import potential
 from canon.mechanics.substitution import exchanged
+from canon.proof.continuity import continuity
 from canon.proof.domain import Domain, as_domain
 from canon.proof.equations import equivalent_equations
-from canon.proof.smooth import PIECED, may_jump
-from canon.proof.verdict import Status, Verdict, all_hold
+from canon.proof.smooth import PIECED
+from canon.proof.verdict import Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -76,11 +77,24 @@ def is_constant_of_motion(
         function = plain(I, system.q, system.t)
         found = dict(zip(map(acceleration, system.q), system.accelerations, strict=True))
         rate = exchanged(time_derivative(function, system.q, system.t), found)
+    everywhere, moving = as_domain(domain), (*state, system.t)
     verdict = all_vanish([("dI/dt = 0", rate)], f"{I} is a constant of motion", domain, budget)
-    if verdict.holds and may_jump(function, (*state, system.t), as_domain(domain)):
-        why = f"{I} may jump, which its rate does not show; narrow the domain to where it does not"
-        return Verdict(Status.UNDECIDED, verdict.question, seconds=verdict.seconds, feedback=why)
-    return verdict
+    given = (system.H if isinstance(system, Hamiltonian) else system.L,)
+    return _and_continuous(verdict, function, moving, everywhere, str(I), given)
+
+
+def _and_continuous(
+    verdict: Verdict,
+    f: Expr,
+    variables: Sequence[Symbol],
+    domain: Domain,
+    name: str,
+    given: Sequence[Expr],
+) -> Verdict:
+    """Return the verdict on a function that was tested by its derivatives, once it is seen that it does not jump."""
+    if not verdict.holds:
+        return verdict
+    return all_hold([verdict, continuity(f, variables, domain, name=name, given=given)], verdict.question)
 
 
 def poissons_theorem(
@@ -154,9 +168,10 @@ def is_symmetry(
     for s, a in zip(q, moves, strict=True):
         v = velocity(s)
         change += [a * L.diff(s), (time_derivative(a, q, t) - v * delay_dot) * L.diff(v)]
-    return all_vanish(
+    verdict = all_vanish(
         [("the change of L dt is dK", sp.Add(*change))], "this is a symmetry of the action", domain
     )
+    return _and_continuous(verdict, gain, (*q, t), as_domain(domain), "K", (L,))
 
 
 def is_gauge_equivalent(
@@ -182,7 +197,8 @@ def is_gauge_equivalent(
     if F is not None:
         function = plain(F, q, t)
         gap = difference - time_derivative(function, q, t)
-        return all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", domain)
+        verdict = all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", domain)
+        return _and_continuous(verdict, function, (*q, t), as_domain(domain), "F", (first.L, second.L))
     v = [velocity(s) for s in q]
     A = [difference.diff(a) for a in v]
     curvature = [(f"∂²(L2 − L1)/∂{a}∂{b} = 0", A[i].diff(b)) for i, a in enumerate(v) for b in v[i:]]

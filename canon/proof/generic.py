@@ -7,7 +7,7 @@ nonzero at generic points. Functions with pieces do not: x + |x| is zero for all
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy.core.function import AppliedUndef, Derivative
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-__all__ = ["is_analytic", "proved_sign"]
+__all__ = ["is_analytic", "is_positive_between", "is_uncut", "proved_sign"]
 
 SECONDS = 0.5
 """Time for the sign of one expression."""
@@ -77,7 +77,7 @@ def _fresh(expr: sp.Basic, hull: Domain, seen: dict[sp.Basic, bool]) -> bool:
         return False
     match expr:
         case sp.Pow():
-            return expr.exp.is_integer is True or _uncut(expr.base, expr.exp, hull)
+            return expr.exp.is_integer is True or is_uncut(expr.base, expr.exp, hull)
         case sp.log() if len(expr.args) == 1:
             return proved_sign(arguments(expr)[0], hull) == "+" and _without_poles(arguments(expr)[0], hull)
         case sp.atan() | sp.asinh():
@@ -86,7 +86,7 @@ def _fresh(expr: sp.Basic, hull: Domain, seen: dict[sp.Basic, bool]) -> bool:
             return isinstance(expr, (*ENTIRE, AppliedUndef)) or (isinstance(expr, sp.Expr) and expr.is_number)
 
 
-def _uncut(base: Expr, exponent: Expr, hull: Domain) -> bool:
+def is_uncut(base: Expr, exponent: Expr, hull: Domain) -> bool:
     """Tell whether a power with an exponent that is not whole has one analytic branch on the hull."""
     if base.is_number:
         return True
@@ -110,6 +110,39 @@ def _without_poles(expr: Expr, hull: Domain) -> bool:
     denominators += [sp.cos(e.args[0]) for e in found.of(sp.tan, sp.sec)]
     denominators += [sp.sin(e.args[0]) for e in found.of(sp.cot, sp.csc)]
     return all(d.is_nonzero or proved_sign(d, hull) in ("+", "-") for d in denominators)
+
+
+def is_positive_between(expr: Expr, domain: Domain) -> bool:
+    """Tell whether an expression is positive because it is so at the ends: linear in cos² u, or in cos u.
+
+    Examples
+    --------
+    >>> t = sp.Symbol("t", real=True)
+    >>> a, b = sp.symbols("a b", positive=True)
+    >>> is_positive_between(a * sp.sin(t) ** 2 + b * sp.cos(t) ** 2, Domain())
+    True
+    >>> is_positive_between(sp.sin(t) ** 2 + sp.cos(t), Domain())
+    False
+    """
+    angles = {arguments(part)[0] for part in expr.atoms(sp.sin, sp.cos)}
+    if len(angles) != 1:
+        return proved_sign(expr, domain) == "+"
+    (angle,) = angles
+    c, s = sp.Dummy("c", real=True), sp.Dummy("s", real=True)
+    try:
+        circular = sp.Poly(expr.xreplace({sp.cos(angle): c, sp.sin(angle): s}), s, c)
+    except PolynomialError:
+        return False
+    if any(power % 2 for power, _ in circular.monoms()):
+        return False
+    inner = sp.Poly(circular.as_expr().subs(s, sp.sqrt(1 - c**2)), c)
+    if inner.degree() == 1:
+        ends = (1, -1)
+    elif inner.degree() == 2 and inner.coeff_monomial(c) == 0:
+        ends = (1, 0)
+    else:
+        return False
+    return all(proved_sign(cast("Expr", inner.eval(end)), domain) == "+" for end in ends)
 
 
 def proved_sign(expr: Expr, domain: Domain) -> str:

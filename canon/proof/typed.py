@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from fractions import Fraction
+from typing import cast
 
-if TYPE_CHECKING:
-    import sympy as sp
+import sympy as sp
 
-__all__ = ["arguments", "by_name", "free_symbols", "rational"]
+__all__ = ["arguments", "by_name", "free_symbols", "rational", "short"]
 
 
 def free_symbols(expr: sp.Basic) -> set[sp.Symbol]:
@@ -28,3 +28,15 @@ def arguments(expr: sp.Basic) -> tuple[sp.Expr, ...]:
 def rational(number: object) -> sp.Rational:
     """Return a number that is known to be rational."""
     return cast("sp.Rational", number)
+
+
+def short(number: float | Fraction, largest: int) -> sp.Rational:
+    """Return the rational number nearest to a number among those with a denominator that is not larger.
+
+    Examples
+    --------
+    >>> short(3.1415926, 10)
+    22/7
+    """
+    near = Fraction(number).limit_denominator(largest)
+    return rational(sp.Rational(near.numerator, near.denominator))

@@ -64,7 +64,7 @@ def test_the_page_names_every_key_of_its_kinds_and_has_a_true_and_a_false_claim_
                       "values": {"N": "2*N"}}, "invalid", "coordinates, velocities and time only"),
         ("degrees-of-freedom", {"q": ["x", "y"], "constraints": ["x_dot**2 + y_dot**2 = 1"], "dof": "1"},
          "undecided", "affine in the velocities"),
-        ("conserved-or-not", {"q": ["x"], "L": "x_dot**2/2", "conserved": ["Abs(x)/x"]},
+        ("conserved-or-not", {"q": ["x"], "L": "x_dot**2/2", "conserved": ["x_dot + Abs(x)/x"], "domain": ["Ne(x, 0)"]},
          "undecided", "may jump"),
         ("linearisation", {"q": ["x"], "L": "x_dot**2/2", "equilibrium": {"x": "t"}, "claim": ["x_ddot"]},
          "invalid", "by parameters only"),
