@@ -94,7 +94,7 @@ def continuity(
     --------
     >>> q, p = sp.symbols("q p", real=True)
     >>> continuity(q - sp.atan(sp.tan(sp.pi * q)) / sp.pi, [q]).feedback
-    'q - atan(tan(pi*q))/pi jumps at q = 1/2 from 0 to 1.0000000, which its derivatives do not show'
+    'q - atan(tan(pi*q))/pi jumps at q = 1/2 from -0.50000000 to 0.50000000, which its derivatives do not show'
     >>> continuity(sp.atan(q / p), [q, p]).assumed
     ('atan(q/p) is an angle that winds around p = 0, q = 0, where it jumps is a matter of choice',)
     """
