@@ -94,9 +94,9 @@ def continuity(
     --------
     >>> q, p = sp.symbols("q p", real=True)
     >>> continuity(q - sp.atan(sp.tan(sp.pi * q)) / sp.pi, [q]).feedback
-    'q - atan(tan(pi*q))/pi jumps at q = 1/2 from -0.50000000 to 0.50000000, which its derivatives do not show'
+    'q - atan(tan(pi*q))/pi jumps at q = 1/2 from -0.5 to 0.5, which its derivatives do not show'
     >>> continuity(sp.atan(q / p), [q, p]).assumed
-    ('atan(q/p) is an angle that winds around p = 0, q = 0, where it jumps is a matter of choice',)
+    ('atan(q/p) is an angle that winds around p = 0, q = 0; where it jumps is a matter of choice',)
     """
     deadline, moving, name = time.monotonic() + budget, tuple(variables), name or str(f)
     f = without_complex_logarithms(with_moduli(off_the_kinks(f)))
@@ -307,7 +307,7 @@ def _of_cuts(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float,
     centres = {cut.part: _centre(cut, moving, domain) for cut in cuts}
     angles = {angle: centre for angle, centre in centres.items() if centre}
     assumed = tuple(
-        f"{angle} is an angle that winds around {centre}, where it jumps is a matter of choice"
+        f"{angle} is an angle that winds around {centre}; where it jumps is a matter of choice"
         for angle, centre in angles.items()
     )
     at_angles = [cut for cut in cuts if cut.part in angles]

@@ -244,7 +244,13 @@ def _clear(e: Expr, s: Symbol, others: Mapping[Symbol, sp.Rational], memo: dict[
 
 def shown(z: acb) -> str:
     """Return a few certain digits of a value."""
-    real = "0" if z.real.contains(0) else z.real.str(8, radius=False)
+    real = "0" if z.real.contains(0) else _digits(z.real)
     if z.imag.contains(0):
         return real
-    return f"{z.imag.str(8, radius=False)}*I" if real == "0" else f"{real} + {z.imag.str(8, radius=False)}*I"
+    imaginary = f"{_digits(z.imag)}*I"
+    return imaginary if real == "0" else f"{real} + {imaginary}"
+
+
+def _digits(x: arb) -> str:
+    text = x.str(8, radius=False)
+    return text if "e" in text or "." not in text else text.rstrip("0").rstrip(".")
