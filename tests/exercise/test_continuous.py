@@ -62,7 +62,7 @@ def test_a_staircase_added_to_a_right_answer_fails_and_a_number_does_not(kind, k
         assert "jumps" in verdict.feedback, step
 
 
-@pytest.mark.parametrize("step", [*STEPS, "sin({0})**2 + cos({0})**2"])
+@pytest.mark.parametrize("step", STEPS)
 def test_a_number_on_each_piece_is_no_constant_of_the_motion(step):
     for kind, keys, key in (
         ("constant-of-motion", OSCILLATOR, "I"),
