@@ -280,8 +280,11 @@ def _ended() -> Iterator[Row]:
 
 
 def _interrupted(script: str, first: str, then: str) -> Outcome:
+    listening = (
+        "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"  # in the background too
+    )
     process = subprocess.Popen(
-        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        [sys.executable, "-c", listening + script], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     assert process.stdout is not None

@@ -95,7 +95,9 @@ def test_a_forked_child_leaves_the_judge_of_its_parent_alone():
 
 
 INTERRUPTED = """
+import signal
 import time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # where the tests run in the background too
 import sympy as sp
 from canon import Domain, vanishes
 from canon.proof.budget import prove_in_worker

@@ -67,7 +67,9 @@ def test_works_from_standard_input():
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_interrupt_gets_through():
     program = textwrap.dedent("""
+        import signal
         import sympy as sp
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # where the tests run in the background too
         from canon.proof.budget import prove_in_worker
         from canon.proof.domain import EVERYWHERE
         names = sp.symbols("x y z t u v", real=True)
