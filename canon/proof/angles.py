@@ -4,32 +4,32 @@ from __future__ import annotations
 
 from functools import cache
 from math import lcm
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from flint import fmpq, fmpz_poly
 
+from canon.proof.independent import in_earlier_fractions
 from canon.proof.lattice import Angle, Lattice
-from canon.proof.limits import TooLarge
+from canon.proof.limits import Refine, TooLarge
 from canon.proof.tower import Fraction
 from canon.proof.typed import rational
+from canon.proof.waves import sign_of_wave
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
+    from collections.abc import Hashable, Iterator
 
     from sympy import Expr
 
     from canon.proof.normal_form import NormalForm
 
 __all__ = [
-    "Refine",
     "combination",
     "cos_sin",
     "divided",
     "elementary",
     "imaginary_split",
     "phase_of_pi",
-    "sign_of_wave",
 ]
 
 LARGEST_MULTIPLE = 1100
@@ -40,10 +40,6 @@ LARGEST_FIELD = 400
 
 BY_RADICALS = frozenset({1, 2, 3, 4, 5, 6, 10, 12})
 """Denominators q for which cos(πp/q) is written in square roots; others go through cyclotomic fields."""
-
-
-class Refine(Exception):
-    """A kernel is needed at a finer fraction than was provided for; start again."""
 
 
 def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
@@ -94,16 +90,43 @@ def cosh_sinh(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def combination(n: NormalForm, f: Fraction) -> list[tuple[Fraction, fmpq]]:
-    """Write f as Σ rᵢ·atomᵢ with rational rᵢ and monomials over the denominator as atoms."""
+    """Write f as Σ rᵢ·atomᵢ with rational rᵢ; the atoms are monomials and independent monomials over denominators."""
+    f = n.tower.canonical(f)
+    if not f.den:
+        return list(_monomials(n, f))
+    found: dict[Hashable, tuple[Fraction, fmpq]] = {}
+    _combine(n, f, fmpq(1), found)
+    return [(atom, r) for atom, r in found.values() if r != 0]
+
+
+def _monomials(n: NormalForm, f: Fraction) -> Iterator[tuple[Fraction, fmpq]]:
+    """Yield the monomials of the numerator over the denominator, with their coefficients."""
     t = n.tower
-    f = t.canonical(f)
-    found: list[tuple[Fraction, fmpq]] = []
     for monomial, coefficient in t.terms(f.num):
         p = t.constant(1)
         for k, e in monomial:
             p = p * t.monomial(k, e)
-        found.append((Fraction(p, f.den), coefficient))
-    return found
+        yield Fraction(p, f.den), coefficient
+
+
+def _combine(n: NormalForm, f: Fraction, factor: fmpq, found: dict[Hashable, tuple[Fraction, fmpq]]) -> None:
+    """Add the terms of a multiple of ``f`` to those found."""
+    for term, coefficient in _monomials(n, f):
+        atom, r = n.tower.canonical(term), factor * coefficient
+        earlier = in_earlier_fractions(n, atom) if atom.den else None
+        if earlier is None:
+            _add(found, n.fraction_key(atom), atom, r)
+            continue
+        for other, weight in earlier[0]:
+            _add(found, n.fraction_key(other), other, r * weight)
+        _combine(n, Fraction(earlier[1]), r, found)
+
+
+def _add(
+    found: dict[Hashable, tuple[Fraction, fmpq]], key: Hashable, atom: Fraction, coefficient: fmpq
+) -> None:
+    before = found.get(key)
+    found[key] = (atom, coefficient if before is None else before[1] + coefficient)
 
 
 def divided(n: NormalForm, kind: str, key: Hashable, coefficient: fmpq) -> int:
@@ -278,33 +301,6 @@ def _range(n: NormalForm, angle: Angle) -> tuple[Expr, Expr, bool]:
 def _quadrant(n: NormalForm, angle: Angle) -> tuple[str, str]:
     """Return the signs of cos and sin on the range of a base angle."""
     return sign_of_wave(n, angle, 1, 0) or "real", sign_of_wave(n, angle, 0, 1) or "real"
-
-
-def sign_of_wave(n: NormalForm, angle: Angle, a: Any, b: Any) -> str:
-    """Return the sign of a cos φ + b sin φ = R cos(φ − δ), R > 0, on the range of φ, if it has one."""
-    low, high, strict = n.ranges.get(angle, (-sp.oo, sp.oo, True))
-    if not (low.is_finite and high.is_finite):
-        return ""
-    shift = sp.atan2(_rational(b), _rational(a))
-    return _sign_between(low - shift, high - shift, -sp.pi / 2, strict=strict)
-
-
-def _rational(number: Any) -> sp.Rational:
-    return rational(
-        sp.Rational(int(number.p), int(number.q)) if isinstance(number, fmpq) else sp.Rational(number)
-    )
-
-
-def _sign_between(low: Expr, high: Expr, rise: Expr, *, strict: bool) -> str:
-    """Return the sign on [low, high] of a function like cos that is positive on (rise, rise + π), then negative."""
-    turn = sp.floor((low - rise) / sp.pi)
-    start = rise + turn * sp.pi
-    end = start + sp.pi
-    if not (turn.is_Integer and (low - start).is_nonnegative and (end - high).is_nonnegative):
-        return ""
-    sign = "+" if turn.is_even else "-"
-    inside = (low - start).is_positive and (end - high).is_positive
-    return sign if strict or inside else "0" + sign
 
 
 # -- rational multiples of π ---------------------------------------------------------------------------

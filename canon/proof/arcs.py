@@ -11,16 +11,21 @@ from canon.proof.angles import multiple
 from canon.proof.tower import Fraction
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
+    from collections.abc import Hashable, Iterator
 
     from sympy import Expr
 
     from canon.proof.normal_form import NormalForm
 
-__all__ = ["ARCS", "cos_sin_of_arc", "elementary"]
+__all__ = ["ARCS", "arc_of_point", "cos_sin_of_arc", "elementary"]
 
 ARCS = ("asin", "atan", "atan2")
 """Kernels that are angles; all other inverse functions are written through these and logarithms."""
+
+SIMPLE_MULTIPLES = tuple(
+    fmpq(p, q) for p, q in ((1, 1), (-1, 1), (2, 1), (-2, 1), (3, 1), (-3, 1), (-1, 2), (1, 2))
+)
+"""Multiples of a logarithm that are tried as values of Lambert's W."""
 
 
 def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
@@ -40,7 +45,7 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
         case sp.atan():
             return _odd(n, "atan", n.form(arguments[0]))
         case sp.atan2():
-            return _atan2(n, n.form(arguments[0]), n.form(arguments[1]))
+            return arc_of_point(n, n.form(arguments[0]), n.form(arguments[1]))
         case sp.asec():
             return n.minus(n.scaled(fmpq(1, 2), n.pi), _odd(n, "asin", t.reciprocal(n.form(arguments[0]))))
         case sp.acsc():
@@ -53,7 +58,7 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return _odd(n, "atan", inverse) if isinstance(expr, sp.acot) else _atanh(n, inverse)
         case sp.asinh() | sp.acosh() | sp.atanh() | sp.asech() | sp.acsch():
             return _area(n, expr, n.form(arguments[0]))
-        case sp.LambertW() if len(arguments) == 1:
+        case sp.LambertW() if len(arguments) == 1 or arguments[1] == -1:
             return _lambert_w(n, expr, n.form(arguments[0]))
         case _:
             return None
@@ -87,13 +92,16 @@ def _at_most_one(n: NormalForm, z: Fraction) -> bool:
     return n.sign(n.minus(one, n.tower.times(z, z))).endswith("+")
 
 
-def _atan2(n: NormalForm, y: Fraction, x: Fraction) -> Fraction:
+def arc_of_point(n: NormalForm, y: Fraction, x: Fraction) -> Fraction:
     """Return atan2(y, x) through atan where a half plane is proven; atan2(ky, kx) = atan2(y, x) for k > 0."""
     t = n.tower
     half_pi = n.scaled(fmpq(1, 2), n.pi)
     if n.is_real(x) and n.is_real(y):
-        if n.sign(x) == "+":
+        side = n.sign(x)
+        if side == "+":
             return _odd(n, "atan", n.over(y, x))
+        if side == "-" and t.is_zero(y):
+            return n.pi
         if (above := n.sign(y)) in ("+", "-"):
             return n.minus(half_pi if above == "+" else n.negative(half_pi), _odd(n, "atan", n.over(x, y)))
     y, x = t.canonical(y), t.canonical(x)
@@ -134,20 +142,38 @@ def _atanh(n: NormalForm, z: Fraction) -> Fraction:
 
 
 def _lambert_w(n: NormalForm, expr: sp.Basic, z: Fraction) -> Fraction:
-    """Return the principal W(z): g where z = g exp g with g ≥ −1; otherwise a kernel, ≥ 0 for z ≥ 0."""
+    """Return W₀(z) or W₋₁(z): g where z = g exp g with g ≥ −1, or g ≤ −1; otherwise a kernel.
+
+    W₀(z) ≥ 0 for z ≥ 0 and W₋₁(z) < 0 for −1/e ≤ z < 0.
+    """
     from canon.proof.powers import exponential
 
-    for k in n.tower.used(z.num):
-        candidate = n.tower.generators[k]
-        if candidate[0] in ("exp", "log"):
-            g = n.arguments[candidate] if candidate[0] == "exp" else Fraction(n.tower.monomial(k))
-            above = n.sign(n.tower.sum([g, n.tower.number(1)]))
-            if above.endswith("+") and n.tower.is_zero(n.minus(z, n.tower.times(g, exponential(n, g)))):
-                return g
-    kernel = (sp.LambertW, (n.fraction_key(n.tower.canonical(z)),))
+    t = n.tower
+    one, upper = t.number(1), len(expr.args) == 1
+    for g in _inverse_candidates(n, z):
+        gap = t.sum([g, one]) if upper else n.negative(t.sum([g, one]))
+        if n.sign(gap).endswith("+") and t.is_zero(n.minus(z, t.times(g, exponential(n, g)))):
+            return g
+    kernel = (sp.LambertW, (n.fraction_key(t.canonical(z)), *map(str, expr.args[1:])))
     n.arguments[kernel] = z
     sign = n.sign(z) if n.is_real(z) else ""
-    return n.atom(kernel, sign if sign.endswith("+") else "", lambda: cast("Expr", expr))
+    if upper:
+        known = sign if sign.endswith("+") else ""
+    else:
+        least = sign == "-" and n.sign(t.sum([z, n.form(sp.exp(-1))])).endswith("+")
+        known = "-" if least else ""
+    return n.atom(kernel, known, lambda: cast("Expr", expr))
+
+
+def _inverse_candidates(n: NormalForm, z: Fraction) -> Iterator[Fraction]:
+    """Yield what may be W(z): the arguments of exponentials in z, and logarithms in z with simple multiples."""
+    for k in n.tower.used(z.num):
+        candidate = n.tower.generators[k]
+        if candidate[0] == "exp":
+            yield n.arguments[candidate]
+        elif candidate[0] == "log":
+            for multiple in SIMPLE_MULTIPLES:
+                yield n.scaled(multiple, Fraction(n.tower.monomial(k)))
 
 
 def cos_sin_of_arc(n: NormalForm, kernel: tuple[object, ...], r: fmpq) -> tuple[Fraction, Fraction] | None:

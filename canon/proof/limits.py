@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["QUICK", "THOROUGH", "Full", "Limits", "OutOfTime", "TooLarge"]
+__all__ = ["QUICK", "THOROUGH", "Full", "Limits", "OutOfTime", "Refine", "TooLarge"]
 
 
 @dataclass(frozen=True)
@@ -49,3 +49,7 @@ class Full(Exception):
 
 class OutOfTime(Exception):
     """The deadline has passed."""
+
+
+class Refine(Exception):
+    """A kernel is needed at a finer fraction than was provided for; start again."""

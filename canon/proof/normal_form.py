@@ -13,10 +13,10 @@ import sympy as sp
 from flint import arb, fmpq
 from sympy.core.function import AppliedUndef, Derivative, Subs
 
-from canon.proof import angles, arcs, elliptic, powers
+from canon.proof import angles, arcs, complex_parts, elliptic, gammas, large_powers, powers, waves
 from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain import declared_complex
-from canon.proof.limits import THOROUGH, Limits, TooLarge
+from canon.proof.limits import THOROUGH, Limits
 from canon.proof.signs import Signs
 from canon.proof.split import certainly_real
 from canon.proof.tower import Fraction, Tower
@@ -30,9 +30,6 @@ if TYPE_CHECKING:
     from canon.proof.domain import Domain
 
 __all__ = ["NormalForm"]
-
-LARGEST_EXPONENT = 200
-"""Whole powers that are still written out."""
 
 
 class NormalForm:
@@ -69,6 +66,10 @@ class NormalForm:
         self.moduli: list[tuple[Fraction, tuple[Fraction, Fraction]]] = []
         self.integrals: dict[Hashable, tuple[Fraction, Fraction]] = {}
         self.known_roots: dict[Hashable, Fraction] = {}
+        self.independent: dict[Hashable, Fraction] = {}
+        self.gammas: list[tuple[Fraction, Fraction]] = []
+        self.polygammas: dict[int, list[tuple[Fraction, Fraction]]] = {}
+        self.number_logs: list[tuple[fmpq_mpoly, Fraction]] = []
         self._numbers: dict[Hashable, int] = parts.setdefault("numbers", {})
         self._meaning: dict[int, Callable[[], Expr]] = {}
         self._expressions: dict[int, Expr] = {}
@@ -123,7 +124,7 @@ class NormalForm:
 
     def _sign_of_constant(self, p: fmpq_mpoly) -> str:
         if not all(self._is_constant(k) for k in self.tower.used(p)):
-            return self._sign_of_wave(p)
+            return waves.sign_of_polynomial(self, p)
         expr = self.expression(p)
         for bits in (64, 256, 1024):
             with precision(bits):
@@ -139,17 +140,6 @@ class NormalForm:
                 if real < 0:
                     return "-"
         return ""
-
-    def _sign_of_wave(self, p: fmpq_mpoly) -> str:
-        """Return the sign of a cos φ + b sin φ with rational a, b on the range of φ."""
-        terms = self.tower.terms(p)
-        kernels = [self.tower.generators[m[0][0]] for m, _ in terms if len(m) == 1 and m[0][1] == 1]
-        if len(kernels) != len(terms) or len(terms) > 2:
-            return ""
-        weights = {kernel[0]: c for kernel, (_, c) in zip(kernels, terms, strict=True)}
-        if not set(weights) <= {"cos", "sin"} or len({kernel[1] for kernel in kernels}) > 1:
-            return ""
-        return angles.sign_of_wave(self, kernels[0][1], weights.get("cos", 0), weights.get("sin", 0))
 
     def _is_constant(self, generator: int) -> bool:
         """Tell whether a generator is a number."""
@@ -192,7 +182,7 @@ class NormalForm:
             case sp.Abs():
                 return powers.modulus(self, self.form(expr.args[0]))
             case sp.sign():
-                return self._sign_function(expr)
+                return complex_parts.sign_function(self, expr) or self._opaque(expr)
             case _ if expr is sp.pi:
                 return self.pi
             case _ if expr is sp.I:
@@ -204,7 +194,11 @@ class NormalForm:
             case _:
                 pass
         elementary = (
-            angles.elementary(self, expr) or arcs.elementary(self, expr) or elliptic.elementary(self, expr)
+            angles.elementary(self, expr)
+            or arcs.elementary(self, expr)
+            or complex_parts.elementary(self, expr)
+            or gammas.elementary(self, expr)
+            or elliptic.elementary(self, expr)
         )
         return self._opaque(expr) if elementary is None else elementary
 
@@ -216,21 +210,11 @@ class NormalForm:
         """
         base, exponent = expr.args
         if isinstance(exponent, sp.Integer):
-            if abs(int(exponent)) > LARGEST_EXPONENT:
-                raise TooLarge(f"the exponent {exponent}")
-            return self.tower.power(self.form(base), int(exponent))
+            return large_powers.power(self, self.form(base), int(exponent))
         if isinstance(exponent, sp.Rational):
             return powers.root(self, self.form(base), fmpq(int(exponent.p), int(exponent.q)))
         logarithm = powers.logarithm(self, self.form(base), whole_powers=bool(exponent.is_integer))
         return powers.exponential(self, self.tower.times(self.form(exponent), logarithm))
-
-    def _sign_function(self, expr: sp.sign) -> Fraction:
-        """Return sign(u): 1 or −1 where the sign is proven, u/|u| where u is proven not to vanish."""
-        inner = self.form(expr.args[0])
-        known = self.sign(inner)
-        if known in ("+", "-"):
-            return self.tower.number(1 if known == "+" else -1)
-        return self._opaque(expr)
 
     def _opaque(self, expr: sp.Basic) -> Fraction:
         """Return a kernel that is equal for equal functions of equal arguments."""

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import fmpq
 
+from canon.proof.algebraic import root_in_field
 from canon.proof.angles import combination, cos_sin, divided, imaginary_split, phase_of_pi
+from canon.proof.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.factors import apart, factors_of, modulus_of_polynomial, primes, split_signs
+from canon.proof.large_powers import power
+from canon.proof.number_logs import is_number, log_by_relations, primes_below, turns_of_number
 from canon.proof.tower import Fraction
 
 if TYPE_CHECKING:
@@ -81,9 +85,10 @@ def _logarithms_defined(n: NormalForm, f: Fraction) -> bool:
 
 
 def _of_lambert_w(n: NormalForm, w: Fraction, kernel: tuple[object, ...]) -> Fraction | None:
-    """Return exp(W(z)) = z/W(z) for z proven not to vanish (W(z) exp W(z) = z on every branch)."""
+    """Return exp(W(z)) = z/W(z) for z ≠ 0 (W(z) exp W(z) = z on every branch; but for W₀ none has a value at 0)."""
     z = n.arguments.get(kernel)
-    if z is None or n.sign(z) not in ("+", "-"):
+    principal = len(cast("tuple[object, ...]", kernel[1])) == 1
+    if z is None or (principal and n.sign(z) not in ("+", "-")):
         return None
     return n.over(z, w)
 
@@ -151,7 +156,7 @@ def _root_kernel(n: NormalForm, radicand: Fraction, r: fmpq, sign: str) -> Fract
     t = n.tower
     whole = int(r.p) // int(r.q)
     part = r - whole
-    outside = t.power(radicand, whole)
+    outside = power(n, radicand, whole)
     if part == 0:
         return outside
     key = n.fraction_key(radicand)
@@ -159,12 +164,9 @@ def _root_kernel(n: NormalForm, radicand: Fraction, r: fmpq, sign: str) -> Fract
     kernel = ("root", key, m)
     if not t.knows(kernel):
         if radicand.den:
-            opaque = n.atom(
-                ("power", key, int(part.p), int(part.q)),
-                "",
-                lambda: n.fraction_expression(radicand) ** sp.Rational(int(part.p), int(part.q)),
-            )
-            return t.times(outside, opaque)
+            return t.times(outside, _root_of_fraction(n, radicand, m, int((part * m).p)))
+        if m > 2 and sign == "+" and (alpha := _root_of_number(n, radicand, m)) is not None:
+            return t.times(outside, t.power(alpha, int((part * m).p)))
         if m == 2 and sign and (known := n.known_roots.get(key) or _denested(n, radicand.num)):
             n.known_roots[key] = known
             return t.times(outside, known)
@@ -173,6 +175,34 @@ def _root_kernel(n: NormalForm, radicand: Fraction, r: fmpq, sign: str) -> Fract
         t.relate(index, m, radicand.num)
     rho = n.atom(kernel, sign, lambda: n.fraction_expression(radicand) ** sp.Rational(1, m))
     return t.times(outside, t.power(rho, int((part * m).p)))
+
+
+def _root_of_fraction(n: NormalForm, radicand: Fraction, m: int, k: int) -> Fraction:
+    """Return (N/D)^(k/m) = σᵏ/Dᵏ with the kernel σ = D·(N/D)^(1/m), for which σᵐ = N·Dᵐ⁻¹."""
+    t = n.tower
+    below = n.denominator(radicand)
+    kernel = ("scaled root", n.fraction_key(radicand), m)
+    if not t.knows(kernel):
+        power_of_kernel = t.product(radicand.num, t.polynomial_power(below, m - 1))
+        n.arguments[kernel] = radicand
+        t.relate(t.generator(kernel), m, power_of_kernel)
+    sigma = n.atom(
+        kernel, "", lambda: n.expression(below) * n.fraction_expression(radicand) ** sp.Rational(1, m)
+    )
+    return t.times(t.power(sigma, k), t.power(t.reciprocal(Fraction(below)), k))
+
+
+def _root_of_number(n: NormalForm, radicand: Fraction, m: int) -> Fraction | None:
+    """Return ᵐ√p for a positive number p of a quadratic field where the root lies in that field: ³√(2 + √5) = φ."""
+    if not is_number(n, radicand):
+        return None
+    with precision(128):
+        try:
+            size = value(n.expression(radicand.num), {}).real.root(m)
+        except (NotDecided, Undefined, Unmodelled):
+            return None
+        alpha = root_in_field(n.tower, radicand.num, m, size)
+    return Fraction(alpha) if alpha is not None and n.signs.of(alpha) == "+" else None
 
 
 def _denested(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
@@ -253,19 +283,34 @@ def logarithm(n: NormalForm, f: Fraction, *, whole_powers: bool = False) -> Frac
     if rest.num.is_constant() and not rest.den:
         if rest.num.leading_coefficient() < 0:
             terms.append(t.times(n.imaginary_unit, n.pi))
-    elif (quarter_turns := _quarter_turns(n, rest)) is not None:
-        terms.append(n.scaled(fmpq(quarter_turns, 2), t.times(n.imaginary_unit, n.pi)))
+    elif (log := _log_of_complex_number(n, rest)) is not None:
+        terms.append(log)
     else:
         terms.append(_log_kernel(n, rest, ""))
     return t.sum(terms)
 
 
-def _quarter_turns(n: NormalForm, f: Fraction) -> int | None:
-    """Return 1 for i and −1 for −i."""
-    for sign in (1, -1):
-        if n.only_kernel(n.scaled(sign, f)) == ("I",):
-            return sign
-    return None
+def _log_of_complex_number(n: NormalForm, z: Fraction) -> Fraction | None:
+    """Return log z = log(z z̄)/2 + iπr for a number whose argument is a rational multiple of π."""
+    turns = turns_of_number(n, z)
+    if turns is None:
+        return None
+    t = n.tower
+    a, b = imaginary_split(n, z)
+    size = t.sum([t.times(a, a), t.times(b, b)])
+    phase = n.scaled(turns, t.times(n.imaginary_unit, n.pi))
+    return t.sum([n.scaled(fmpq(1, 2), logarithm(n, size)), phase])
+
+
+def _log_of_number(n: NormalForm, g: fmpq_mpoly) -> Fraction:
+    """Return log g for an algebraic number g > 0, through logarithms met before where powers of them make g."""
+    logs = {p: _log_kernel(n, n.tower.number(p), "+") for p in primes_below(n, g)}
+    found = log_by_relations(n, g, logs)
+    if found is None:
+        f = Fraction(g)
+        found = _log_kernel(n, f, n.sign(n.minus(f, n.tower.number(1))) or "real")
+        n.number_logs.append((g, found))
+    return found
 
 
 def _log_of_factor(n: NormalForm, f: Fraction) -> Fraction:
@@ -283,7 +328,9 @@ def _log_of_factor(n: NormalForm, f: Fraction) -> Fraction:
         inner = _log_of_factor(n, radicand) if positive else _log_kernel(n, radicand, "")
         return n.scaled(fmpq(1, kernel[2]), inner)
     if not n.sign(f).endswith("+"):
-        return _log_kernel(n, f, "")
+        return _log_of_complex_number(n, f) or _log_kernel(n, f, "")
+    if is_number(n, f):
+        return _log_of_number(n, f.num)
     return _log_kernel(n, f, n.sign(n.minus(f, n.tower.number(1))) or "real")
 
 

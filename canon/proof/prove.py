@@ -12,11 +12,10 @@ from sympy.functions.elementary.hyperbolic import InverseHyperbolicFunction
 from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction
 
 from canon.proof.anatomy import Anatomy, anatomy
-from canon.proof.angles import Refine
 from canon.proof.conjugates import radicals_cancel
 from canon.proof.domain import Domain
 from canon.proof.groups import groups
-from canon.proof.limits import QUICK, THOROUGH, Full, Limits, OutOfTime, TooLarge
+from canon.proof.limits import QUICK, THOROUGH, Full, Limits, OutOfTime, Refine, TooLarge
 from canon.proof.normal_form import NormalForm
 from canon.proof.phases import arcs_cancel
 from canon.proof.replacement import KINKED

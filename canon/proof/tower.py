@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from flint.utils.flint_exceptions import DomainError
 
+from canon.proof.algebraic import reciprocal
 from canon.proof.ideal import Ideal
 from canon.proof.limits import THOROUGH, Full, Limits, OutOfTime, TooLarge
 
@@ -315,12 +316,14 @@ class Tower:
         return self._cancelled(upper, den)
 
     def _rational_base(self, p: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
-        """Rewrite 1/p as (multiplier, base) when p is one root ρ with ρⁿ = R: 1/ρ = ρⁿ⁻¹/R."""
+        """Rewrite 1/p as (multiplier, base) when p is one root ρ with ρⁿ = R: 1/ρ = ρⁿ⁻¹/R, or has a reciprocal."""
         if len(p) == 1 and p.total_degree() == 1:
             (k,) = self.used(p)
             relation = self.relation(k)
             if relation is not None and len(relation[1]) == 1:
                 return self.monomial(k, relation[0] - 1), self.reduce(relation[1])
+        if len(p) > 1 and (inverse := reciprocal(self, p)) is not None:
+            return inverse, self.constant(1)
         return self.constant(1), p
 
     def power(self, f: Fraction, n: int) -> Fraction:

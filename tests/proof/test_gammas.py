@@ -1,0 +1,123 @@
+"""The gamma family and both real branches of the Lambert W function."""
+
+import pytest
+from sympy import (
+    LambertW,
+    Rational,
+    beta,
+    binomial,
+    cos,
+    digamma,
+    erf,
+    erfc,
+    exp,
+    factorial,
+    gamma,
+    log,
+    loggamma,
+    pi,
+    sin,
+    symbols,
+)
+
+from canon.proof import Domain, equal
+
+x, y = symbols("x y", real=True)
+p, q = symbols("p q", positive=True)
+n, k = symbols("n k", integer=True)
+N = symbols("N", integer=True, positive=True)
+
+TRUE = [
+    (gamma(x + 1), x * gamma(x), Domain(), gamma(x)),
+    (factorial(n + 1), (n + 1) * factorial(n), Domain((n >= 0,)), n * factorial(n)),
+    (gamma(x + 3) / gamma(x), x * (x + 1) * (x + 2), Domain(), x * (x + 1) * (x + 3)),
+    (gamma(x + Rational(1, 2)) / gamma(x - Rational(1, 2)), x - Rational(1, 2), Domain(), x + Rational(1, 2)),
+    (factorial(N), gamma(N + 1), Domain(), gamma(N)),
+    (binomial(N, 2), N * (N - 1) / 2, Domain(), N * (N + 1) / 2),
+    (factorial(N) / factorial(N - 1), N, Domain(), N + 1),
+    (gamma(x) * gamma(1 - x), pi / sin(pi * x), Domain(), pi / cos(pi * x)),
+    (beta(p, q), gamma(p) * gamma(q) / gamma(p + q), Domain(), gamma(p) * gamma(q)),
+    (beta(p + 1, q), beta(p, q) * p / (p + q), Domain(), beta(p, q) * q / (p + q)),
+    (loggamma(p + 1), log(p) + loggamma(p), Domain(), loggamma(p)),
+    (digamma(p + 1), digamma(p) + 1 / p, Domain(), digamma(p)),
+    (gamma(x + 1) * gamma(y - 1) * (y - 1), x * gamma(x) * gamma(y), Domain(), x * gamma(x) * gamma(y) * 2),
+    (gamma(n + 1), factorial(n), Domain((n >= 0,)), factorial(n + 1)),
+    (
+        binomial(N + 1, k),
+        binomial(N, k) + binomial(N, k - 1),
+        Domain(
+            (
+                k >= 1,
+                k <= N,
+            )
+        ),
+        binomial(N, k),
+    ),
+    (
+        LambertW(x, -1) * exp(LambertW(x, -1)),
+        x,
+        Domain(
+            (
+                x < 0,
+                x > -exp(-1),
+            )
+        ),
+        -x,
+    ),
+    (LambertW(x, -1) * exp(LambertW(x, -1)), x, Domain(), -x),
+    (
+        LambertW(x, -1).diff(x),
+        1 / (exp(LambertW(x, -1)) * (1 + LambertW(x, -1))),
+        Domain(
+            (
+                x < 0,
+                x > -exp(-1),
+            )
+        ),
+        1 / (exp(LambertW(x, -1))),
+    ),
+    (
+        log(-LambertW(x, -1)) + LambertW(x, -1),
+        log(-x),
+        Domain(
+            (
+                x < 0,
+                x > -exp(-1),
+            )
+        ),
+        log(x),
+    ),
+    (LambertW(x * exp(x), -1), x, Domain((x < -1,)), -x),
+    (LambertW(x) * exp(LambertW(x)), x, Domain(), -x),
+    (exp(LambertW(x)), x / LambertW(x), Domain((x > 0,)), x * LambertW(x)),
+    (LambertW(-log(2) / 2, -1), -2 * log(2), Domain(), -log(2)),
+    (gamma(x + 1).diff(x), gamma(x) + x * gamma(x).diff(x), Domain((x > 0,)), gamma(x)),
+    (erfc(x), 1 - erf(x), Domain(), 1 + erf(x)),
+]
+
+
+@pytest.mark.parametrize(("left", "right", "domain", "twin"), TRUE)
+def test_identity_holds_and_its_twin_fails(left, right, domain, twin):
+    assert equal(left, right, domain).holds
+    assert equal(left, twin, domain).fails
+
+
+def test_reflection_needs_arguments_that_leave_no_whole_number():
+    assert equal(gamma(x) * gamma(-x), -pi / (x * sin(pi * x))).holds
+    assert equal(gamma(x) * gamma(-x), pi / (x * sin(pi * x))).fails
+    assert not equal(gamma(x) * gamma(3 - x), (2 - x) * (1 - x) * pi / sin(pi * x)).fails
+
+
+def test_binomial_coefficients_outside_the_triangle():
+    """C(1, 3) = 0 has a value where Γ(−1) has none."""
+    m, j = symbols("m j", integer=True, nonnegative=True)
+    assert not equal(binomial(m, j), gamma(m + 1) / (gamma(j + 1) * gamma(m - j + 1))).fails
+    assert equal(binomial(m, j), factorial(m) / (factorial(j) * factorial(m - j)), Domain((j <= m,))).holds
+    assert equal(binomial(m, j), factorial(m) / (factorial(j) * factorial(m + j)), Domain((j <= m,))).fails
+
+
+def test_each_branch_of_lambert_w_is_its_own():
+    below = Domain((x > -exp(-1), x < 0))
+    assert equal(LambertW(x, -1), LambertW(x), below).fails
+    assert equal(LambertW(x * exp(x), -1), x, Domain((x > -1, x < 0))).fails
+    assert equal(LambertW(x * exp(x)), x, Domain((x > -1,))).holds

@@ -1,0 +1,54 @@
+"""Large whole exponents."""
+
+import pytest
+from sympy import Abs, I, Rational, cos, cosh, diff, exp, sin, sinh, sqrt, symbols, tan
+
+from canon.proof import Domain, equal
+
+x, y = symbols("x y", real=True)
+
+TRUE = [
+    ((x + 1) ** 250 * (x - 1) ** 250, (x**2 - 1) ** 250, Domain(), (x**2 + 1) ** 250),
+    (sin(x) ** 300, (1 - cos(x) ** 2) ** 150, Domain(), (1 + cos(x) ** 2) ** 150),
+    ((x**2 + 2 * x + 1) ** 300, (x + 1) ** 600, Domain(), (x + 1) ** 500),
+    (
+        sin(x) ** 300 + cos(x) ** 300,
+        cos(x) ** 300 + sin(x) ** 298 * (1 - cos(x) ** 2),
+        Domain(),
+        cos(x) ** 300,
+    ),
+    (tan(x) ** 400 * cos(x) ** 400, sin(x) ** 400, Domain(), sin(x) ** 300),
+    ((x - y) ** 400, (y - x) ** 400, Domain(), -((x - y) ** 400)),
+    (((x + 1) ** 300 - (x + 1) ** 299), x * (x + 1) ** 299, Domain(), x * (x + 1) ** 300),
+    (diff(sin(x) ** 300, x), 300 * sin(x) ** 299 * cos(x), Domain(), -300 * sin(x) ** 299 * cos(x)),
+    ((x**2 - y**2) ** 300 / (x - y) ** 300, (x + y) ** 300, Domain(), (x - y) ** 300),
+    ((1 + tan(x) ** 2) ** 250, 1 / cos(x) ** 500, Domain(), cos(x) ** 500),
+    (sqrt(x**2 + 1) ** 501, (x**2 + 1) ** 250 * sqrt(x**2 + 1), Domain(), (x**2 + 1) ** 250),
+    ((cosh(x) ** 2 - sinh(x) ** 2) ** 1000, 1, Domain(), 2),
+    ((sin(x) ** 2 + cos(x) ** 2) ** 5000, 1, Domain(), 2),
+    (cos(x) ** 2000 * (1 + tan(x) ** 2) ** 1000, 1, Domain(), 2),
+    ((x + 1) ** 3000 * (x - 1) ** 3000, (x**2 - 1) ** 3000, Domain(), (x**2 + 1) ** 3000),
+    ((1 + x) ** Rational(501, 2), (1 + x) ** 250 * sqrt(1 + x), Domain(), (1 + x) ** 250),
+    (exp(I * x) ** 300, cos(300 * x) + I * sin(300 * x), Domain(), cos(300 * x)),
+    (cos(2 * x) ** 250, (cos(x) ** 2 - sin(x) ** 2) ** 250, Domain(), (cos(x) ** 2 + sin(x) ** 2) ** 250),
+]
+
+
+@pytest.mark.parametrize(("left", "right", "domain", "twin"), TRUE)
+def test_identity_holds_and_its_twin_fails(left, right, domain, twin):
+    assert equal(left, right, domain).holds
+    assert equal(left, twin, domain).fails
+
+
+def test_powers_of_sums_in_three_variables_are_not_multiplied_out():
+    z = symbols("z", real=True)
+    assert equal((x + y + z) ** 900 / (x + y + z) ** 899, x + y + z).holds
+    assert equal((x + y + z) ** 900 - (x + y + z) ** 899, (x + y + z - 1) * (x + y + z) ** 899).holds
+    assert equal((x * y + z) ** 100000 * (x * y - z) ** 100000, (x**2 * y**2 - z**2) ** 100000).holds
+
+
+def test_the_sign_of_a_large_power_follows_its_parity():
+    assert equal(sqrt((x + y) ** 1000), (x + y) ** 500).holds
+    assert equal(sqrt((x + y) ** 1002), (x + y) ** 501).fails
+    assert equal(sqrt((x + y + 1) ** 2002), Abs(x + y + 1) ** 1001).holds
+    assert equal((x - y) ** 3001, -((y - x) ** 3001)).holds
