@@ -12,6 +12,7 @@ from sympy.logic.boolalg import Boolean
 
 from canon.proof.anatomy import anatomy
 from canon.proof.domain import Domain, declared_complex
+from canon.proof.periods import period_of
 from canon.proof.polynomial import is_left_out, polynomial_factors
 from canon.proof.replacement import KINKED, NoValue, defined_nowhere, replaced
 from canon.proof.typed import arguments, by_name, free_symbols
@@ -104,7 +105,7 @@ def _by_integer(expr: Expr, domain: Domain) -> list[Case] | None:
         if low.is_finite and high.is_finite and high - low <= MOST_VALUES:
             values = range(int(sp.ceiling(low)), int(sp.floor(high)) + 1)
             return [_substituted(expr, domain, n, sp.Integer(k), f"{n} = {k}") for k in values]
-        period = _period(expr, n)
+        period = period_of(expr, n)
         if 1 < period <= MOST_VALUES:
             turns = sp.Dummy("k", integer=True)
             return [
@@ -112,39 +113,6 @@ def _by_integer(expr: Expr, domain: Domain) -> list[Case] | None:
                 for r in range(period)
             ]
     return None
-
-
-def _period(expr: Expr, n: Symbol) -> int:
-    """Return a period of the angles πp(n)/d and of powers of −1 and ±i, p whole polynomials; 1 where all is a sign.
-
-    p(n + 2d) − p(n) is a multiple of 2d. Linear angles πn need no period: (−1)ⁿ is a kernel of its own.
-    """
-    period = 1
-    for turns in _turns(expr):
-        slope = turns.diff(n)
-        if isinstance(slope, sp.Rational):
-            period = int(sp.ilcm(period, 2 * slope.q)) if slope.q > 1 else period
-        elif turns.is_polynomial(n):
-            coefficients = sp.Poly(turns, n).all_coeffs()[:-1]
-            if all(isinstance(c, sp.Rational) for c in coefficients):
-                whole = int(sp.ilcm(1, *(c.q for c in coefficients)))
-                if whole > 1 or any(c % 2 for c in coefficients[:-1]):
-                    period = int(sp.ilcm(period, 2 * whole))
-    return period
-
-
-def _turns(expr: Expr) -> Iterator[Expr]:
-    """Yield the angles, in half turns, of sines and cosines and of powers of −1 and ±i in an expression."""
-    for turned in expr.atoms(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
-        yield arguments(turned)[0] / sp.pi
-    for power in expr.atoms(sp.Pow, sp.exp):
-        if isinstance(power, sp.exp):
-            yield sp.expand(arguments(power)[0] / (sp.pi * sp.I))
-        elif power.base in _QUARTER_TURNS:
-            yield sp.expand(power.exp * sp.Rational(_QUARTER_TURNS[power.base], 2))
-
-
-_QUARTER_TURNS: dict[sp.Basic, int] = {sp.Integer(-1): 2, sp.I: 1, -sp.I: -1}
 
 
 def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | None:
