@@ -395,6 +395,8 @@ _FUNCTIONS: dict[Any, Callable[..., acb]] = {
     sp.gamma: lambda z: z.gamma(),
     sp.factorial: lambda z: (z + 1).gamma(),
     sp.binomial: lambda a, b: (a + 1).gamma() * (b + 1).rgamma() * (a - b + 1).rgamma(),
+    sp.RisingFactorial: lambda z, k: (z + k).gamma() * z.rgamma(),
+    sp.FallingFactorial: lambda z, k: (z + 1).gamma() * (z - k + 1).rgamma(),
     sp.beta: lambda a, b: a.gamma() * b.gamma() * (a + b).rgamma(),
     sp.loggamma: lambda z: z.lgamma(),
     sp.polygamma: lambda order, z: z.polygamma(order),

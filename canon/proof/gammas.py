@@ -38,6 +38,14 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return _binomial(n, *(n.form(a) for a in expr.args))
         case sp.beta():
             return _beta(n, *(n.form(a) for a in expr.args))
+        case sp.RisingFactorial():
+            x, k = (n.form(a) for a in expr.args)
+            return _ratio(n, n.tower.sum([x, k]), x)
+        case sp.FallingFactorial():
+            x, k = (n.form(a) for a in expr.args)
+            return _ratio(n, _shifted(n, x, 1), _shifted(n, n.minus(x, k), 1))
+        case sp.fibonacci() | sp.lucas() if len(expr.args) == 1 and arguments(expr)[0].is_integer:
+            return n.form(_binet(expr))
         case sp.loggamma():
             return _log_gamma(n, n.form(expr.args[0]))
         case sp.polygamma() if isinstance(expr.args[0], sp.Integer) and 0 <= expr.args[0] <= LARGEST_SHIFT:
@@ -66,10 +74,7 @@ def _rising(n: NormalForm, z: Fraction, k: int) -> Fraction:
 
 
 def _gamma(n: NormalForm, z: Fraction) -> Fraction:
-    """Return Γ(z) = z₀(z₀ + 1)…(z − 1)Γ(z₀) for an earlier z₀ = z − k, by reflection for one with z₀ + z = k ≤ 1.
-
-    Where Γ(z₀) and Γ(k − z₀), k ≤ 1, both have a value z₀ is not whole, so that sin πz₀ ≠ 0.
-    """
+    """Return Γ(z) = z₀(z₀ + 1)…(z − 1)Γ(z₀) for an earlier z₀ = z − k, by reflection for one with z₀ + z = k."""
     t = n.tower
     z = t.canonical(z)
     whole = _whole(z)
@@ -81,10 +86,9 @@ def _gamma(n: NormalForm, z: Fraction) -> Fraction:
             if shift >= 0:
                 return t.times(_rising(n, base, shift), value)
             return n.over(value, _rising(n, z, -shift))
-        if mirror is not None and mirror <= 1:
-            sine = cos_sin(n, t.times(n.pi, base))[1]
-            below = t.times(sine, value, _rising(n, z, 1 - mirror))
-            return n.over(n.pi, below)
+        reflected = None if mirror is None else _reflected(n, z, mirror, base, value)
+        if reflected is not None:
+            return reflected
     if t.is_zero(n.minus(z, t.number(fmpq(1, 2)))):
         return n.form(sp.sqrt(sp.pi))
     sign = "+" if n.sign(z) == "+" else "real" if n.is_real(z) else ""
@@ -92,6 +96,22 @@ def _gamma(n: NormalForm, z: Fraction) -> Fraction:
     found = n.atom(kernel, sign, lambda: sp.gamma(n.fraction_expression(z)))
     n.gammas.append((z, found))
     return found
+
+
+def _reflected(n: NormalForm, z: Fraction, k: int, base: Fraction, value: Fraction) -> Fraction | None:
+    """Return Γ(z) = Γ(k − z₀) through Γ(1 − z₀) = π/(sin πz₀ Γ(z₀)), where sin πz₀ ≠ 0.
+
+    Where Γ(z₀) and Γ(k − z₀) both have a value and k ≤ 1, z₀ is not whole; for k > 1 that sine has to be proved
+    not to vanish.
+    """
+    t = n.tower
+    sine = cos_sin(n, t.times(n.pi, base))[1]
+    if k > 1 and not (n.is_real(sine) and n.signs.nonzero(sine.num)):
+        return None
+    opposite = n.over(n.pi, t.times(sine, value))
+    if k <= 1:
+        return n.over(opposite, _rising(n, z, 1 - k))
+    return t.times(opposite, _rising(n, n.minus(t.number(1), base), k - 1))
 
 
 def _positive(n: NormalForm, *fractions: Fraction) -> bool:
@@ -109,6 +129,22 @@ def _binomial(n: NormalForm, a: Fraction, b: Fraction) -> Fraction | None:
     if not _positive(n, above, *below):
         return None
     return n.over(_gamma(n, above), t.times(*(_gamma(n, z) for z in below)))
+
+
+def _ratio(n: NormalForm, above: Fraction, below: Fraction) -> Fraction | None:
+    """Return Γ(a)/Γ(b) for positive a and b."""
+    if not _positive(n, above, below):
+        return None
+    first, second = _gamma(n, below), _gamma(n, above)
+    return n.over(second, first)
+
+
+def _binet(expr: sp.Basic) -> sp.Expr:
+    """Return Fₖ = (φᵏ − (−φ)⁻ᵏ)/√5 or Lₖ = φᵏ + (−φ)⁻ᵏ, which hold for every whole k."""
+    k, phi = arguments(expr)[0], (1 + sp.sqrt(5)) / 2
+    if isinstance(expr, sp.lucas):
+        return phi**k + (-phi) ** (-k)
+    return (phi**k - (-phi) ** (-k)) / sp.sqrt(5)
 
 
 def _beta(n: NormalForm, a: Fraction, b: Fraction) -> Fraction | None:

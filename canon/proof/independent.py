@@ -35,6 +35,9 @@ def in_earlier_fractions(n: NormalForm, a: Fraction) -> tuple[list[tuple[Fractio
     Over the common denominator D, a = N/D and aₖ = Nₖ/D: where the remainders of N and Σ cₖNₖ by D are equal, q is the
     difference of the quotients. A fraction that is independent of all before joins them.
     """
+    whole = _as_polynomial(n, a)
+    if whole is not None:
+        return [], whole
     key = n.fraction_key(a)
     known = n.independent
     if key in known:
@@ -44,6 +47,28 @@ def in_earlier_fractions(n: NormalForm, a: Fraction) -> tuple[list[tuple[Fractio
     if found is None and len(known) < MOST_FRACTIONS:
         known[key] = a
     return found
+
+
+def _as_polynomial(n: NormalForm, a: Fraction) -> fmpq_mpoly | None:
+    """Return q with N = qB for a = N/B, B = b + cσ and σ² a polynomial: c²/(1 − s) is 1 + s where s² = 1 − c².
+
+    It is found as N(b − cσ)/(b² − c²σ²), and N = qB is verified, so that it holds also where b − cσ = 0.
+    """
+    t = n.tower
+    if len(a.den) != 1 or a.den[0][1] != 1 or len(a.num) > LONGEST:
+        return None
+    below = t.base(a.den[0][0])
+    k = t.used(below)[-1]
+    relation = t.relation(k)
+    parts = t.coefficients(below, k)
+    if relation is None or relation[0] != 2 or len(parts) != 2 or len(below) > LONGEST:
+        return None
+    b, c = parts
+    norm = t.reduce(t.product(b, b) - t.product(t.product(c, c), relation[1]))
+    if norm.is_zero():
+        return None
+    q, remainder = divmod(t.product(a.num, b - c * t.monomial(k)), norm)
+    return q if remainder.is_zero() and t.reduce(a.num - t.product(q, below)).is_zero() else None
 
 
 def _sharing_factors(known: list[Fraction], a: Fraction) -> list[Fraction]:

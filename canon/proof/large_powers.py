@@ -22,7 +22,7 @@ __all__ = ["power"]
 WRITTEN_OUT = 200
 """Whole powers of any fraction that are multiplied out."""
 
-SHORT_WRITTEN_OUT = 600
+SHORT_WRITTEN_OUT = 300
 """Whole powers of two terms that are multiplied out."""
 
 LARGEST_MONOMIAL = 2000

@@ -1,4 +1,4 @@
-"""Periods of integers in angles πn/d and in powers of −1 and i."""
+"""Periods of integers in angles πn/d and in powers of numbers whose arguments are such."""
 
 from __future__ import annotations
 
@@ -15,11 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = ["period_of"]
 
-_QUARTER_TURNS: dict[sp.Basic, int] = {sp.Integer(-1): 2, sp.I: 1, -sp.I: -1}
-
 
 def period_of(expr: Expr, n: Symbol) -> int:
-    """Return a period of the angles πp(n)/d and of powers of −1 and ±i, p whole polynomials; 1 where all is a sign.
+    """Return a period of the angles πp(n)/d and of powers of numbers, p whole polynomials; 1 where all is a sign.
 
     p(n + 2d) − p(n) is a multiple of 2d. Linear angles πn need no period: (−1)ⁿ is a kernel of its own.
 
@@ -44,11 +42,13 @@ def period_of(expr: Expr, n: Symbol) -> int:
 
 
 def _turns(expr: Expr) -> Iterator[Expr]:
-    """Yield the angles, in half turns, of sines and cosines and of powers of −1 and ±i in an expression."""
+    """Yield the angles, in half turns, of sines and cosines and of powers of numbers in an expression."""
     for turned in expr.atoms(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
         yield arguments(turned)[0] / sp.pi
     for power in expr.atoms(sp.Pow, sp.exp):
         if isinstance(power, sp.exp):
             yield sp.expand(arguments(power)[0] / (sp.pi * sp.I))
-        elif power.base in _QUARTER_TURNS:
-            yield sp.expand(power.exp * sp.Rational(_QUARTER_TURNS[power.base], 2))
+        elif power.base.is_number and not power.base.is_positive and not power.exp.is_number:
+            turns = sp.arg(power.base) / sp.pi
+            if isinstance(turns, sp.Rational):
+                yield sp.expand(power.exp * turns)

@@ -107,6 +107,7 @@ def root(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
     if t.is_zero(f):
         return t.power(t.number(0), 1 if r > 0 else -1)
     content, outside, rest = split_signs(n, f)
+    outside.sort(key=lambda power: n.signs.of(power[0].num) != "+")
     factors = [_root_kernel(n, t.number(p), r * e, "+") for p, e in primes(content)]
     factors.extend(_root_of_nonnegative(n, p, r * e) for p, e in outside)
     if rest.num.is_constant() and not rest.den:
@@ -225,15 +226,32 @@ def _by_products(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
             product = p
             for _, radicand in chosen:
                 product = t.product(product, radicand)
-            square = t.square_root(product)
+            square = _square_root(n, product)
             if square is None or any(n.signs.of(radicand) != "+" for _, radicand in chosen):
                 continue
-            result = modulus(n, Fraction(square))
+            result = square
             for kernel, radicand in chosen:
                 rho = Fraction(t.monomial(t.generator(kernel)))
                 result = t.times(result, rho, t.reciprocal(Fraction(radicand)))
             return result
     return None
+
+
+def _square_root(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
+    """Return √p = |S| for p = S², also with 1 − c² = s², or of a positive rational p."""
+    if p.is_constant() and p.leading_coefficient() > 0:
+        return root(n, Fraction(p), fmpq(1, 2))
+    square = n.tower.square_root(p)
+    if square is not None:
+        return modulus(n, Fraction(square))
+    if not any(n.tower.generators[k][0] == "cos" for k in n.tower.used(p)):
+        return None
+    unit, factors = factors_of(n, p)
+    outside = n.tower.square_root(n.tower.constant(unit)) if unit > 0 else None
+    if outside is None or any(e % 2 for _, e in factors):
+        return None
+    parts = (n.tower.power(modulus(n, Fraction(q)), e // 2) for q, e in factors)
+    return n.tower.times(Fraction(outside), *parts)
 
 
 def _by_conjugate(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:

@@ -93,6 +93,11 @@ class Signs:
         for factor, _ in self.tower.factors(p)[1]:
             self._nonzero.add(self.tower.key(factor))
 
+    def nonzero(self, p: fmpq_mpoly) -> bool:
+        """Tell whether p is proven not to vanish wherever the claim is about."""
+        p = self.tower.reduce(p)
+        return self.of(p) in ("+", "-") or (not p.is_constant() and self._known_nonzero(p))
+
     def forget_nonzero(self) -> None:
         """Forget what :meth:`learn_nonzero` recorded: excluded points may cut a domain in two."""
         self._nonzero.clear()

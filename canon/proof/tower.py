@@ -29,6 +29,10 @@ LARGEST_POWER = 2000
 """Whole powers that are written out; flint ends the process where a coefficient overflows the memory."""
 
 
+FEW_DIVISIONS = 8
+"""Powers of a generator up to this are cancelled one by one."""
+
+
 @dataclass(frozen=True)
 class Fraction:
     """A numerator over a product of numbered bases: ``num / Π base[i]**e``."""
@@ -278,6 +282,11 @@ class Tower:
         left: list[tuple[int, int]] = []
         for i, e in sorted(den.items()):
             base = self.base(i)
+            if e > FEW_DIVISIONS and len(base) == 1 and base.total_degree() == 1:
+                common = min(e, num.term_content().degrees()[self._capacity - 1 - self.used(base)[0]])
+                num, e = divmod(num, base**common)[0], e - common
+                left += [(i, e)] if e > 0 else []
+                continue
             while e > 0 and len(base) <= len(num) <= 2000 and len(base) * len(num) <= self.limits.product:
                 self.check_time()
                 quotient, remainder = divmod(num, base)

@@ -136,6 +136,13 @@ def test_identity_holds_and_its_twin_fails(left, right, domain, twin):
     assert equal(left, twin, domain).fails
 
 
+def test_fractions_of_sines_are_divided_by_their_relation():
+    assert equal(exp(cos(x) ** 2 / (1 - sin(x))), E * exp(sin(x))).holds
+    assert equal(exp(cos(x) ** 2 / (1 - sin(x))), E * exp(-sin(x))).fails
+    assert equal(cos(x * sqrt(2 - sqrt(2)) * sqrt(2 + sqrt(2))), cos(sqrt(2) * x)).holds
+    assert equal(cos(x * sqrt(2 - sqrt(2)) * sqrt(2 + sqrt(2))), cos(2 * x)).fails
+
+
 def test_a_denominator_that_may_vanish_stays():
     """1/(x + √2) has a value at −√2 only by its own form: nothing is multiplied by x − √2, which vanishes at √2."""
     assert equal(f(1 / (x + sqrt(2))), f((x - sqrt(2)) / (x**2 - 2))).undecided

@@ -348,6 +348,13 @@ def test_identity_holds_and_its_twin_fails(left, right, domain, twin):
     assert equal(left, twin, domain).fails
 
 
+def test_half_angle_from_the_cosine():
+    half = 2 * atan(sqrt((1 - cos(x)) / (1 + cos(x))))
+    assert equal(half, x, Domain((x >= 0, x < pi))).holds
+    assert equal(half, -x, Domain((x > -pi, x <= 0))).holds
+    assert equal(half, x, Domain((x > -pi, x < pi))).fails
+
+
 def test_atan2_of_sine_and_cosine_is_the_angle_up_to_a_turn():
     assert equal(atan2(sin(x), cos(x)), x, Domain((x > -pi, x < 2 * pi))).fails
     assert equal(atan2(sin(x), cos(x)), x - 2 * pi, Domain((x > pi, x < 3 * pi))).holds

@@ -4,6 +4,7 @@ import pytest
 from sympy import (
     LambertW,
     Rational,
+    RisingFactorial,
     beta,
     binomial,
     cos,
@@ -12,6 +13,7 @@ from sympy import (
     erfc,
     exp,
     factorial,
+    fibonacci,
     gamma,
     log,
     loggamma,
@@ -100,6 +102,13 @@ TRUE = [
 def test_identity_holds_and_its_twin_fails(left, right, domain, twin):
     assert equal(left, right, domain).holds
     assert equal(left, twin, domain).fails
+
+
+def test_products_and_fibonacci_numbers():
+    assert equal(RisingFactorial(p, n), gamma(p + n) / gamma(p), Domain((n >= 0,))).holds
+    assert equal(RisingFactorial(p, n), gamma(p + n) / gamma(p + 1), Domain((n >= 0,))).fails
+    assert equal(fibonacci(n + 2), fibonacci(n + 1) + fibonacci(n)).holds
+    assert not equal(fibonacci(n + 2), fibonacci(n + 1) - fibonacci(n)).holds
 
 
 def test_reflection_needs_arguments_that_leave_no_whole_number():
