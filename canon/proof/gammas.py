@@ -48,8 +48,9 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return n.form(_binet(expr))
         case sp.loggamma():
             return _log_gamma(n, n.form(expr.args[0]))
-        case sp.polygamma() if isinstance(expr.args[0], sp.Integer) and 0 <= expr.args[0] <= LARGEST_SHIFT:
-            return _polygamma(n, int(arguments(expr)[0]), n.form(expr.args[1]))
+        case sp.polygamma():
+            order, z = arguments(expr)
+            return _polygamma(n, int(order), n.form(z)) if order in range(LARGEST_SHIFT) else None
         case sp.erfc():
             return n.minus(n.tower.number(1), n.form(sp.erf(expr.args[0])))
         case _:
