@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -92,6 +93,26 @@ def is_not_positive_real_somewhere(claim):
     return holds(changed(claim, H=H, parameters={}, **{"is": ["not positive-real"]}))
 
 
+def is_a_solution(claim, sentence):
+    """Whether the claim that asks for parameters holds with those put in that a sentence names."""
+    named = (
+        sentence.partition(": ")[2]
+        if "is no solution" not in sentence
+        else sentence.partition(" is no solution")[0]
+    )
+    keys = {
+        k: v
+        for k, v in claim.keys.items()
+        if k not in ("of", "find", "values", "id", "kind", "expect", "title")
+    }
+    for name, value in re.findall(r"(\w+) = ([^,;]+)", named):
+        put = partial(re.sub, rf"\b{name}\b", f"({value})")
+        keys = {k: [put(item) for item in v] if k in ("Q", "P") else v for k, v in keys.items()}
+        keys = {k: put(v) if k in ("F", "I", "H", "K", "lhs", "rhs") else v for k, v in keys.items()}
+        keys = {k: {n: put(f) for n, f in v.items()} if k == "solution" else v for k, v in keys.items()}
+    return holds(Claim(claim.id, claim.keys["of"], keys))
+
+
 def is_so(claim, sentence):
     """Whether what is stated of a claim is so: where an answer is named, the claim of that answer holds."""
     word = sentence.partition(":")[0]
@@ -108,6 +129,8 @@ def is_so(claim, sentence):
             return holds(changed(claim, **{"is": ["positive-real"]}))
         case "positive-real":
             return is_not_positive_real_somewhere(claim)
+        case "parameters":
+            return is_a_solution(claim, sentence) == ("is no solution" not in sentence)
         case "first-order":
             return goes_further(claim, sentence)
         case _:
