@@ -50,7 +50,7 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
     variables = tuple(x for x in state if x not in state.values())
     table = _table(reading, "solution", variables)
     for x, value in table.items():
-        if value.has(*variables, *state.values()):
+        if value.has(*_ordered(state)):
             reading.fault(f"solution.{x}", f"should depend on {t}, parameters and constants only")
     yield from motion_is_real(table, reading.domain)
     laws = _laws(reading)
