@@ -16,8 +16,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "mechanics"))
 
 from map_collection import MAPS, NOTES, linear_symplectic
 
-from canon.mechanics.generating import GeneratingFunction, NoGeneratingFunctionError
-from canon.mechanics.recovery import generating_function
+from canon.mechanics.canonical.find_generating_function import generating_function
+from canon.mechanics.canonical.generating_function import GeneratingFunction, NoGeneratingFunctionError
 
 
 def timed(function, *arguments, **keywords):

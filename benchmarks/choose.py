@@ -22,14 +22,14 @@ from typing import TYPE_CHECKING
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from canon.flow.method import Splitting, Stepped, TimeTransformed
+from canon.flow.method.method import Splitting, Stepped, TimeTransformed
 from canon.flow.propagate import NonFiniteStateError
 from canon.scene import find
-from canon.study.choose import Choice, choose
-from canon.study.choose_candidate import candidate_methods
-from canon.study.choose_pilot import Pilot, natural_step, pilot
-from canon.study.choose_question import Question, Setting
-from canon.study.choose_search import widest_step
+from canon.study.choose.candidate import candidate_methods
+from canon.study.choose.choice_question import Question, Setting
+from canon.study.choose.choose import Choice, choose
+from canon.study.choose.pilot_run import Pilot, natural_step, pilot
+from canon.study.choose.step_search import widest_step
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

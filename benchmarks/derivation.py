@@ -21,16 +21,20 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "mechanics"))
 
 from chains import heavy_top, n_body, planar_pendulum, spatial_arm, spherical_chain
 
-from canon.expression.python_source import python_function
-from canon.expression.symbol import coordinates, parameters
-from canon.mechanics.body import Particle, PlanarBody
-from canon.mechanics.canonical_derivation import canonical_derivation
-from canon.mechanics.constrained_derivation import constrained, constrained_motion
-from canon.mechanics.derivation import derivation, derivation_of_lagrangian
-from canon.mechanics.factorisation import solved_on_graph
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.motion import acceleration_function, energy_function, hamilton_function
-from canon.mechanics.routh import routhian
+from canon.expression.graph.python_source import python_function
+from canon.expression.symbols.symbol import coordinates, parameters
+from canon.mechanics.at_scale.constrained import constrained, constrained_motion
+from canon.mechanics.at_scale.first_order import canonical_derivation
+from canon.mechanics.at_scale.ldl import solved_on_graph
+from canon.mechanics.at_scale.numeric_functions import (
+    acceleration_function,
+    energy_function,
+    hamilton_function,
+)
+from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
+from canon.mechanics.lagrange.body import Particle, PlanarBody
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.reduction.routh import routhian
 
 SIZES = (1, 2, 5, 10, 20, 40)
 
@@ -202,7 +206,7 @@ def compiled(n):
     """Return ns a call of accelerations compiled by heyoka: canon's explicit ones against hy.lagrangian's."""
     import heyoka as hy
 
-    from canon.kernel.taylor import heyoka_expressions
+    from canon.kernel.heyoka_bridge import heyoka_expressions
 
     bodies, q, field = planar_pendulum(n)
     equations = derivation(bodies, q, field=field)

@@ -22,8 +22,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from canon.study.drift import Drift, Growth, drift
-from canon.study.growth import slope_of, walk_of
+from canon.study.drift.drift import Drift, Growth, drift
+from canon.study.drift.growth import slope_of, walk_of
 from tests.study import series
 from tests.study.test_noise import draws
 
@@ -128,8 +128,8 @@ def print_levels(number: int) -> None:
 def print_orbits(number: int) -> None:
     from canon import RK4, Splitting, Taylor
     from canon.scene import find
-    from canon.scene.henon_heiles import on_the_section
-    from canon.study.comparison import drift_study
+    from canon.scene.systems.henon_heiles import on_the_section
+    from canon.study.drift.drift_study import drift_study
 
     scene = find("henon-heiles")
     random = np.random.default_rng(22)

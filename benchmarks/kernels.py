@@ -21,19 +21,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from canon.expression.symbol import coordinates
-from canon.expression.symbol import time as t
-from canon.flow.compiled import compiled_loop
-from canon.flow.method import Splitting
-from canon.flow.precision import FIXED
-from canon.kernel.scheme import SCHEMES
-from canon.kernel.structure import equations
+from canon.expression.symbols.symbol import coordinates
+from canon.expression.symbols.symbol import time as t
+from canon.flow.fixed_step.compiled_loop import compiled_loop
+from canon.flow.method.method import Splitting
+from canon.flow.method.number_formats import FIXED
+from canon.kernel.program.hamilton_equations import equations
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from canon.kernel.loop import Loop
-    from canon.kernel.structure import Equations
+    from canon.kernel.llvm.loop import Loop
+    from canon.kernel.program.hamilton_equations import Equations
 
 REPEATS = 7
 ORBITS = 10_000

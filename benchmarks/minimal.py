@@ -15,11 +15,11 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from canon.kernel.program import program
+from canon.kernel.program.program import program
 from canon.scene import find
-from canon.scene.equation import equation_of
-from canon.scene.motion import run
+from canon.scene.equations_of_motion import equation_of
 from canon.scene.reduced import reduced
+from canon.scene.scene_motion import run
 
 if TYPE_CHECKING:
     from canon.scene.scene import Scene
@@ -31,9 +31,9 @@ QUESTIONS = {
     "its Lagrange's equations": "find('spherical-pendulum').lagrangian.equations",
     "its Hamiltonian": "find('spherical-pendulum').hamiltonian.H",
     "is p_phi conserved": (
-        "__import__('canon.scene.check').scene.check.conserved(s := find('spherical-pendulum'), s.integrals[0])"
+        "__import__('canon.scene.known_truths').scene.check.conserved(s := find('spherical-pendulum'), s.integrals[0])"
     ),
-    "its motion": "__import__('canon.scene.motion').scene.motion.run(find('spherical-pendulum'), periods=10)",
+    "its motion": "__import__('canon.scene.scene_motion').scene.motion.run(find('spherical-pendulum'), periods=10)",
 }
 RUNS = 5
 
@@ -148,7 +148,7 @@ def compare(title: str, full: Scene, start: str, less: Scene) -> None:
 
 def figures(scene: Scene, start: str | None) -> tuple[int, int, float, float]:
     """Return variables, operations of a right-hand side, processor time and drift over 1000 periods."""
-    from canon.scene.check import integrals_along
+    from canon.scene.known_truths import integrals_along
 
     equation = equation_of(scene)
     field = equation.field

@@ -28,7 +28,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "mechanics"))
 from chains import planar_pendulum
 from derivation import theirs
 
-from canon.mechanics.derivation import derivation
+from canon.mechanics.at_scale.second_order import derivation
 
 
 def counted(replacements, expressions):

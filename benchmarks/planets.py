@@ -14,7 +14,7 @@ from canon import SABA, SBAB, Splitting, WisdomHolman, propagate
 from canon.scene import find
 
 if TYPE_CHECKING:
-    from canon.flow.method import FixedStep
+    from canon.flow.method.method import FixedStep
     from canon.flow.trajectory import Trajectory
 
 METHODS = (

@@ -1,7 +1,7 @@
 """Continue the published coefficients of schemes for H = A + εB to 55 digits, as ``polish_schemes.py`` does for others.
 
 A scheme of orders (n₁, n₂, n₃) fulfils the conditions of words with one B up to length n₁, with two up to n₂, with
-three and more up to n₃. Prints the largest difference from the table in ``canon/kernel/perturbed.py``.
+three and more up to n₃. Prints the largest difference from the table in ``canon/kernel/schemes/perturbed_schemes.py``.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 from mpmath import mp, mpf
 from polish_schemes import WORKING_DIGITS, shortest_step, slopes
 
-from canon.kernel.order import conditions
-from canon.kernel.perturbed import ABA
+from canon.kernel.schemes.order_conditions import conditions
+from canon.kernel.schemes.perturbed_schemes import ABA
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,7 +2,7 @@
 
 Most methods have free parameters, so that the conditions leave a family of solutions; each step is the shortest one
 (Gauss–Newton with the pseudoinverse), which ends next to the published point. The table in
-``canon/kernel/scheme.py`` is this script's output; ``--check`` compares the two.
+``canon/kernel/schemes/splitting_schemes.py`` is this script's output; ``--check`` compares the two.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf
 
-from canon.kernel.order import conditions
-from canon.kernel.scheme import SCHEMES
+from canon.kernel.schemes.order_conditions import conditions
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

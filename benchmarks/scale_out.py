@@ -17,11 +17,11 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from canon import Gauss, Splitting
-from canon.study.case import key_of
-from canon.study.definition import Study
-from canon.study.leg import advance
-from canon.study.run import run_study
-from canon.study.store import Store
+from canon.study.cases.case import key_of
+from canon.study.cases.checkpointed_run import advance
+from canon.study.cases.run_study import run_study
+from canon.study.cases.store import Store
+from canon.study.cases.study import Study
 
 CASES = 64
 SECONDS_A_CASE = float(os.environ.get("SECONDS_A_CASE", "1.0"))

@@ -10,8 +10,8 @@ from fractions import Fraction
 import pytest
 
 from canon.cli import main
-from canon.exercise.sheet import Claim
-from canon.exercise.worker import GRACE, Worker
+from canon.exercise.judging_process import GRACE, Worker
+from canon.exercise.sheet.sheet import Claim
 
 TRUE = {"id": "yes", "kind": "equality-only", "title": "double angle", "lhs": "sin(2*x)", "rhs": "2*sin(x)*cos(x)",
         "parameters": {"x": "real"}}  # fmt: skip

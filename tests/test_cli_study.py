@@ -12,8 +12,8 @@ import pytest
 
 from canon import Splitting
 from canon.cli import main
-from canon.study.case import Case, key_of
-from canon.study.store import Record, Store
+from canon.study.cases.case import Case, key_of
+from canon.study.cases.store import Record, Store
 
 SMALL = """
 [system.quartic]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from canon.cli import main
-from canon.exercise.sheet import bundled_sheet
+from canon.exercise.sheet.sheet import bundled_sheet
 
 README = Path(__file__).parents[1] / "README.md"
 TOUR = README.read_text(encoding="utf-8").partition("## Five more commands")[0]

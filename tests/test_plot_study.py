@@ -13,7 +13,7 @@ from matplotlib.patches import Rectangle
 
 import canon
 from canon import RK4, Gauss, Splitting, Taylor, propagate
-from canon.flow.event import Event
+from canon.flow.run.event import Event
 from canon.plot import (
     COLOURS,
     plot_block_means,
@@ -24,17 +24,17 @@ from canon.plot import (
     plot_study_heatmap,
     plot_work_precision,
 )
-from canon.plot.report import study_report
+from canon.plot.study_page import study_report
 from canon.scene import find
-from canon.study.case import Case, key_of
-from canon.study.choose import choose
-from canon.study.comparison import drift_study
-from canon.study.definition import Study
-from canon.study.precision import WorkPrecision, WorkRow, work_precision
-from canon.study.resonance import resonant_steps
-from canon.study.result import State, results_of
-from canon.study.run import run_study
-from canon.study.store import Store
+from canon.study.cases.case import Case, key_of
+from canon.study.cases.result import State, results_of
+from canon.study.cases.run_study import run_study
+from canon.study.cases.store import Store
+from canon.study.cases.study import Study
+from canon.study.choose.choose import choose
+from canon.study.choose.resonance import resonant_steps
+from canon.study.choose.work_precision import WorkPrecision, WorkRow, work_precision
+from canon.study.drift.drift_study import drift_study
 
 
 @pytest.fixture(scope="module")
@@ -216,7 +216,7 @@ def test_the_report_holds_everything_and_needs_nothing(results):
 
 
 def test_what_a_stranger_called_his_system_is_text_in_the_report(tmp_path):
-    from canon.study.formula import Formula
+    from canon.study.motion.hamiltonian_text import Formula
 
     evil = Formula(
         "<img src=x onerror=alert(1)>", "p**2/2 + q**2/2", ("q",), ("p",), starts=(("s", (1.0, 0.0)),)

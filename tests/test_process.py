@@ -37,7 +37,7 @@ canon.expect("equality-only", **keys)
 """
 PROVE = """
 import sympy, canon
-from canon.proof.budget import prove_in_worker
+from canon.proof.worker.budget import prove_in_worker
 x = sympy.Symbol("x", real=True)
 print(prove_in_worker([sympy.sin(x)**2 + sympy.cos(x)**2 - 1], canon.Domain(), 30.0)[0].holds)
 """
@@ -102,7 +102,9 @@ def test_nothing_beside_a_script_runs(hostile):
 @pytest.mark.parametrize(("asked", "said"), [(JUDGE, "{'holds': 1}"), (PROVE, "True")])
 def test_nothing_runs_in_a_folder_entered_later(hostile, asked, said):
     folder, marker = hostile(*RESTS_ON, *CUSTOM, *STANDARD)
-    enter = f"{asked}\nfrom canon.proof.budget import _worker\nimport os\n_worker(os.getpid()).stop()\n"
+    enter = (
+        f"{asked}\nfrom canon.proof.worker.budget import _worker\nimport os\n_worker(os.getpid()).stop()\n"
+    )
     done = run(["-c", f"{enter}os.chdir({str(folder)!r})\n{asked}"], folder.parent)
     assert not marker.exists(), marker.read_text("utf-8")
     assert done.stdout.split("\n")[:2] == [said, said], done.stderr
@@ -206,7 +208,7 @@ def test_what_canon_rests_on_comes_from_where_it_is_in_use(tmp_path, monkeypatch
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no groups of processes")
 def test_a_killed_child_is_gone_and_says_so():
-    child = Child("canon.proof.worker", leads=True)
+    child = Child("canon.proof.worker.proof_process", leads=True)
     assert child.receive(time.monotonic() + 60) == b""
     assert child.usable
     with pytest.raises(Late):
@@ -228,7 +230,7 @@ def test_a_child_that_cannot_start_says_so():
 
 
 def test_what_cannot_be_sent_is_told():
-    child = Child("canon.proof.worker")
+    child = Child("canon.proof.worker.proof_process")
     assert child.receive(time.monotonic() + 60) == b""
 
     def too_deep():
@@ -243,8 +245,8 @@ def test_what_cannot_be_sent_is_told():
 ORPHAN = """
 import os, sys, time
 sys.path.insert(0, {root!r})
-from canon.exercise.worker import Worker
-from canon.exercise.sheet import Claim
+from canon.exercise.judging_process import Worker
+from canon.exercise.sheet.sheet import Claim
 worker = Worker()
 child = worker._running()
 print(child.pid, flush=True)

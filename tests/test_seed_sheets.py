@@ -17,7 +17,7 @@ import pytest
 import sympy as sp
 
 from canon.exercise.judge import judge
-from canon.exercise.sheet import Claim, read_sheet
+from canon.exercise.sheet.sheet import Claim, read_sheet
 
 ROOT = Path(__file__).parents[1]
 SHEETS = sorted((ROOT / "examples" / "sheets" / "seeds").glob("*.toml"))

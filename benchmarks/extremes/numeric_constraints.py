@@ -9,10 +9,10 @@ import numpy as np
 import sympy as sp
 
 from canon import Lagrangian, Particle, coordinates
-from canon.mechanics.constrained_derivation import constrained, constrained_motion
-from canon.mechanics.dependence import DependentConstraintsError
-from canon.mechanics.derivation import derivation, derivation_of_lagrangian
-from canon.mechanics.motion import acceleration_function, mass_condition_function
+from canon.mechanics.at_scale.constrained import constrained, constrained_motion
+from canon.mechanics.at_scale.numeric_functions import acceleration_function, mass_condition_function
+from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
+from canon.mechanics.lagrange.dependence import DependentConstraintsError
 from extremes.row import Outcome, Row, refused
 
 if TYPE_CHECKING:

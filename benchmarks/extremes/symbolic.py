@@ -341,7 +341,7 @@ def _large() -> Iterator[Row]:
             T += (X**2 + Y**2) / 2
         V = -sp.Add(*((40 - k) * g * l * cos(s) for k, s in enumerate(q)))
         start = time.monotonic()
-        from canon.mechanics.derivation import derivation_of_lagrangian
+        from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
 
         system = derivation_of_lagrangian(Lagrangian(T - V, q))
         seconds = time.monotonic() - start
@@ -594,7 +594,7 @@ def _sheets() -> Iterator[Row]:
                   lambda text=text: bomb(text, ""), limit=60.0)  # fmt: skip
 
     def twice_said() -> Outcome:
-        from canon.exercise.sheet import SheetError, sheet_from
+        from canon.exercise.sheet.sheet import SheetError, sheet_from
 
         return refused(
             lambda: sheet_from(b'[[claim]]\nlhs = "$\\sin x$"', toml=True), SheetError, holds="single quotes"

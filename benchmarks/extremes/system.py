@@ -180,7 +180,7 @@ def _ended() -> Iterator[Row]:
         script = USES + (
             "print('ready', flush=True)\n"
             "s = sp.symbols('s0:9', real=True)\n"
-            "from canon import Domain\nfrom canon.proof.budget import prove_in_worker\n"
+            "from canon import Domain\nfrom canon.proof.worker.budget import prove_in_worker\n"
             "hard = sp.Add(*(sp.sin(sp.Add(*s)*k)*sp.sqrt(sp.Add(*s[:k])) for k in range(1, 9)))**9 - 1\n"
             "try:\n    prove_in_worker([hard], Domain(), 60.0)\nexcept KeyboardInterrupt:\n    "
             "print('stopped', flush=True)\n"
@@ -213,7 +213,7 @@ def _ended() -> Iterator[Row]:
         try:
             hard = (
                 "s = sp.symbols('s0:9', real=True)\nfrom canon import Domain\n"
-                "from canon.proof.budget import prove_in_worker\n"
+                "from canon.proof.worker.budget import prove_in_worker\n"
                 "prove_in_worker([sp.Add(*(sp.sin(sp.Add(*s)*k)*sp.sqrt(sp.Add(*s[:k])) for k in range(1, "
                 "9)))**9 - 1], Domain(), 60.0)"
             )
@@ -420,7 +420,7 @@ def _processors() -> Iterator[Row]:
 
 
 CASES = """
-import canon.kernel.llvm as L
+import canon.kernel.llvm.machine_code as L
 import llvmlite.binding as llvm
 def target(cpu, features):
     def machine():

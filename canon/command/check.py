@@ -6,14 +6,14 @@ import sys
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from canon.command.number import seconds, whole_number
+from canon.command.number_types import seconds, whole_number
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
 
-    from canon.exercise.report import Judgement, Report
-    from canon.exercise.sheet import Claim, Sheet, SheetError
+    from canon.exercise.report.report import Judgement, Report
+    from canon.exercise.sheet.sheet import Claim, Sheet, SheetError
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -60,7 +60,7 @@ examples:
 
 
 def _kinds() -> str:
-    from canon.exercise.kinds import KINDS
+    from canon.exercise.sheet.kinds import KINDS
 
     names = list(KINDS)
     return "\n".join("  " + ", ".join(names[i : i + 4]) for i in range(0, len(names), 4))
@@ -106,7 +106,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the sheets, print each verdict as soon as it is there, return the exit status."""
-    from canon.exercise.report import Report
+    from canon.exercise.report.report import Report
 
     sheets = _sheets(arguments.sheets)
     chosen = [(sheet, _chosen(sheet, arguments)) for sheet in sheets]
@@ -128,8 +128,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _sheets(names: Sequence[str]) -> list[Sheet]:
     """Read the sheets and tell of those that can't be read; no sheet where the only one can't be."""
-    from canon.exercise.report import printable
-    from canon.exercise.sheet import SheetError
+    from canon.exercise.report.report import printable
+    from canon.exercise.sheet.sheet import SheetError
 
     sheets: list[Sheet] = []
     for name in names:
@@ -146,8 +146,8 @@ def _judged(
     chosen: Sequence[tuple[Sheet, list[Claim]]], claims: list[Claim], arguments: argparse.Namespace
 ) -> list[Judgement]:
     """Judge the claims of each sheet in turn, and show each judgement when it is there."""
-    from canon.exercise.checking import judged
-    from canon.exercise.report import printable
+    from canon.exercise.check import judged
+    from canon.exercise.report.report import printable
 
     judgements: list[Judgement] = []
     coming = judged(claims, arguments.jobs)
@@ -176,7 +176,7 @@ def _files_written(report: Report, arguments: argparse.Namespace) -> bool:
 
 
 def _status(report: Report, judgements: list[Judgement], *, expected: bool) -> int:
-    from canon.exercise.report import printable
+    from canon.exercise.report.report import printable
 
     if not expected:
         return report.exit_status
@@ -189,7 +189,7 @@ def _status(report: Report, judgements: list[Judgement], *, expected: bool) -> i
 
 
 def _read(name: str) -> Sheet:
-    from canon.exercise.sheet import MAX_BYTES, SheetError, read_sheet, sheet_from
+    from canon.exercise.sheet.sheet import MAX_BYTES, SheetError, read_sheet, sheet_from
 
     if name != "-":
         return read_sheet(name)
@@ -201,7 +201,7 @@ def _read(name: str) -> Sheet:
 
 def _unreadable(name: str, error: SheetError) -> Sheet:
     """Return a sheet in place of one of many that can't be read, so that the others are judged and it is told of."""
-    from canon.exercise.sheet import Claim, ClaimError, Sheet
+    from canon.exercise.sheet.sheet import Claim, ClaimError, Sheet
 
     claim = Claim(name, _UNREADABLE, errors=(ClaimError(name, "", str(error)),), file=name)
     return Sheet("", (claim,), name)

@@ -6,14 +6,14 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
-from canon.command.motion import add_duration, add_scene, list_scenes, methods_given, scene_given
+from canon.command.scene_options import add_duration, add_scene, list_scenes, methods_given, scene_given
 
 if TYPE_CHECKING:
     import argparse
 
     from canon.scene.scene import Scene
-    from canon.study.choose import Choice
-    from canon.study.choose_candidate import Candidate
+    from canon.study.choose.candidate import Candidate
+    from canon.study.choose.choose import Choice
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _choice(scene: Scene, arguments: argparse.Namespace) -> Choice:
     from canon.command.progress import Progress
-    from canon.study.choose import choose
+    from canon.study.choose.choose import choose
 
     span = arguments.until if arguments.until is not None else arguments.periods * scene.period
     with Progress() as progress:

@@ -100,7 +100,7 @@ def _option(argument: argparse.Action) -> Option:
 
 def _words_of(argument: argparse.Action) -> list[str]:
     """Return the words that a value can be, where they are known."""
-    from canon.kernel.scheme import SCHEMES
+    from canon.kernel.schemes.splitting_schemes import SCHEMES
     from canon.scene import names
 
     if argument.choices:

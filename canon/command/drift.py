@@ -5,14 +5,14 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from canon.command.motion import add_duration, add_scene, list_scenes, methods_given, scene_given
 from canon.command.progress import Progress
+from canon.command.scene_options import add_duration, add_scene, list_scenes, methods_given, scene_given
 
 if TYPE_CHECKING:
     import argparse
 
     from canon.scene.scene import Scene
-    from canon.study.comparison import DriftRow, DriftStudy
+    from canon.study.drift.drift_study import DriftRow, DriftStudy
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run", "save_figure"]
 
@@ -82,7 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the study, print its table or lines, return the exit status."""
     from canon.scene import SceneError
-    from canon.study.comparison import StudyError
+    from canon.study.drift.drift_study import StudyError
 
     if arguments.scene == "list":
         list_scenes()
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         _print_lines(study)
     else:
-        from canon.study.table import drift_table
+        from canon.study.drift.drift_table import drift_table
 
         print(drift_table(study))
     if arguments.plot and not save_figure(study, arguments.plot):
@@ -119,7 +119,7 @@ def save_figure(study: DriftStudy, file: str) -> bool:
 
 
 def _study(scene: Scene, arguments: argparse.Namespace) -> DriftStudy:
-    from canon.study.comparison import drift_study
+    from canon.study.drift.drift_study import drift_study
 
     with Progress() as progress:
         return drift_study(

@@ -5,14 +5,14 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from canon.command.motion import add_scene, scene_given
+from canon.command.scene_options import add_scene, scene_given
 
 if TYPE_CHECKING:
     import argparse
 
     from canon.scene.describe import Section
-    from canon.scene.motion import Motion
     from canon.scene.scene import Scene
+    from canon.scene.scene_motion import Motion
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -127,7 +127,7 @@ def _print_section(section: Section, arguments: argparse.Namespace) -> None:
 
 
 def _check(scene: Scene, arguments: argparse.Namespace) -> int:
-    from canon.scene.check import check, conserved
+    from canon.scene.known_truths import check, conserved
 
     passed = True
     for each in check(scene, arguments.start, arguments.periods):
@@ -144,7 +144,7 @@ def _check(scene: Scene, arguments: argparse.Namespace) -> int:
 
 def _draw(scene: Scene, arguments: argparse.Namespace) -> None:
     from canon.plot.scene import animate_scene, plot_scene
-    from canon.scene.motion import run as motion_of
+    from canon.scene.scene_motion import run as motion_of
 
     periods = min(arguments.periods or scene.shown, scene.horizon)
     motion: Motion = motion_of(

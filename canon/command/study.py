@@ -8,15 +8,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from canon.command.number import seconds, whole_number
+from canon.command.number_types import seconds, whole_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
     from concurrent.futures import Executor
 
-    from canon.study.result import Result
-    from canon.study.run import Status
-    from canon.study.store import Store
+    from canon.study.cases.result import Result
+    from canon.study.cases.run_study import Status
+    from canon.study.cases.store import Store
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -97,8 +97,8 @@ def _action(actions: Any, name: str, line: str) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace) -> int:
     """Do what is asked, print how far the study is, return the exit status."""
     from canon.plot import PlotError
+    from canon.study.cases.export import ExportError
     from canon.study.errors import StudyError
-    from canon.study.export import ExportError
 
     actions = {"run": _run, "resume": _resume, "status": _status, "export": _export, "report": _report}
     try:
@@ -111,9 +111,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from canon.study.definition import read_study
-    from canon.study.run import run_study
-    from canon.study.store import Store
+    from canon.study.cases.run_study import run_study
+    from canon.study.cases.store import Store
+    from canon.study.cases.study import read_study
 
     study = read_study(arguments.study)
     if arguments.share is not None:
@@ -126,7 +126,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _resume(arguments: argparse.Namespace) -> int:
-    from canon.study.run import resume
+    from canon.study.cases.run_study import resume
 
     store = _existing(arguments.store)
     _forget_failed(store, arguments)
@@ -140,8 +140,8 @@ def _status(arguments: argparse.Namespace) -> int:
 
 
 def _export(arguments: argparse.Namespace) -> int:
+    from canon.study.cases.export import csv_of, write_netcdf, write_parquet
     from canon.study.errors import StudyError
-    from canon.study.export import csv_of, write_netcdf, write_parquet
 
     kind, store = FORMATS.get(arguments.output.suffix.lower()), _existing(arguments.store)
     if kind is None:
@@ -156,8 +156,8 @@ def _export(arguments: argparse.Namespace) -> int:
 
 
 def _report(arguments: argparse.Namespace) -> int:
-    from canon.plot.report import study_report
-    from canon.study.result import results_of
+    from canon.plot.study_page import study_report
+    from canon.study.cases.result import results_of
 
     page = study_report(results_of(_existing(arguments.store)), arguments.store.stem)
     arguments.output.write_text(page, encoding="utf-8")
@@ -166,7 +166,7 @@ def _report(arguments: argparse.Namespace) -> int:
 
 
 def _merge(arguments: argparse.Namespace) -> int:
-    from canon.study.store import Store
+    from canon.study.cases.store import Store
 
     store = Store(arguments.store)
     for other in arguments.others:
@@ -176,7 +176,7 @@ def _merge(arguments: argparse.Namespace) -> int:
 
 def _existing(path: Path) -> Store:
     """Return the store in a file; reading should not make an empty one where a name is mistyped."""
-    from canon.study.store import Store, StoreError
+    from canon.study.cases.store import Store, StoreError
 
     if not path.exists():
         raise StoreError(f"there is no file {path}; 'canon study run STUDY.toml' makes one")
@@ -190,8 +190,8 @@ def _forget_failed(store: Store, arguments: argparse.Namespace) -> None:
 
 def _told(store: Store, plot: Path | None) -> int:
     """Print how far a study is and why cases failed; draw it where that is asked for."""
-    from canon.study.result import State, results_of
-    from canon.study.run import status_of
+    from canon.study.cases.result import State, results_of
+    from canon.study.cases.run_study import status_of
 
     status, results = status_of(store), results_of(store)
     print(f"{store.path}: {status}")

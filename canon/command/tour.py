@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import argparse
 
-    from canon.exercise.report import Judgement
-    from canon.study.comparison import DriftStudy
+    from canon.exercise.report.report import Judgement
+    from canon.study.drift.drift_study import DriftStudy
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -52,9 +52,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _judge_answers() -> bool:
-    from canon.exercise.report import Report
-    from canon.exercise.sheet import bundled_sheet
-    from canon.exercise.worker import Worker
+    from canon.exercise.judging_process import Worker
+    from canon.exercise.report.report import Report
+    from canon.exercise.sheet.sheet import bundled_sheet
 
     sheet = bundled_sheet("tour")
     print(f"1. Is it right?  {sheet.title}\n")
@@ -72,9 +72,9 @@ def _judge_answers() -> bool:
 
 def _study() -> DriftStudy:
     from canon.command.progress import Progress
-    from canon.flow.method import RK4, Splitting, Taylor
+    from canon.flow.method.method import RK4, Splitting, Taylor
     from canon.scene import find
-    from canon.study.comparison import drift_study
+    from canon.study.drift.drift_study import drift_study
 
     scene = find("henon-heiles")
     print("2. Does its simulation stay right, and what does that cost?\n", flush=True)
@@ -85,8 +85,8 @@ def _study() -> DriftStudy:
 
 
 def _show_study(study: DriftStudy) -> None:
-    from canon.study.drift import Growth
-    from canon.study.table import drift_table
+    from canon.study.drift.drift import Growth
+    from canon.study.drift.drift_table import drift_table
 
     print(drift_table(study))
     print()

@@ -9,13 +9,13 @@ from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.sheet import DEFAULT_BUDGET, SheetError, claim_from
-from canon.exercise.worker import Worker
-from canon.expression.described import of_sympy
-from canon.proof.verdict import Undecided
+from canon.exercise.judging_process import Worker
+from canon.exercise.sheet.sheet import DEFAULT_BUDGET, SheetError, claim_from
+from canon.expression.symbols.input_in_words import of_sympy
+from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
-    from canon.exercise.report import Judgement
+    from canon.exercise.report.report import Judgement
 
 __all__ = ["expect"]
 
@@ -98,8 +98,8 @@ def _written_by_sympy(value: Any, q: list[str]) -> Any:
     import sympy as sp
     from sympy.core.function import AppliedUndef
 
-    from canon.expression.symbol import coordinates
-    from canon.mechanics.dynamicsymbols import plain
+    from canon.expression.symbols.symbol import coordinates
+    from canon.mechanics.algebra.dynamicsymbols import plain
 
     if isinstance(value, sp.Equality):
         return f"{_written(value.lhs, q)} = {_written(value.rhs, q)}"

@@ -8,32 +8,30 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
-from canon.exercise import (
-    judge_appell,
-    judge_canonical,
-    judge_conserved,
-    judge_constrained,
-    judge_constraint_class,
-    judge_energy,
-    judge_hamiltonian,
-    judge_invariance,
-    judge_lagrangian,
-    judge_parameters,
-    judge_passive,
-    judge_reaction,
-    judge_small,
-    judge_solution,
-    judge_variation,
-)
-from canon.exercise.answer import other_variables
-from canon.exercise.form import faults
-from canon.exercise.manifold import EmptyDomainError
-from canon.exercise.question import Deadline, Determines, Question, Stated, Tells, decide
-from canon.exercise.reading import InvalidClaim, Reading
-from canon.exercise.sheet import Claim, ClaimError
-from canon.expression.given import given_kind
-from canon.mechanics.linear import SingularMatrixError
-from canon.proof.verdict import Evidence, Status, Undecided, Verdict, all_hold
+from canon.exercise.judges import canonical as judge_canonical
+from canon.exercise.judges import conserved as judge_conserved
+from canon.exercise.judges import constrained as judge_constrained
+from canon.exercise.judges import constraint_class as judge_constraint_class
+from canon.exercise.judges import energy_and_force as judge_energy
+from canon.exercise.judges import gibbs_appell as judge_appell
+from canon.exercise.judges import hamiltonian as judge_hamiltonian
+from canon.exercise.judges import invariance as judge_invariance
+from canon.exercise.judges import lagrangian as judge_lagrangian
+from canon.exercise.judges import parameter_values as judge_parameters
+from canon.exercise.judges import positive_real as judge_passive
+from canon.exercise.judges import reaction as judge_reaction
+from canon.exercise.judges import small_quantities as judge_small
+from canon.exercise.judges import solution as judge_solution
+from canon.exercise.judges import variation as judge_variation
+from canon.exercise.question.answer import other_variables
+from canon.exercise.question.constraint_manifold import EmptyDomainError
+from canon.exercise.question.question import Deadline, Determines, Question, Stated, Tells, decide
+from canon.exercise.sheet.key_shapes import faults
+from canon.exercise.sheet.reading import InvalidClaim, Reading
+from canon.exercise.sheet.sheet import Claim, ClaimError
+from canon.expression.symbols.user_input import given_kind
+from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

@@ -9,8 +9,8 @@ import re
 from typing import TYPE_CHECKING
 from xml.etree.ElementTree import Element, SubElement
 
-from canon.expression.language import syntax_of
-from canon.expression.syntax import (
+from canon.expression.parse import syntax_of
+from canon.expression.text.syntax import (
     Call,
     Comparison,
     LanguageError,
@@ -23,12 +23,12 @@ from canon.expression.syntax import (
     Sum,
     Tuple,
 )
-from canon.expression.tokens import GREEK
+from canon.expression.text.tokens import GREEK
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.expression.language import Scope
+    from canon.expression.parse import Scope
 
 __all__ = ["formula", "mathml"]
 
@@ -61,7 +61,7 @@ def formula(text: str, scope: Scope) -> Element | None:
     Examples
     --------
     >>> from xml.etree.ElementTree import tostring
-    >>> from canon.expression.language import Scope
+    >>> from canon.expression.parse import Scope
     >>> tostring(formula("theta_dot/2", Scope()), encoding="unicode")
     '<math><mfrac><mover accent="true"><mi>θ</mi><mo>˙</mo></mover><mn>2</mn></mfrac></math>'
     """

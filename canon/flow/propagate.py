@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.job import NonFiniteStateError
-from canon.flow.progress import reporting
-from canon.flow.request import HamiltonianSystem, system_of, task_of
+from canon.flow.checked_request import HamiltonianSystem, system_of, task_of
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
 from canon.flow.trajectory import Interrupted, Trajectory
+from canon.progress import reporting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from sympy import Expr, Symbol
 
-    from canon.flow.event import Event
-    from canon.flow.method import Method
+    from canon.flow.method.method import Method
+    from canon.flow.run.event import Event
 
 __all__ = [
     "HamiltonianSystem", "Interrupted", "NonFiniteStateError", "Trajectory", "is_separable", "propagate",

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.adaptive import dop853_motion
-from canon.flow.compiled import compiled_loop
-from canon.flow.event import Event, prepared
-from canon.flow.fictitious import transformed_motion
-from canon.flow.fixed import fixed_steps
-from canon.flow.measure import measured, warn_of_jumps
-from canon.flow.method import DOP853, FixedStep, Method, Taylor, TimeTransformed
-from canon.flow.precision import fixed_precision
-from canon.flow.sampling import sampling
-from canon.flow.series import taylor_motion
+from canon.flow.adaptive.dop853 import dop853_motion
+from canon.flow.adaptive.taylor_motion import taylor_motion
+from canon.flow.fixed_step.compiled_loop import compiled_loop
+from canon.flow.fixed_step.fixed_steps import fixed_steps
+from canon.flow.fixed_step.statistics import watch_for
+from canon.flow.method.method import DOP853, FixedStep, Method, Taylor, TimeTransformed
+from canon.flow.method.number_formats import fixed_precision
+from canon.flow.run.event import Event, prepared
+from canon.flow.run.observables_along import measured, warn_of_jumps
+from canon.flow.run.sampling_plan import sampling
 from canon.flow.trajectory import Array, Interrupted, Samples, Statistics, Trajectory, joined
-from canon.flow.watching import watch_for
+from canon.flow.transformed.transformed_motion import transformed_motion
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from canon.flow.sampling import Plan
-    from canon.flow.transformed import Fictitious
-    from canon.kernel.structure import Equations
+    from canon.flow.run.sampling_plan import Plan
+    from canon.flow.transformed.extended_hamiltonian import Fictitious
+    from canon.kernel.program.hamilton_equations import Equations
 
 __all__ = ["Task"]
 

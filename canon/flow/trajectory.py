@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from canon.expression.given import counted
+from canon.expression.symbols.user_input import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from canon.flow.error import ErrorEstimate
-    from canon.flow.event import Crossing
-    from canon.flow.method import Method
+    from canon.flow.error_estimate import ErrorEstimate
+    from canon.flow.method.method import Method
+    from canon.flow.run.event import Crossing
     from canon.flow.task import Task
 
 __all__ = ["Array", "Interrupted", "Samples", "Statistics", "Trajectory", "joined"]
@@ -224,7 +224,7 @@ class Trajectory:
         """Return how far this motion is from the true one, by a companion run that is more exact.
 
         A method of fixed steps is repeated with half the step in wider numbers, which takes many times as long
-        as the motion did; others are compared with Taylor's method in wider numbers. See :mod:`canon.flow.error`.
+        as the motion did; others are compared with Taylor's method in wider numbers. See :mod:`canon.flow.error_estimate`.
 
         Parameters
         ----------
@@ -247,7 +247,7 @@ class Trajectory:
         >>> bool(0.02 < estimate.relative[-1] < 0.1), estimate.meaningful_until, estimate.lyapunov_time
         (True, None, None)
         """
-        from canon.flow.error import error_estimate
+        from canon.flow.error_estimate import error_estimate
 
         return error_estimate(self, orbits)
 
@@ -269,7 +269,7 @@ class Trajectory:
         ValueError
             A time lies outside the span; or what is needed was not kept.
         """
-        from canon.flow.between import states_at
+        from canon.flow.interpolation import states_at
 
         task, samples = self.origin
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
@@ -319,8 +319,8 @@ class Trajectory:
         >>> bool((half.resume(20).y == whole.y).all())
         True
         """
-        from canon.flow.progress import reporting
-        from canon.kernel.structure import exact
+        from canon.kernel.program.hamilton_equations import exact
+        from canon.progress import reporting
 
         task, kept = self.origin
         if self.stopped:

@@ -12,7 +12,7 @@ from canon.plot.phase import plot_phase_portrait, plot_poincare_section
 from canon.plot.scene import animate_scene, plot_scene
 from canon.plot.study import plot_study_heatmap
 from canon.plot.style import COLOURS, GREY, PlotError
-from canon.plot.work import plot_drift_by_step, plot_work_precision
+from canon.plot.work_precision import plot_drift_by_step, plot_work_precision
 
 __all__ = [
     "COLOURS",

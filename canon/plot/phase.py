@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
-    from canon.flow.event import Crossing
+    from canon.flow.run.event import Crossing
     from canon.flow.trajectory import Trajectory
 
 __all__ = ["plot_phase_portrait", "plot_poincare_section", "several"]
@@ -92,7 +92,7 @@ def plot_poincare_section(
     Examples
     --------
     >>> from canon import Taylor, propagate
-    >>> from canon.flow.event import Event
+    >>> from canon.flow.run.event import Event
     >>> from canon.scene import find
     >>> scene = find("henon-heiles")
     >>> crossing = Event(scene.q[0], 1)

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from canon.scene.motion import Motion
     from canon.scene.picture import Picture, Point
+    from canon.scene.scene_motion import Motion
 
     Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ def plot_scene(motion: Motion, ax: Axes | None = None, *, at: int = 0) -> Axes:
     Parameters
     ----------
     motion
-        What :func:`canon.scene.motion.run` returned.
+        What :func:`canon.scene.scene_motion.run` returned.
     ax
         Where to draw; a new figure if left out.
     at
@@ -51,7 +51,7 @@ def plot_scene(motion: Motion, ax: Axes | None = None, *, at: int = 0) -> Axes:
     Examples
     --------
     >>> from canon.scene import find
-    >>> from canon.scene.motion import run
+    >>> from canon.scene.scene_motion import run
     >>> axes = plot_scene(run(find("spring-pendulum"), periods=1, samples=50))
     >>> len(axes.lines)  # the way of the bob, the spring and the bob
     3
@@ -72,7 +72,7 @@ def animate_scene(motion: Motion, file: str | Path, *, seconds: float = 6.0, rat
     Parameters
     ----------
     motion
-        What :func:`canon.scene.motion.run` returned; all of it is shown.
+        What :func:`canon.scene.scene_motion.run` returned; all of it is shown.
     file
         Where to write.
     seconds, rate

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.expression.given import counted
+from canon.expression.symbols.user_input import counted
 from canon.plot.style import GREY, PlotError, new_axes
-from canon.study.result import State
+from canon.study.cases.result import State
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.axes import Axes
 
-    from canon.study.result import Result
+    from canon.study.cases.result import Result
 
 __all__ = ["plot_study_heatmap"]
 
@@ -32,7 +32,7 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     Parameters
     ----------
     results
-        What :func:`canon.study.result.results_of` returned.
+        What :func:`canon.study.cases.result.results_of` returned.
     ax
         Where to draw; a new figure, as large as the table needs, if left out.
     what

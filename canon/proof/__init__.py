@@ -6,16 +6,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from canon.proof.domain import Domain as Domain
-    from canon.proof.equations import equivalent_equations as equivalent_equations
+    from canon.proof.domain.domain import Domain as Domain
+    from canon.proof.domain.verdict import Counterexample as Counterexample
+    from canon.proof.domain.verdict import Evidence as Evidence
+    from canon.proof.domain.verdict import Status as Status
+    from canon.proof.domain.verdict import Undecided as Undecided
+    from canon.proof.domain.verdict import Verdict as Verdict
+    from canon.proof.domain.verdict import all_hold as all_hold
+    from canon.proof.equivalent_equations import equivalent_equations as equivalent_equations
     from canon.proof.vanish import equal as equal
     from canon.proof.vanish import vanishes as vanishes
-    from canon.proof.verdict import Counterexample as Counterexample
-    from canon.proof.verdict import Evidence as Evidence
-    from canon.proof.verdict import Status as Status
-    from canon.proof.verdict import Undecided as Undecided
-    from canon.proof.verdict import Verdict as Verdict
-    from canon.proof.verdict import all_hold as all_hold
 
 _HOMES = {
     "Counterexample": "verdict",

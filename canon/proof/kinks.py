@@ -15,18 +15,18 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy.core.relational import Relational
 
-from canon.proof.anatomy import Anatomy, anatomy
-from canon.proof.domain import Domain
-from canon.proof.examples import evaluated
-from canon.proof.generic import is_analytic
-from canon.proof.limits import QUICK
-from canon.proof.prove import REFUSALS, is_empty, prove_zero
-from canon.proof.refute import look_for_counterexample
-from canon.proof.replacement import KINKED, NoValue, replaced
-from canon.proof.split import certainly_real
-from canon.proof.typed import arguments
+from canon.proof.analytic import is_analytic
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.limits import QUICK
+from canon.proof.domain.verdict import Evidence, Status, Verdict
+from canon.proof.refute.refute import look_for_counterexample
+from canon.proof.refute.sample_functions import evaluated
+from canon.proof.rungs.cases import certainly_real
+from canon.proof.rungs.ladder import REFUSALS, is_empty, prove_zero
+from canon.proof.trees.anatomy import Anatomy, anatomy
+from canon.proof.trees.replacement import KINKED, NoValue, replaced
+from canon.proof.trees.sympy_types import arguments
 from canon.proof.vanish import vanishes
-from canon.proof.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

@@ -12,22 +12,22 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.expression.given import given_expression, given_seconds
-from canon.proof.anatomy import anatomy
-from canon.proof.branches import search_branches
-from canon.proof.budget import prove_in_worker
-from canon.proof.domain import EVERYWHERE, Domain, as_domain
-from canon.proof.examples import evaluated
-from canon.proof.limits import QUICK
-from canon.proof.prove import REFUSALS, Attempt, is_empty, prove_each, prove_zero, refusal
-from canon.proof.refute import (
+from canon.expression.symbols.user_input import given_expression, given_seconds
+from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
+from canon.proof.domain.limits import QUICK
+from canon.proof.domain.verdict import Evidence, Status, Verdict
+from canon.proof.refute.refute import (
     Search,
     first_counterexample,
     look_for_counterexample,
     look_in_corners,
     search_widely,
 )
-from canon.proof.verdict import Evidence, Status, Verdict
+from canon.proof.refute.root_branches import search_branches
+from canon.proof.refute.sample_functions import evaluated
+from canon.proof.rungs.ladder import REFUSALS, Attempt, is_empty, prove_each, prove_zero, refusal
+from canon.proof.trees.anatomy import anatomy
+from canon.proof.worker.budget import prove_in_worker
 
 if TYPE_CHECKING:
     from sympy import Expr

@@ -3,7 +3,7 @@
 A scene is written by filling in :class:`Scene` in the file of its family and naming it in that file's ``SCENES``. It
 says what it is (parameters with units and real values, starts), how it moves (``L_of``, ``H_of`` or ``bodies_of`` and
 ``V_of``, with ``forces_of``, ``holonomic_of``, ``nonholonomic_of``), what is known of it (``integrals``, ``solutions``,
-with sources) and what it looks like (``picture_of``). :func:`canon.scene.check.check` holds it to that.
+with sources) and what it looks like (``picture_of``). :func:`canon.scene.known_truths.check` holds it to that.
 
 >>> from canon.scene import find, names
 >>> find("henon-heiles").title
@@ -14,7 +14,8 @@ True
 
 from __future__ import annotations
 
-from canon.scene import (
+from canon.scene.scene import Condition, Integral, Parameter, Scene, SceneError, Solution, Start, near
+from canon.scene.systems import (
     bead,
     bodies,
     charge,
@@ -38,7 +39,6 @@ from canon.scene import (
     triple,
     two_degree,
 )
-from canon.scene.scene import Condition, Integral, Parameter, Scene, SceneError, Solution, Start, near
 
 __all__ = [
     "SCENES", "Condition", "Integral", "Parameter", "Scene", "SceneError", "Solution", "Start", "find", "names",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from canon.expression.given import counted
+from canon.expression.symbols.user_input import counted
 from canon.scene.parts import multiplier
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _routhian(scene: Scene) -> Iterator[Section]:
     if not scene.has_lagrangian and all(scene.hamiltonian.H.has(s) for s in scene.q):
         yield Section("Routhian", (), "no coordinate is ignorable, so R = L")
         return
-    from canon.mechanics.routh import routhian
+    from canon.mechanics.reduction.routh import routhian
 
     found = routhian(scene.lagrangian)
     yield Section("Routhian", (ShownFormula("R", found.R),) if found.ignorable else (), found.note)

@@ -179,7 +179,7 @@ def multiplier(number: int = 1) -> Symbol:
     >>> multiplier(2)
     lambda2
     """
-    from canon.expression.symbol import parameters
+    from canon.expression.symbols.symbol import parameters
 
     return parameters(f"lambda{number}")[0]
 

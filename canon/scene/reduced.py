@@ -17,7 +17,7 @@ def reduced(scene: Scene, start: str | None = None) -> Scene:
     """Return the scene of the coordinates that are not ignorable, for the constant momenta of one start.
 
     The momenta become parameters, so that ``with_parameters(p_phi=…)`` looks at other ones. The ignored coordinates
-    follow by quadrature, :meth:`canon.mechanics.routh.Routhian.quadrature_at`.
+    follow by quadrature, :meth:`canon.mechanics.reduction.routh.Routhian.quadrature_at`.
 
     Parameters
     ----------
@@ -38,9 +38,9 @@ def reduced(scene: Scene, start: str | None = None) -> Scene:
     >>> bob.coordinates, bob.lagrangian.L
     ('theta', g*l*m*cos(theta) + l**2*m*theta_dot**2/2 - p_phi**2/(2*l**2*m*sin(theta)**2))
     """
-    from canon.expression.symbol import parameters
-    from canon.mechanics.ignorable import ignorable_coordinates
-    from canon.mechanics.routh import routhian
+    from canon.expression.symbols.symbol import parameters
+    from canon.mechanics.reduction.ignorable import ignorable_coordinates
+    from canon.mechanics.reduction.routh import routhian
 
     if scene.is_constrained:
         raise SceneError(f"{scene.name} has constraints; eliminate them before coordinates are ignored")

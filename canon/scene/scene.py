@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from sympy import Expr, Symbol
 
-    from canon.expression.symbol import Coordinate
-    from canon.mechanics.body import Body
-    from canon.mechanics.constraint import ConstrainedLagrangian
-    from canon.mechanics.hamiltonian import Hamiltonian
-    from canon.mechanics.lagrangian import Lagrangian
+    from canon.expression.symbols.symbol import Coordinate
+    from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+    from canon.mechanics.lagrange.body import Body
+    from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
     from canon.scene.picture import Picture
 
     Build = Callable[[SimpleNamespace], Expr]
@@ -127,7 +127,7 @@ class Scene:
     @cached_property
     def q(self) -> tuple[Coordinate, ...]:
         """The coordinates as symbols."""
-        from canon.expression.symbol import coordinates
+        from canon.expression.symbols.symbol import coordinates
 
         return coordinates(self.coordinates)
 
@@ -139,7 +139,7 @@ class Scene:
     @cached_property
     def symbols(self) -> SimpleNamespace:
         """Coordinates, parameters and the time ``t`` as symbols, by name."""
-        from canon.expression.symbol import parameters, time
+        from canon.expression.symbols.symbol import parameters, time
 
         constants = [parameters(c.name, **{c.sign: True})[0] for c in self.parameters]
         return SimpleNamespace(**{s.name: s for s in (time, *self.q, *constants)})
@@ -162,14 +162,14 @@ class Scene:
     @cached_property
     def lagrangian(self) -> Lagrangian:
         """The Lagrangian, with the forces that have no potential."""
-        from canon.mechanics.lagrangian import Lagrangian
+        from canon.mechanics.lagrange.lagrangian import Lagrangian
 
         forces = self.forces_of(self.symbols) if self.forces_of else None
         if self.L_of is not None:
             return Lagrangian(self.L_of(self.symbols), self.q, forces=forces)
         if self.bodies_of is None:
             return self.hamiltonian.lagrangian()
-        from canon.mechanics.force import lagrangian_of
+        from canon.mechanics.lagrange.force import lagrangian_of
 
         V = self.V_of(self.symbols) if self.V_of else None
         bodies = self.bodies_of(self.symbols)
@@ -182,7 +182,7 @@ class Scene:
     @cached_property
     def constrained(self) -> ConstrainedLagrangian:
         """The Lagrangian with the constraints of the scene."""
-        from canon.mechanics.constraint import ConstrainedLagrangian
+        from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 
         s = self.symbols
         holonomic = self.holonomic_of(s) if self.holonomic_of else ()
@@ -201,11 +201,11 @@ class Scene:
         if not self.is_free:
             raise SceneError(
                 f"{self.name} has constraints or forces without potential, so no Hamiltonian says how it moves; "
-                "take its lagrangian, or run it by canon.scene.motion.run"
+                "take its lagrangian, or run it by canon.scene.scene_motion.run"
             )
         if self.H_of is None:
             return self.lagrangian.hamiltonian(self.p)
-        from canon.mechanics.hamiltonian import Hamiltonian
+        from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
         return Hamiltonian(self.H_of(self.symbols), self.q, self.p)
 
@@ -265,8 +265,8 @@ class Scene:
             return np.array([*chosen.q, *chosen.p])
         from sympy import Float
 
-        from canon.expression.symbol import time
-        from canon.mechanics.substitution import exchanged
+        from canon.expression.symbols.symbol import time
+        from canon.mechanics.algebra.substitution import exchanged
 
         lagrangian = self.lagrangian
         known = {

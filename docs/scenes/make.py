@@ -14,12 +14,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from canon.plot.scene import plot_scene
 from canon.scene import SCENES
-from canon.scene.check import check, conserved
 from canon.scene.describe import description
-from canon.scene.motion import run
+from canon.scene.known_truths import check, conserved
+from canon.scene.scene_motion import run
 
 if TYPE_CHECKING:
-    from canon.scene.check import Check
+    from canon.scene.known_truths import Check
     from canon.scene.scene import Scene
 
 HERE = Path(__file__).resolve().parent

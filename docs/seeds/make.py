@@ -126,7 +126,7 @@ def judged_row(claim: dict[str, Any], section: str, judgement: Any) -> str:
 
 def at_leisure(claim: Any, judgement: Any) -> Any:
     """Return a judgement whose feedback and right answer were not cut off, as they can be on a busy machine."""
-    from canon.exercise.feedback import corrected, feedback
+    from canon.exercise.diagnose.feedback import corrected, feedback
     from canon.exercise.judge import examine
 
     if judgement.status != "fails" or (judgement.feedback and judgement.corrected):
@@ -138,8 +138,8 @@ def at_leisure(claim: Any, judgement: Any) -> Any:
 
 def page() -> str:
     """Return the page."""
-    from canon.exercise.checking import check
-    from canon.exercise.sheet import read_sheet
+    from canon.exercise.check import check
+    from canon.exercise.sheet.sheet import read_sheet
 
     entries = tomllib.loads((ROOT / "docs" / "seeds" / "entries.toml").read_text("utf-8"))["entry"]
     claims: dict[str, list[dict[str, Any]]] = {}

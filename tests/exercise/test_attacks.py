@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 from canon import coordinates, parameters
-from canon.exercise.checking import check, judged
-from canon.exercise.sheet import Claim, SheetError, claim_from, sheet_from
-from canon.exercise.worker import MEMORY, Worker
-from canon.expression.language import LanguageError, parse_condition, parse_equation
+from canon.exercise.check import check, judged
+from canon.exercise.judging_process import MEMORY, Worker
+from canon.exercise.sheet.sheet import Claim, SheetError, claim_from, sheet_from
 from canon.expression.mathml import formula
-from canon.expression.scope import Scope
+from canon.expression.parse import LanguageError, parse_condition, parse_equation
+from canon.expression.text.scope import Scope
 
 ROOT = Path(__file__).parents[2]
 GOOD = {
@@ -346,8 +346,8 @@ def test_numbers_too_large_to_be_computed_with_are_named(worker):
 
 
 def test_a_page_of_attacks_is_written_in_no_time():
-    from canon.exercise.page import page
-    from canon.exercise.report import Judgement, Report
+    from canon.exercise.report.page import page
+    from canon.exercise.report.report import Judgement, Report
 
     claims = tuple(attack(name, 1.0) for name in ATTACKS)
     report = Report("attacks", tuple(Judgement(c.id, c.kind, "invalid", known="no") for c in claims), claims)

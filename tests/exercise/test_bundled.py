@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from canon.exercise.checking import check
+from canon.exercise.check import check
 from canon.exercise.judge import judge
-from canon.exercise.sheet import bundled_sheet
+from canon.exercise.sheet.sheet import bundled_sheet
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "sheets" / "tour.toml"
 

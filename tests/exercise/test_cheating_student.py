@@ -18,8 +18,8 @@ from pathlib import Path
 import pytest
 
 from canon.exercise.judge import InvalidClaim, judge
-from canon.exercise.kinds import KINDS
-from canon.exercise.sheet import Claim, sheet_from
+from canon.exercise.sheet.kinds import KINDS
+from canon.exercise.sheet.sheet import Claim, sheet_from
 from tests.exercise.right_answers import EMPTY, RIGHT, Right, with_kappa
 from tests.exercise.worthless_forms import CLASSES, HIDDEN_ZEROS, PLAIN_ZEROS, Form
 

@@ -3,7 +3,7 @@
 import pytest
 
 from canon.exercise.judge import judge
-from canon.exercise.sheet import Claim
+from canon.exercise.sheet.sheet import Claim
 
 OSCILLATOR = {"q": "q", "p": "p", "H": "p**2/2 + q**2/2"}
 ENERGY = "p**2/2 + q**2/2"

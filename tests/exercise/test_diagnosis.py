@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from canon.exercise.diagnosis import judged_to_hold
-from canon.exercise.feedback import corrected, diagnosis
+from canon.exercise.diagnose.diagnosis import judged_to_hold
+from canon.exercise.diagnose.feedback import corrected, diagnosis
+from canon.exercise.explained_judgement import judgements
 from canon.exercise.judge import examine
-from canon.exercise.judging import judgements
-from canon.exercise.sheet import Claim, read_sheet
+from canon.exercise.sheet.sheet import Claim, read_sheet
 
 ROOT = Path(__file__).parents[2]
 SEEDS = sorted((ROOT / "examples" / "sheets" / "seeds").glob("*.toml"))
@@ -229,7 +229,7 @@ GENERATED = {
 @pytest.mark.parametrize("name", ["F1-02a", "F1-08b", "F2-05a", "F3-01a", "F3-06a", "F4-03a", "F4-05a"])
 def test_the_right_generating_function_is_shown(name, monkeypatch):
     """By the map and by the inverse map; the claim with it put in holds."""
-    monkeypatch.setattr("canon.exercise.generating_answer.SECONDS", 10.0)  # on a busy machine too
+    monkeypatch.setattr("canon.exercise.question.generating_answer.SECONDS", 10.0)  # on a busy machine too
     claim = GENERATED[name]
     shown = corrected(examine(claim))
     assert shown

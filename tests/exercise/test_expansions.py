@@ -4,9 +4,9 @@ import mpmath
 import pytest
 import sympy as sp
 
-from canon.exercise.analytic import coefficient
 from canon.exercise.judge import judge
-from canon.exercise.sheet import Claim
+from canon.exercise.question.series_expansion import coefficient
+from canon.exercise.sheet.sheet import Claim
 
 NAMES = dict.fromkeys(("m", "x", "A"), "real") | dict.fromkeys(("a", "l", "g"), "positive")
 PERIOD = "4*sqrt(l/g)*elliptic_k(sin(A/2)**2)"

@@ -7,13 +7,13 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.exercise.feedback import corrected, feedback
+from canon.exercise.diagnose.feedback import corrected, feedback
+from canon.exercise.diagnose.repair import repair
+from canon.exercise.diagnose.slips import variants
 from canon.exercise.judge import examine
-from canon.exercise.question import Part
-from canon.exercise.repair import repair
-from canon.exercise.sheet import Claim, bundled_sheet, read_sheet
-from canon.exercise.variants import variants
-from canon.proof.domain import Domain
+from canon.exercise.question.question import Part
+from canon.exercise.sheet.sheet import Claim, bundled_sheet, read_sheet
+from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
 CLAIMS = Path(__file__).parent.parent / "data" / "claims"

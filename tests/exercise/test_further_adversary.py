@@ -11,7 +11,7 @@ import pytest
 import sympy as sp
 
 from canon.exercise.judge import InvalidClaim, judge
-from canon.exercise.sheet import Claim
+from canon.exercise.sheet.sheet import Claim
 
 
 def said(kind, **keys):

@@ -12,12 +12,12 @@ import sympy as sp
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from canon.exercise.checking import judged
+from canon.exercise.check import judged
 from canon.exercise.judge import InvalidClaim, judge
-from canon.exercise.judge_passive import is_positive_real_at
-from canon.exercise.kinds import KINDS
-from canon.exercise.sheet import Claim, sheet_from
-from canon.proof.verdict import Status
+from canon.exercise.judges.positive_real import is_positive_real_at
+from canon.exercise.sheet.kinds import KINDS
+from canon.exercise.sheet.sheet import Claim, sheet_from
+from canon.proof.domain.verdict import Status
 
 PAGE = (Path(__file__).parents[2] / "docs" / "sheets_kinds.md").read_text("utf-8")
 SAID = re.findall(r"^# (holds|fails)(?:: (.*))?\n\[\[claim\]\]\nid = \"(.*)\"", PAGE, re.MULTILINE)

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from canon.exercise.explained_judgement import judgements
 from canon.exercise.judge import InvalidClaim, judge
-from canon.exercise.judging import judgements
-from canon.exercise.sheet import SheetError, read_sheet, sheet_from
-from canon.exercise.worker import Worker
-from canon.expression.language import LanguageError, Scope, parse_expression
+from canon.exercise.judging_process import Worker
+from canon.exercise.sheet.sheet import SheetError, read_sheet, sheet_from
+from canon.expression.parse import LanguageError, Scope, parse_expression
 
 SHEETS = sorted((Path(__file__).parents[1] / "data" / "claims").glob("*.json"))
 WRITTEN = [json.dumps(claim) for path in SHEETS for claim in json.loads(path.read_text("utf-8"))["claims"]]

@@ -6,10 +6,10 @@ import mpmath
 import pytest
 import sympy as sp
 
-from canon.exercise.implicit_point import PRECISION, enclosed
 from canon.exercise.judge import judge
-from canon.exercise.sheet import Claim
-from canon.proof.balls import precision
+from canon.exercise.question.implicit_point import PRECISION, enclosed
+from canon.exercise.sheet.sheet import Claim
+from canon.proof.domain.balls import precision
 
 KEYS = {
     "q": ["q"],

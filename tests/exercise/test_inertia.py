@@ -4,8 +4,8 @@ import pytest
 
 from canon import Lagrangian, coordinates, parameters
 from canon.exercise.judge import judge
-from canon.exercise.sheet import Claim
-from canon.expression.language import Scope, parse_expression
+from canon.exercise.sheet.sheet import Claim
+from canon.expression.parse import Scope, parse_expression
 
 TENSOR = ["Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"]
 MOMENTS = dict.fromkeys(TENSOR[:3], "positive") | dict.fromkeys(TENSOR[3:], "real")

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from canon.exercise.judge import examine
-from canon.exercise.reading import InvalidClaim
-from canon.exercise.sheet import read_sheet
+from canon.exercise.sheet.reading import InvalidClaim
+from canon.exercise.sheet.sheet import read_sheet
 
 SHEET = Path(__file__).parents[1] / "data" / "invalid_claims.json"
 CLAIMS = {claim.id: claim for claim in read_sheet(SHEET).claims}

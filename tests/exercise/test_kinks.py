@@ -4,12 +4,12 @@ import pytest
 import sympy as sp
 
 from canon import Hamiltonian, Lagrangian, coordinates, vanishes
-from canon.exercise.feedback import corrected
+from canon.exercise.diagnose.feedback import corrected
 from canon.exercise.judge import JUDGES, examine
-from canon.exercise.sheet import Claim
-from canon.mechanics.linear import is_regular
-from canon.mechanics.symmetry import have_same_equations
-from canon.proof.domain import Domain
+from canon.exercise.sheet.sheet import Claim
+from canon.mechanics.algebra.linear import is_regular
+from canon.mechanics.hamilton.symmetry import have_same_equations
+from canon.proof.domain.domain import Domain
 from canon.proof.kinks import off_kinks, vanishes_off_kinks
 
 FALLING = {"q": "y", "parameters": {"m": "positive", "g": "positive"}, "L": "m*y_dot**2/2 - m*g*Abs(y)"}

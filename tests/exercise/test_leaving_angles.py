@@ -3,10 +3,10 @@
 import pytest
 import sympy as sp
 
-from canon.exercise.inversion import real_solutions
 from canon.exercise.judge import judge
-from canon.exercise.sheet import Claim
-from canon.proof.domain import Domain
+from canon.exercise.question.solve_for_symbol import real_solutions
+from canon.exercise.sheet.sheet import Claim
+from canon.proof.domain.domain import Domain
 
 SPHERE = {
     "q": ["r", "th"],

@@ -3,7 +3,7 @@
 import pytest
 
 from canon.exercise.judge import judge
-from canon.exercise.sheet import Claim
+from canon.exercise.sheet.sheet import Claim
 
 VORTEX = "(x*y_dot - y*x_dot)/2 - k*(x**2 + y**2)/2"
 PHASE_SPACE = "p*x_dot - p**2/2 - V(x)"

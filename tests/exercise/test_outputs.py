@@ -14,12 +14,12 @@ from sympy.physics.mechanics import dynamicsymbols
 
 import canon
 from canon.cli import main
-from canon.exercise.report import Judgement, Report, printable
-from canon.exercise.sheet import SheetError, bundled_sheet, claim_from, sheet_from
-from canon.exercise.worker import Worker
+from canon.exercise.judging_process import Worker
+from canon.exercise.report.report import Judgement, Report, printable
+from canon.exercise.sheet.sheet import SheetError, bundled_sheet, claim_from, sheet_from
 from canon.expression.mathml import formula
-from canon.expression.scope import Scope
-from canon.proof.verdict import Undecided
+from canon.expression.text.scope import Scope
+from canon.proof.domain.verdict import Undecided
 
 ALLOWED = {
     "html", "head", "meta", "title", "style", "body", "main", "h1", "h2", "p", "span", "section", "code", "dl", "dt",
@@ -250,7 +250,7 @@ def test_a_set_formula_means_what_was_written(text):
     scope = Scope({name: sp.Symbol(shown) for name, shown in names.items()})
     try:
         meant = canon.parse_expression(text, scope)
-    except canon.expression.language.LanguageError:
+    except canon.expression.parse.LanguageError:
         return  # a division by zero
     assert sp.simplify(value(formula(text, scope)) - meant) == 0
 

@@ -3,7 +3,7 @@
 import pytest
 
 from canon.exercise.judge import InvalidClaim, judge
-from canon.exercise.sheet import Claim
+from canon.exercise.sheet.sheet import Claim
 
 LINEAR = {
     "q": ["q"], "p": ["p"], "Q": ["a*q + b*p"], "P": ["c*q + d*p"],

@@ -5,14 +5,14 @@ import random
 import pytest
 import sympy as sp
 
-from canon.exercise.checking import judged
+from canon.exercise.check import judged
 from canon.exercise.judge import InvalidClaim, judge
-from canon.exercise.kinds import KINDS, OF_PARAMETERS, kind_of
-from canon.exercise.parameter_system import covers, families
-from canon.exercise.question import Deadline
-from canon.exercise.sheet import Claim, claim_from
-from canon.proof.domain import Domain
-from canon.proof.verdict import Undecided
+from canon.exercise.question.parameter_system import covers, families
+from canon.exercise.question.question import Deadline
+from canon.exercise.sheet.kinds import KINDS, OF_PARAMETERS, kind_of
+from canon.exercise.sheet.sheet import Claim, claim_from
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Undecided
 
 POLAR = {
     "of": "canonicity", "q": ["q"], "p": ["p"], "Q": ["q**alpha*cos(beta*p)"], "P": ["q**alpha*sin(beta*p)"],

@@ -8,18 +8,18 @@ from flint import acb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.exercise.diagnosis import judged_to_hold
-from canon.exercise.feedback import diagnosis, feedback
+from canon.exercise.diagnose.changed_claims import _answers
+from canon.exercise.diagnose.diagnosis import judged_to_hold
+from canon.exercise.diagnose.feedback import diagnosis, feedback
+from canon.exercise.diagnose.point_derivatives import BITS, Examples, Neighbourhood
+from canon.exercise.diagnose.repair import repair
+from canon.exercise.diagnose.screening import screening
 from canon.exercise.judge import examine
-from canon.exercise.neighbourhood import BITS, Examples, Neighbourhood
-from canon.exercise.question import Part
-from canon.exercise.reading import Reading
-from canon.exercise.rejudged import _answers
-from canon.exercise.repair import repair
-from canon.exercise.screening import screening
-from canon.exercise.sheet import Claim, read_sheet
-from canon.proof.balls import precision
-from canon.proof.domain import Domain
+from canon.exercise.question.question import Part
+from canon.exercise.sheet.reading import Reading
+from canon.exercise.sheet.sheet import Claim, read_sheet
+from canon.proof.domain.balls import precision
+from canon.proof.domain.domain import Domain
 
 CLAIMS = Path(__file__).parent.parent / "data" / "claims"
 KINDS = (

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 import canon
-from canon.exercise.checking import check
-from canon.exercise.kinds import COMMON, KINDS
-from canon.exercise.report import Judgement
-from canon.exercise.sheet import Sheet, sheet_from
+from canon.exercise.check import check
+from canon.exercise.report.report import Judgement
+from canon.exercise.sheet.kinds import COMMON, KINDS
+from canon.exercise.sheet.sheet import Sheet, sheet_from
 
 PAGE = (Path(__file__).parents[2] / "docs" / "sheets.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
@@ -56,7 +56,7 @@ def test_every_kind_has_an_example_and_its_keys_are_named(judged):
 
 def test_common_keys_statuses_and_options_are_named():
     from canon.command.check import add_arguments
-    from canon.exercise.report import _MARKS
+    from canon.exercise.report.report import _MARKS
 
     for word in (*COMMON, *_MARKS, *Judgement.__dataclass_fields__):
         assert f"`{word}`" in PAGE, word

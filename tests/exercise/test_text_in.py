@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon import coordinates, parameters
-from canon.expression.language import LanguageError, parse_equation, parse_expression
-from canon.expression.scope import Scope
-from canon.expression.units import units, without_units
+from canon.expression.parse import LanguageError, parse_equation, parse_expression
+from canon.expression.text.scope import Scope
+from canon.expression.text.units import units, without_units
 
 theta, x = coordinates("theta x")
 m, g, l, a, k, E = parameters("m g l a k E")

@@ -2,10 +2,10 @@
 
 import pytest
 
-from canon.exercise.feedback import corrected, feedback
+from canon.exercise.diagnose.feedback import corrected, feedback
 from canon.exercise.judge import examine
-from canon.exercise.reading import InvalidClaim
-from canon.exercise.sheet import Claim, claim_from
+from canon.exercise.sheet.reading import InvalidClaim
+from canon.exercise.sheet.sheet import Claim, claim_from
 
 SECONDS = 6.0
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from canon.exercise.judge import judge
-from canon.exercise.kinds import KINDS
-from canon.exercise.sheet import read_sheet
+from canon.exercise.sheet.kinds import KINDS
+from canon.exercise.sheet.sheet import read_sheet
 
 CLAIMS = Path(__file__).parent.parent / "data" / "claims"
 SUBTLE = CLAIMS.parent / "subtle_claims.json"

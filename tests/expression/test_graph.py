@@ -9,10 +9,10 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.arithmetic import LONGDOUBLE, multiprecision
-from canon.expression.elementary import SLOPES
-from canon.expression.graph import Graph
-from canon.expression.translation import NotModelledError
+from canon.expression.graph.elementary import SLOPES
+from canon.expression.graph.graph import Graph
+from canon.expression.graph.number_systems import LONGDOUBLE, multiprecision
+from canon.expression.graph.sympy_conversion import NotModelledError
 
 x, y, z = sp.symbols("x y z", positive=True)
 POINT = {x: sp.Rational(3, 7), y: sp.Rational(5, 4), z: sp.Rational(2, 9)}

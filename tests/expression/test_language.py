@@ -10,7 +10,7 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
 from canon import coordinates, parameters
-from canon.expression.language import LanguageError, Scope, parse_condition, parse_equation, parse_expression
+from canon.expression.parse import LanguageError, Scope, parse_condition, parse_equation, parse_expression
 
 theta, x = coordinates("theta x")
 m, lam, E, beta, S = parameters("m lambda E beta S", positive=True)

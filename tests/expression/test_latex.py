@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon import coordinates, parameters, time
-from canon.expression.language import LanguageError, Scope, parse_condition, parse_equation, parse_expression
-from canon.expression.latex import parse_latex
-from canon.expression.magnitude import has_huge_number
-from canon.expression.symbol import Momentum
+from canon.expression.latex.grammar import parse_latex
+from canon.expression.parse import LanguageError, Scope, parse_condition, parse_equation, parse_expression
+from canon.expression.symbols.magnitude import has_huge_number
+from canon.expression.symbols.symbol import Momentum
 
 COORDINATES = "theta theta_1 theta2 phi x y q_1 q_2 r q_12"
 PARAMETERS = "m m_1 m2 g l k a b c omega omega_0 alpha lambda A n m_eff x_bar M_s d_x delta_x"
@@ -564,7 +564,7 @@ def test_any_words_are_read_or_refused_with_a_column(words):
 
 def test_plain_text_never_loads_the_parser_generator():
     code = (
-        "import sys; from canon.expression.language import Scope, parse_expression as p\n"
+        "import sys; from canon.expression.parse import Scope, parse_expression as p\n"
         "p('1 + 1', Scope()); assert 'lark' not in sys.modules\n"
         "p('$1 + 1', Scope()); assert 'lark' in sys.modules"
     )

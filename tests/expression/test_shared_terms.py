@@ -7,9 +7,9 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.graph import Graph
-from canon.expression.pythagoras import without_squares
-from canon.expression.sums import SharedSums, opposite, signed_product
+from canon.expression.graph.graph import Graph
+from canon.expression.graph.pythagoras import without_squares
+from canon.expression.graph.sums import SharedSums, opposite, signed_product
 
 a, b, c, m, x, y = sp.symbols("a b c m x y", positive=True)
 POINT = {a: 0.7, b: 1.3, c: -0.4, m: 2.1, x: 0.6, y: 1.9}

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from canon import coordinates, parameters, time, time_derivative
-from canon.expression.symbol import Rate, without_dynamicsymbols
+from canon.expression.symbols.symbol import Rate, without_dynamicsymbols
 
 (THETA,) = coordinates("theta")
 EVERY_KIND = (THETA, THETA.dot, THETA.ddot, THETA.momentum, *parameters("m"))

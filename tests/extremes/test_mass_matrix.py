@@ -5,8 +5,8 @@ import pytest
 import sympy as sp
 
 from canon import Lagrangian, coordinates
-from canon.mechanics.derivation import derivation_of_lagrangian
-from canon.mechanics.motion import acceleration_function, mass_condition_function
+from canon.mechanics.at_scale.numeric_functions import acceleration_function, mass_condition_function
+from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
 
 x, y = coordinates("x y")
 u, v = x.dot, y.dot

@@ -20,7 +20,7 @@ from canon import (
     coordinates,
     parameters,
 )
-from canon.exercise.sheet import sheet_from
+from canon.exercise.sheet.sheet import sheet_from
 
 (q,) = coordinates("q")
 p = q.momentum

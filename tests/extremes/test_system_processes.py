@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from canon.exercise.sheet import Claim
-from canon.exercise.worker import Worker
-from canon.proof.budget import _worker, prove_in_worker
-from canon.proof.domain import Domain
+from canon.exercise.judging_process import Worker
+from canon.exercise.sheet.sheet import Claim
+from canon.proof.domain.domain import Domain
+from canon.proof.worker.budget import _worker, prove_in_worker
 
 ROOT = Path(__file__).parents[2]
 x = sp.Symbol("x", real=True)
@@ -100,7 +100,7 @@ import time
 signal.signal(signal.SIGINT, signal.default_int_handler)  # where the tests run in the background too
 import sympy as sp
 from canon import Domain, vanishes
-from canon.proof.budget import prove_in_worker
+from canon.proof.worker.budget import prove_in_worker
 from tests_endless import endless
 print("ready", flush=True)
 start = time.monotonic()

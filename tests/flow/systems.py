@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from canon.expression.symbol import coordinates, time
+from canon.expression.symbols.symbol import coordinates, time
 
 x, y, theta, phi = coordinates("x y theta phi")
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.event import Event
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.flow.run.event import Event
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
     HENON_HEILES,
@@ -215,7 +215,7 @@ def test_an_event_that_leaves_its_domain_is_an_error():
 
 
 def test_a_driven_systems_events_read_the_clock():
-    from canon.expression.symbol import time
+    from canon.expression.symbols.symbol import time
 
     wall = Event(x - sp.sin(time) / 10, -1, "bounce")
     for method, how in ((VERLET, {"step": 0.01}), (Taylor(), {})):

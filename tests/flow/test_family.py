@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.event import Event
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.flow.run.event import Event
 from tests.flow.systems import System, theta, x, y
 
 m, k, e = sp.symbols("m k e", positive=True)

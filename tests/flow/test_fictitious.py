@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.event import Event
-from canon.flow.job import NonFiniteStateError
-from canon.flow.landing import Leg, landed
-from canon.flow.method import Gauss, Splitting, TimeTransformed
-from canon.flow.partial import PartialSteps, State
+from canon.flow.checked_request import system_of
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.fixed_step.partial_step import PartialSteps, State
+from canon.flow.method.method import Gauss, Splitting, TimeTransformed
 from canon.flow.propagate import Interrupted, propagate
-from canon.flow.request import system_of
-from canon.flow.transformed import extended, fictitious
+from canon.flow.run.event import Event
+from canon.flow.transformed.extended_hamiltonian import extended, fictitious
+from canon.flow.transformed.land_at_time import Leg, landed
 from tests.flow.systems import KEPLER, PENDULUM, System, kepler_start
 from tests.flow.test_geometry import kepler_orbit
 

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.geometry import flow_jacobian, reversal_error, symplecticity_defect
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.geometry.flow_jacobian import flow_jacobian, reversal_error, symplecticity_defect
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
-from canon.kernel.scheme import SCHEMES
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
     DOUBLE_PENDULUM_START,

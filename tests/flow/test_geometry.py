@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.expression.arithmetic import multiprecision
-from canon.flow.job import NonFiniteStateError
-from canon.flow.method import RK4, Gauss, Splitting, Taylor
+from canon.expression.graph.number_systems import multiprecision
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
-from canon.kernel.program import run
-from canon.kernel.scheme import SCHEMES
-from canon.kernel.structure import equations
+from canon.kernel.program.hamilton_equations import equations
+from canon.kernel.program.program import run
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
     DOUBLE_PENDULUM_START,

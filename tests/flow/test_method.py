@@ -4,8 +4,8 @@ from fractions import Fraction
 
 import pytest
 
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
-from canon.kernel.scheme import SCHEMES
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 
 
 @pytest.mark.parametrize("name", SCHEMES)

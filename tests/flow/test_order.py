@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
-from canon.kernel.scheme import SCHEMES
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (
     DRIVEN,
     DRIVEN_START,

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.job import NonFiniteStateError
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
-from canon.flow.precision import ADAPTIVE, FIXED, unit_round_off
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method.number_formats import ADAPTIVE, FIXED, unit_round_off
 from canon.flow.propagate import propagate
-from canon.kernel.scheme import SCHEMES
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
     DOUBLE_PENDULUM_START,

@@ -7,10 +7,10 @@ import time
 
 import pytest
 
-from canon.flow import progress
-from canon.flow.method import Splitting
-from canon.flow.progress import reporting
+from canon import progress
+from canon.flow.method.method import Splitting
 from canon.flow.propagate import propagate
+from canon.progress import reporting
 from tests.flow.systems import PENDULUM
 
 

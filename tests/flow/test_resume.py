@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from canon.flow.event import Event
-from canon.flow.method import DOP853, RK4, Gauss, Splitting
-from canon.flow.precision import unit_round_off
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting
+from canon.flow.method.number_formats import unit_round_off
 from canon.flow.propagate import Interrupted, propagate
+from canon.flow.run.event import Event
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
     DOUBLE_PENDULUM_START,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from canon.flow.method import DOP853, Gauss, Splitting, Taylor
+from canon.flow.method.method import DOP853, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
 from tests.flow.systems import HENON_HEILES, HENON_HEILES_START
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates
-from canon.flow.method import RK4, Splitting, Taylor
+from canon.expression.symbols.symbol import coordinates
+from canon.flow.method.method import RK4, Splitting, Taylor
+from canon.flow.method.solvable_splitting import SABA, SBAB, UnsolvableError, WisdomHolman
 from canon.flow.propagate import propagate
-from canon.flow.solvable import SABA, SBAB, UnsolvableError, WisdomHolman
 from tests.flow.systems import (
     DRIVEN,
     HENON_HEILES,

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from canon.flow.geometry import flow_jacobian
-from canon.flow.kepler_derivative import kepler_derivative
-from canon.flow.method import Splitting
+from canon.flow.checked_request import task_of
+from canon.flow.geometry.flow_jacobian import flow_jacobian
+from canon.flow.geometry.kepler_derivative import kepler_derivative
+from canon.flow.geometry.solvable_jacobian import _step
+from canon.flow.method.method import Splitting
+from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
 from canon.flow.propagate import propagate
-from canon.flow.request import task_of
-from canon.flow.solvable import SABA, SBAB, SolvableSplitting, WisdomHolman
-from canon.flow.solvable_jacobian import _step
-from canon.kernel.planets import named_part, solvable_part
+from canon.kernel.solvable.solvable_parts import named_part, solvable_part
 from tests.flow.systems import HENON_HEILES, HENON_HEILES_START, KEPLER, System, kepler_start
 from tests.flow.test_solvable import planets, planets_start
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.method import Taylor
-from canon.flow.precision import FIXED, unit_round_off
+from canon.flow.method.method import Taylor
+from canon.flow.method.number_formats import FIXED, unit_round_off
+from canon.flow.method.solvable_splitting import SABA, WisdomHolman
 from canon.flow.propagate import propagate
-from canon.flow.solvable import SABA, WisdomHolman
-from canon.kernel.chart import democratic_chart, jacobi_chart
+from canon.kernel.solvable.planet_coordinates import democratic_chart, jacobi_chart
 from tests.flow.systems import HENON_HEILES, KEPLER, System, kepler_start
 from tests.flow.test_solvable import planets
 from tests.kernel.test_kepler import true_increments

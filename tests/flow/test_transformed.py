@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.method import RK4, Gauss, Splitting, Taylor, TimeTransformed
+from canon.flow.method.method import RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.propagate import propagate
-from canon.flow.transformed import extended
+from canon.flow.transformed.extended_hamiltonian import extended
 from tests.flow.systems import DOUBLE_PENDULUM, HENON_HEILES, KEPLER, PENDULUM, System, kepler_start
 from tests.flow.test_geometry import compiled_jacobian, kepler_orbit
 from tests.flow.test_solvable import planets, planets_start

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.event import Event
-from canon.flow.measure import AccuracyWarning
-from canon.flow.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import NonFiniteStateError, propagate
-from canon.kernel.tableau import gauss_tableau
+from canon.flow.run.event import Event
+from canon.flow.run.observables_along import AccuracyWarning
+from canon.kernel.schemes.gauss_tableau import gauss_tableau
 from tests.flow.systems import KEPLER, PENDULUM, System, kepler_start, x, y
 
 FALL_TIME = math.pi / math.sqrt(8)

@@ -5,14 +5,19 @@ import pytest
 import sympy as sp
 from sympy import Function, cos, sin, sqrt, symbols
 
-from canon.expression.symbol import time
-from canon.flow.job import NonFiniteStateError
-from canon.flow.witness import bilinear_covariant, brackets_at_points, integral_drift, symplectic_flow
-from canon.mechanics.hamiltonian import Hamiltonian
-from canon.mechanics.transformation import CanonicalTransformation
-from canon.mechanics.vector_field import VectorField
-from canon.proof.domain import Domain
-from canon.proof.verdict import Evidence, Status, Undecided, Verdict
+from canon.expression.symbols.symbol import time
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.geometry.numeric_evidence import (
+    bilinear_covariant,
+    brackets_at_points,
+    integral_drift,
+    symplectic_flow,
+)
+from canon.mechanics.canonical.transformation import CanonicalTransformation
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.hamilton.vector_field import VectorField
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
 
 q, p, x, y, px, py = symbols("q p x y p_x p_y", real=True)
 m, k, w = symbols("m k omega", positive=True)

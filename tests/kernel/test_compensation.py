@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from canon.kernel.loop import compiled_function, increase
-from canon.kernel.machine import DOUBLE
-from canon.kernel.writer import Writer
+from canon.kernel.llvm.loop import compiled_function, increase
+from canon.kernel.llvm.number_types import DOUBLE
+from canon.kernel.llvm.writer import Writer
 
 U = Fraction(1, 2**53)
 

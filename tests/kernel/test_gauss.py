@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from canon.kernel.tableau import HIGHEST_STAGES, gauss_coefficients, gauss_tableau
+from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES, gauss_coefficients, gauss_tableau
 
 STAGES = range(1, HIGHEST_STAGES + 1)
 NEGLIGIBLE = Fraction(1, 10**55)

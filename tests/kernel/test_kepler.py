@@ -8,10 +8,10 @@ import mpmath
 import numpy as np
 import pytest
 
-from canon.kernel.kepler import kepler_flow
-from canon.kernel.loop import compiled_function
-from canon.kernel.machine import DOUBLE, DOUBLE_DOUBLE, EXTENDED, SINGLE
-from canon.kernel.writer import Writer
+from canon.kernel.llvm.loop import compiled_function
+from canon.kernel.llvm.number_types import DOUBLE, DOUBLE_DOUBLE, EXTENDED, SINGLE
+from canon.kernel.llvm.writer import Writer
+from canon.kernel.solvable.kepler_flow import kepler_flow
 
 
 @functools.cache

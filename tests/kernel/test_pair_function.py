@@ -7,10 +7,10 @@ import mpmath
 import numpy as np
 import pytest
 
-from canon.kernel.loop import compiled_function
-from canon.kernel.machine import DOUBLE_DOUBLE
-from canon.kernel.pair_function import PAIR_FUNCTIONS
-from canon.kernel.writer import Writer
+from canon.kernel.llvm.double_double_functions import PAIR_FUNCTIONS
+from canon.kernel.llvm.loop import compiled_function
+from canon.kernel.llvm.number_types import DOUBLE_DOUBLE
+from canon.kernel.llvm.writer import Writer
 
 POINTER = (ctypes.c_void_p,) * 3
 COUNT = 256

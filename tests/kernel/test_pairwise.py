@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates
-from canon.expression.symbol import time as t
-from canon.flow.compiled import compiled_loop
-from canon.flow.method import Splitting
-from canon.flow.precision import FIXED
+from canon.expression.symbols.symbol import coordinates
+from canon.expression.symbols.symbol import time as t
+from canon.flow.fixed_step.compiled_loop import compiled_loop
+from canon.flow.method.method import Splitting
+from canon.flow.method.number_formats import FIXED
 from canon.flow.propagate import propagate
-from canon.kernel import splitting
-from canon.kernel.pairwise import PairForces, pair_forces
-from canon.kernel.structure import Equations, equations
-from canon.mechanics.hamiltonian import Hamiltonian
+from canon.kernel.loops import splitting
+from canon.kernel.program.hamilton_equations import Equations, equations
+from canon.kernel.program.pairwise import PairForces, pair_forces
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
 BODIES = 13
 SOFTENING = sp.Rational(1, 4)

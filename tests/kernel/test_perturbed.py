@@ -6,8 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from canon.kernel.order import conditions
-from canon.kernel.perturbed import ABA, _generator, corrector, saba, sbab, wisdom_holman
+from canon.kernel.schemes.order_conditions import conditions
+from canon.kernel.schemes.perturbed_schemes import ABA, _generator, corrector, saba, sbab, wisdom_holman
 
 
 @pytest.fixture(autouse=True)

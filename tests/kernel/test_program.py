@@ -9,12 +9,12 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.arithmetic import multiprecision
-from canon.expression.graph import Graph
-from canon.kernel.loop import field_function
-from canon.kernel.machine import DOUBLE, EXTENDED, SINGLE
-from canon.kernel.program import program, run
-from canon.kernel.structure import exact
+from canon.expression.graph.graph import Graph
+from canon.expression.graph.number_systems import multiprecision
+from canon.kernel.llvm.loop import field_function
+from canon.kernel.llvm.number_types import DOUBLE, EXTENDED, SINGLE
+from canon.kernel.program.hamilton_equations import exact
+from canon.kernel.program.program import program, run
 from tests.expression.test_graph import expressions, x, y, z
 
 DIGITS = multiprecision(40)

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, time
-from canon.kernel import rolled, splitting
-from canon.kernel.family import families_of
-from canon.kernel.machine import DOUBLE, MachineType
-from canon.kernel.structure import equations
-from canon.kernel.writer import Writer
+from canon.expression.symbols.symbol import coordinates, time
+from canon.kernel.llvm import rolled
+from canon.kernel.llvm.number_types import DOUBLE, MachineType
+from canon.kernel.llvm.writer import Writer
+from canon.kernel.loops import splitting
+from canon.kernel.program.hamilton_equations import equations
+from canon.kernel.program.operation_families import families_of
 
 
 def chain(n):

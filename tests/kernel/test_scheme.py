@@ -4,8 +4,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from canon.kernel.order import _nystrom_ideal, composed, defects, order
-from canon.kernel.scheme import SCHEMES
+from canon.kernel.schemes.order_conditions import _nystrom_ideal, composed, defects, order
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 
 
 def _digits(coefficients):

@@ -8,12 +8,12 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.arithmetic import multiprecision
-from canon.expression.graph import Graph
-from canon.expression.symbol import time
-from canon.kernel.program import program
-from canon.kernel.sharing import with_shared_products
-from canon.kernel.structure import equations, exact_numbers
+from canon.expression.graph.graph import Graph
+from canon.expression.graph.number_systems import multiprecision
+from canon.expression.symbols.symbol import time
+from canon.kernel.program.hamilton_equations import equations, exact_numbers
+from canon.kernel.program.program import program
+from canon.kernel.program.shared_products import with_shared_products
 from canon.scene import find
 from tests.kernel.test_rolled import chain
 

@@ -6,8 +6,8 @@ import pytest
 import sympy as sp
 
 from canon import Gauss, Hamiltonian, propagate
-from canon.kernel.structure import equations
-from canon.kernel.taylor import heyoka_equations, heyoka_expressions
+from canon.kernel.heyoka_bridge import heyoka_equations, heyoka_expressions
+from canon.kernel.program.hamilton_equations import equations
 from tests.flow.systems import DOUBLE_PENDULUM, DRIVEN, HENON_HEILES, KEPLER, PENDULUM, System, x
 
 

@@ -4,8 +4,8 @@ from itertools import combinations, pairwise
 
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters
-from canon.mechanics.body import Particle, PlanarBody, RigidBody, euler_rotation
+from canon.expression.symbols.symbol import coordinates, parameters
+from canon.mechanics.lagrange.body import Particle, PlanarBody, RigidBody, euler_rotation
 
 (g,) = parameters("g", positive=True)
 

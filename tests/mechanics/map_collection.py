@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import sympy as sp
 from sympy import acot, atan, atan2, cos, cosh, cot, exp, log, sin, sinh, sqrt
 
-from canon.expression.symbol import time as t
-from canon.mechanics.transformation import CanonicalTransformation, point_transformation
-from canon.proof.domain import Domain
+from canon.expression.symbols.symbol import time as t
+from canon.mechanics.canonical.transformation import CanonicalTransformation, point_transformation
+from canon.proof.domain.domain import Domain
 
 q, p = sp.symbols("q p", real=True)
 qp = sp.Symbol("q", positive=True)

@@ -3,14 +3,14 @@
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import acceleration, coordinates, parameters
-from canon.mechanics.appell import GibbsAppell
-from canon.mechanics.body import Particle, PlanarBody, RigidBody, euler_rotation
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.force import gravity, lagrangian_of
-from canon.mechanics.quasi_velocity import maggi_accelerations
-from canon.proof.domain import Domain
-from canon.proof.equations import equivalent_equations
+from canon.expression.symbols.symbol import acceleration, coordinates, parameters
+from canon.mechanics.lagrange.appell import GibbsAppell
+from canon.mechanics.lagrange.body import Particle, PlanarBody, RigidBody, euler_rotation
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.force import gravity, lagrangian_of
+from canon.mechanics.lagrange.quasi_velocity import maggi_accelerations
+from canon.proof.domain.domain import Domain
+from canon.proof.equivalent_equations import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, l, a, R, J, I1, I3, m1, m2, l1, l2, c = parameters("m g l a R J I1 I3 m1 m2 l1 l2 c", positive=True)
@@ -139,7 +139,7 @@ def test_leaning_disc_against_maggi_and_the_classical_equations():
         lagrangian_of([disc], q, V), nonholonomic=[x.dot - rolling[0], y.dot - rolling[1]]
     )
     assert appell.kinematics.satisfy(constrained).holds
-    from canon.mechanics.quasi_velocity import maggi_equations
+    from canon.mechanics.lagrange.quasi_velocity import maggi_equations
 
     maggi = maggi_equations(constrained.lagrangian, appell.kinematics)
     for ours, theirs in zip(appell.equations, maggi, strict=True):

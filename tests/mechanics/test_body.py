@@ -3,8 +3,9 @@
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters, time, time_derivative
-from canon.mechanics.body import (
+from canon.expression.symbols.symbol import coordinates, parameters, time, time_derivative
+from canon.mechanics.hamilton.symmetry import have_same_equations
+from canon.mechanics.lagrange.body import (
     Particle,
     PlanarBody,
     RigidBody,
@@ -13,8 +14,7 @@ from canon.mechanics.body import (
     kinetic_energy,
     kinetic_form,
 )
-from canon.mechanics.embedding import embedded
-from canon.mechanics.force import (
+from canon.mechanics.lagrange.force import (
     charge_term,
     damper,
     do_no_work,
@@ -26,9 +26,9 @@ from canon.mechanics.force import (
     magnetic_field,
     spring,
 )
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.symmetry import have_same_equations
-from canon.proof.equations import equivalent_equations
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.reduction.eliminate_constraints import embedded
+from canon.proof.equivalent_equations import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, M, g, l, R, I, I1, I3, k, d, w, a, b, c, e = parameters("m M g l R I I1 I3 k d w a b c e", positive=True)

@@ -5,9 +5,11 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.symbol import time
-from canon.mechanics import bracket_law as law
-from canon.mechanics.bracket import (
+from canon.expression.symbols.symbol import time
+from canon.mechanics.canonical import bracket_law as law
+from canon.mechanics.canonical.inverse_transformation import inverse_transformation
+from canon.mechanics.canonical.transformation import CanonicalTransformation
+from canon.mechanics.hamilton.bracket import (
     lagrange_bracket,
     lagrange_matrix,
     lie_bracket,
@@ -15,9 +17,7 @@ from canon.mechanics.bracket import (
     poisson_matrix,
     symplectic_unit,
 )
-from canon.mechanics.inverse import inverse_transformation
-from canon.mechanics.transformation import CanonicalTransformation
-from canon.mechanics.vector_field import VectorField, hamiltonian_field
+from canon.mechanics.hamilton.vector_field import VectorField, hamiltonian_field
 from canon.proof.vanish import vanishes
 
 x, y, px, py = z = sp.symbols("x y px py", real=True)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters, time
-from canon.mechanics.body import Particle, PlanarBody
-from canon.mechanics.constrained_derivation import constrained, constrained_motion
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.dependence import DependentConstraintsError
-from canon.mechanics.derivation import derivation
-from canon.mechanics.force import gravity, lagrangian_of
+from canon.expression.symbols.symbol import coordinates, parameters, time
+from canon.mechanics.at_scale.constrained import constrained, constrained_motion
+from canon.mechanics.at_scale.second_order import derivation
+from canon.mechanics.lagrange.body import Particle, PlanarBody
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.dependence import DependentConstraintsError
+from canon.mechanics.lagrange.force import gravity, lagrangian_of
 
 m, M, l, g, a, J, w = parameters("m M l g a J w", positive=True)
 x, y, u, v, theta = coordinates("x y u v theta")

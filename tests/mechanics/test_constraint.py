@@ -5,14 +5,14 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.symbol import acceleration, coordinates, parameters, time, velocity
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.contact import multiplier_along, multiplier_in_contact
-from canon.mechanics.dependence import DependentConstraintsError
-from canon.mechanics.embedding import eliminated, embedded, satisfies
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
-from canon.proof.equations import equivalent_equations
+from canon.expression.symbols.symbol import acceleration, coordinates, parameters, time, velocity
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.dependence import DependentConstraintsError
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
+from canon.mechanics.reduction.contact import multiplier_along, multiplier_in_contact
+from canon.mechanics.reduction.eliminate_constraints import eliminated, embedded, satisfies
+from canon.proof.equivalent_equations import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, l, R, I, J, I1, I2, a, b, k, w = parameters("m g l R I J I1 I2 a b k w", positive=True)

@@ -7,18 +7,22 @@ from chains import heavy_top, n_body, planar_pendulum, rods, spatial_arm, spheri
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.graph import Graph
-from canon.expression.python_source import python_function
-from canon.expression.shared import shared_to_sympy
-from canon.expression.sums import SharedSums
-from canon.expression.symbol import coordinates, parameters, time
-from canon.mechanics.body import Particle, PlanarBody, kinetic_energy
-from canon.mechanics.canonical_derivation import canonical_derivation
-from canon.mechanics.derivation import derivation, derivation_of_lagrangian
-from canon.mechanics.factorisation import solved_on_graph
-from canon.mechanics.force import gravity, lagrangian_of
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.motion import acceleration_function, energy_function, hamilton_function
+from canon.expression.graph.common_subexpressions import shared_to_sympy
+from canon.expression.graph.graph import Graph
+from canon.expression.graph.python_source import python_function
+from canon.expression.graph.sums import SharedSums
+from canon.expression.symbols.symbol import coordinates, parameters, time
+from canon.mechanics.at_scale.first_order import canonical_derivation
+from canon.mechanics.at_scale.ldl import solved_on_graph
+from canon.mechanics.at_scale.numeric_functions import (
+    acceleration_function,
+    energy_function,
+    hamilton_function,
+)
+from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
+from canon.mechanics.lagrange.body import Particle, PlanarBody, kinetic_energy
+from canon.mechanics.lagrange.force import gravity, lagrangian_of
+from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.vanish import vanishes
 
 x, y = coordinates("x y")

@@ -4,9 +4,20 @@ import pytest
 import sympy as sp
 from sympy.physics.mechanics import dynamicsymbols
 
-from canon.expression.symbol import coordinates, parameters, time
-from canon.mechanics.appell import GibbsAppell
-from canon.mechanics.body import (
+from canon.expression.symbols.symbol import coordinates, parameters, time
+from canon.mechanics.algebra.dynamicsymbols import plain
+from canon.mechanics.at_scale.constrained import constrained
+from canon.mechanics.at_scale.first_order import canonical_derivation
+from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian, is_hamiltonian_of, legendre
+from canon.mechanics.hamilton.symmetry import (
+    is_constant_of_motion,
+    is_gauge_equivalent,
+    is_symmetry,
+    noether_charge,
+)
+from canon.mechanics.lagrange.appell import GibbsAppell
+from canon.mechanics.lagrange.body import (
     Particle,
     PlanarBody,
     RigidBody,
@@ -15,14 +26,8 @@ from canon.mechanics.body import (
     kinetic_energy,
     kinetic_form,
 )
-from canon.mechanics.canonical_derivation import canonical_derivation
-from canon.mechanics.constrained_derivation import constrained
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.contact import multiplier_along, multiplier_in_contact
-from canon.mechanics.derivation import derivation, derivation_of_lagrangian
-from canon.mechanics.dynamicsymbols import plain
-from canon.mechanics.embedding import eliminated, embedded
-from canon.mechanics.force import (
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.force import (
     charge_term,
     damper,
     do_no_work,
@@ -32,16 +37,16 @@ from canon.mechanics.force import (
     lagrangian_of,
     rayleigh_forces,
 )
-from canon.mechanics.frobenius import integrals, is_integrable, positional_freedom
-from canon.mechanics.hamiltonian import Hamiltonian, is_hamiltonian_of, legendre
-from canon.mechanics.ignorable import adapted, is_ignorable
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.newton_euler import Load, NewtonEuler
-from canon.mechanics.quasi_velocity import Kinematics, independent_velocities, maggi_equations
-from canon.mechanics.routh import routhian
-from canon.mechanics.singular import singularity
-from canon.mechanics.symmetry import is_constant_of_motion, is_gauge_equivalent, is_symmetry, noether_charge
-from canon.proof.verdict import Status
+from canon.mechanics.lagrange.frobenius import integrals, is_integrable, positional_freedom
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler
+from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velocities, maggi_equations
+from canon.mechanics.reduction.contact import multiplier_along, multiplier_in_contact
+from canon.mechanics.reduction.eliminate_constraints import eliminated, embedded
+from canon.mechanics.reduction.ignorable import adapted, is_ignorable
+from canon.mechanics.reduction.routh import routhian
+from canon.mechanics.reduction.singular import singularity
+from canon.proof.domain.verdict import Status
 
 m, l, g, k, c, e, B, a = parameters("m l g k c e B a", positive=True)
 TAU = dynamicsymbols._t

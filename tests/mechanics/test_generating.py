@@ -28,23 +28,23 @@ from map_collection import (
 )
 from sympy import acos, acot, asin, cos, cot, exp, pi, sin, sqrt, tan
 
-from canon.mechanics.generated import (
+from canon.mechanics.algebra.linear import is_regular
+from canon.mechanics.canonical.find_generating_function import generating_function
+from canon.mechanics.canonical.from_generating_function import (
     generated_hamiltonian,
     generated_inverse,
     generated_transformation,
     implicit_map,
     of_kind,
 )
-from canon.mechanics.generating import (
+from canon.mechanics.canonical.generating_function import (
     GeneratingFunction,
     NoGeneratingFunctionError,
 )
-from canon.mechanics.inverse import NoClosedInverseError
-from canon.mechanics.linear import is_regular
-from canon.mechanics.parametric import ParametricGeneratingFunction
-from canon.mechanics.recovery import generating_function
-from canon.mechanics.transformation import CanonicalTransformation
-from canon.proof.domain import Domain
+from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError
+from canon.mechanics.canonical.parametric_generating_function import ParametricGeneratingFunction
+from canon.mechanics.canonical.transformation import CanonicalTransformation
+from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
 Q, P = sp.symbols("Q P", real=True)

@@ -5,16 +5,16 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.symbol import coordinates, parameters, time
-from canon.mechanics.hamiltonian import (
+from canon.expression.symbols.symbol import coordinates, parameters, time
+from canon.mechanics.hamilton.hamiltonian import (
     Hamiltonian,
     LegendreError,
     has_hamiltonian,
     is_hamiltonian_of,
     legendre,
 )
-from canon.mechanics.lagrangian import Lagrangian
-from canon.proof.domain import Domain
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
 m, a, g, k, b, c, l = parameters("m a g k b c l", positive=True)

@@ -5,11 +5,11 @@ import sympy as sp
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from canon.mechanics.integral import table_integral
-from canon.mechanics.inversion import Inversion, UnstatableError, isolate, solve_system
-from canon.mechanics.potential import potential
-from canon.mechanics.witness import Witness, witnesses
-from canon.proof.domain import Domain
+from canon.mechanics.algebra.branch_point import Witness, witnesses
+from canon.mechanics.algebra.potential import potential
+from canon.mechanics.algebra.solve_on_branch import Inversion, UnstatableError, isolate, solve_system
+from canon.mechanics.algebra.table_integrals import table_integral
+from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
 x, y, u, v, Y, Z = sp.symbols("x y u v Y Z", real=True)

@@ -5,7 +5,7 @@ import sympy as sp
 from sympy import Rational, sin
 
 from canon import CanonicalTransformation
-from canon.mechanics.jacobian import is_large, jacobian
+from canon.mechanics.algebra.jacobian import is_large, jacobian
 from canon.proof.vanish import vanishes
 
 q, p = sp.symbols("q p", real=True)

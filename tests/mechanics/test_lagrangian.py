@@ -4,9 +4,16 @@ import pytest
 import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, Particle, Point, ReferenceFrame, dynamicsymbols
 
-from canon.expression.symbol import acceleration, coordinates, parameters, time, time_derivative, velocity
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.linear import SingularMatrixError
+from canon.expression.symbols.symbol import (
+    acceleration,
+    coordinates,
+    parameters,
+    time,
+    time_derivative,
+    velocity,
+)
+from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.vanish import vanishes
 
 m, a, l, g, k, m1, m2, l1, l2 = parameters("m a l g k m1 m2 l1 l2", positive=True)

@@ -3,12 +3,12 @@
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters
-from canon.mechanics.body import Particle, PlanarBody, RigidBody, euler_rotation
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.force import gravity, lagrangian_of
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.newton_euler import Load, NewtonEuler, joint, weights
+from canon.expression.symbols.symbol import coordinates, parameters
+from canon.mechanics.lagrange.body import Particle, PlanarBody, RigidBody, euler_rotation
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.force import gravity, lagrangian_of
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler, joint, weights
 from canon.proof.vanish import vanishes
 
 m, g, l, R, J, I1, I3, m0, m1, m2, m3, h, a, b, c, J1, J2 = parameters(
@@ -190,7 +190,7 @@ def test_euler_equations_of_a_free_body():
     moments = sp.symbols("A B C", positive=True)
     body = RigidBody(m, (), moments, euler_rotation(phi, theta, psi))
     route = NewtonEuler([body], [theta, phi, psi], [])
-    from canon.mechanics.quasi_velocity import Kinematics
+    from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
     kinematics = Kinematics([theta, phi, psi])
     w = body.angular_velocity(kinematics)

@@ -3,12 +3,12 @@
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters, time
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.frobenius import integrals, is_integrable, pfaffian, positional_freedom
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
-from canon.proof.domain import Domain
+from canon.expression.symbols.symbol import coordinates, parameters, time
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.frobenius import integrals, is_integrable, pfaffian, positional_freedom
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
+from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
 m, g, l, R, I, J, I1, I2, a, k, w = parameters("m g l R I J I1 I2 a k w", positive=True)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters
-from canon.mechanics.body import RigidBody
-from canon.mechanics.constrained_derivation import constrained, constrained_motion
-from canon.mechanics.derivation import derivation
-from canon.mechanics.quasi_velocity import Kinematics
+from canon.expression.symbols.symbol import coordinates, parameters
+from canon.mechanics.at_scale.constrained import constrained, constrained_motion
+from canon.mechanics.at_scale.second_order import derivation
+from canon.mechanics.lagrange.body import RigidBody
+from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 m, g, h, a, b, A, B, C = parameters("m g h a b A B C", positive=True)
 (D,) = parameters("D")

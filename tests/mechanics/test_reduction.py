@@ -3,17 +3,17 @@
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import acceleration, coordinates, parameters, time, time_derivative, velocity
-from canon.mechanics.appell import GibbsAppell
-from canon.mechanics.body import Particle, PlanarBody
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.force import generalized_forces
-from canon.mechanics.hamiltonian import Hamiltonian
-from canon.mechanics.ignorable import ignorable_coordinates
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.linear import SingularMatrixError
-from canon.mechanics.routh import routhian
-from canon.mechanics.symmetry import (
+from canon.expression.symbols.symbol import (
+    acceleration,
+    coordinates,
+    parameters,
+    time,
+    time_derivative,
+    velocity,
+)
+from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.hamilton.symmetry import (
     gauge_function,
     have_same_equations,
     is_constant_of_motion,
@@ -22,6 +22,13 @@ from canon.mechanics.symmetry import (
     noether_charge,
     poissons_theorem,
 )
+from canon.mechanics.lagrange.appell import GibbsAppell
+from canon.mechanics.lagrange.body import Particle, PlanarBody
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.force import generalized_forces
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.reduction.ignorable import ignorable_coordinates
+from canon.mechanics.reduction.routh import routhian
 from canon.proof.vanish import vanishes
 
 m, l, g, a, b, k, r0, J, M = parameters("m l g a b k r J M", positive=True)

@@ -6,13 +6,18 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.expression.symbol import coordinates, parameters, time, time_derivative
-from canon.mechanics.ignorable import adapted, ignorable_coordinates, ignorable_directions, is_ignorable
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.legendre import LegendreError
-from canon.mechanics.routh import routhian
-from canon.proof.domain import Domain
-from canon.proof.equations import equivalent_equations
+from canon.expression.symbols.symbol import coordinates, parameters, time, time_derivative
+from canon.mechanics.hamilton.legendre import LegendreError
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.reduction.ignorable import (
+    adapted,
+    ignorable_coordinates,
+    ignorable_directions,
+    is_ignorable,
+)
+from canon.mechanics.reduction.routh import routhian
+from canon.proof.domain.domain import Domain
+from canon.proof.equivalent_equations import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, l, a, b, d, c, k, I1, I3, M = parameters("m g l a b d c k I1 I3 M", positive=True)

@@ -3,15 +3,15 @@
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters, time, time_derivative
-from canon.mechanics.body import Particle
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.force import do_no_work, generalized_forces, lagrangian_of
-from canon.mechanics.frobenius import integrals, is_integrable
-from canon.mechanics.hamiltonian import legendre
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.routh import routhian
-from canon.proof.equations import equivalent_equations
+from canon.expression.symbols.symbol import coordinates, parameters, time, time_derivative
+from canon.mechanics.hamilton.hamiltonian import legendre
+from canon.mechanics.lagrange.body import Particle
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.force import do_no_work, generalized_forces, lagrangian_of
+from canon.mechanics.lagrange.frobenius import integrals, is_integrable
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.reduction.routh import routhian
+from canon.proof.equivalent_equations import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, R, J, K, La, Ra, k, a, b, c, r1, r2 = parameters("m g R J K L_a R_a k a b c r1 r2", positive=True)

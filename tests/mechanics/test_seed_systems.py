@@ -3,15 +3,15 @@
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters, time, time_derivative
-from canon.mechanics.body import Particle, PlanarBody, kinetic_energy, kinetic_form
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.embedding import embedded
-from canon.mechanics.force import generalized_forces, generalized_torques, gravity, lagrangian_of
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.symmetry import is_constant_of_motion
-from canon.proof.domain import Domain
-from canon.proof.equations import equivalent_equations
+from canon.expression.symbols.symbol import coordinates, parameters, time, time_derivative
+from canon.mechanics.hamilton.symmetry import is_constant_of_motion
+from canon.mechanics.lagrange.body import Particle, PlanarBody, kinetic_energy, kinetic_form
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.force import generalized_forces, generalized_torques, gravity, lagrangian_of
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.reduction.eliminate_constraints import embedded
+from canon.proof.domain.domain import Domain
+from canon.proof.equivalent_equations import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, a, R, I, m1, m2, m3, l1, l2, J0, J1, J2, b, c, n = parameters(

@@ -3,12 +3,12 @@
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import coordinates, parameters, time_derivative
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.legendre import LegendreError
-from canon.mechanics.linear import SingularMatrixError
-from canon.mechanics.singular import singularity
-from canon.proof.domain import Domain
+from canon.expression.symbols.symbol import coordinates, parameters, time_derivative
+from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.hamilton.legendre import LegendreError
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.reduction.singular import singularity
+from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
 m, k, B = parameters("m k B", positive=True)

@@ -13,14 +13,14 @@ from sympy.physics.mechanics import (
     inertia,
 )
 
-from canon.expression.symbol import coordinates, parameters
-from canon.mechanics.appell import GibbsAppell
-from canon.mechanics.body import Particle as Mass
-from canon.mechanics.body import PlanarBody, kinetic_energy
-from canon.mechanics.constraint import ConstrainedLagrangian
-from canon.mechanics.dynamicsymbols import plain
-from canon.mechanics.lagrangian import Lagrangian
-from canon.mechanics.sympy_bridge import from_sympy_mechanics
+from canon.expression.symbols.symbol import coordinates, parameters
+from canon.mechanics.algebra.dynamicsymbols import plain
+from canon.mechanics.lagrange.appell import GibbsAppell
+from canon.mechanics.lagrange.body import Particle as Mass
+from canon.mechanics.lagrange.body import PlanarBody, kinetic_energy
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.lagrange.sympy_bridge import from_sympy_mechanics
 from canon.proof.vanish import vanishes
 
 m, g, l, a, J, R, I1, I3, d = parameters("m g l a J R I1 I3 d", positive=True)

@@ -4,21 +4,26 @@ import pytest
 import sympy as sp
 from map_collection import MAPS, MOVING, NOTES, E, linear_symplectic, m, p, px, py, q, qp, t, w, x, y
 
-from canon.mechanics.bilinear import bilinear_covariant, canonical_covariant, displacements, is_exact
-from canon.mechanics.canonicity import disagreement
-from canon.mechanics.generating import NoGeneratingFunctionError
-from canon.mechanics.hamiltonian import Hamiltonian
-from canon.mechanics.implicit import ImplicitTransformation
-from canon.mechanics.inverse import NoClosedInverseError, inverse_transformation
-from canon.mechanics.linear import SingularMatrixError
-from canon.mechanics.mending import constant_value
-from canon.mechanics.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
-from canon.mechanics.recovery import generating_function
-from canon.mechanics.step import midpoint_step, runge_kutta_step, splitting_step
-from canon.mechanics.transformation import CanonicalTransformation, point_transformation
-from canon.proof.domain import Domain
+from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.canonical.canonicity_tests import disagreement
+from canon.mechanics.canonical.find_generating_function import generating_function
+from canon.mechanics.canonical.generating_function import NoGeneratingFunctionError
+from canon.mechanics.canonical.implicit_transformation import ImplicitTransformation
+from canon.mechanics.canonical.integrator_step import midpoint_step, runge_kutta_step, splitting_step
+from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError, inverse_transformation
+from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
+from canon.mechanics.canonical.repair_hint import constant_value
+from canon.mechanics.canonical.transformation import CanonicalTransformation, point_transformation
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.hamilton.pfaffian_form import (
+    bilinear_covariant,
+    canonical_covariant,
+    displacements,
+    is_exact,
+)
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Status, Verdict
 from canon.proof.vanish import vanishes
-from canon.proof.verdict import Status, Verdict
 
 Q, P = sp.symbols("Q P", real=True)
 TESTS = ["poisson", "lagrange", "symplectic", "bilinear", "contact"]

@@ -43,7 +43,7 @@ from sympy import (
 )
 
 from canon.proof import Domain, equivalent_equations, vanishes
-from canon.proof.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
 
 x, y, u = sp.symbols("x y u", real=True)
 p, q = sp.symbols("p q", positive=True)

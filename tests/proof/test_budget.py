@@ -12,8 +12,8 @@ import pytest
 import sympy as sp
 
 from canon.proof import vanishes
-from canon.proof.budget import prove_in_worker
-from canon.proof.domain import EVERYWHERE
+from canon.proof.domain.domain import EVERYWHERE
+from canon.proof.worker.budget import prove_in_worker
 
 x, y, z, t, u, v = sp.symbols("x y z t u v", real=True)
 
@@ -50,8 +50,8 @@ def test_worker_comes_back_after_being_killed():
 
 PROGRAM = """
 import sympy as sp
-from canon.proof.budget import prove_in_worker
-from canon.proof.domain import EVERYWHERE
+from canon.proof.worker.budget import prove_in_worker
+from canon.proof.domain.domain import EVERYWHERE
 x = sp.Symbol("x", real=True)
 print(prove_in_worker([sp.sin(x)**2 + sp.cos(x)**2 - 1], EVERYWHERE, 30.0)[0].holds)
 """
@@ -70,8 +70,8 @@ def test_interrupt_gets_through():
         import signal
         import sympy as sp
         signal.signal(signal.SIGINT, signal.default_int_handler)  # where the tests run in the background too
-        from canon.proof.budget import prove_in_worker
-        from canon.proof.domain import EVERYWHERE
+        from canon.proof.worker.budget import prove_in_worker
+        from canon.proof.domain.domain import EVERYWHERE
         names = sp.symbols("x y z t u v", real=True)
         s = 1 + sum(names)
         print(prove_in_worker([sp.Symbol("x") - 1], EVERYWHERE, 30.0)[0].holds, flush=True)

@@ -42,13 +42,13 @@ from canon import (
     is_gauge_equivalent,
 )  # fmt: skip
 from canon import time as time_
-from canon.mechanics.new_hamiltonian import is_new_hamiltonian
-from canon.mechanics.symmetry import is_symmetry
-from canon.proof.centre import common_zero
-from canon.proof.continuity import continuity, is_locally_constant
-from canon.proof.domain import Domain
-from canon.proof.generic import is_analytic
-from canon.proof.sides import cuts_of
+from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian
+from canon.mechanics.hamilton.symmetry import is_symmetry
+from canon.proof.analytic import is_analytic
+from canon.proof.continuity.continuity import continuity, is_locally_constant
+from canon.proof.continuity.one_sided import cuts_of
+from canon.proof.continuity.winding_centre import common_zero
+from canon.proof.domain.domain import Domain
 
 q, p, x, y, t, P = sp.symbols("q p x y t P", real=True)
 w, m = sp.symbols("w m", positive=True)

@@ -27,8 +27,8 @@ from sympy import (
 )
 
 from canon import Claim, Domain, equal, judge
-from canon.proof.anatomy import anatomy
-from canon.proof.corners import corner_points, places_of_change
+from canon.proof.refute.corners import corner_points, places_of_change
+from canon.proof.trees.anatomy import anatomy
 
 x, y, p = symbols("x y p", real=True)
 u, v = symbols("u v", positive=True)

@@ -34,7 +34,7 @@ from sympy import (
 )
 
 from canon.proof import Domain, equal
-from canon.proof.verdict import Status
+from canon.proof.domain.verdict import Status
 
 x, y, z = sp.symbols("x y z", real=True)
 a, b = sp.symbols("a b", positive=True)

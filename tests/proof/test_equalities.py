@@ -8,9 +8,9 @@ import sympy as sp
 from flint import Ordering, fmpq_mpoly_ctx
 from sympy import Abs, Eq, Ne, Rational, cos, exp, sin, sqrt, symbols
 
-from canon.proof.domain import Domain
-from canon.proof.ideal import Ideal
-from canon.proof.rational_points import rational_solution
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.rational_points import rational_solution
+from canon.proof.tower.ideal import Ideal
 from canon.proof.vanish import equal, vanishes
 
 a, b, c, d, x = symbols("a b c d x", real=True)

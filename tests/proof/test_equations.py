@@ -5,7 +5,7 @@ import sympy as sp
 from sympy import Function, cos, sin
 
 from canon.proof import equivalent_equations
-from canon.proof.verdict import Status
+from canon.proof.domain.verdict import Status
 
 m1, m2, l, g = sp.symbols("m1 m2 l g", positive=True)
 phi, v, x_acc, phi_acc = sp.symbols("phi v x_acc phi_acc", real=True)

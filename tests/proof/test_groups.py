@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from canon import vanishes
-from canon.proof.groups import groups
+from canon.proof.rungs.groups import groups
 
 x, y, z = sp.symbols("x y z", positive=True)
 FACTORS = (

@@ -4,7 +4,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.proof.domain import Domain, isolated
+from canon.proof.domain.domain import Domain, isolated
 from canon.proof.vanish import vanishes
 
 x, y = sp.symbols("x y", real=True)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from sympy import Abs, Rational, cos, cosh, exp, log, sin, sinh, sqrt, tan
 
 from canon.proof import Domain, vanishes
-from canon.proof.domain import EVERYWHERE
+from canon.proof.domain.domain import EVERYWHERE
 
 x, y = sp.symbols("x y", real=True)
 a, b = sp.symbols("a b", positive=True)

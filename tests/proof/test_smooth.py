@@ -12,7 +12,7 @@ from canon import (
     is_constant_of_motion,
     is_gauge_equivalent,
 )
-from canon.proof.domain import Domain
+from canon.proof.domain.domain import Domain
 from canon.proof.kinks import off_kinks
 
 x = sp.symbols("x", real=True)

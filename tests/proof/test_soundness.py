@@ -30,7 +30,7 @@ from sympy import (
 )
 
 from canon.proof import Domain, equivalent_equations, vanishes
-from canon.proof.verdict import Status
+from canon.proof.domain.verdict import Status
 
 x, y, z, u, v = sp.symbols("x y z u v", real=True)
 p, q = sp.symbols("p q", positive=True)

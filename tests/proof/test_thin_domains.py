@@ -22,7 +22,7 @@ from sympy import (
     sympify,
 )
 
-from canon.proof.domain import Domain
+from canon.proof.domain.domain import Domain
 from canon.proof.vanish import equal, vanishes
 
 x, y, z = symbols("x y z", real=True)

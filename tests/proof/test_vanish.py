@@ -5,7 +5,7 @@ import sympy as sp
 from sympy import Abs, Derivative, Function, I, Rational, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh
 
 from canon.proof import Domain, equal, vanishes
-from canon.proof.verdict import Status
+from canon.proof.domain.verdict import Status
 
 x, y = sp.symbols("x y", real=True)
 a, b, g, l, t = sp.symbols("a b g l t", positive=True)

@@ -11,14 +11,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from canon import Gauss, propagate
-from canon.flow.job import NonFiniteStateError
-from canon.mechanics.constrained_derivation import constrained, constrained_motion
-from canon.mechanics.derivation import derivation, derivation_of_lagrangian
-from canon.mechanics.motion import acceleration_function
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.mechanics.at_scale.constrained import constrained, constrained_motion
+from canon.mechanics.at_scale.numeric_functions import acceleration_function
+from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
 from canon.scene import SCENES, Integral, SceneError, Solution, find, names
-from canon.scene.check import Check, check, conserved, integrals_along, solutions_met
-from canon.scene.equation import equation_of
-from canon.scene.motion import first_zero, run, start_state
+from canon.scene.equations_of_motion import equation_of
+from canon.scene.known_truths import Check, check, conserved, integrals_along, solutions_met
+from canon.scene.scene_motion import first_zero, run, start_state
 
 EACH = pytest.mark.parametrize("name", names())
 FAST = 5.0

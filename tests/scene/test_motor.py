@@ -8,8 +8,8 @@ import sympy as sp
 
 from canon.proof.vanish import vanishes
 from canon.scene import SceneError, find
-from canon.scene.motion import run
-from canon.scene.motor import admittance
+from canon.scene.scene_motion import run
+from canon.scene.systems.motor import admittance
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from canon.scene import SceneError, find
-from canon.scene.motion import run
 from canon.scene.reduced import reduced
+from canon.scene.scene_motion import run
 
 
 @pytest.mark.parametrize(

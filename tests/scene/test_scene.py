@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.expression.symbol import time
+from canon.expression.symbols.symbol import time
 from canon.proof.vanish import equal, vanishes
 from canon.scene import SCENES, Condition, Parameter, SceneError, Start, find, names
-from canon.scene.check import conserved
-from canon.scene.equation import equation_of
-from canon.scene.motion import start_state
+from canon.scene.equations_of_motion import equation_of
+from canon.scene.known_truths import conserved
+from canon.scene.scene_motion import start_state
 
 LONG_PROOFS = {"outer-solar-system", "toda-6"}
 

@@ -9,10 +9,10 @@ import pytest
 import sympy as sp
 from sympy import cos, sin
 
-from canon.expression.symbol import time_derivative
+from canon.expression.symbols.symbol import time_derivative
 from canon.proof.vanish import equal, vanishes
 from canon.scene import SCENES, find
-from canon.scene.check import solutions_met
+from canon.scene.known_truths import solutions_met
 
 
 def particle(mass, position, coordinates):

@@ -9,15 +9,15 @@ import pytest
 import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates
-from canon.command.motion import method_named
-from canon.flow.method import TimeTransformed
-from canon.flow.solvable import WisdomHolman
+from canon.command.scene_options import method_named
+from canon.flow.method.method import TimeTransformed
+from canon.flow.method.solvable_splitting import WisdomHolman
 from canon.scene import find
-from canon.study.choose_candidate import candidate_methods
-from canon.study.choose_law import expected_error
-from canon.study.choose_pilot import Pilot, pilot
-from canon.study.choose_question import Question, Setting
-from canon.study.choose_tolerance import tolerance_at
+from canon.study.choose.candidate import candidate_methods
+from canon.study.choose.choice_question import Question, Setting
+from canon.study.choose.error_law import expected_error
+from canon.study.choose.pilot_run import Pilot, pilot
+from canon.study.choose.tolerance_search import tolerance_at
 from canon.study.errors import StudyError
 from tests.study import series
 

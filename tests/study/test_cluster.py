@@ -12,9 +12,9 @@ import pytest
 
 from canon import Gauss, Splitting, Taylor
 from canon.cli import main
-from canon.study.definition import Study
-from canon.study.run import run_study
-from canon.study.store import Store
+from canon.study.cases.run_study import run_study
+from canon.study.cases.store import Store
+from canon.study.cases.study import Study
 
 STUDY = Study.of(
     system=["henon-heiles", "simple-pendulum"],

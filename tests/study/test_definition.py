@@ -6,10 +6,10 @@ import pytest
 
 from canon import RK4, Hamiltonian, Splitting, Taylor, coordinates, parameters
 from canon.scene import find
-from canon.study.case import Case
-from canon.study.comparison import StudyError
-from canon.study.definition import Study, read_study
-from canon.study.formula import Formula
+from canon.study.cases.case import Case
+from canon.study.cases.study import Study, read_study
+from canon.study.drift.drift_study import StudyError
+from canon.study.motion.hamiltonian_text import Formula
 
 
 def test_a_study_from_a_file(tmp_path):

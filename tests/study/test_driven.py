@@ -7,12 +7,12 @@ import pytest
 import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinates, propagate
-from canon.expression.symbol import time
+from canon.expression.symbols.symbol import time
 from canon.scene import find
-from canon.study.comparison import drift_study
-from canon.study.drift import Growth
-from canon.study.driven import driven
+from canon.study.drift.drift import Growth
+from canon.study.drift.drift_study import drift_study
 from canon.study.errors import StudyError
+from canon.study.motion.extended_phase_space import driven
 
 (X,) = coordinates("x")
 SHAKEN = Hamiltonian(X.momentum**2 / 2 + X**2 / 2 - X * sp.cos(2 * time) / 4, [X], [X.momentum])

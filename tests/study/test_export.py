@@ -14,12 +14,12 @@ import pytest
 import xarray
 
 from canon import RK4, Splitting, Taylor
-from canon.study.case import Case, key_of
-from canon.study.definition import Study
-from canon.study.export import ExportError, csv_of, dataset_of, rows_of, write_netcdf, write_parquet
-from canon.study.result import State, results_of
-from canon.study.run import run_study
-from canon.study.store import Store
+from canon.study.cases.case import Case, key_of
+from canon.study.cases.export import ExportError, csv_of, dataset_of, rows_of, write_netcdf, write_parquet
+from canon.study.cases.result import State, results_of
+from canon.study.cases.run_study import run_study
+from canon.study.cases.store import Store
+from canon.study.cases.study import Study
 
 STUDY = Study.of(
     system="simple-pendulum",

@@ -8,15 +8,15 @@ from dataclasses import replace
 import pytest
 
 from canon import RK4, Splitting, Study, Taylor, read_study, run_study
-from canon.study.case import Case, key_of
-from canon.study.comparison import drift_study
+from canon.study.cases.case import Case, key_of
+from canon.study.cases.case_observables import followed, observables_from
+from canon.study.cases.checkpointed_run import Checkpoint, advance
+from canon.study.cases.export import dataset_of, rows_of, write_netcdf
+from canon.study.cases.result import results_of
+from canon.study.cases.store import Store
+from canon.study.drift.drift_study import drift_study
 from canon.study.errors import StudyError
-from canon.study.export import dataset_of, rows_of, write_netcdf
-from canon.study.followed import followed, observables_from
-from canon.study.formula import Formula
-from canon.study.leg import Checkpoint, advance
-from canon.study.result import results_of
-from canon.study.store import Store
+from canon.study.motion.hamiltonian_text import Formula
 
 PLANE = Formula(
     "plane", "(p_x**2 + p_y**2)/2 + k*(x**2 + y**2)**2/4", ("x", "y"), ("p_x", "p_y"), (("k", 2.0),)

@@ -12,9 +12,9 @@ import time
 import pytest
 
 from canon import Gauss, Splitting, Taylor
-from canon.study.definition import Study
-from canon.study.run import resume, run_study, status_of
-from canon.study.store import Store
+from canon.study.cases.run_study import resume, run_study, status_of
+from canon.study.cases.store import Store
+from canon.study.cases.study import Study
 
 LONG = Study.of(
     system=["henon-heiles", "kepler"],
@@ -28,7 +28,7 @@ LONG = Study.of(
 PROGRAM = """
 import sys
 from tests.study.test_interrupted import LONG
-from canon.study.run import run_study
+from canon.study.cases.run_study import run_study
 
 run_study(LONG, sys.argv[1], progress=lambda status: print(status, flush=True), checkpoint_seconds=0.0)
 """
@@ -122,8 +122,8 @@ FULL_DISK = """
 import resource, sys
 from pathlib import Path
 from tests.study.test_interrupted import LONG
-from canon.study.run import run_study
-from canon.study.store import StoreError
+from canon.study.cases.run_study import run_study
+from canon.study.cases.store import StoreError
 
 run_study(type(LONG)(LONG.cases[:1]), sys.argv[1])
 limit = Path(sys.argv[1]).stat().st_size + 20_000

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from canon import DOP853, RK4, Gauss, Splitting, Taylor, propagate
-from canon.flow.method import TimeTransformed
-from canon.flow.solvable import WisdomHolman
-from canon.study.case import Case, parts_of
-from canon.study.drift import Growth, drift
-from canon.study.formula import Formula
-from canon.study.leg import Checkpoint, FailedRun, Outcome, advance, started
+from canon.flow.method.method import TimeTransformed
+from canon.flow.method.solvable_splitting import WisdomHolman
+from canon.study.cases.case import Case, parts_of
+from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance, started
+from canon.study.drift.drift import Growth, drift
+from canon.study.motion.hamiltonian_text import Formula
 
 KEPLER = Case("kepler", Splitting("kahan-li-8"), span=20.0, step=0.02, start="e=0.6", samples=400, parts=7)
 

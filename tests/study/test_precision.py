@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from canon import DOP853, RK4, Hamiltonian, Splitting, Taylor, coordinates, propagate
-from canon.flow.method import TimeTransformed
+from canon.flow.method.method import TimeTransformed
 from canon.plot import plot_work_precision
 from canon.scene import find
-from canon.study.comparison import StudyError
-from canon.study.precision import WorkRow, _marked, work_precision
+from canon.study.choose.work_precision import WorkRow, _marked, work_precision
+from canon.study.drift.drift_study import StudyError
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ def test_time_is_that_of_the_steps_and_not_of_samples(monkeypatch):
         seconds.append(found.cpu_seconds)
         return found
 
-    monkeypatch.setattr("canon.study.precision.propagate", watched)
+    monkeypatch.setattr("canon.study.choose.work_precision.propagate", watched)
     found = work_precision(
         find("henon-heiles"), None, 30.0, [Splitting("verlet")], steps=[0.01], repetitions=3
     )

@@ -14,16 +14,16 @@ import pytest
 from sympy import Symbol
 
 from canon import DOP853, RK4, Splitting, Taylor
-from canon.flow.method import Gauss, TimeTransformed
-from canon.flow.solvable import SABA, SBAB, WisdomHolman
-from canon.study import run
-from canon.study.case import Case, key_of, method_from, method_to
-from canon.study.comparison import StudyError
-from canon.study.definition import Study
-from canon.study.export import rows_of
-from canon.study.formula import Formula
-from canon.study.run import resume, run_study, status_of
-from canon.study.store import Store
+from canon.flow.method.method import Gauss, TimeTransformed
+from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
+from canon.study.cases import run_study as run
+from canon.study.cases.case import Case, key_of, method_from, method_to
+from canon.study.cases.export import rows_of
+from canon.study.cases.run_study import resume, run_study, status_of
+from canon.study.cases.store import Store
+from canon.study.cases.study import Study
+from canon.study.drift.drift_study import StudyError
+from canon.study.motion.hamiltonian_text import Formula
 
 QUARTIC = Formula("quartic", "p**2/2 + k*q**4/4", ("q",), ("p",), (("k", 2.0),), (("there", (1.0, 0.0)),))
 SHORT = Study.of(
@@ -153,7 +153,7 @@ def test_every_input_is_part_of_the_key(monkeypatch):
     ]
     keys = {key_of(each) for each in (case, *others)}
     assert len(keys) == 1 + len(others)
-    monkeypatch.setattr("canon.study.case.versions", lambda: {"heyoka": "other"})
+    monkeypatch.setattr("canon.study.cases.case.versions", lambda: {"heyoka": "other"})
     assert key_of(case) not in keys
 
 
@@ -161,7 +161,7 @@ def test_a_file_begun_with_other_versions_is_not_resumed(tmp_path, monkeypatch):
     store = Store(tmp_path / "old.sqlite")
     case = SHORT.cases[0]
     with monkeypatch.context() as patch:
-        patch.setattr("canon.study.case.versions", lambda: {"canon": "0.0"})
+        patch.setattr("canon.study.cases.case.versions", lambda: {"canon": "0.0"})
         store.add_cases({key_of(case): case.to_text()})
     with pytest.raises(StudyError, match=r"begun with other versions \(canon 0\.0\)"):
         resume(store)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from canon.study.store import Record, Store, StoreError
+from canon.study.cases.store import Record, Store, StoreError
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_a_record_needs_its_case(store):
 
 WRITER = """
 import sys
-from canon.study.store import Record, Store
+from canon.study.cases.store import Record, Store
 store = Store(sys.argv[1])
 for i in range(40):
     store.add_cases({f"{i}": "shared", f"{sys.argv[2]}-{i}": "own"})
@@ -112,7 +112,7 @@ def test_a_folder_that_is_not_there(tmp_path):
 
 READ_ONLY = """
 import os, sys
-from canon.study.store import Record, Store, StoreError
+from canon.study.cases.store import Record, Store, StoreError
 if os.geteuid() == 0:
     os.setegid(65534)
     os.seteuid(65534)
@@ -142,7 +142,7 @@ def test_a_read_only_file_can_be_read_and_says_so_when_written():
 
 FULL_DISK = """
 import resource, sys
-from canon.study.store import Record, Store, StoreError
+from canon.study.cases.store import Record, Store, StoreError
 store = Store(sys.argv[1])
 limit = store.path.stat().st_size + 40_000
 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
@@ -208,7 +208,7 @@ def test_files_of_several_jobs_become_one(tmp_path, store):
 
 KILLED = """
 import sys
-from canon.study.store import Store
+from canon.study.cases.store import Store
 store = Store(sys.argv[1])
 with store._writing() as connection:
     connection.execute("UPDATE cases SET inputs = 'half done'")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from canon import cli
-from canon.study.definition import read_study
+from canon.study.cases.study import read_study
 
 PAGE = (Path(__file__).parents[2] / "docs" / "howto" / "studies.md").read_text(encoding="utf-8")
 

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sympy import Expr, Rational, Symbol
-
 from canon.expression.language import Scope, exact, parse_condition, parse_expression
+from sympy import Expr, Rational, Symbol
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

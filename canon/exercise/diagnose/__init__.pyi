@@ -1,0 +1,2 @@
+from .diagnosis import Diagnosis as Diagnosis
+from .feedback import corrected as corrected

@@ -1,0 +1,336 @@
+"""Claims changed in one place and judged anew: what a person may have meant."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from itertools import chain, groupby
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
+from canon.exercise.diagnose.screening import screening
+from canon.exercise.diagnose.slips import Change, common_slips, slipped, times, variants
+from canon.exercise.sheet.reading import InvalidClaim, Reading
+from canon.exercise.sheet.sympy_trees import arguments, replaced, symbols_of
+from canon.expression.symbols.symbol import velocity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from sympy import Expr
+
+__all__ = ["another_gauge", "another_reading", "one_change", "only_where", "right_where"]
+
+TRIAL_SECONDS = 0.25
+MOST_DIVIDING = 16
+_BOUNDS = (sp.exp(-1), 1, -1, 3 * sp.pi / 2, sp.pi, sp.pi / 2, -sp.pi / 2, -sp.pi)
+_ANSWERS: Mapping[str, tuple[str, ...]] = {
+    "gibbs-appell": ("S",),
+    "hamilton-equations": ("solution",),
+    "canonicity": ("P", "Q", "implicit"),
+    "canonicity-time-dependent": ("P", "Q", "implicit"),
+    "bilinear-covariant": ("P", "Q"),
+    "lagrange-bracket": ("p", "q"),
+    "transformed-hamiltonian-K": ("K", "map.P", "map.Q", "inverse_map.p", "inverse_map.q"),
+    "constant-of-motion": ("I",),
+    "lagrangian-equivalence": ("F", "L2"),
+    "equality-only": ("rhs", "lhs"),
+    **{f"generating-F{k}": ("F", "map.Q", "map.P", "inverse_map.q", "inverse_map.p") for k in "1234"},
+}
+"""Where the answer stands in claims that are judged as a whole."""
+
+
+def another_reading(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+    """Yield which other claim, of the same formulas, is right: another type, variables exchanged, the inverse."""
+    keys, kind = reading.claim.keys, reading.claim.kind
+    trials: list[tuple[str, Mapping[str, Any], str]] = []
+    if kind.startswith("generating"):
+        trials += [
+            (f"generating-F{k}", keys, f"F generates this map as a function of type {k}, not {kind[-1]}")
+            for k in "1234"
+            if k != kind[-1]
+        ]
+    if reading.has("map"):
+        exchanged = {"Q": keys["map"].get("P"), "P": keys["map"].get("Q")}
+        trials.append((kind, {**keys, "map": exchanged}, "Q and P are exchanged in the map"))
+    if kind == "hamilton-equations" and reading.has("q_dot"):
+        exchanged = {"q_dot": keys["p_dot"], "p_dot": keys["q_dot"]}
+        trials.append((kind, {**keys, **exchanged}, "the equations of q and p are exchanged"))
+    if kind == "lagrangian-equivalence" and reading.word("relation") == "gauge" and not reading.has("F"):
+        sentence = "L1 and L2 have the same equations of motion, but L2 − L1 is not dF/dt"
+        trials.append((kind, {**keys, "relation": "equations"}, f"{sentence} of any F(q, t)"))
+    if kind == "routhian":
+        other = {"L-pq": "pq-L", "pq-L": "L-pq"}[reading.word("convention")]
+        trials.append((kind, {**keys, "convention": other}, f"right under the other convention, {other}"))
+    readings = [(_read_anew(reading, other, changed), sentence) for other, changed, sentence in trials]
+    if reading.has("map"):
+        readings.insert(0, (_inverted(reading), "what is given as the map is its inverse"))
+    for trial, sentence in readings:
+        if time.monotonic() < deadline and _could_hold(trial) and _holds(trial, deadline):
+            yield Diagnosis(sentence, trial)
+
+
+def another_gauge(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+    """Yield whether L₂ − L₁ is the derivative of another function than the one that was given."""
+    if reading.claim.kind != "lagrangian-equivalence" or not reading.has("F"):
+        return
+    others = {key: value for key, value in reading.claim.keys.items() if key != "F"}
+    trial = _read_anew(reading, reading.claim.kind, others)
+    if _holds(trial, deadline):
+        yield Diagnosis("L2 − L1 is dF/dt of some F(q, t), but not of this one", trial)
+
+
+def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+    """Yield a region, or a value of a parameter, for which the claim does hold.
+
+    It may hold for more: that it holds only there is not proved, and not said.
+    """
+    keys = reading.claim.keys
+    assumed = dict(keys.get("parameters", {}))
+    following = {name for key in _following(reading) for name in _names(keys.get(key))}
+    free = [
+        s
+        for s in reading.scope.names.values()
+        if s.is_positive is None and s.is_negative is None and not s.is_integer and s.name not in following
+    ]
+    for symbol in free[:6]:
+        for word, sign in (("positive", ">"), ("negative", "<")):
+            if time.monotonic() > deadline:
+                return
+            changed = {**keys, "parameters": {**assumed, symbol.name: word}}
+            trial = _read_anew(reading, reading.claim.kind, changed)
+            if _is_somewhere(trial) and _could_hold(trial) and _holds(trial, deadline):
+                yield Diagnosis(f"right for {symbol} {sign} 0, but not on the whole domain", trial)
+    variables = {
+        name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
+    }
+    if reading.claim.kind == "equality-only" and len(assumed) < 2:
+        return  # at one point two functions may meet by chance
+    for name in [n for n in assumed if n not in variables and n in reading.scope.names][:8]:
+        if time.monotonic() > deadline:
+            return
+        trial = replace(reading, at=MappingProxyType({reading.scope.names[name]: sp.S.One}))
+        if _could_hold(trial) and _holds(trial, deadline):
+            yield Diagnosis(f"right for {name} = 1, but not in general", trial)
+
+
+def right_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+    """Yield a condition under which the claim does hold: the sign of a denominator, of a difference, a bound."""
+    expressions = [f for _, f in _answers(reading)]
+    for g in _dividing(expressions):
+        for sign in (">", "<"):
+            if time.monotonic() > deadline:
+                return
+            domain = reading.claim.keys.get("domain", [])
+            conditions = [*(domain if isinstance(domain, list) else [domain]), f"{g} {sign} 0"]
+            trial = _read_anew(reading, reading.claim.kind, {**reading.claim.keys, "domain": conditions})
+            if _is_somewhere(trial) and _could_hold(trial) and _holds(trial, deadline):
+                yield Diagnosis(f"right where {g} {sign} 0, but not on the whole domain", trial)
+
+
+def _is_somewhere(reading: Reading) -> bool:
+    """Whether the domain of a claim has a point: of an empty one everything is true."""
+    try:
+        return (
+            next(reading.domain.points(reading.scope.names.values(), 1, but_functions=True), None) is not None
+        )
+    except InvalidClaim:
+        return False
+
+
+def _following(reading: Reading) -> tuple[str, ...]:
+    """Return the keys whose names stand for what follows from other variables and can't be chosen freely."""
+    if reading.has("map") or reading.has("implicit"):
+        return ("new_q", "new_p")
+    if reading.has("inverse_map") or reading.has("solution"):
+        return ("q", "p")
+    return ("p",) if reading.claim.kind == "legendre-hamiltonian" else ("momenta", "multipliers")
+
+
+def _dividing(expressions: Sequence[Expr]) -> list[Expr]:
+    """Return what may divide the domain into a part where a claim holds and one where it does not."""
+    found: dict[Expr, None] = {}
+    for f in expressions:
+        for node in sp.preorder_traversal(f):
+            if isinstance(node, sp.Pow) and node.exp.is_negative and node.base.is_Add:
+                found[node.base] = None
+            elif isinstance(node, sp.Abs | sp.sign):
+                found[arguments(node)[0]] = None
+            elif isinstance(node, sp.Max | sp.Min) and len(arguments(node)) == 2:
+                found[arguments(node)[0] - arguments(node)[1]] = None
+    symbols = symbols_of(*expressions)
+    if len(symbols) <= 2:
+        found |= {s - bound: None for s in symbols for bound in _BOUNDS}
+    return list(found)[:MOST_DIVIDING]
+
+
+def one_change(
+    reading: Reading, deadline: float, suspects: Sequence[str] = (), held: int = 0
+) -> Iterator[Diagnosis]:
+    """Yield one change in the answer that makes the whole claim right.
+
+    Parameters
+    ----------
+    reading
+        The claim.
+    deadline
+        When to give up.
+    suspects
+        Names of what is probably wrong, such as ``P2``, the first suspect first.
+    held
+        How many questions of the claim were answered before the one that failed.
+    """
+    answers = sorted(_answers(reading), key=lambda answer: _rank(answer[0], suspects))
+    screen = screening(reading, dict(answers))
+    symbols = tuple(reading.scope.names.values())
+    for changed, sentence in _staggered(reading, dict(answers)):
+        if screen is None or screen.passes(changed):
+            trial = reading
+            for name, new in changed.items():
+                trial = trial.with_instead(name, new)
+            if _holds(trial, deadline):
+                yield Diagnosis(sentence, trial)
+    groups = groupby(sorted(answers, key=lambda a: _outer(a[0])), key=lambda a: _outer(a[0]))
+    for key, group in groups:
+        items = list(group)
+        if len(items) > 1:
+            for slip, change in common_slips([e for _, e in items], symbols):
+                if time.monotonic() > deadline:
+                    return
+                slipped_all = {name: slipped(expression, slip) for name, expression in items}
+                changed = {name: new for name, new in slipped_all.items() if new is not None}
+                if len(changed) < len(items) or (screen is not None and not screen.passes(changed)):
+                    continue
+                trial = reading
+                for name, new in changed.items():
+                    trial = trial.with_instead(name, new)
+                if _holds(trial, deadline):
+                    yield Diagnosis(f"in {key} {change}", trial)
+    for number, (key, expression) in enumerate(answers, 1):
+        left = deadline - time.monotonic()
+        until = deadline if number == len(answers) else deadline - left / 2
+        for new, change in chain(_rescaled(key, expression), _named(key, variants(expression, symbols))):
+            if time.monotonic() > until:
+                break
+            if _trivial(new, reading) or (screen is not None and not screen.passes({key: new})):
+                continue
+            trial = reading.with_instead(key, new)
+            if _holds(trial, deadline, held if key == "K" else 0):
+                yield Diagnosis(str(change), trial)
+
+
+def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[Mapping[str, Expr], str]]:
+    """Yield maps with new momenta or coordinates where the old ones stand: a step of one after that of the other."""
+    if not reading.claim.kind.startswith("canonicity") or not reading.has("Q"):
+        return
+    for here, there, letter in (("Q", "P", "p"), ("P", "Q", "q")):
+        old = reading.symbols(letter)
+        step = {z: answers[f"{there}[{i}]"] for i, z in enumerate(old)}
+        images = {f"{here}[{i}]": answers[f"{here}[{i}]"] for i in range(len(old))}
+        staggered = {
+            key: f.subs(list(step.items()), simultaneous=True) for key, f in images.items() if f.has(*old)
+        }
+        names = "the new momenta P" if letter == "p" else "the new coordinates Q"
+        for key in staggered if len(images) > 1 else ():
+            yield {key: staggered[key]}, f"in {key} {names} belong in place of the old ones"
+        if staggered:
+            yield staggered, f"in {here} {names} belong in place of the old ones"
+
+
+def _outer(key: str) -> str:
+    """Return the part of a key before the component: P of P[0], solution of solution.q."""
+    if key.startswith("pairs"):
+        return key
+    return "solution" if key.startswith("solution.") else key.partition("[")[0]
+
+
+def _rank(key: str, suspects: Sequence[str]) -> int:
+    """Return how far back in the line of suspects a component stands: P[1] is called P2, or P if it is alone."""
+    letter, _, index = key.removeprefix("map.").partition("[")
+    names = (letter, f"{letter}{int(index[:-1]) + 1}" if index.endswith("]") else letter)
+    return min((i for i, suspect in enumerate(suspects) if suspect in names), default=len(suspects))
+
+
+def _rescaled(key: str, expression: Expr) -> Iterator[tuple[Expr, Change]]:
+    yield -expression, Change("{} has the wrong sign", key)
+    simple = map(sp.Rational, ("1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2"))
+    for factor in (*simple, 2 * sp.pi, 1 / (2 * sp.pi)):
+        yield factor * expression, Change("{} should be {} what it is", key, times(factor))
+
+
+def _named(key: str, found: Iterator[tuple[Expr, Change]]) -> Iterator[tuple[Expr, Change]]:
+    return ((new, Change("in {} {}", key, change)) for new, change in found)
+
+
+def _answers(reading: Reading) -> Iterator[tuple[str, Expr]]:
+    if reading.claim.kind == "poisson-bracket":
+        for i, (f, g, value) in enumerate(reading.brackets("f", "g")):
+            yield from zip((f"pairs[{i}].{key}" for key in ("value", "f", "g")), (value, f, g), strict=True)
+    for key in _ANSWERS.get(reading.claim.kind, ()):
+        outer, _, inner = key.partition(".")
+        if not reading.has(outer):
+            continue
+        value = reading.claim.keys[outer]
+        if inner:
+            items = reading.inside(key, value.get(inner, []))
+        elif isinstance(value, list):
+            items = (reading.equations if outer == "implicit" else reading.expressions)(outer)
+        elif outer == "solution":
+            yield from ((f"{key}.{name}", item) for name, item in reading.table(key).items())
+            continue
+        else:
+            yield key, reading.expression(key)
+            continue
+        yield from ((f"{key}[{i}]", item) for i, item in enumerate(items))
+
+
+def _inverted(reading: Reading) -> Reading:
+    """Return the claim with its map read as giving the old variables by the new ones."""
+    keys = {key: value for key, value in reading.claim.keys.items() if key != "map"}
+    symbols = [reading.symbols(key) for key in ("q", "p", "new_q", "new_p")]
+    swap = dict(zip((*symbols[0], *symbols[1]), (*symbols[2], *symbols[3]), strict=True))
+    inverted = _read_anew(
+        reading, reading.claim.kind, {**keys, "inverse_map": {k: ["0"] * len(symbols[0]) for k in "qp"}}
+    )
+    for part, name in (("Q", "q"), ("P", "p")):
+        for i, f in enumerate(reading.inside(f"map.{part}", reading.claim.keys["map"][part])):
+            inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", replaced(f, swap))
+    return inverted
+
+
+def _trivial(answer: Expr, reading: Reading) -> bool:
+    """Whether an answer says nothing any more: a constant of the motion that is constant anyway."""
+    variables = {s for key in ("q", "p", "x") if reading.is_names(key) for s in reading.symbols(key)}
+    rates = {velocity(s) for s in variables}
+    return reading.claim.kind == "constant-of-motion" and not answer.free_symbols & (variables | rates)
+
+
+def _read_anew(reading: Reading, kind: str, keys: Mapping[str, Any]) -> Reading:
+    return Reading(replace(reading.claim, kind=kind, keys=MappingProxyType(dict(keys))))
+
+
+def _holds(reading: Reading, deadline: float, held: int = 0) -> bool:
+    """Whether a changed claim holds; the first ``held`` questions are known to and hardly touched by the change."""
+    return judged_to_hold(reading, min(TRIAL_SECONDS, max(0.05, deadline - time.monotonic())), held)
+
+
+def _could_hold(reading: Reading) -> bool:
+    """Whether values at points leave it open that a claim holds."""
+    try:
+        screen = screening(reading, dict(_answers(reading)))
+    except InvalidClaim:
+        return False
+    return screen is None or screen.passes({})
+
+
+def _names(value: object) -> list[str]:
+    return (
+        [value]
+        if isinstance(value, str)
+        else [v for v in value if isinstance(v, str)]
+        if isinstance(value, list)
+        else []
+    )

@@ -1,0 +1,129 @@
+"""Answers that are judged by their derivatives, as components with their right values.
+
+K is right up to a function of time and I up to a constant; here one of the right ones is found, so that a
+claimed one can be compared with it term by term.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
+from canon.exercise.judges.canonical import map_values
+from canon.exercise.judges.conserved import motion_of
+from canon.exercise.question.affine_systems import solved
+from canon.exercise.question.question import Part
+from canon.expression.symbols.symbol import time_derivative
+from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.algebra.potential import potential
+from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.canonical.new_hamiltonian import rate_form
+from canon.mechanics.canonical.transformation import CanonicalTransformation
+from canon.proof.domain.verdict import Undecided
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from sympy import Expr, Symbol
+
+    from canon.exercise.sheet.reading import Reading
+    from canon.proof.domain.domain import Domain
+
+__all__ = ["new_hamiltonian_part", "second_lagrangian_part", "time_term"]
+
+SECONDS = 0.4
+
+
+def new_hamiltonian_part(reading: Reading) -> Iterator[Part]:
+    """Yield K beside H + ∂F/∂t, where the latter is found; the map should be canonical.
+
+    From the inverse map K = H(z(Z, t), t) − R with the R of that map.
+    """
+    there, domain = map_values(reading)
+    H, K, t = reading.expression("H"), reading.expression("K"), reading.time
+    old, new = ("q", "p"), ("new_q", "new_p")
+    if reading.has("inverse_map"):
+        old, new = new, old
+    (q, p), names = reading.phase_space(*old), [s for key in new for s in reading.symbols(key)]
+    images, n = [there[s] for s in names], len(q)
+    map_ = CanonicalTransformation(q, p, images[:n], images[n:], t, domain)
+    form = rate_form(map_)
+    R = _integrated(form, map_.variables, domain)
+    if R is None:
+        return
+    if reading.has("inverse_map"):
+        right = substitute(H, there) - R
+    elif not (back := _linear_inverse(images, map_.variables, names)):
+        yield Part("K", K, H + R, there, "K")
+        return
+    else:
+        right = substitute(H + R, back)
+    rest = substitute(K - right, dict.fromkeys(_all(reading), sp.S.Zero))
+    yield Part("K", K, right if rest.has(sp.nan, sp.zoo, sp.oo) else right + rest, key="K")
+
+
+def _all(reading: Reading) -> list[Symbol]:
+    return [s for key in ("new_q", "new_p") for s in reading.symbols(key)]
+
+
+def _integrated(form: Sequence[Expr], z: Sequence[Symbol], domain: Domain) -> Expr | None:
+    found = _of_polynomials(form, z)
+    return potential(form, z, domain, budget=SECONDS) if found is None else found
+
+
+def _of_polynomials(form: Sequence[Expr], z: Sequence[Symbol]) -> Expr | None:
+    """Return G with ∂G/∂zⱼ = aⱼ for a closed form of polynomials: the integral of Σ zⱼ aⱼ(λz) from 0 to 1."""
+    terms: list[Expr] = []
+    for a, x in zip(form, z, strict=True):
+        try:
+            poly = sp.Poly(a, *z)
+        except sp.PolynomialError:
+            return None
+        if any(c.has(*z) for c in poly.coeffs()):
+            return None
+        for powers, c in poly.terms():
+            terms.append(c * x * sp.Mul(*(s**k for s, k in zip(z, powers, strict=True))) / (sum(powers) + 1))
+    return sp.Add(*terms)
+
+
+def _linear_inverse(
+    images: Sequence[Expr], z: Sequence[Symbol], names: Sequence[Symbol]
+) -> dict[Symbol, Expr] | None:
+    """Return the old variables in terms of the new ones for an affine map, None for another."""
+    if any(f.diff(a).has(*z) for f in images for a in z):
+        return None
+    try:
+        return solved([f - name for f, name in zip(images, names, strict=True)], z)
+    except (SingularMatrixError, Undecided):
+        return None
+
+
+def second_lagrangian_part(reading: Reading) -> Part:
+    """Return L₂ beside L₁ + dF/dt."""
+    q, F = reading.symbols("q"), reading.expression("F")
+    right = reading.expression("L1") + time_derivative(F, q, reading.time)
+    return Part("L2", reading.expression("L2"), right, key="L2")
+
+
+def time_term(reading: Reading) -> Iterator[Diagnosis]:
+    """Yield the term of a constant of the motion that holds the time explicitly, where it was lost.
+
+    If dI/dt is the same in every state, I − t dI/dt is conserved.
+    """
+    I, t = reading.expression("I"), reading.time
+    if I.has(t) or reading.has("restrict"):
+        return
+    rates = motion_of(reading)
+    rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()))
+    somewhere = {x: sp.Integer(i) for i, x in enumerate(rates, 1)}
+    growth = substitute(rate, somewhere)
+    if growth.has(t, sp.nan, sp.zoo, sp.oo) or growth == 0:
+        return
+    growth = sp.cancel(growth) if sp.count_ops(growth) < 60 else growth
+    repaired = reading.with_instead("I", I - growth * t)
+    if judged_to_hold(repaired, SECONDS):
+        yield Diagnosis(
+            f"I grows at the constant rate {growth}: in I the term {-growth * t} is missing", repaired
+        )

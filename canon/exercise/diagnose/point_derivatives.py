@@ -1,0 +1,148 @@
+"""Values and slopes of expressions at a point, from differences at a very small distance.
+
+With balls of a few hundred bits a difference quotient is right to thirty digits, enough to tell a wrong
+candidate at once. What passes is proved elsewhere: nothing is ever decided here.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from flint import acb, arb
+from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef, Derivative, Subs
+
+from canon.exercise.sheet.sympy_trees import arguments, replaced
+from canon.proof.domain.balls import value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+__all__ = ["BITS", "Examples", "Neighbourhood", "small"]
+
+BITS = 320
+STEP = arb(2) ** -100
+TOLERANCE = arb(2) ** -60
+
+
+class Examples:
+    """Polynomials put for the arbitrary functions, the same ones in every expression."""
+
+    def __init__(self, expressions: Iterable[Expr]) -> None:
+        applied = {a for e in expressions for a in e.atoms(AppliedUndef)}
+        self._polynomials = {
+            a.func: _polynomial(a, number) for number, a in enumerate(sorted(applied, key=str), 1)
+        }
+        self._known: dict[sp.Basic, Expr] = {}
+
+    def unknowns(self, f: Expr) -> list[Expr]:
+        """Return the arbitrary functions and derivatives of an expression, not those inside others."""
+        if not self._polynomials and not f.has(Derivative, Subs):
+            return []
+        walk, found = sp.preorder_traversal(f), list[Expr]()
+        for node in walk:
+            if isinstance(node, AppliedUndef | Derivative | Subs):
+                walk.skip()
+                found.append(node)
+        return found
+
+    def __getitem__(self, unknown: Expr) -> Expr:
+        """Return what a function, or a derivative of it, is in the example."""
+        found = self._known.get(unknown)
+        if found is None:
+            found = self._known[unknown] = self._example(unknown)
+        return found
+
+    def _example(self, unknown: Expr) -> Expr:
+        if isinstance(unknown, Subs):
+            inner, variables, points = cast("tuple[Expr, tuple[Expr, ...], tuple[Expr, ...]]", unknown.args)
+            return replaced(self._example(inner), dict(zip(variables, points, strict=True)))
+        if isinstance(unknown, AppliedUndef):
+            places, polynomial = self._polynomials[unknown.func]
+            return replaced(polynomial, dict(zip(places, arguments(unknown), strict=True)))
+        inner, *rest = arguments(unknown)
+        by = cast("list[tuple[Symbol, int]]", rest)
+        if isinstance(inner, AppliedUndef) and _by_places(inner, [s for s, _ in by]):
+            places, polynomial = self._polynomials[inner.func]
+            slope = polynomial.diff(*((places[arguments(inner).index(s)], n) for s, n in by))
+            return replaced(slope, dict(zip(places, arguments(inner), strict=True)))
+        for node in inner.atoms(AppliedUndef):
+            inner = replaced(inner, {node: self._example(node)})
+        return inner.diff(*by)
+
+
+def _by_places(function: AppliedUndef, by: Sequence[Expr]) -> bool:
+    """Whether a function is differentiated by its arguments, none of which depends on another."""
+    return all(function.args.count(s) == 1 for s in by) and not any(
+        argument.has(*by) for argument in function.args if argument not in by
+    )
+
+
+def _polynomial(function: AppliedUndef, number: int) -> tuple[tuple[Symbol, ...], Expr]:
+    """Return places and a cubic in them, of the sign that the function is declared to have."""
+    places = sp.symbols(f"_u0:{len(function.args)}", real=True)
+    found = sp.Rational(number + 2, 3)
+    for i, u in enumerate(places, 2):
+        found += u * sp.Rational(number + i, i) - u**2 / (number + i) + u**3 / (2 * number + i)
+    if len(places) > 1:
+        found += number * sp.Mul(*places) + places[0] ** 2 * places[-1] / 2
+    if function.is_positive or function.is_negative:
+        found = (found**2 + sp.Rational(1, 4)) * (1 if function.is_positive else -1)
+    return places, found
+
+
+class Neighbourhood:
+    """A point, and the points a little beside it along each symbol.
+
+    Parameters
+    ----------
+    point
+        The value of every symbol.
+    examples
+        What the arbitrary functions are.
+    """
+
+    def __init__(self, point: Mapping[Symbol, acb], examples: Examples) -> None:
+        self.point = dict(point)
+        self.examples = examples
+        self._memos: dict[Symbol | None, dict[sp.Basic, acb]] = {}
+
+    def beyond(self, values: Mapping[Symbol, acb]) -> Neighbourhood:
+        """Return the neighbourhood of the point with more or other values."""
+        return Neighbourhood({**self.point, **values}, self.examples)
+
+    def value(self, f: Expr, along: Symbol | None = None) -> acb:
+        """Return the value of an expression, a step along a symbol away if one is given."""
+        memo = self._memos.get(along)
+        if memo is None:
+            memo = dict[sp.Basic, acb](self.point.items())
+            self._memos[along] = memo
+            if along is not None:
+                memo[along] = self.point[along] + STEP
+        for unknown in self.examples.unknowns(f):
+            if unknown not in memo:
+                memo[unknown] = self.value(self.examples[unknown], along)
+        return value(f, {}, memo)
+
+    def slope(self, f: Expr, by: Symbol) -> acb:
+        """Return ∂f/∂s, to about thirty digits."""
+        if by not in f.free_symbols:
+            return acb(0)
+        return (self.value(f, by) - self.value(f)) / STEP
+
+    def slopes(self, f: Expr, by: Sequence[Symbol]) -> list[acb]:
+        """Return the slopes along several symbols."""
+        return [self.slope(f, s) for s in by]
+
+
+def small(terms: Sequence[acb]) -> bool:
+    """Whether a sum vanishes as far as slopes tell.
+
+    Examples
+    --------
+    >>> small([acb(1), acb(-1), acb(2) ** -90]), small([acb(1), acb(-1), acb(2) ** -20])
+    (True, False)
+    """
+    scale = sum((abs(term) for term in terms), arb(1))
+    return bool(abs(sum(terms, acb(0))) < TOLERANCE * scale)

@@ -1,0 +1,283 @@
+"""Repairs of an answer that are right: small changes, tried at points and then proved.
+
+Each change is what a person may have got wrong: a sign, a factor, a term, a function, an exponent, a symbol.
+Candidates are screened by their values at a few points of the domain, and what survives is proved before
+anyone is told.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import islice
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from flint import acb
+from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
+
+from canon.exercise.diagnose.lost_factor import Monomials
+from canon.exercise.diagnose.slips import Change, of_one_coefficient, times, variants
+from canon.exercise.sheet.sympy_trees import symbols_of
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.kinks import vanishes_off_kinks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from canon.exercise.question.question import Part
+    from canon.proof.domain.domain import Domain
+
+__all__ = ["Repair", "Screen", "common_ratio", "repair", "repairs"]
+
+POINTS = 3
+PRECISION = 128
+MOST_VARIANTS = 3_000
+PROOF_SECONDS = 0.5
+MOST_TERMS = 6
+
+
+@dataclass(frozen=True)
+class Repair:
+    """A right expression in place of a wrong one, and the change in words."""
+
+    right: Expr
+    change: Change
+
+
+def repair(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = ()) -> Repair | None:
+    """Return the simplest change that makes one component of an answer right, if one is found and proved."""
+    return next(repairs(part, domain, seconds, hints), None)
+
+
+def repairs(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = ()) -> Iterator[Repair]:
+    """Yield changes that make one component of an answer right, the simplest first, each of them proved.
+
+    A system whose equations are right one by one can still lack one, so that the whole claim is to be judged
+    with the change put in before anyone is told.
+
+    Parameters
+    ----------
+    part
+        The component that is wrong.
+    domain
+        Where it is meant.
+    seconds
+        How long may be looked.
+    hints
+        Terms that the right answer has, one of which may be missing.
+    """
+    deadline = time.monotonic() + seconds
+    screen = Screen(part, domain)
+    if not screen.points:
+        return
+    for candidate in _candidates(part, screen, hints):
+        if time.monotonic() > deadline:
+            return
+        if (
+            _says_something(part, candidate.right)
+            and screen.passes(candidate.right)
+            and not _says_only_zeros(part, candidate.right, screen)
+            and _is_right(part, candidate.right, domain)
+        ):
+            yield candidate
+
+
+def common_ratio(parts: Sequence[Part], domain: Domain) -> Fraction | None:
+    """Return the one constant right/claimed that all components share, those that vanish left out."""
+    ratios: set[Fraction | None] = set()
+    for part in parts:
+        screen = Screen(part, domain)
+        if screen.vanish(part.right) and screen.vanish(part.claimed):
+            continue
+        ratios.add(screen.ratio(part.right, part.claimed))
+    return ratios.pop() if len(ratios) == 1 else None
+
+
+def _is_right(part: Part, expression: Expr, domain: Domain) -> bool:
+    return vanishes_off_kinks(replace(part, claimed=expression).residual, domain, budget=PROOF_SECONDS).holds
+
+
+def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Repair]:
+    claimed, name = part.claimed, part.name
+    if part.right != 0:
+        factor = screen.ratio(part.right, claimed)
+        if factor == -1:
+            yield Repair(-claimed, Change("{} has the wrong sign", name))
+        elif factor is not None and factor != 0:
+            right = sp.Rational(factor.numerator, factor.denominator) * claimed
+            yield Repair(right, Change("{} should be {} what it is", name, times(factor)))
+    yield from _terms_rescaled(part, screen)
+    yield from _terms_missing(part, screen, hints)
+    yield from _monomials(part, screen)
+    slips: list[tuple[Expr, Change]] = []
+    for new, change in islice(
+        variants(claimed, symbols_of(claimed, part.right, *part.through)), MOST_VARIANTS
+    ):
+        slips.append((new, change))
+        yield Repair(new, Change("in {} {}", name, change))
+    for term in hints:  # a slip, and a term is missing besides
+        for new, change in slips:
+            yield Repair(new + term, Change("in {} the term {} is missing, and {}", name, term, change))
+
+
+def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
+    """One term with a wrong coefficient: the residual is a constant multiple of it.
+
+    It is rather blamed on another term than on that of the acceleration or multiplier.
+    """
+    claimed, name = part.claimed, part.name
+    for terms in _as_sums(claimed):
+        for term in sorted(terms, key=lambda term: term.has(*part.determined)):
+            share = screen.share_of_residual(term)
+            if share is None or share == 0:
+                continue
+            factor, right = 1 - share, claimed - sp.Rational(share.numerator, share.denominator) * term
+            if factor == 0:
+                yield Repair(right, Change("in {} the term {} does not belong", name, term))
+            elif factor == -1:
+                yield Repair(right, Change("in {} the sign of {} is wrong", name, term))
+            else:
+                yield Repair(right, Change("in {} the term {} should be {} that", name, term, times(factor)))
+
+
+def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Repair]:
+    """One term of the right answer is not there; its coefficient is found from the residual."""
+    known = () if part.through else [term for terms in _as_sums(part.right) for term in terms]
+    for term in (*known, *hints):
+        share = screen.share_of_residual(term)
+        if share is not None and share != 0:
+            missing = -sp.Rational(share.numerator, share.denominator) * term
+            yield Repair(part.claimed + missing, Change("in {} the term {} is missing", part.name, missing))
+
+
+def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
+    """A term or a factor lost that is a product of powers, found from how the residual scales."""
+    claimed, name = part.claimed, part.name
+    found = Monomials(part, screen.first, screen.memo)
+    with precision(PRECISION):
+        missing = list(found.of_residual())
+        terms = sorted(sp.Add.make_args(claimed), key=lambda term: term.has(*part.determined))
+        factors = [(t, list(found.of_share(t))) for t in terms] if len(terms) <= MOST_TERMS else []
+    for term in missing:
+        yield Repair(claimed - term, Change("in {} the term {} is missing", name, -term))
+    for term, products in factors:
+        for factor in products:
+            lacks = Change("in {} the term {} lacks the factor {}", name, term, factor)
+            yield Repair(claimed - term + factor * term, lacks)
+
+
+def _says_something(part: Part, right: Expr) -> bool:
+    """Whether a repaired equation still holds an acceleration or multiplier, if the wrong one did."""
+    return part.right != 0 or not part.claimed.has(*part.determined) or right.has(*part.determined)
+
+
+def _says_only_zeros(part: Part, right: Expr, screen: Screen) -> bool:
+    """Whether every term of a repaired equation vanishes by itself on the motion, as no equation of motion does."""
+    terms = sp.Add.make_args(right)
+    return part.right == 0 and bool(part.through) and len(terms) > 1 and all(map(screen.vanish, terms))
+
+
+def _as_sums(expression: Expr) -> Iterator[Sequence[Expr]]:
+    """Yield the terms as written, then those of the expanded expression."""
+    written = sp.Add.make_args(expression)
+    yield written
+    yield list(of_one_coefficient(expression))
+    if sp.count_ops(expression) < 300:
+        expanded = sp.Add.make_args(sp.expand(expression))
+        if set(expanded) != set(written):
+            yield expanded
+
+
+class Screen:
+    """Values at a few points of the domain, which tell wrong candidates at once."""
+
+    def __init__(self, part: Part, domain: Domain) -> None:
+        self.part = part
+        symbols = symbols_of(part.right, part.claimed, *part.through.values())
+        self.points: list[dict[sp.Basic, acb]] = []
+        self.first: dict[Symbol, sp.Rational] | None = None
+        with precision(PRECISION):
+            for number, point in enumerate(
+                domain.points(
+                    (s for s in symbols if s not in part.through), POINTS, seed=11, but_functions=True
+                )
+            ):
+                memo = self.memo(point, number)
+                if memo is not None:
+                    self.first = self.first or point
+                    self.points.append(memo)
+
+    def memo(self, point: dict[Symbol, sp.Rational], number: int) -> dict[sp.Basic, acb] | None:
+        """Return the values of symbols and arbitrary functions at a point, of the replaced symbols too."""
+        memo: dict[sp.Basic, acb] = {s: value(s, point) for s in point}
+        whole = sp.Tuple(self.part.claimed, self.part.right, *self.part.through.values())
+        for i, unknown in enumerate(sorted(whole.atoms(AppliedUndef, sp.Derivative, sp.Subs), key=str)):
+            memo[unknown] = acb(number + 2) / (i + 3)
+        try:
+            replaced = {s: value(v, {}, memo) for s, v in self.part.through.items()}
+        except (Undefined, NotDecided, Unmodelled):
+            return None
+        return {**{k: v for k, v in memo.items() if k not in replaced}, **replaced}
+
+    def values(self, expression: Expr) -> list[acb] | None:
+        """Return the values of an expression in the claim's symbols, None where it has none."""
+        try:
+            with precision(PRECISION):
+                return [value(expression, {}, memo) for memo in self.points]
+        except (Undefined, NotDecided, Unmodelled):
+            return None
+
+    @cached_property
+    def right(self) -> list[acb] | None:
+        """The values that would be right."""
+        return self.values(self.part.right)
+
+    @cached_property
+    def residual(self) -> list[acb] | None:
+        """The values of what should vanish."""
+        claimed = self.values(self.part.claimed)
+        if claimed is None or self.right is None:
+            return None
+        with precision(PRECISION):
+            return [a - b for a, b in zip(claimed, self.right, strict=True)]
+
+    def passes(self, expression: Expr) -> bool:
+        """Whether an expression could be right as far as its values tell."""
+        found = self.values(expression)
+        if found is None or self.right is None:
+            return False
+        with precision(PRECISION):
+            return all((a - b).contains(0) for a, b in zip(found, self.right, strict=True))
+
+    def vanish(self, expression: Expr) -> bool:
+        """Whether an expression vanishes as far as its values tell."""
+        found = self.values(expression)
+        return found is not None and all(z.contains(0) for z in found)
+
+    def ratio(self, a: Expr, b: Expr) -> Fraction | None:
+        """Return the constant a/b if it is a simple rational at every point."""
+        return _constant_ratio(self.values(a), self.values(b))
+
+    def share_of_residual(self, term: Expr) -> Fraction | None:
+        """Return the constant residual/term if it is a simple rational at every point."""
+        return _constant_ratio(self.residual, self.values(term))
+
+
+def _constant_ratio(above: list[acb] | None, below: list[acb] | None) -> Fraction | None:
+    if above is None or below is None or not above:
+        return None
+    with precision(PRECISION):
+        if any(b.contains(0) for b in below):
+            return None
+        ratios = [a / b for a, b in zip(above, below, strict=True)]
+        middle = float(ratios[0].real.mid())
+        if not math.isfinite(middle):  # beyond 1e308: no factor that a person forgets
+            return None
+        guess = Fraction(middle).limit_denominator(64)
+        exact = acb(guess.numerator) / guess.denominator
+        return guess if all((r - exact).contains(0) for r in ratios) else None

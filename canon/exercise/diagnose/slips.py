@@ -1,0 +1,315 @@
+"""Expressions that differ from a given one by one slip: a sign, a factor, a function, an exponent, a symbol."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import chain, combinations
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.sheet.sympy_trees import arguments, replaced, shown, symbols_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from fractions import Fraction
+
+__all__ = ["Change", "common_slips", "of_one_coefficient", "slipped", "times", "variants"]
+
+_FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
+_FAMILIES = (
+    (sp.sin, sp.cos), (sp.tan, sp.cot), (sp.sec, sp.csc), (sp.sinh, sp.cosh, sp.tanh), (sp.asin, sp.acos),
+    (sp.atan, sp.acot), (sp.asinh, sp.acosh, sp.atanh), (sp.elliptic_k, sp.elliptic_e),
+)  # fmt: skip
+_TWINS = {f: tuple(g for g in family if g is not f) for family in _FAMILIES for f in family}
+MOST_FUNCTIONS = 6
+MOST_SWAPPED = 6
+MOST_ALIKE = 6
+_SHIFTS = (sp.S.One, sp.S.NegativeOne)
+_CONSTANTS = (sp.pi, -sp.pi, sp.pi / 2, -sp.pi / 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change in words, put together only when someone wants to read it."""
+
+    pattern: str
+    items: tuple[object, ...]
+
+    def __init__(self, pattern: str, *items: object) -> None:
+        object.__setattr__(self, "pattern", pattern)
+        object.__setattr__(self, "items", items)
+
+    def __str__(self) -> str:
+        return self.pattern.format(*map(shown, self.items))
+
+
+def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple[Expr, Change]]:
+    """Yield expressions that differ in one place, likely slips first, with the change in words.
+
+    Parameters
+    ----------
+    expression
+        What was written.
+    symbols
+        What may have been meant in place of a symbol.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y")
+    >>> [str(new) for new, change in variants(sp.sin(x) - y) if "sin" in str(change)][:3]
+    ['-y - sin(x)', '-y + cos(x)', '-y - sin(x)']
+    """
+
+    def exchanged(node: Expr) -> Iterator[tuple[Expr, Change]]:
+        return _exchanged(node, symbols)
+
+    def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
+        return _multiplied(node, symbols)
+
+    functions = sorted((f for f in expression.atoms(sp.Function) if _twins(f)), key=str)[:MOST_FUNCTIONS]
+
+    def multiplied_by_functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
+        return _multiplied(node, functions)
+
+    first = (_signs, _functions, _factors, _together, _exponents, _by_another, _superfluous, exchanged)
+    for edits in (*first, multiplied, _dropped, _swapped, _shifted, multiplied_by_functions):
+        yield from _one_place(expression, edits)
+    if not expression.is_Add:
+        for symbol in symbols:
+            yield expression * symbol, Change("{} lacks the factor {}", expression, symbol)
+            yield expression / symbol, Change("{} should be divided by {}", expression, symbol)
+    yield from _everywhere(expression, symbols)
+
+
+def common_slips(
+    expressions: Sequence[Expr], symbols: Sequence[Symbol]
+) -> Iterator[tuple[Mapping[Expr, Expr], Change]]:
+    """Yield substitutions that a person may have got wrong in all components of an answer alike."""
+    own = symbols_of(*expressions)
+    for symbol in own:
+        yield {symbol: -symbol}, Change("the sign of {} is wrong everywhere", symbol)
+    functions = sorted({f for e in expressions for f in e.atoms(sp.Function)}, key=str)
+    for f in functions:
+        yield {f: -f}, Change("the sign of {} is wrong everywhere", f)
+        for twin in _twins(f):
+            yield {f: twin(*arguments(f))}, Change("{} should be {} everywhere", f, twin(*arguments(f)))
+    for a, b in combinations(own, 2) if len(expressions) > 1 else ():
+        yield {a: b, b: a}, Change("{} and {} should be exchanged everywhere", a, b)
+    for node in _repeated(expressions):
+        for new, change in chain(_signs(node), _factors(node)):
+            yield {node: new}, Change("in {} {}, everywhere", node, change)
+    for symbol in own:
+        for factor in (*_FACTORS[:2], *(power for s in symbols if s != symbol for power in (s, 1 / s))):
+            yield {symbol: factor * symbol}, Change("{} should be {} everywhere", symbol, factor * symbol)
+
+
+def slipped(expression: Expr, slip: Mapping[Expr, Expr]) -> Expr | None:
+    """Return an expression with a slip put in, None where it would stand behind a d/d….
+
+    Examples
+    --------
+    >>> x, f = sp.Symbol("x"), sp.Function("f")
+    >>> slipped(x + x**2, {x: -x}), slipped(f(x).diff(x), {x: -x})
+    (x**2 - x, None)
+    """
+    try:
+        return replaced(expression, dict(slip))
+    except (TypeError, ValueError):  # such as a derivative by −x, or a comparison with i
+        return None
+
+
+def times(factor: Fraction | Expr) -> str:
+    """Return a factor in words: half, twice, 3/2 times.
+
+    Examples
+    --------
+    >>> times(sp.Rational(1, 2)), times(sp.Rational(3, 2))
+    ('half', '3/2 times')
+    """
+    return {"1/2": "half", "2": "twice", "-1": "minus"}.get(str(factor), f"{factor} times")
+
+
+def _twins(f: Expr) -> tuple[Callable[..., Expr], ...]:
+    """Return the functions that one of one argument is mistaken for; those of more have no twins."""
+    if len(f.args) != 1:  # such as the incomplete elliptic_e(z, m)
+        return ()
+    return cast("dict[object, tuple[Callable[..., Expr], ...]]", _TWINS).get(f.func, ())
+
+
+def _one_place(
+    expression: Expr, edits: Callable[[Expr], Iterator[tuple[Expr, Change]]]
+) -> Iterator[tuple[Expr, Change]]:
+    """Apply an edit at one place of the tree at a time, equal subexpressions elsewhere left alone."""
+    yield from edits(expression)
+    branches = expression.args
+    for i, argument in enumerate(branches):
+        if isinstance(argument, Expr) and not argument.is_Number:
+            for new, change in _one_place(argument, edits):
+                try:
+                    whole = expression.func(*branches[:i], new, *branches[i + 1 :])
+                except (TypeError, ValueError):  # such as a derivative by a number, or a comparison with i
+                    continue
+                yield whole, change
+
+
+def _signs(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    if node.is_Add:
+        for term in arguments(node):
+            yield node - 2 * term, Change("the sign of {} is wrong", term)
+
+
+def _factors(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    if node.is_Add:
+        for term in arguments(node):
+            for factor in _FACTORS:
+                yield node + (factor - 1) * term, Change("the term {} should be {} that", term, times(factor))
+
+
+def _together(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """The terms that share a coefficient, which were one bracket: SymPy distributes numbers over sums."""
+    for terms in of_one_coefficient(node):
+        yield node - 2 * terms, Change("the sign of {} is wrong", terms)
+        for factor in _FACTORS:
+            yield node + (factor - 1) * terms, Change("the term {} should be {} that", terms, times(factor))
+
+
+def of_one_coefficient(f: Expr) -> Iterator[Expr]:
+    """Yield the parts of a sum whose terms have the same number in front, where there are several.
+
+    Examples
+    --------
+    >>> x, y, z = sp.symbols("x y z")
+    >>> list(of_one_coefficient((x + y) / 2 - z))
+    [x/2 + y/2]
+    """
+    groups: dict[Expr, list[Expr]] = {}
+    terms = arguments(f) if f.is_Add else ()
+    for term in terms:
+        groups.setdefault(term.as_coeff_Mul()[0], []).append(term)
+    yield from (sp.Add(*group) for group in groups.values() if 2 <= len(group) < len(terms))
+    for group in groups.values():
+        if 2 < len(group) <= MOST_ALIKE:
+            yield from (a + b for a, b in combinations(group, 2))
+
+
+def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    for twin in _twins(node):
+        yield twin(*arguments(node)), Change("{} should be {}", node, twin(*arguments(node)))
+    if _twins(node) or isinstance(node, sp.exp):
+        for factor in (sp.S.NegativeOne, sp.Rational(2), sp.Rational(1, 2)):
+            new = node.func(factor * arguments(node)[0])
+            yield new, Change("{} should be {}", node, new)
+
+
+def _exponents(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    if node.is_Add or node.is_Mul or node.is_Number:
+        if node.is_Add:
+            yield node**2, Change("{} should be squared", node)
+        return
+    base, exponent = node.as_base_exp()
+    if exponent.is_Rational:
+        for other in dict.fromkeys((2 * exponent, exponent / 2, exponent + 1, exponent - 1, -exponent)):
+            if other != 0:
+                yield base**other, Change("{} should be {}", node, base**other)
+    if exponent == 2:
+        yield base * sp.Abs(base), Change("{} should be {}", node, base * sp.Abs(base))
+    if node.is_Symbol and not node.is_positive:
+        yield sp.Abs(node), Change("{} should be Abs({})", node, node)
+
+
+def _superfluous(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    if node.is_Add:
+        for term in arguments(node):
+            yield node - term, Change("the term {} does not belong", term)
+
+
+def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    if node.is_Mul:
+        for factor in arguments(node):
+            if not factor.is_Number:
+                yield node / factor, Change("the factor {} of {} does not belong", factor, node)
+
+
+def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """One symbol for another in one function, or as one factor."""
+    places = arguments(node) if node.is_Mul or node.is_Add else (node,) if node.is_Function else ()
+    for place in places:
+        for old in symbols_of(place) if place.is_Function or place.is_Pow or place.is_Symbol else ():
+            for new in symbols:
+                changed = slipped(place, {old: new}) if new != old else None
+                if changed is not None:
+                    rest = (
+                        node.func(*(changed if p == place else p for p in arguments(node)))
+                        if place != node
+                        else changed
+                    )
+                    yield rest, Change("{} should be {}", place, changed)
+
+
+def _by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """The derivative by another argument of the function."""
+    if isinstance(node, sp.Derivative) and len(node.variables) == 1:
+        f = arguments(node)[0]
+        for other in symbols_of(*(a for a in arguments(f) if a.is_Symbol)):
+            if other != node.variables[0]:
+                right = sp.Derivative(f, other)
+                yield right, Change("{} should be {}", node, right)
+
+
+def _swapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """Two symbols exchanged in one sum."""
+    if node.is_Add:
+        for a, b in combinations(symbols_of(node)[:MOST_SWAPPED], 2):
+            new = slipped(node, {a: b, b: a})
+            if new is not None and new != node:
+                yield new, Change("in {} the symbols {} and {} should be exchanged", node, a, b)
+
+
+def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """A number lost in the argument of a function, or beside one."""
+    if node.is_Function and len(arguments(node)) == 1:
+        for number in _SHIFTS:
+            new = node.func(arguments(node)[0] + number)
+            yield new, Change("{} should be {}", node, new)
+            yield node + number, Change("{} should be {}", node, node + number)
+
+
+def _multiplied(node: Expr, symbols: Sequence[Expr]) -> Iterator[tuple[Expr, Change]]:
+    if node.is_Add:
+        for term in arguments(node):
+            for symbol in symbols:
+                yield node - term + term * symbol, Change("the term {} lacks the factor {}", term, symbol)
+                yield node - term + term / symbol, Change("the term {} should be divided by {}", term, symbol)
+
+
+def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """The same slip in all places at once, two symbols exchanged, a constant angle lost."""
+    for slip, change in common_slips([expression], ()):
+        new = slipped(expression, slip)
+        if new is not None:
+            yield new, change
+    own = symbols_of(expression)
+    for a, b in combinations(own, 2):
+        exchanged = slipped(expression, {a: b, b: a})
+        if exchanged is not None:
+            yield exchanged, Change("{} and {} should be exchanged", a, b)
+    for old in own:
+        for new in symbols:
+            renamed = slipped(expression, {old: new}) if new != old else None
+            if renamed is not None:
+                yield renamed, Change("{} should be {} everywhere", old, new)
+    if expression.has(*_TWINS):
+        for angle in _CONSTANTS:
+            yield expression + angle, Change("the term {} is missing", angle)
+
+
+def _repeated(expressions: Sequence[Expr]) -> list[Expr]:
+    """Return the sums that stand in more than one place."""
+    counts: dict[Expr, int] = {}
+    for expression in expressions:
+        for node in sp.preorder_traversal(expression):
+            if isinstance(node, Expr) and node.is_Add:
+                counts[node] = counts.get(node, 0) + 1
+    return [node for node, count in counts.items() if count > 1]

@@ -1,0 +1,109 @@
+"""From a claim to what a report says of it, and a sheet's claims one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.exercise.diagnose.feedback import corrected, feedback
+from canon.exercise.judge import InvalidClaim, examine
+from canon.exercise.report.derivation_steps import steps
+from canon.exercise.report.report import MAX_SHOWN, Judgement, invalid
+from canon.expression.symbols.magnitude import written
+from canon.proof.rungs.ladder import REFUSALS, refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.exercise.judge import Finding
+    from canon.exercise.sheet.sheet import Claim
+    from canon.proof.domain.verdict import Verdict
+
+__all__ = ["judgements"]
+
+FEEDBACK_SECONDS = 1.4
+"""Wall time for the search of a diagnosis, so that a false claim is answered within two seconds."""
+
+
+def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
+    """Yield the judgement on a claim, then the same with its steps, then with feedback; the flag marks the last."""
+    try:
+        finding = examine(claim)
+    except InvalidClaim as error:
+        yield invalid(claim, error.error.brief), True
+        return
+    except (RecursionError, MemoryError) as error:
+        what = "memory" if isinstance(error, MemoryError) else "depth of its expressions"
+        known = f"the {what} that it needs is beyond the limit"
+        yield replace(invalid(claim, known), status="undecided"), True
+        return
+    except REFUSALS as error:
+        known = _cut(f"on the way SymPy meets what it can't build: {refusal(error)}")
+        yield replace(invalid(claim, known), status="undecided"), True
+        return
+    judgement = replace(_told(claim, finding.verdict), warnings=finding.reading.warnings)
+    yield judgement, False
+    yield from _explained(claim, finding, judgement)
+
+
+def _explained(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator[tuple[Judgement, bool]]:
+    """Yield the judgement with what explains it; where that can't be built, as it stands."""
+    try:
+        for step in _explanations(claim, finding, judgement):
+            judgement = step[0]
+            yield step
+    except REFUSALS:
+        yield judgement, True
+
+
+def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator[tuple[Judgement, bool]]:
+    judgement = replace(judgement, steps=steps(finding))
+    if not finding.verdict.fails:
+        left = finding.left_open() if finding.verdict.holds else ()
+        yield replace(judgement, warnings=(*judgement.warnings, *left)), True
+        return
+    left = min(FEEDBACK_SECONDS, claim.budget - judgement.seconds)
+    if left <= 0.1:
+        yield judgement, True
+        return
+    judgement = replace(judgement, corrected=_cut(corrected(finding)))
+    yield judgement, False  # before the diagnosis is looked for, which can be cut off
+    yield replace(judgement, feedback=_cut(feedback(finding, left)) or judgement.feedback), True
+
+
+def _told(claim: Claim, verdict: Verdict) -> Judgement:
+    example = verdict.counterexample
+    point = {"point": dict(example.point), "left": example.left, "right": example.right} if example else None
+    known = "; ".join(evidence.text for evidence in verdict.evidence) if verdict.undecided else ""
+    return Judgement(
+        claim.id,
+        claim.kind,
+        verdict.status.value,
+        verdict.seconds,
+        certificate=verdict.certificate,
+        question=verdict.question,
+        counterexample=point,
+        residual=_short(verdict.residual) if verdict.fails or verdict.undecided else "",
+        feedback=_cut(verdict.feedback),
+        known=_cut(known),
+        title=str(claim.keys.get("title", "")),
+        expect=claim.expect,
+    )
+
+
+def _short(residual: sp.Basic | sp.MatrixBase | None) -> str:
+    """Return an expression as text, unless that would be longer than anyone reads."""
+    if residual is None:
+        return ""
+    if (
+        isinstance(residual, sp.Basic)
+        and sum(1 for _ in zip(sp.preorder_traversal(residual), range(5000), strict=False)) >= 5000
+    ):
+        return "(too long to be shown)"
+    return _cut(written(residual))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]} …"

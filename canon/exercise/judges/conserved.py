@@ -1,0 +1,107 @@
+"""Claims about which quantities are conserved and which are not, the explicit time included."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.judges.energy_and_force import shown_short
+from canon.exercise.question.continuous_answer import constants_are_continuous, is_continuous
+from canon.exercise.question.question import Differ, Part, Question, Same, Tells
+from canon.expression.symbols.symbol import acceleration, velocity
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.domain.verdict import Undecided
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.sheet.reading import Reading
+    from canon.proof.domain.domain import Domain
+
+__all__ = ["NOT_OF_THE_STATE", "conserved_or_not", "motion_of", "same_everywhere", "system_of"]
+
+NOT_OF_THE_STATE = "what does not depend on the state is true of any system"
+
+
+def conserved_or_not(reading: Reading) -> Iterator[Question]:
+    """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes for the one list and does not vanish identically for the other."""
+    rates, t = motion_of(reading), reading.time
+    for key in ("conserved", "not_conserved"):
+        if not reading.has(key):
+            continue
+        quantities = reading.expressions(key)
+        for i, I in enumerate(quantities):
+            if I.has(*(s for s in _accelerations(reading) if s not in rates)):
+                reading.fault(f"{key}[{i}]", "should depend on the state and the time only")
+            rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
+            if key == "conserved":
+                yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
+                yield from constants_are_continuous(I, (*rates, t), reading.domain, system_of(reading))
+            else:
+                _check_continuous(I, (*rates, t), reading.domain)
+                why = f"{I} is conserved: its rate vanishes on every motion"
+                yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
+        yield Tells((same_everywhere(quantities, tuple(rates), reading.domain),), NOT_OF_THE_STATE)
+
+
+def same_everywhere(
+    quantities: Sequence[Expr],
+    state: Sequence[Symbol],
+    domain: Domain,
+    values: Mapping[Symbol, Expr] = MappingProxyType({}),
+) -> Same:
+    """Return the question whether quantities do not depend on the state at all, where some symbols have values."""
+    slopes = ((I, x, I.diff(x)) for I in quantities for x in state)
+    parts = tuple(Part(f"∂({I})/∂{x}", slope, through=values) for I, x, slope in slopes if slope != 0)
+    return Same(parts or (Part("0", sp.S.Zero),), domain)
+
+
+def _check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
+    """Refuse quantities such as |x|/x, whose rate vanishes where it exists and which jump all the same.
+
+    Raises
+    ------
+    Undecided
+        Where the quantity may jump.
+    """
+    if not is_continuous(I, state, domain, str(I)).holds:
+        raise Undecided(f"{I} may jump, which its rate does not show; narrow the domain to where it does not")
+
+
+def system_of(reading: Reading) -> tuple[Expr, ...]:
+    """Return the functions that give a system: H, L or the components of X."""
+    for key in ("H", "L"):
+        if reading.has(key):
+            return (reading.expression(key),)
+    return reading.expressions("X") if reading.has("X") else ()
+
+
+def motion_of(reading: Reading) -> dict[Symbol, Expr]:
+    """Return the rate of each state variable of a system given by H, L or X."""
+    if reading.has("H"):
+        q, p = reading.phase_space("q", "p")
+        system = Hamiltonian(reading.expression("H"), q, p, reading.time)
+        return dict(zip((*q, *p), system.vector_field, strict=True))
+    if reading.has("L"):
+        q = reading.symbols("q")
+        forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
+        lagrangian = Lagrangian(reading.expression("L"), q, reading.time, forces)
+        rates: dict[Symbol, Expr] = {x: velocity(x) for x in q}
+        return rates | dict(zip(lagrangian.velocities, lagrangian.accelerations, strict=True))
+    if not reading.has("X"):
+        reading.fault("L", "missing; give q with L, q and p with H, or x with X")
+    return dict(zip(reading.symbols("x"), reading.expressions("X", like="x"), strict=True))
+
+
+def _accelerations(reading: Reading) -> list[Symbol]:
+    """Return what no state variable is: the accelerations, and in phase space the velocities too."""
+    q = reading.symbols("q")
+    return [f(x) for x in q for f in (velocity, acceleration)]
+
+
+def _not_conserved(part: Part) -> str:
+    return f"not conserved: on the motion {part.name} = {shown_short(part.claimed)}"

@@ -1,0 +1,155 @@
+"""Claims about the class of constraints and the number of degrees of freedom.
+
+Holonomic: all constraints are equations that restrict positions, velocities entering at most as the rate of such an
+equation (Frobenius' theorem decides that, all constraints together); an inequality is not (H. Goldstein, Classical
+Mechanics, § 1.3). Rheonomic: what is allowed depends explicitly on the time. Unilateral: an inequality.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr
+
+from canon.exercise.question.answer import stay_open
+from canon.exercise.question.constraint_system import ConstraintSystem
+from canon.exercise.question.question import Deadline, Determines, Question, Stated, fails, opposite
+from canon.expression.symbols.symbol import acceleration, velocity
+from canon.expression.symbols.user_input import counted
+from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.exercise.sheet.reading import Reading
+
+__all__ = ["constraint_class", "degrees_of_freedom"]
+
+_PAIRS = (("holonomic", "nonholonomic"), ("scleronomic", "rheonomic"), ("bilateral", "unilateral"))
+_RELATION = re.compile(r"(<=|>=|<|>|=|≤|≥|\\leq?\b|\\geq?\b)")
+
+
+def constraint_class(reading: Reading) -> Iterator[Question]:
+    """Each word of the claim is right for the constraints as a whole."""
+    constraints = _constraints(reading)
+    known = {word for pair in _PAIRS for word in pair}
+    right: list[str] = []
+    verdicts: list[Verdict] = []
+    for i, word in enumerate(reading.claim.keys["class"]):
+        if word not in known:
+            reading.fault(f"class[{i}]", f"should be one of {', '.join(sorted(known))}")
+        pair = next(pair for pair in _PAIRS if word in pair)
+        first = _first_of(pair, constraints)
+        right.append(pair[0] if first.holds else pair[1] if first.fails else "?")
+        verdict = first if word == pair[0] else opposite(first, "")
+        verdicts.append(verdict.about(word))
+        if verdict.fails:
+            said = Verdict(
+                Status.FAILS,
+                word,
+                verdict.certificate if verdict.counterexample else "exact",
+                verdict.residual,
+                verdict.counterexample,
+                feedback=_why(right[-1], constraints),
+            )
+            yield Stated(said, lambda: ", ".join(right))
+            return
+    yield Stated(all_hold(verdicts))
+    words = reading.claim.keys["class"]
+    untold = [" or ".join(pair) for pair in _PAIRS if not set(pair) & set(words)]
+    yield Determines(lambda: stay_open(untold))
+
+
+def degrees_of_freedom(reading: Reading) -> Iterator[Question]:
+    """n coordinates less the constraints that are independent; ``positions`` counts only those that are integrable."""
+    constraints = _constraints(reading)
+    counting = reading.word("counting") if reading.has("counting") else "velocities"
+    if counting not in ("velocities", "positions"):
+        reading.fault("counting", "write velocities or positions")
+    claimed = reading.expression("dof")
+    if not isinstance(claimed, sp.Integer):
+        reading.fault("dof", "should be a whole number")
+    right = constraints.freedom(counting)
+    if int(claimed) == right:
+        yield Verdict(Status.HOLDS, "degrees of freedom", "exact")
+        return
+    n, m = len(constraints.q), len(constraints.q) - right
+    what = f"constraint{'s' * (m != 1)}" + (" on positions" if counting == "positions" else "")
+    why = f"{counted(n, 'coordinate')} less {m} independent {what} leave {right}, not {claimed}"
+    names = {"velocities": "independent virtual displacements", "positions": "positions that can be reached"}
+    other = next(key for key in names if key != counting)
+    try:
+        if constraints.freedom(other) == int(claimed):
+            why += f"; {claimed} is the number of {names[other]}"
+    except Undecided:  # then the feedback says less
+        pass
+    yield Stated(fails("degrees of freedom", why), lambda: sp.Integer(right))
+
+
+def _constraints(reading: Reading) -> ConstraintSystem:
+    q, t = reading.symbols("q"), reading.time
+    given = reading.claim.keys.get("constraints", [])
+    texts = given if isinstance(given, list) else [given]
+    equations: list[Expr] = []
+    inequalities: list[Expr] = []
+    for i, text in enumerate(texts):
+        latex = str(text).strip().startswith("$")
+        pieces = _RELATION.split(str(text).strip().strip("$") if latex else str(text))
+        sides = reading.inside(f"constraints[{i}]", [f"${p}$" if latex else p for p in pieces[::2]])
+        relations = pieces[1::2]
+        if len(sides) == 1:
+            equations.append(sides[0])
+        for left, relation, right in zip(sides, relations, sides[1:], strict=False):
+            target = equations if relation == "=" else inequalities
+            target.append(left - right)
+        if any(side.has(*(acceleration(x) for x in q)) for side in sides):
+            reading.fault(f"constraints[{i}]", "a constraint holds no accelerations")
+    v = tuple(velocity(x) for x in q)
+    for i, f in enumerate((*equations, *inequalities)):
+        if not f.has(*q, *v):
+            reading.fault(f"constraints[{i}]", "this constrains no coordinate and no velocity")
+    return ConstraintSystem(
+        q,
+        t,
+        tuple(f for f in equations if not f.has(*v)),
+        tuple(g for g in equations if g.has(*v)),
+        tuple(inequalities),
+        reading.domain,
+        Deadline.after(0.8 * reading.claim.budget),
+    )
+
+
+def _first_of(pair: tuple[str, str], constraints: ConstraintSystem) -> Verdict:
+    """Return whether the first word of a pair is the right one."""
+    one_sided = bool(constraints.inequalities)
+    if pair[0] == "scleronomic":
+        return constraints.at_rest_in_time
+    if one_sided:
+        return fails(pair[0], "")
+    if pair[0] == "bilateral":
+        return Verdict(Status.HOLDS, "bilateral", "structure")
+    return constraints.integrable
+
+
+def _why(right: str, constraints: ConstraintSystem) -> str:
+    """Say why a word is the right one."""
+    match right:
+        case "holonomic" if constraints.velocities:
+            return "holonomic: the constraint on the velocities is integrable, it is the rate of one on positions"
+        case "holonomic":
+            return "holonomic: equations among the coordinates and the time only"
+        case "nonholonomic" if constraints.inequalities:
+            why = "nonholonomic: an inequality is no equation among the coordinates"
+            return f"{why} (some call it holonomic and unilateral)"
+        case "nonholonomic":
+            return "nonholonomic: the constraint on the velocities is not integrable"
+        case "scleronomic":
+            return "scleronomic: the time does not occur explicitly"
+        case "rheonomic":
+            return "rheonomic: the time occurs explicitly"
+        case "unilateral":
+            return "unilateral: an inequality leaves one side free"
+        case _:
+            return "bilateral: the constraints are equations"

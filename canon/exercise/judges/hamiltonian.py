@@ -1,0 +1,126 @@
+"""Claims about Hamiltonians, Hamilton's equations and constants of the motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.judges.conserved import NOT_OF_THE_STATE, same_everywhere, system_of
+from canon.exercise.judges.lagrangian import lagrangian_of
+from canon.exercise.question.answer import stay_open
+from canon.exercise.question.constraint_manifold import on_manifold, transported
+from canon.exercise.question.continuous_answer import constants_are_continuous
+from canon.exercise.question.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
+from canon.expression.symbols.symbol import acceleration, velocity
+from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
+from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian, legendre
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from canon.exercise.sheet.reading import Reading
+
+__all__ = ["constant_of_motion", "equality", "hamilton_equations", "legendre_hamiltonian"]
+
+
+def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
+    """The velocity Hessian is regular and H(q, ∂L/∂q̇, t) = Σ p q̇ − L."""
+    _, p = reading.phase_space("q", "p")
+    lagrangian = lagrangian_of(reading)
+    domain = reading.domain
+    yield Regular(lagrangian.mass_matrix, "the velocity Hessian", domain)
+    if reading.has("H"):
+        yield from wrong_variables(reading.expression("H"), lagrangian.velocities, "H", "q, p and t")
+        through = dict(zip(p, lagrangian.momenta, strict=True))
+        part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through, "H")
+        yield Same((part,), transported(domain, through), lambda: legendre(lagrangian, p, domain).H)
+    else:
+        yield Determines(lambda: stay_open(["H"]))
+
+
+def hamilton_equations(reading: Reading) -> Iterator[Question]:
+    """q̇ = ∂H/∂p and ṗ = −∂H/∂q as claimed, or solved by the claimed functions of time."""
+    q, p = reading.phase_space("q", "p")
+    system = Hamiltonian(_in_phase_space(reading, "H", q), q, p, reading.time)
+    if reading.has("q_dot"):
+        claimed = (*reading.expressions("q_dot", like="q"), *reading.expressions("p_dot", like="p"))
+        motion = [rate(x) for x in q for rate in (velocity, acceleration)]
+        for z, rate in zip((*q, *p), claimed, strict=True):
+            yield from wrong_variables(rate, motion, f"d{z}/dt", "q, p and t")
+        keys = [f"{key}[{i}]" for key in ("q_dot", "p_dot") for i in range(len(q))]
+        parts = tuple(
+            Part(f"d{z}/dt", rate, right, key=key)
+            for z, rate, right, key in zip((*q, *p), claimed, system.vector_field, keys, strict=True)
+        )
+        yield Same(parts, reading.domain, lambda: system.vector_field)
+    if reading.has("solution"):
+        yield from _solution(reading, system)
+
+
+def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
+    table, names = reading.table("solution"), {z.name: z for z in (*system.q, *system.p)}
+    if set(table) != set(names):
+        reading.fault("solution", f"should say what each of {', '.join(names)} is, and nothing else")
+    motion = {names[name]: value for name, value in table.items()}
+    for z, value in motion.items():
+        if value.has(*motion):
+            reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
+    yield from motion_is_real(motion, reading.domain)
+    domain = transported(reading.domain, motion)
+    rates = zip((*system.q, *system.p), system.vector_field, strict=True)
+    parts = (
+        Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
+    )
+    yield Same(tuple(parts), domain)
+    yield from motion_is_continuous(motion, system.t, domain, [system.H], velocities=False)
+
+
+def constant_of_motion(reading: Reading) -> Iterator[Question]:
+    """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes, where the restrictions do."""
+    I, t = reading.expression("I"), reading.time
+    rates = _rates(reading, I)
+    rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
+    restrictions = reading.equations("restrict") if reading.has("restrict") else ()
+    branches = on_manifold(restrictions, reading.domain)
+    for branch in branches:
+        there = substitute(I, branch.values)
+        yield Same((Part("dI/dt", rate, through=branch.values),), branch.domain)
+        yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
+    trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
+    yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)
+
+
+def equality(reading: Reading) -> Iterator[Question]:
+    """Both sides are equal on the whole domain."""
+    lhs, rhs = reading.expression("lhs"), reading.expression("rhs")
+    pointwise = not any(side.has(sp.Derivative, sp.Subs, sp.DiracDelta) for side in (lhs, rhs))
+    yield Same((Part("lhs", lhs, rhs, key="lhs"),), reading.domain, pointwise=pointwise)
+
+
+def _in_phase_space(reading: Reading, key: str, q: Sequence[Symbol]) -> Expr:
+    """Return an expression that must be a function of q, p and t."""
+    f = reading.expression(key)
+    for x in q:
+        if f.has(velocity(x), acceleration(x)):
+            reading.fault(key, f"should be a function of q, p and t; eliminate {velocity(x)}")
+    return f
+
+
+def _rates(reading: Reading, I: Expr) -> dict[Symbol, Expr]:
+    if reading.has("H"):
+        q, p = reading.phase_space("q", "p")
+        system = Hamiltonian(_in_phase_space(reading, "H", q), q, p, reading.time)
+        _in_phase_space(reading, "I", q)
+        return dict(zip((*q, *p), system.vector_field, strict=True))
+    if reading.has("L"):
+        lagrangian = lagrangian_of(reading)
+        rates: dict[Symbol, Expr] = {x: velocity(x) for x in lagrangian.q}
+        if I.has(*(acceleration(x) for x in lagrangian.q)):
+            reading.fault("I", "should depend on coordinates, velocities and time only")
+        if I.has(*lagrangian.velocities):
+            rates |= dict(zip(lagrangian.velocities, lagrangian.accelerations, strict=True))
+        return rates
+    return dict(zip(reading.symbols("x"), reading.expressions("X", like="x"), strict=True))

@@ -1,0 +1,211 @@
+"""Claims about Lagrange's equations: free, damped, reduced by Routh, equivalent Lagrangians."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.question.affine_systems import solved
+from canon.exercise.question.answer import stay_open
+from canon.exercise.question.constraint_manifold import transported
+from canon.exercise.question.continuous_answer import is_continuous
+from canon.exercise.question.question import (
+    Determines,
+    Part,
+    Question,
+    Regular,
+    Same,
+    SameEquations,
+    more_than_zero,
+    wrong_variables,
+)
+from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.reduction.routh import routhian as routh
+from canon.proof.continuity.smooth import PIECED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.sheet.reading import Reading
+
+__all__ = ["dissipative", "euler_lagrange", "lagrangian_equivalence", "lagrangian_of", "routhian"]
+
+
+def euler_lagrange(reading: Reading) -> Iterator[Question]:
+    """The claimed equations are equivalent to d/dt ∂L/∂q̇ − ∂L/∂q = 0."""
+    lagrangian = lagrangian_of(reading)
+    yield from same_motion(reading, lagrangian)
+
+
+def dissipative(reading: Reading) -> Iterator[Question]:
+    """Equations with d/dt ∂L/∂q̇ − ∂L/∂q + ∂F/∂q̇ = Q, and dE/dt = Σ q̇ (Q − ∂F/∂q̇) − ∂L/∂t."""
+    q, t = reading.symbols("q"), reading.time
+    damping = reading.expression("F", sp.S.Zero)
+    applied = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
+    forces = [Q - damping.diff(velocity(x)) for x, Q in zip(q, applied, strict=True)]
+    lagrangian = lagrangian_of(reading, forces=forces)
+    if reading.has("claim"):
+        yield from same_motion(reading, lagrangian)
+    else:
+        yield Determines(lambda: stay_open([acceleration(x) for x in q]))
+    if reading.has("energy_rate"):
+        claimed = reading.expression("energy_rate")
+        rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
+        part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed), "energy_rate")
+        yield Same((part,), reading.domain, lambda: rate)
+        written = [a for a in map(acceleration, q) if claimed.has(a)]
+        yield Determines(lambda: (f"dE/dt stays open: it is written with {written[0]}",) if written else ())
+
+
+def routhian(reading: Reading) -> Iterator[Question]:
+    """Ignorable coordinates do not occur in L, and R(q, v, ∂L/∂v_c) = ±(L − Σ v_c ∂L/∂v_c)."""
+    q, t = reading.symbols("q"), reading.time
+    ignorable, momenta = reading.subset("cyclic", of="q"), reading.symbols("momenta")
+    if len(momenta) != len(ignorable):
+        reading.fault(
+            "momenta",
+            f"{counted(len(momenta), 'momentum', 'momenta')} for "
+            f"{counted(len(ignorable), 'ignorable coordinate')}",
+        )
+    sign = {"L-pq": 1, "pq-L": -1}.get(reading.word("convention"))
+    if sign is None:
+        reading.fault("convention", "write L-pq or pq-L")
+    lagrangian = lagrangian_of(reading)
+    L, velocities = lagrangian.L, tuple(velocity(c) for c in ignorable)
+    absent = tuple(Part(f"∂L/∂{c} of the ignorable coordinate {c}", L.diff(c)) for c in ignorable)
+    yield Same(absent, reading.domain, said=_not_ignorable)
+    yield Regular(
+        sp.Matrix([[L.diff(a, b) for b in velocities] for a in velocities]),
+        "the Hessian in the ignorable velocities",
+        reading.domain,
+    )
+    through = {p: L.diff(v) for p, v in zip(momenta, velocities, strict=True)}
+    if reading.has("R"):
+        right = sign * (L - sp.Add(*(v * L.diff(v) for v in velocities)))
+        yield from wrong_variables(
+            reading.expression("R"), velocities, "R", "q, the other velocities, the momenta and t"
+        )
+        part = Part("the Routhian", reading.expression("R"), right, through, "R")
+        yield Same(
+            (part,),
+            transported(reading.domain, through),
+            lambda: routhian_in_momenta(lagrangian, velocities, through, sign),
+        )
+    if reading.has("claim"):
+        conserved = tuple(time_derivative(p, q, t) for p in through.values())
+        written = reading.equations("claim")
+        seen = tuple(substitute(equation, through) for equation in written)
+        unknowns = tuple(acceleration(x) for x in q)
+        yield SameEquations(
+            (*seen, *conserved),
+            lagrangian.equations,
+            unknowns,
+            transported(reading.domain, through),
+            lambda: routh(lagrangian, ignorable, momenta, domain=reading.domain).equations,
+            written,
+            through,
+        )
+        yield more_than_zero(written, reading.domain)
+
+
+def _not_ignorable(part: Part) -> str:
+    return f"{part.name.rpartition(' ')[2]} is not ignorable: L depends on it"
+
+
+def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
+    """L₂ − L₁ is a total time derivative, or both have the same equations of motion."""
+    q, t = reading.symbols("q"), reading.time
+    first, second = lagrangian_of(reading, "L1").L, lagrangian_of(reading, "L2").L
+    relation = reading.word("relation")
+    if relation == "equations":
+        if reading.has("F"):
+            reading.fault("F", "stands beside the relation gauge only; leave it out, or write gauge")
+        systems = [Lagrangian(L, q, t).equations for L in (second, first)]
+        yield SameEquations(systems[0], systems[1], tuple(acceleration(x) for x in q), reading.domain)
+        yield from _no_steps(first, second, q, reading)
+    elif relation != "gauge":
+        reading.fault("relation", "write gauge or equations")
+    elif reading.has("F"):
+        F = reading.expression("F")
+        yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
+        yield is_continuous(F, (*q, t), reading.domain, "F")
+    else:
+        yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
+        yield from _no_steps(first, second, q, reading)
+        yield Determines(lambda: stay_open(["F"]))
+
+
+def _no_steps(first: Expr, second: Expr, q: Sequence[Symbol], reading: Reading) -> Iterator[Question]:
+    """Yield whether either Lagrangian at rest has a step that the other has not: it gives an impulse there."""
+    at_rest: dict[Symbol, Expr] = {velocity(x): sp.S.Zero for x in q}
+    rest = [substitute(L, at_rest) for L in (first, second)]
+    for mine, other, name in ((rest[0], rest[1], "L1"), (rest[1], rest[0], "L2")):
+        moves = [part for part in mine.atoms(*PIECED) if part.has(reading.time)]
+        if not moves:  # a step that moves may come from a kink of F
+            yield is_continuous(mine, q, reading.domain, f"{name} at rest", (other,))
+
+
+def routhian_in_momenta(
+    lagrangian: Lagrangian, ignorable: Sequence[Symbol], through: Mapping[Symbol, Expr], sign: int
+) -> Expr | None:
+    """Return ±(L − Σ p q̇) with the ignorable velocities eliminated, where the momenta are affine in them."""
+    equations = [p - value for p, value in through.items()]
+    if any(equation.diff(v).has(*ignorable) for equation in equations for v in ignorable):
+        return None
+    value = lagrangian.L - sp.Add(*(p * v for p, v in zip(through, ignorable, strict=True)))
+    return sp.expand(sp.Integer(sign) * substitute(value, solved(equations, ignorable)), trig=False)
+
+
+def lagrangian_of(reading: Reading, key: str = "L", forces: Sequence[Expr] | None = None) -> Lagrangian:
+    """Return the Lagrangian that a claim gives."""
+    L, q = reading.expression(key), reading.symbols("q")
+    if L.has(*(acceleration(x) for x in q)):
+        reading.fault(key, "a Lagrangian depends on coordinates, velocities and time only")
+    return Lagrangian(L, q, reading.time, forces)
+
+
+def same_motion(reading: Reading, lagrangian: Lagrangian) -> Iterator[Question]:
+    """Yield the questions whether the claimed equations are those of a Lagrangian, and say something."""
+    unknowns = tuple(acceleration(x) for x in lagrangian.q)
+    right = lagrangian.equations
+    claimed = reading.equations("claim")
+    yield SameEquations(claimed, right, unknowns, reading.domain, lambda: right, claimed)
+    yield more_than_zero(claimed, reading.domain)
+
+
+def on_the_motion(lagrangian: Lagrangian, *expressions: Expr) -> dict[Symbol, Expr]:
+    """Return the accelerations on the motion, where any of the expressions holds one."""
+    unknowns = [acceleration(x) for x in lagrangian.q]
+    if not any(expression.has(*unknowns) for expression in expressions):
+        return {}
+    return dict(zip(unknowns, lagrangian.accelerations, strict=True))
+
+
+def _affine_in(f: Expr, velocities: Sequence[Symbol]) -> Expr:
+    """Return the affine function with the values of f where no velocity, or one alone, is 1 and the rest 0."""
+    at_rest = dict.fromkeys(velocities, sp.S.Zero)
+    b = substitute(f, at_rest)
+    return sp.Add(b, *(v * (substitute(f, {**at_rest, v: sp.S.One}) - b) for v in velocities))
+
+
+def _total_derivative_conditions(difference: Expr, q: Sequence[Symbol], t: Symbol) -> Iterator[Part]:
+    """Σ aᵢ q̇ᵢ + b is dF/dt of some F(q, t), locally, exactly where the form Σ aᵢ dqᵢ + b dt is closed."""
+    velocities = [velocity(x) for x in q]
+    if any(part.has(*velocities) for part in difference.atoms(*PIECED)):
+        affine, difference = difference, _affine_in(difference, velocities)
+        yield Part("L2 − L1 is affine in the velocities", affine, difference)
+    slopes = [difference.diff(v) for v in velocities]
+    for i, a in enumerate(slopes):
+        for v in velocities[i:]:
+            yield Part(f"L2 − L1 is affine in {v}", a.diff(v))
+    rest = difference - sp.Add(*(a * v for a, v in zip(slopes, velocities, strict=True)))
+    for (a, x), (b, y) in combinations(zip(slopes, q, strict=True), 2):
+        yield Part(f"the derivatives by {x} and {y} agree", a.diff(y), b.diff(x))
+    for a, x in zip(slopes, q, strict=True):
+        yield Part(f"the derivatives by {x} and {t} agree", a.diff(t), rest.diff(x))

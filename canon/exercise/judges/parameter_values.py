@@ -1,0 +1,248 @@
+"""Claims about parameters: for which of their values a claim of another kind holds, all of them and no other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.question.constraint_manifold import EmptyDomainError
+from canon.exercise.question.parameter_system import Family, covers, families
+from canon.exercise.question.question import (
+    Deadline,
+    Determines,
+    Differ,
+    Part,
+    Question,
+    Regular,
+    Same,
+    Stated,
+    Tells,
+    decide,
+)
+from canon.exercise.sheet.kinds import OF_PARAMETERS
+from canon.exercise.sheet.reading import InvalidClaim, Reading
+from canon.exercise.sheet.sheet import Claim
+from canon.exercise.sheet.sympy_trees import replaced
+from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+__all__ = ["parameters"]
+
+SHARE = 0.4
+"""Part of the budget for the values that are claimed, and for finding all of them."""
+ANSWER_SECONDS = 1.4
+"""Time for the right values where wrong ones were claimed."""
+_OWN = ("of", "find", "values", "in", "complete")
+
+
+def parameters(reading: Reading) -> Iterator[Question]:
+    """The inner claim holds at each of the claimed values, and at no others."""
+    inner, wanted = _inner(reading), _wanted(reading)
+    claimed = [_assigned(reading, i, table, wanted) for i, table in enumerate(reading.claim.keys["values"])]
+    budget = reading.claim.budget
+    found: list[list[Family]] = []
+
+    def all_of_them() -> tuple[str, ...] | None:
+        known = found or _found(reading, inner, wanted, Deadline.after(min(SHARE * budget, ANSWER_SECONDS)))
+        return _told(known[0]) if known else None
+
+    held: list[Verdict] = []
+    for family in claimed:
+        verdict = _holds_with(inner, family, Deadline.after(SHARE * budget / len(claimed)))
+        if verdict.fails:
+            why = verdict.feedback or (f"{verdict.question} comes out wrong" if verdict.question else "")
+            wrong = replace(verdict, feedback=f"{_written(family)} is no solution{': ' if why else ''}{why}")
+            yield Stated(wrong.about(f"the claim with {_written(family)}"), all_of_them)
+            return
+        held.append(verdict)
+    whole = all_hold(held) if held else Verdict(Status.HOLDS, certificate="exact")
+    found += _found(reading, inner, wanted, Deadline.after(SHARE * budget))
+    if not found:
+        open_ = "the values that are claimed are right, as far as was decided; whether there are more was not decided"
+        yield Stated(all_hold([whole, Verdict(Status.UNDECIDED, evidence=(Evidence("open", open_),))]))
+        return
+    missing = [f for f in found[0] if not any(covers(c, f, inner.domain) for c in claimed)]
+    for family in missing:
+        if all(_certainly_beyond(family, c, inner) for c in claimed):
+            why = (
+                f"a solution is missing: {_written(family)}"
+                if claimed
+                else f"there is a solution: {_written(family)}"
+            )
+            yield Stated(Verdict(Status.FAILS, "all values", "exact", feedback=why), all_of_them)
+            return
+    if missing:
+        open_ = f"whether {_written(missing[0])} is among the values that are claimed was not decided"
+        whole = all_hold([whole, Verdict(Status.UNDECIDED, evidence=(Evidence("open", open_),))])
+    certificate = " + ".join(dict.fromkeys([*(v.certificate for v in held), "exact"]))
+    yield Stated(replace(whole, question="all values", certificate=certificate) if whole.holds else whole)
+
+
+def _inner(reading: Reading) -> Reading:
+    """Return the claim whose parameters are asked for."""
+    kind = reading.word("of")
+    if kind not in OF_PARAMETERS:
+        reading.fault("of", f"should be one of {', '.join(OF_PARAMETERS)}")
+    claim = reading.claim
+    keys = {key: value for key, value in claim.keys.items() if key not in _OWN}
+    keys["kind"] = kind
+    return Reading(Claim(claim.id, kind, MappingProxyType(keys), budget=claim.budget, file=claim.file))
+
+
+def _wanted(reading: Reading) -> tuple[Symbol, ...]:
+    names = reading.claim.keys["find"]
+    declared = reading.claim.keys.get("parameters", {})
+    found: list[Symbol] = []
+    for name in names if isinstance(names, list) else [names]:
+        symbol = reading.scope.symbol(name)
+        if symbol is None or name not in declared or name in _state_names(reading):
+            reading.fault("find", f"{name} is no parameter; {reading.scope.near(name)}")
+        found.append(symbol)
+    if not found:
+        reading.fault("find", "at least one parameter is needed")
+    return tuple(found)
+
+
+def _state_names(reading: Reading) -> set[str]:
+    """Return the names that stand for more than a parameter."""
+    names = {reading.time.name}
+    for key, value in reading.claim.keys.items():
+        if key != "find" and reading.is_names(key):
+            names |= set(value if isinstance(value, list) else [value])
+    return names
+
+
+def _given(reading: Reading, wanted: Sequence[Symbol]) -> tuple[Symbol, ...]:
+    state = _state_names(reading)
+    named = (
+        reading.scope.symbol(name) for name in reading.claim.keys.get("parameters", {}) if name not in state
+    )
+    return tuple(s for s in named if s is not None and s not in wanted)
+
+
+def _assigned(reading: Reading, i: int, table: Mapping[str, object], wanted: Sequence[Symbol]) -> Family:
+    names = {s.name: s for s in wanted}
+    family: Family = {}
+    for name, text in table.items():
+        if name not in names:
+            reading.fault(f"values[{i}].{name}", f"is not among find = {', '.join(names)}")
+        family[names[name]] = reading.inside(f"values[{i}].{name}", text)[0]
+    allowed = {*wanted, *_given(reading, wanted)} - set(family)
+    for s, value in family.items():
+        foreign = ", ".join(sorted(str(f) for f in value.free_symbols - allowed))
+        if foreign:
+            reading.fault(f"values[{i}].{s}", f"holds {foreign}; write it in parameters that are left open")
+    return family
+
+
+def _holds_with(inner: Reading, family: Family, deadline: Deadline) -> Verdict:
+    """Judge the inner claim with values put in."""
+    outside = _outside(family)
+    if outside:
+        return Verdict(Status.FAILS, certificate="exact", feedback=outside)
+    try:
+        verdicts: list[Verdict] = []
+        for question in _questions(_with(inner, family)):
+            if isinstance(question, Same) and any(
+                p.residual.has(sp.zoo, sp.nan, sp.oo) for p in question.parts
+            ):
+                return Verdict(Status.FAILS, certificate="structure", feedback="there is no value then")
+            verdicts.append(decide(question, deadline))
+            if verdicts[-1].fails:
+                break
+    except InvalidClaim as invalid:
+        if not invalid.error.key.startswith("domain"):
+            raise
+        return Verdict(Status.FAILS, certificate="exact", feedback="the domain excludes that")
+    except (Undecided, SingularMatrixError, EmptyDomainError) as reason:
+        return Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
+    return all_hold(verdicts) if verdicts else Verdict(Status.UNDECIDED)
+
+
+def _questions(reading: Reading) -> Iterator[Question]:
+    from canon.exercise.judge import questions  # only here: it imports this module
+
+    return (question for question in questions(reading) if not isinstance(question, Determines))
+
+
+def _with(inner: Reading, family: Family) -> Reading:
+    """Return the inner claim with values put in, what is assumed of their names said of them."""
+    said: list[str] = []
+    for s, value in family.items():
+        sign = ">" if s.is_positive else "<" if s.is_negative else "!=" if s.is_nonzero else ""
+        if sign and not value.is_number:
+            said.append(f"{value} {sign} 0")
+    domain = inner.claim.keys.get("domain", [])
+    conditions = [*(domain if isinstance(domain, list) else [domain]), *said]
+    keys = {**inner.claim.keys, **({"domain": conditions} if conditions else {})}
+    return replace(
+        inner, claim=replace(inner.claim, keys=MappingProxyType(keys)), at=MappingProxyType(family)
+    )
+
+
+def _outside(family: Family) -> str:
+    """Say which value is none that the parameter may have."""
+    for s, value in family.items():
+        wrong = (
+            (s.is_positive and value.is_nonpositive)
+            or (s.is_negative and value.is_nonnegative)
+            or (s.is_nonzero and value.is_zero)
+            or (s.is_integer and value.is_integer is False)
+            or value.is_real is False
+        )
+        if wrong:
+            return f"{s} can't be {value} by what is assumed of it"
+    return ""
+
+
+def _found(
+    reading: Reading, inner: Reading, wanted: Sequence[Symbol], deadline: Deadline
+) -> list[list[Family]]:
+    """Return all values for which the inner claim holds, in a list; an empty one where they were not found."""
+    asked: list[Question] = []
+    try:
+        asked += _questions(inner)
+    except (Undecided, SingularMatrixError, EmptyDomainError):
+        return []
+    residuals: list[Expr] = []
+    domain = inner.domain
+    for question in asked:
+        if isinstance(question, Same):
+            residuals += [part.residual for part in question.parts]
+            domain = question.domain
+        elif not isinstance(question, Regular | Tells) and not (
+            isinstance(question, Verdict) and question.holds
+        ):
+            return []
+    try:
+        candidates = families(residuals, wanted, _given(reading, wanted), domain, deadline)
+        verdicts = [_holds_with(inner, family, deadline) for family in candidates]
+    except (Undecided, InvalidClaim):
+        return []
+    if any(verdict.undecided for verdict in verdicts):
+        return []
+    return [[family for family, verdict in zip(candidates, verdicts, strict=True) if verdict.holds]]
+
+
+def _certainly_beyond(family: Family, claimed: Family, inner: Reading) -> bool:
+    """Whether a family certainly has points that are none of another one."""
+    for s, value in claimed.items():
+        part = Part(str(s), replaced(value, family), family.get(s, s))
+        if decide(Differ(part, inner.domain, ""), Deadline.after(1.0)).holds:
+            return True
+    return False
+
+
+def _told(found: Sequence[Family]) -> tuple[str, ...]:
+    return tuple(_written(family) for family in found) or ("no values",)
+
+
+def _written(family: Family) -> str:
+    return ", ".join(f"{s} = {value}" for s, value in family.items()) or "any values"

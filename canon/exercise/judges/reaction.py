@@ -1,0 +1,284 @@
+"""Claims about reactions along a motion, and where a one-sided contact is lost.
+
+With d/dt ∂L/∂q̇ − ∂L/∂q = Q + Σ λₐ ∂fₐ/∂q (∂gₐ/∂q̇ for constraints on velocities). ``integrals`` are first integrals
+with their values, such as the energy of a start from rest: the motions meant are those on which they hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.judges.constrained import is_one_of, jets_of, with_jets
+from canon.exercise.judges.energy_and_force import shown_short
+from canon.exercise.question.affine_systems import solved
+from canon.exercise.question.answer import stay_open
+from canon.exercise.question.constraint_manifold import (
+    Branch,
+    EmptyDomainError,
+    check_not_empty,
+    check_whole,
+    inhabited,
+    on_manifold,
+)
+from canon.exercise.question.implicit_point import refuted_at_a_point
+from canon.exercise.question.question import (
+    TELLING,
+    Deadline,
+    Determines,
+    Part,
+    Question,
+    Same,
+    Stated,
+    decide,
+    fails,
+)
+from canon.exercise.question.solve_for_symbol import named
+from canon.exercise.sheet.sympy_trees import replaced, symbols_of
+from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.analytic import proved_sign
+from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
+from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.tower.polynomial import polynomial_factors
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.sheet.reading import Reading
+
+__all__ = ["leaving_condition", "reaction"]
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """One branch of the constraint manifold, accelerations and multipliers on it, and the directions of reactions.
+
+    ``jets`` are the symbols that stand for arbitrary functions and their derivatives.
+    """
+
+    branch: Branch
+    solution: Mapping[Symbol, Expr]
+    directions: sp.Matrix
+    jets: Mapping[Expr, Symbol]
+
+    def seen(self, f: Expr) -> Expr:
+        """Return an expression on the motion."""
+        return substitute(replaced(f, self.jets), {**self.branch.values, **self.solution})
+
+    def part(self, name: str, claimed: Expr, right: Expr, key: str) -> Part:
+        """Return a claimed value beside the right one; what the claim may hold of the motion is put in."""
+        value = replaced(claimed, self.jets)
+        known = {s: f for s, f in self.solution.items() if value.has(s)}
+        written = {symbol: function for function, symbol in self.jets.items()}
+        return Part(name, value, right, {**self.branch.values, **known}, key, written)
+
+
+def reaction(reading: Reading) -> Iterator[Question]:
+    """Multipliers or generalized forces of constraint are what is claimed, on every motion that is meant."""
+    q, multipliers = reading.symbols("q"), reading.symbols("multipliers")
+    constraints = reading.equations("constraints")
+    if len(multipliers) != len(constraints):
+        reading.fault(
+            "multipliers",
+            f"{counted(len(multipliers), 'multiplier')} for {counted(len(constraints), 'constraint')}",
+        )
+    if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
+        check_not_empty(constraints, q, reading.time, reading.domain)
+        yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
+        return
+    values = reading.table("values") if reading.has("values") else {}
+    claimed = reading.expressions("force", like="q") if reading.has("force") else ()
+    for motion in _motions(reading, constraints, multipliers, (*values.values(), *claimed)):
+        parts: list[Part] = []
+        if values:
+            names = {s.name: s for s in multipliers}
+            for name, value in values.items():
+                if name not in names:
+                    reading.fault(f"values.{name}", "is not among the multipliers")
+                if value.has(*multipliers):
+                    reading.fault(f"values.{name}", "should be in coordinates, velocities and time only")
+                parts.append(motion.part(name, value, motion.solution[names[name]], f"values.{name}"))
+        if claimed:
+            forces = motion.directions.T * sp.Matrix(multipliers)
+            for i, (x, value) in enumerate(zip(q, claimed, strict=True)):
+                name = f"the force of constraint on {x}"
+                parts.append(motion.part(name, value, motion.seen(forces[i]), f"force[{i}]"))
+        yield Same(tuple(parts), motion.branch.domain, lambda parts=parts: _answer(parts))
+    if not claimed:
+        yield Determines(lambda: stay_open([s for s in multipliers if s.name not in values]))
+
+
+def leaving_condition(reading: Reading) -> Iterator[Question]:
+    """The reaction of the contact f ≥ 0 vanishes exactly where the claimed equation holds."""
+    contact = reading.expression("contact")
+    if contact.has(*(velocity(x) for x in reading.symbols("q"))):
+        reading.fault("contact", "a contact f ≥ 0 depends on coordinates and time only")
+    others = reading.equations("constraints") if reading.has("constraints") else ()
+    multipliers = tuple(sp.Dummy(f"lam{i}", real=True) for i in range(1 + len(others)))
+    (leaves,) = reading.equations("leaves")
+    deadline = Deadline.after(0.8 * reading.claim.budget)
+    for motion in _motions(reading, (contact, *others), multipliers, (leaves,)):
+        force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
+        claimed = motion.seen(leaves)
+        if claimed == 0 or vanishes_off_kinks(claimed, motion.branch.domain, budget=1.0).holds:
+            yield fails(TELLING, "this says nothing about the motion: it holds all along the contact")
+            return
+        if claimed.is_nonzero or proved_sign(claimed, motion.branch.domain) in ("+", "-"):
+            reading.fault("leaves", "holds nowhere along the contact")
+        verdict = _same_zeros(force, claimed, motion.branch, reading.symbols("q"), deadline)
+        yield Stated(verdict, lambda force=force: f"the reaction {shown_short(sp.factor_terms(force))} = 0")
+
+
+def _force_is_the_rest(reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]) -> bool:
+    """Whether the claim only says that Σ λ a is d/dt ∂L/∂q̇ − ∂L/∂q − Q, which needs no solution, for any L."""
+    directions, system, _ = _system(reading, constraints, multipliers)
+    forces = directions.T * sp.Matrix(multipliers)
+    claimed = reading.expressions("force", like="q")
+    return all(is_one_of(f - forces[i], system) for i, f in enumerate(claimed))
+
+
+def _system(
+    reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]
+) -> tuple[sp.Matrix, list[Expr], list[Expr]]:
+    """Return the directions of the reactions, the equations for q̈ and λ, and what vanishes in allowed velocities."""
+    q, t = reading.symbols("q"), reading.time
+    v = tuple(velocity(x) for x in q)
+    if any(g.diff(u).has(*v) for g in constraints for u in v):
+        reading.fault("constraints", "every constraint should be affine in the velocities")
+    held = [f if f.has(*v) else time_derivative(f, q, t) for f in constraints]
+    directions = sp.Matrix([[g.diff(u) for u in v] for g in held])
+    forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
+    lagrangian = Lagrangian(reading.expression("L"), q, t, forces)
+    reactions = directions.T * sp.Matrix(multipliers)
+    system = [e - r for e, r in zip(lagrangian.equations, reactions, strict=True)]
+    return directions, system + [time_derivative(g, q, t) for g in held], held
+
+
+def _motions(
+    reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol], claims: Sequence[Expr]
+) -> Iterator[_Motion]:
+    q, t = reading.symbols("q"), reading.time
+    v, a = tuple(velocity(x) for x in q), tuple(acceleration(x) for x in q)
+    directions, system, held = _system(reading, constraints, multipliers)
+    positions = [f for f in constraints if not f.has(*v)]
+    integrals = reading.equations("integrals") if reading.has("integrals") else ()
+    rates = [time_derivative(f, q, t) for f in integrals]
+    held_at = (*positions, *held)
+    jets = jets_of((*system, *held_at, *integrals, *rates, *claims), t, reading.domain)
+    held_at, integrals = (tuple(replaced(f, jets) for f in some) for some in (held_at, integrals))
+    directions = directions.applyfunc(lambda f: replaced(f, jets))
+    domain = with_jets(reading.domain, jets)
+    check_whole([*(replaced(f, jets) for f in constraints), *integrals], v, domain)
+    for branch in inhabited(_with_integrals(on_manifold(held_at, domain, (t,), v), integrals, v, t)):
+        here = [substitute(replaced(e, jets), branch.values) for e in system]
+        motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions, jets)
+        _check_constant(reading, rates, motion)
+        yield motion
+
+
+def _with_integrals(
+    branches: Sequence[Branch], integrals: Sequence[Expr], v: Sequence[Symbol], t: Symbol
+) -> Iterator[Branch]:
+    """Restrict the manifold to given values of first integrals, solved for velocities where that can be done."""
+    for branch in branches:
+        here = [substitute(f, branch.values) for f in integrals]
+        others = [s for s in symbols_of(*here) if s not in v]
+        try:
+            parts = on_manifold(here, branch.domain, (t, *others), v)
+        except Undecided:
+            parts = on_manifold(here, branch.domain, (t,), v)
+        for part in parts:
+            values = {s: substitute(f, part.values) for s, f in branch.values.items()}
+            yield Branch({**values, **part.values}, part.domain)
+
+
+def _check_constant(reading: Reading, rates: Sequence[Expr], motion: _Motion) -> None:
+    """Refuse "integrals" that a motion does not keep: no whole motion would be meant."""
+    for i, rate in enumerate(rates):
+        part = Part("rate", motion.seen(rate))
+        kept = decide(Same((part,), motion.branch.domain), Deadline.after(reading.claim.budget / 4))
+        if kept.fails:
+            reading.fault(
+                f"integrals[{i}]", "is not constant along the motion, so no whole motion satisfies it"
+            )
+        if kept.undecided:
+            raise Undecided(
+                f"whether integrals[{i}] is constant along the motion was not decided; "
+                "give a larger budget, or narrow the domain"
+            )
+
+
+def _answer(parts: Sequence[Part]) -> tuple[str, ...]:
+    return tuple(f"{part.name} = {shown_short(sp.factor_terms(part.right))}" for part in parts)
+
+
+def _same_zeros(
+    force: Expr, claimed: Expr, branch: Branch, q: Sequence[Symbol], deadline: Deadline
+) -> Verdict:
+    """Tell whether two expressions vanish at the same points of a domain."""
+    name = "the reaction of the contact"
+    ratio = sp.fraction(sp.cancel(sp.together(force / claimed)))
+    if all(proved_sign(side, branch.domain) in ("+", "-") for side in ratio):
+        return Verdict(Status.HOLDS, name, "exact")
+    both = [
+        _follows(claimed, force, "there the reaction does not vanish", branch, q, deadline),
+        _follows(force, claimed, "the reaction vanishes elsewhere too", branch, q, deadline),
+    ]
+    return all_hold(both, name)
+
+
+def _follows(
+    given: Expr, wanted: Expr, feedback: str, branch: Branch, q: Sequence[Symbol], deadline: Deadline
+) -> Verdict:
+    """Tell whether one expression vanishes wherever another does."""
+    place = ""
+    try:
+        verdicts: list[Verdict] = []
+        for b in on_manifold([given], branch.domain):
+            verdicts.append(_vanishes_there(wanted, b, deadline))
+            if verdicts[-1].fails:
+                place = _place(b, q)
+                break
+        verdict = all_hold(verdicts)
+    except EmptyDomainError:  # it vanishes nowhere
+        return Verdict(Status.HOLDS, certificate="structure")
+    except Undecided as reason:
+        verdict = Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
+        for x in symbols_of(given):
+            if x in q:
+                found = refuted_at_a_point(
+                    [given], [sp.Dummy(x.name, real=True)], [x], {"the reaction": wanted}, branch.domain
+                )
+                verdict = found if found is not None else verdict
+    if not verdict.fails:
+        return verdict
+    return Verdict(
+        Status.FAILS,
+        verdict.question,
+        verdict.certificate,
+        verdict.residual,
+        verdict.counterexample,
+        feedback=feedback + place,
+    )
+
+
+def _vanishes_there(wanted: Expr, branch: Branch, deadline: Deadline) -> Verdict:
+    """Tell whether an expression vanishes on a branch; one factor that does is enough."""
+    factors = polynomial_factors(wanted)
+    for factor, _ in factors if len(factors) > 1 else ():
+        found = vanishes_off_kinks(substitute(factor, branch.values), branch.domain, budget=deadline.left / 4)
+        if found.holds:
+            return found
+    return decide(Same((Part("the reaction", wanted, through=branch.values),), branch.domain), deadline)
+
+
+def _place(branch: Branch, q: Sequence[Symbol]) -> str:
+    """Say where coordinates are at a place that is given by parameters."""
+    known = {x: named(f) for x, f in branch.values.items() if x in q and not f.has(*q)}
+    return f", as at {', '.join(f'{x} = {shown_short(f)}' for x, f in known.items())}" if known else ""

@@ -1,0 +1,277 @@
+"""Claims to first order in something small: expansions, and equations linearised about an equilibrium.
+
+"To order n in λ" means that the two sides differ by o(λⁿ) at λ → 0, everything else fixed; where there are several
+small quantities, all of them are of one order. The two sides must be quotients of functions analytic at λ = 0.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations_with_replacement
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.judges.energy_and_force import shown_short
+from canon.exercise.question.constraint_manifold import transported
+from canon.exercise.question.question import (
+    Deadline,
+    Determines,
+    Part,
+    Question,
+    Same,
+    SameEquations,
+    Stated,
+    decide,
+    more_than_zero,
+)
+from canon.exercise.question.series_expansion import check_analytic, coefficient, without_kinks
+from canon.exercise.sheet.sympy_trees import symbols_of
+from canon.expression.symbols.symbol import acceleration, velocity
+from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.substitution import exchanged, substitute
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
+from canon.proof.kinks import vanishes_off_kinks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from sympy.logic.boolalg import Boolean
+
+    from canon.exercise.sheet.reading import Reading
+
+__all__ = ["first_order", "linearisation"]
+
+MOST_ORDERS = 8
+_ORDINALS = ("zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+
+
+def first_order(reading: Reading) -> Iterator[Question]:
+    """Both sides have the same expansion in the small quantities, up to the order that is claimed."""
+    exact, claimed = reading.expressions("exact"), reading.expressions("claim")
+    if not exact:
+        reading.fault("exact", "at least one expression is needed")
+    if len(exact) != len(claimed):
+        reading.fault("claim", f"{counted(len(claimed), 'expression')} for the {len(exact)} under exact")
+    order = int(reading.claim.keys.get("order", 1))
+    if order != reading.claim.keys.get("order", 1) or not -MOST_ORDERS <= order <= MOST_ORDERS:
+        reading.fault("order", f"should be a whole number from -{MOST_ORDERS} to {MOST_ORDERS}")
+    small = _small(reading)
+    names, deadline = ", ".join(map(str, small)), Deadline.after(0.9 * reading.claim.budget)
+    said = f"right to {_ordinal(order)} order in {names}"
+    verdicts: list[Verdict] = []
+    for i, (f, g) in enumerate(zip(exact, claimed, strict=True)):
+        name = f"claim {i + 1}, to {_ordinal(order)} order in {names}"
+        verdict, at = _same_to_order(f, g, small, order, reading.domain, deadline)
+        if verdict.fails:
+            yield Stated(
+                Verdict(
+                    Status.FAILS,
+                    name,
+                    verdict.certificate,
+                    verdict.residual,
+                    verdict.counterexample,
+                    feedback=_where_wrong(at, verdict.residual, names),
+                ),
+                lambda f=f: _expanded(f, small, order, reading.domain),
+            )
+            return
+        verdicts.append(verdict)
+    whole = all_hold(verdicts, said)
+    if whole.holds:
+        whole = Verdict(
+            Status.HOLDS, said, f"exact to {_ordinal(order)} order in {names}", assumed=whole.assumed
+        )
+    yield Stated(whole)
+    exactly = tuple(
+        f"claim {i} is no sum of powers of {names}: expand it"
+        for i, g in enumerate(claimed, 1)
+        if not _is_expanded(g, small)
+    )
+    yield Determines(lambda: exactly)
+
+
+def _is_expanded(f: Expr, small: Sequence[Symbol]) -> bool:
+    """Whether an expression is a polynomial in what is small, divided perhaps by powers of it."""
+    above, below = sp.fraction(sp.together(f))
+    factors = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(below)]
+    return bool(above.is_polynomial(*small)) and all(
+        base in small or not base.has(*small) for base in factors
+    )
+
+
+def linearisation(reading: Reading) -> Iterator[Question]:
+    """The place is an equilibrium, and the claimed equations are Lagrange's to first order in q, q̇, q̈ about it."""
+    q = reading.symbols("q")
+    table, names = reading.table("equilibrium"), {x.name: x for x in q}
+    if set(table) != set(names):
+        reading.fault("equilibrium", f"should say where each of {', '.join(names)} rests, and nothing else")
+    place = {names[name]: value for name, value in table.items()}
+    if any(value.has(*q, reading.time) for value in place.values()):
+        reading.fault("equilibrium", "should be given by parameters only")
+    forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
+    equations = Lagrangian(reading.expression("L"), q, reading.time, forces).equations
+    moving = tuple(r(x) for x in q for r in (velocity, acceleration))
+    given = Domain(tuple(c for c in reading.domain.conditions if not c.has(*moving)), reading.domain.box)
+    domain = transported(given, place)  # the place satisfies what is assumed of the coordinates
+    _check_real(place, domain)
+    rates = [r(x) for x in q for r in (velocity, acceleration)]
+    still = {**place, **dict.fromkeys(rates, sp.S.Zero)}
+    parts = tuple(
+        Part(f"the force on {x} at the equilibrium", substitute(e, still))
+        for x, e in zip(q, equations, strict=True)
+    )
+    at_rest = decide(Same(parts, domain), Deadline.after(reading.claim.budget / 2))
+    if at_rest.fails:
+        why = "this is no equilibrium: there the equations of motion are not satisfied at rest"
+        yield Verdict(
+            Status.FAILS, at_rest.question, at_rest.certificate, at_rest.residual, at_rest.counterexample,
+            feedback=why,
+        )  # fmt: skip
+        return
+    yield at_rest
+    linear = tuple(_linear(e, q, rates, place, domain) for e in equations)
+    written = reading.equations("claim")
+    unknowns = tuple(acceleration(x) for x in q)
+    yield SameEquations(written, linear, unknowns, domain, lambda: tuple(map(shown_short, linear)), written)
+    bends = tuple(
+        Part(f"equation {i} beyond first order", e.diff(a, b))
+        for i, e in enumerate(written, 1)
+        for a, b in combinations_with_replacement((*q, *rates), 2)
+    )
+    yield Same(bends, domain, None, lambda part: f"{part.name}: a claimed equation is not linear")
+    yield more_than_zero(written, domain)
+
+
+def _check_real(place: Mapping[Symbol, Expr], domain: Domain) -> None:
+    """Refuse a place such as arccos 2, which is an equilibrium of nothing that is real."""
+    values = [value for value in place.values() if not value.is_real]
+    points = list(domain.points(symbols_of(*values), 12)) if values else []
+    if values and all(any(abs(sp.im(sp.N(exchanged(f, p), 30))) > 1e-9 for f in values) for p in points):
+        raise Undecided(
+            "no values of the parameters were found for which the place is real; state them in the domain"
+        )
+
+
+def _linear(
+    equation: Expr, q: Sequence[Symbol], rates: Sequence[Symbol], place: Mapping[Symbol, Expr], domain: Domain
+) -> Expr:
+    """Return the terms of first order in the deviations from a place."""
+    still = {**place, **dict.fromkeys(rates, sp.S.Zero)}
+    equation = without_kinks(equation, still, domain)
+    check_analytic(equation, still, domain)
+    terms = [substitute(equation.diff(s), still) * s for s in (*q, *rates)]
+    if any(term.has(sp.nan, sp.zoo, sp.oo, -sp.oo) for term in terms):
+        raise Undecided(
+            "the equations have no derivative at the equilibrium, so they are not linearised there"
+        )
+    return sp.Add(*terms)
+
+
+def _small(reading: Reading) -> list[Symbol]:
+    names = reading.claim.keys["small"]
+    found: list[Symbol] = []
+    for name in names if isinstance(names, list) else [names]:
+        symbol = reading.scope.symbol(name)
+        if symbol is None or symbol == reading.time:
+            reading.fault("small", f"{name} is not declared; {reading.scope.near(name)}")
+        found.append(symbol)
+    return found
+
+
+def _same_to_order(
+    f: Expr, g: Expr, small: Sequence[Symbol], order: int, domain: Domain, deadline: Deadline
+) -> tuple[Verdict, int]:
+    """Tell whether f − g = o(εⁿ), and at which order it fails first."""
+    epsilon = sp.Dummy("epsilon", real=True)
+    domain = _domain_near(small, domain)
+    above, below = _quotient(f - g, small, epsilon, domain)
+    start, lowest = _order_of(below, epsilon, domain, deadline)
+    verdicts: list[Verdict] = []
+    for k in range(max(0, order + start + 1)):
+        found = coefficient(above, epsilon, k)
+        verdict = vanishes_off_kinks(found, domain, budget=deadline.left)
+        if verdict.fails:
+            shown = shown_short(found / lowest * _power_of(small, k - start))
+            return Verdict(
+                Status.FAILS, "", verdict.certificate, shown, verdict.counterexample, verdict.assumed
+            ), k - start
+        verdicts.append(verdict)
+    return all_hold(verdicts), order
+
+
+def _domain_near(small: Sequence[Symbol], domain: Domain) -> Domain:
+    """Return the domain of the others where what is small goes to zero: a > λ leaves a ≥ 0."""
+    conditions: list[Boolean] = []
+    for c in domain.conditions:
+        if not c.has(*small):
+            conditions.append(c)
+        elif isinstance(c, sp.Gt | sp.Lt | sp.Ge | sp.Le):
+            gap = substitute(cast("Expr", c.gts) - cast("Expr", c.lts), dict.fromkeys(small, sp.S.Zero))
+            conditions.append(sp.Ge(gap, 0))
+    if sp.false in conditions:
+        raise Undecided(
+            f"the domain keeps {', '.join(map(str, small))} away from zero, "
+            "where the claim is made; leave that condition out"
+        )
+    return Domain(tuple(c for c in conditions if c is not sp.true), domain.box)
+
+
+def _power_of(small: Sequence[Symbol], k: int) -> Expr:
+    """Return λᵏ for one small quantity; for several the coefficient shows the powers itself."""
+    return small[0] ** k if len(small) == 1 else sp.S.One
+
+
+def _quotient(f: Expr, small: Sequence[Symbol], epsilon: Symbol, domain: Domain) -> tuple[Expr, Expr]:
+    """Return numerator and denominator, both analytic at ε = 0, of f with every small quantity s as ε s."""
+    size = {s: epsilon * (s if len(small) > 1 else 1) for s in small}
+    scaled = without_kinks(substitute(f, size), {epsilon: sp.S.Zero}, domain)
+    above, below = sp.fraction(sp.together(scaled)) if _singular(scaled, epsilon) else (scaled, sp.S.One)
+    for side in (above, below):
+        check_analytic(side, {epsilon: sp.S.Zero}, domain)
+    return above, below
+
+
+def _singular(f: Expr, epsilon: Symbol) -> bool:
+    return any(
+        substitute(part.base, {epsilon: sp.S.Zero}) == 0
+        for part in f.atoms(sp.Pow)
+        if part.exp.is_negative and part.has(epsilon)
+    ) or bool(f.has(sp.tan, sp.cot, sp.sec, sp.csc))
+
+
+def _order_of(f: Expr, epsilon: Symbol, domain: Domain, deadline: Deadline) -> tuple[int, Expr]:
+    """Return the lowest order of f at ε = 0, and its coefficient."""
+    for k in range(MOST_ORDERS + 1):
+        found = coefficient(f, epsilon, k)
+        verdict = vanishes_off_kinks(found, domain, budget=deadline.left)
+        if verdict.fails:
+            return k, found
+        if verdict.undecided:
+            break
+    raise Undecided(
+        "the order of a denominator in the small quantity was not decided; say the signs of the parameters"
+    )
+
+
+def _expanded(f: Expr, small: Sequence[Symbol], order: int, domain: Domain) -> Expr | None:
+    """Return the expansion up to an order, where f itself is analytic."""
+    epsilon = sp.Dummy("epsilon", real=True)
+    above, below = _quotient(f, small, epsilon, domain)
+    if below != 1:
+        start, _ = _order_of(below, epsilon, domain, Deadline.after(1.0))
+        above = sp.series(above / below, epsilon, 0, order + 1).removeO() if start < MOST_ORDERS else above
+        return shown_short(substitute(above, {epsilon: small[0] if len(small) == 1 else sp.S.One}))
+    terms = (coefficient(above, epsilon, k) * _power_of(small, k) for k in range(order + 1))
+    return sp.Add(*map(shown_short, terms))
+
+
+def _where_wrong(at: int, residual: object, names: str) -> str:
+    known = f"right to {_ordinal(at - 1)} order in {names} only; " if at - 1 >= 0 else ""
+    return f"{known}the terms of {_ordinal(at)} order are wrong: exact less claimed is {residual} there"
+
+
+def _ordinal(order: int) -> str:
+    return _ORDINALS[order] if 0 <= order < len(_ORDINALS) else f"({order})th"

@@ -1,0 +1,150 @@
+"""Claims judged in a process of its own, which is killed when a claim's budget is spent.
+
+Parent and worker exchange JSON. The worker answers each claim with its verdict first and with the feedback
+afterwards, so that a feedback that takes too long costs no verdict. A worker has at most 2 GB of memory (where the
+system can limit it) and no way to pass anything but text back. It is killed together with the process in which it
+lets proofs run, so that nothing goes on computing what nobody waits for.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from dataclasses import replace
+from decimal import Decimal
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from canon.exercise.report.report import Judgement, invalid
+from canon.exercise.sheet.sheet import Claim
+from canon.process import Child, Ended, Late, serve
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import TracebackType
+
+__all__ = ["Worker"]
+
+MEMORY = 2 * 1024**3
+START = 60.0
+"""Seconds that a worker may take to start, on a slow or busy machine."""
+GRACE = 0.35
+"""Seconds beyond its budget that a judgement may take to come to its own end before it is killed."""
+FEEDBACK = 1.8
+"""Seconds after the verdict for which its feedback is waited for."""
+
+
+class Worker:
+    """A process that judges claims one after the other; a context manager.
+
+    Examples
+    --------
+    >>> with Worker() as worker:
+    ...     worker.judge(Claim("a", "equality-only", {"lhs": "1/3 + 1/6", "rhs": "0.5"})).status
+    'holds'
+    """
+
+    def __init__(self) -> None:
+        self._child: Child | None = None
+
+    def __enter__(self) -> Worker:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def judge(self, claim: Claim) -> Judgement:
+        """Judge one claim within its budget; never raises for what stands in the claim.
+
+        ``seconds`` of the judgement is how long its verdict was waited for, without the start of a process.
+        """
+        if claim.errors:
+            return invalid(claim, "\n".join(error.brief for error in claim.errors))
+        try:
+            child = self._running()
+        except (Late, Ended):
+            self.stop()
+            return _open(claim, "no process could be started to judge it", 0.0)
+        start = time.monotonic()
+        child.send(lambda: _encoded(claim), claim.budget)
+        return self._answer(child, claim, start)
+
+    def _answer(self, child: Child, claim: Claim, start: float) -> Judgement:
+        """Return the last that is said of a claim before it must have been said."""
+        deadline = start + claim.budget + GRACE
+        verdict: Judgement | None = None
+        try:
+            while True:
+                answer = json.loads(child.receive(deadline))
+                seconds = verdict.seconds if verdict else time.monotonic() - start
+                verdict = replace(Judgement.from_dict(answer), seconds=seconds)
+                if answer["last"]:
+                    return verdict
+                deadline = min(deadline, time.monotonic() + FEEDBACK)
+        except Late:
+            why = f"its budget of {claim.budget:g} s was spent"
+        except Ended:
+            why = "the process that judged it broke off (memory, or a fault)"
+        self.stop()
+        return verdict or _open(claim, why, time.monotonic() - start)
+
+    def _running(self) -> Child:
+        """Return the process once it is ready, a new one unless one is running."""
+        if self._child is None or not self._child.usable:
+            self.stop()
+            self._child = Child("canon.exercise.judging_process", leads=True)
+            self._child.receive(time.monotonic() + START)
+        return self._child
+
+    def stop(self) -> None:
+        """Kill the process, whatever it is doing; the next claim starts another one."""
+        child, self._child = self._child, None
+        if child is not None:
+            child.kill()
+
+
+def _open(claim: Claim, why: str, seconds: float) -> Judgement:
+    title = str(claim.keys.get("title", ""))
+    return Judgement(claim.id, claim.kind, "undecided", seconds, known=why, title=title, expect=claim.expect)
+
+
+def _encoded(claim: Claim) -> bytes:
+    said = {
+        "id": claim.id,
+        "kind": claim.kind,
+        "keys": dict(claim.keys),
+        "expect": claim.expect,
+        "budget": claim.budget,
+    }
+    return json.dumps(said, default=_plain).encode()
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Decimal):
+        return {"decimal": str(value)}
+    return str(value)
+
+
+def _decoded(message: bytes) -> Claim:
+    said: dict[str, Any] = json.loads(message, object_hook=_restored)
+    said["keys"] = MappingProxyType(said["keys"])
+    return Claim(**said)
+
+
+def _restored(found: dict[str, Any]) -> Any:
+    return Decimal(found["decimal"]) if set(found) == {"decimal"} else found
+
+
+def main() -> None:
+    """Judge what comes in until the parent closes the pipe."""
+    from canon.exercise.explained_judgement import judgements
+
+    def answers(message: bytes) -> Iterator[bytes]:
+        for judgement, last in judgements(_decoded(message)):
+            yield json.dumps({**judgement.to_dict(), "last": last}).encode()
+
+    sys.set_int_max_str_digits(0)  # what follows from long numbers is longer; here its time is limited anyway
+    serve(answers, MEMORY)

@@ -1,0 +1,260 @@
+"""Constraints f(q, t) = 0, g(q, q̇, t) = 0 and h ≥ 0: integrable or not, with the time in them or not, how many."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.exercise.question.constraint_manifold import (
+    Branch,
+    EmptyDomainError,
+    check_not_empty,
+    inhabited,
+    on_manifold,
+)
+from canon.exercise.question.question import Deadline, Part, Same, decide
+from canon.expression.symbols.symbol import time_derivative, velocity
+from canon.mechanics.algebra.linear import eliminate
+from canon.mechanics.algebra.substitution import exchanged, substitute
+from canon.mechanics.lagrange.frobenius import Pfaffian, curl
+from canon.proof.continuity.smooth import PIECED, without_pieces
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+__all__ = ["ConstraintSystem"]
+
+
+@dataclass(frozen=True)
+class ConstraintSystem:
+    """Constraints on coordinates and velocities, and the time for questions about them.
+
+    Parameters
+    ----------
+    q, t
+        Coordinates and time.
+    positions, velocities, inequalities
+        f(q, t) = 0, g(q, q̇, t) = 0 and h = 0 at the edge of an inequality.
+    domain
+        Where they are meant.
+    deadline
+        When the questions should be answered.
+
+    Examples
+    --------
+    >>> from canon import Domain, coordinates
+    >>> x, y, theta = q = coordinates("x y theta")
+    >>> blade = x.dot * sp.sin(theta) - y.dot * sp.cos(theta)
+    >>> t = sp.Symbol("t", real=True)
+    >>> system = ConstraintSystem(q, t, (), (blade,), (), Domain(), Deadline.after(10))
+    >>> system.integrable.status.name, system.freedom("velocities"), system.freedom("positions")
+    ('FAILS', 2, 3)
+    """
+
+    q: tuple[Symbol, ...]
+    t: Symbol
+    positions: tuple[Expr, ...]
+    velocities: tuple[Expr, ...]
+    inequalities: tuple[Expr, ...]
+    domain: Domain
+    deadline: Deadline
+
+    @property
+    def rates(self) -> tuple[Expr, ...]:
+        """What vanishes in every allowed velocity: ḟ and g."""
+        return (*(time_derivative(f, self.q, self.t) for f in self.positions), *self.velocities)
+
+    @cached_property
+    def branches(self) -> list[Branch]:
+        """The positions and velocities that are allowed."""
+        v = tuple(velocity(x) for x in self.q)
+        return inhabited(on_manifold((*self.positions, *self.rates), self.domain, keep=(self.t,), prefer=v))
+
+    @cached_property
+    def forms(self) -> Pfaffian:
+        """The constraints as forms in dq and dt."""
+        v = {velocity(x): sp.S.Zero for x in self.q}
+        rows = tuple((*(g.diff(u) for u in v), exchanged(g, v)) for g in self.rates)
+        return Pfaffian(rows, (*self.q, self.t), self.domain)
+
+    @cached_property
+    def affine(self) -> Verdict:
+        """Whether every constraint is affine in the velocities."""
+        v = [velocity(x) for x in self.q]
+        seconds = [g.diff(a, b) for g in self.velocities for a in v for b in v]
+        return self.all_vanish("affine in the velocities", seconds)
+
+    @cached_property
+    def integrable(self) -> Verdict:
+        """Whether the constraints together restrict positions only: dω(X, Y) = 0 on allowed displacements."""
+        if not self.velocities:
+            check_not_empty(self.positions, self.q, self.t, self.domain)
+            return Verdict(Status.HOLDS, "the constraints are integrable", "structure")
+        if not self.affine.holds:
+            return self._curved
+        self.check_consistent()
+        branches = self.branches
+        verdicts = (
+            decide(
+                Same(tuple(Part("dω on allowed displacements", c) for c in self._curvatures(b)), b.domain),
+                self.deadline,
+            )
+            for b in branches
+        )
+        return all_hold(verdicts, "the constraints are integrable")
+
+    def _curvatures(self, branch: Branch) -> Iterator[Expr]:
+        """Yield dω(X, Y) where the constraints hold, for a basis of the displacements that are allowed there.
+
+        The basis belongs to the forms on the branch: off it another pivot may divide by what vanishes there.
+        """
+        forms, z = self.forms.forms, self.forms.z
+        here = sp.Matrix([[substitute(a, branch.values) for a in row] for row in forms])
+        allowed = eliminate(here, domain=branch.domain).null_directions
+        yield sp.S.Zero  # where nothing moves, nothing is curved
+        for X, Y in combinations(allowed, 2):
+            for form in forms:
+                yield substitute(curl(form, z, X, Y), branch.values)
+
+    def check_consistent(self) -> None:
+        """Refuse constraints such as ẋ = 0, ẋ = z, that contradict each other off positions they do not name."""
+        whole = self.forms.forms
+        if self.rank(whole) != self.rank([row[:-1] for row in whole]):
+            raise Undecided(
+                "the constraints contradict each other, or restrict positions by what they say together; "
+                "write that as a constraint too"
+            )
+
+    @property
+    def _curved(self) -> Verdict:
+        """A set of velocities that is not flat belongs to no equation f(q, t) = 0, whose rate is affine."""
+        if len(self.velocities) > 1 or self.positions:
+            raise Undecided(
+                "constraints that are not affine in the velocities are decided only one at a time; "
+                "make a claim of each"
+            )
+        [g] = list(self.velocities)
+        v = [velocity(x) for x in self.q]
+        bends = tuple(Part("the curvature of the set of velocities", c) for c in _second_form(g, v))
+        parts = [(replace(bend, through=b.values), b.domain) for bend in bends for b in self.branches]
+        for part, domain in parts:
+            flat = decide(Same((part,), domain), self.deadline)
+            if flat.fails:
+                return flat
+        raise Undecided(
+            "the constraint is not affine in the velocities, and was not proved to be curved; "
+            "say the signs of its parameters, or solve it for a velocity"
+        )
+
+    def rank(self, rows: Sequence[Sequence[Expr]]) -> int:
+        """Return the rank of some rows, the same off the constraints and on them."""
+        matrix = sp.Matrix([list(row) for row in rows])
+        if matrix.has(*PIECED) and not without_pieces(matrix.flat(), self.domain):
+            raise Undecided(
+                "the constraints hold functions with pieces, whose rank may differ from piece to piece; "
+                "narrow the domain to one piece"
+            )
+        ranks = {eliminate(matrix, domain=self.domain).rank}
+        for branch in self.branches if self.positions else ():
+            here = matrix.applyfunc(lambda f, b=branch: substitute(f, b.values))
+            ranks.add(eliminate(here, domain=branch.domain).rank)
+        if len(ranks) > 1:
+            raise Undecided(
+                "the constraints become dependent where they hold; leave one out, or narrow the domain"
+            )
+        return ranks.pop()
+
+    @cached_property
+    def at_rest_in_time(self) -> Verdict:
+        """Whether what is allowed does not depend on the time explicitly."""
+        verdict = self.all_vanish(
+            "free of the time", [g.diff(self.t) for g in (*self.positions, *self.rates)]
+        )
+        moving = [h for h in self.inequalities if h.has(self.t)]
+        if verdict.holds and (self.positions or self.velocities):
+            self._check_regular()
+        if not verdict.holds or not moving:
+            return verdict
+        sides = [side for h in moving for side in self._moves(h)]
+        if any(side.fails for side in sides):
+            return next(side for side in sides if side.fails)
+        raise Undecided("whether the inequality depends on the time was not decided; narrow the domain")
+
+    def _moves(self, h: Expr) -> Iterator[Verdict]:
+        """Yield whether ∂h/∂t vanishes at the edge h = 0, as far as the other inequalities leave it bare."""
+        others = [sp.Gt(other, 0) for other in self.inequalities if other != h]
+        try:
+            seen = Domain((*self.domain.conditions, *(c for c in others if c != sp.true)), self.domain.box)
+            edge = on_manifold([*self.positions, h], seen, keep=(self.t,))
+        except EmptyDomainError:
+            return
+        for b in edge:
+            yield decide(Same((Part("∂/∂t", h.diff(self.t), through=b.values),), b.domain), self.deadline)
+
+    def _check_regular(self) -> None:
+        """Refuse constraints such as (x − t)² = 0, whose derivatives vanish where they hold."""
+        v = [velocity(x) for x in self.q]
+        for functions, variables in ((self.positions, self.q), (self.velocities, v)):
+            slopes = sp.Matrix([[f.diff(x) for x in variables] for f in functions])
+            for branch in self.branches if functions else ():
+                here = slopes.applyfunc(lambda f, b=branch: substitute(f, b.values))
+                if eliminate(here, domain=branch.domain).rank < eliminate(slopes, domain=self.domain).rank:
+                    raise Undecided(
+                        "the derivatives of the constraints vanish or become dependent where they hold; "
+                        "write each without a power, as x − t = 0 instead of (x − t)² = 0"
+                    )
+
+    def all_vanish(self, name: str, expressions: Sequence[Expr]) -> Verdict:
+        """Tell whether expressions vanish wherever the constraints hold."""
+        wanted = [e for e in expressions if e != 0]
+        if not wanted:
+            return Verdict(Status.HOLDS, name, "structure")
+        parts = [[Part(name, e, through=b.values) for e in wanted] for b in self.branches]
+        verdicts = (
+            decide(Same(tuple(some), b.domain), self.deadline)
+            for some, b in zip(parts, self.branches, strict=True)
+        )
+        return all_hold(verdicts, name)
+
+    def freedom(self, counting: str) -> int:
+        """Return the number of independent virtual displacements, or of positions that can be reached."""
+        if not self.affine.holds:
+            raise Undecided(
+                "degrees of freedom are counted for constraints affine in the velocities; "
+                "write these so, if they can be"
+            )
+        if not self.rates:
+            return len(self.q)
+        self.check_consistent()
+        if counting == "velocities":
+            return len(self.q) - self.rank([row[:-1] for row in self.forms.forms])
+        return len(self.q) - self._restrictions()
+
+    def _restrictions(self) -> int:
+        whole = self.rank(self.forms.forms)
+        if self.integrable.holds:
+            return whole
+        if self.integrable.undecided or self.positions:
+            raise Undecided(
+                "which combinations of the constraints are integrable was not decided; "
+                "eliminate positions with those that hold no velocities"
+            )
+        return len(self.forms.holonomic_part.forms)
+
+
+def _second_form(g: Expr, v: Sequence[Symbol]) -> Iterator[Expr]:
+    """Yield uᵀ (∂²g/∂v²) u for vectors u = gⱼ eᵢ − gᵢ eⱼ tangent to g = 0: zero where the set is flat."""
+    slope = {u: g.diff(u) for u in v}
+    for a, b in combinations(v, 2):
+        yield (
+            slope[b] ** 2 * g.diff(a, 2)
+            - 2 * slope[a] * slope[b] * g.diff(a, b)
+            + slope[a] ** 2 * g.diff(b, 2)
+        )

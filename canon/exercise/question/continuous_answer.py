@@ -1,0 +1,46 @@
+"""What is known by its derivatives alone: constants of the motion, generating functions, gauge terms, Casimirs.
+
+Such a function may have jumped from one constant to another, which no derivative shows: it must be continuous too.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from canon.exercise.question.question import fails
+from canon.proof.continuity.continuity import continuity, is_locally_constant
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from sympy import Expr, Symbol
+
+    from canon.proof.domain.domain import Domain
+    from canon.proof.domain.verdict import Verdict
+
+__all__ = ["constants_are_continuous", "is_continuous"]
+
+SECONDS = 2.0
+"""Time for one function."""
+
+
+def is_continuous(
+    f: Expr, variables: Iterable[Symbol], domain: Domain, name: str, given: Iterable[Expr] = ()
+) -> Verdict:
+    """Return whether a function that is known by its derivatives is continuous where what is given is so."""
+    return continuity(f, variables, domain, SECONDS, name, given)
+
+
+def constants_are_continuous(
+    I: Expr, state: Sequence[Symbol], domain: Domain, given: Iterable[Expr] = ()
+) -> Iterator[Verdict]:
+    """Yield whether a quantity with vanishing rate is continuous; one that is a number on each piece is told so."""
+    verdict = is_continuous(I, state, domain, str(I), given)
+    if verdict.fails and is_locally_constant(I, state, domain):
+        why = (
+            f"{I} says nothing about the motion: all its derivatives vanish identically, "
+            "so it is a number on each piece of its domain, whatever the system"
+        )
+        yield fails(f"{I} is a constant of the motion", why, I)
+        return
+    yield verdict

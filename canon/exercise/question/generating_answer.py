@@ -1,0 +1,44 @@
+"""The right generating function of a map that a claim gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from canon.exercise.diagnose.diagnosis import judged_to_hold
+from canon.mechanics.canonical.find_generating_function import generating_function
+from canon.mechanics.canonical.generating_function import GeneratingFunction
+from canon.mechanics.canonical.transformation import CanonicalTransformation
+
+if TYPE_CHECKING:
+    from sympy import Expr
+
+    from canon.exercise.sheet.reading import Reading
+
+__all__ = ["generating_function_of"]
+
+SECONDS = 0.5
+_OF_INVERSE = {1: 1, 2: 3, 3: 2, 4: 4}
+"""Type of the generating function −F of the inverse map, where old and new variables change places."""
+
+
+def generating_function_of(reading: Reading, kind: int) -> Expr | None:
+    """Return F of a type for the claimed map, once the claim is judged to hold with it.
+
+    Raises
+    ------
+    ValueError
+        Where the map has no generating function of this type.
+    """
+    q, p, Q, P = (reading.symbols(key) for key in ("q", "p", "new_q", "new_p"))
+    if reading.has("map"):
+        new_q, new_p = reading.lists("map", {"Q": "new_q", "P": "new_p"})
+        map_ = CanonicalTransformation(q, p, new_q, new_p, reading.time, reading.domain)
+        found, sign = generating_function(map_, kind, Q, P, budget=SECONDS), 1
+    else:
+        old_q, old_p = reading.lists("inverse_map", {"q": "q", "p": "p"})
+        map_ = CanonicalTransformation(Q, P, old_q, old_p, reading.time, reading.domain)
+        found, sign = generating_function(map_, _OF_INVERSE[kind], q, p, budget=SECONDS), -1
+    if not isinstance(found, GeneratingFunction):
+        return None
+    F = sign * found.F
+    return F if judged_to_hold(reading.with_instead("F", F), SECONDS) else None

@@ -1,0 +1,210 @@
+"""Maps given by equations that can't be solved in closed form: refuted at one certified point.
+
+The old variables and the parameters are rational; the new ones near them are found by Newton's method and
+enclosed by the Krawczyk operator (R. Krawczyk, Computing 4 (1969) 187, doi:10.1007/BF02234767; S. M. Rump, Acta
+Numerica 19 (2010) 287, §13), so that a solution certainly lies in the box. What should vanish is evaluated on
+the box: where its ball keeps away from zero the claim is false. Nothing is ever proved true here.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import acb, arb, arb_mat
+from sympy import Symbol
+
+from canon.exercise.sheet.sympy_trees import symbols_of
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Counterexample, Status, Verdict
+from canon.proof.kinks import off_kinks
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import sympy as sp
+    from sympy import Expr
+
+__all__ = ["enclosed", "refuted_at_a_point"]
+
+PRECISION = 192
+POINTS = 8
+ITERATIONS = 40
+RADIUS = arb(2) ** -100
+"""Half the width of the box around the solution that Newton's method found."""
+DIGITS = 15
+
+
+def refuted_at_a_point(
+    equations: Sequence[Expr],
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    should_vanish: Mapping[str, Expr],
+    domain: Domain,
+) -> Verdict | None:
+    """Return FAILS with a point where something that should vanish certainly does not, or None.
+
+    Parameters
+    ----------
+    equations
+        As many expressions, each = 0, as there are new variables.
+    old, new
+        The old variables, and the new ones near them.
+    should_vanish
+        What should vanish on the solutions, by its name.
+    domain
+        Where the claim is meant; points are drawn from its box.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> q, p, Q, P = sp.symbols("q p Q P", real=True)
+    >>> step = (Q - q - P/10, P - p + sp.sin(Q)/10 + Q**5/100)
+    >>> print(refuted_at_a_point(step, (q, p), (Q, P), {"0": P - P, "P": P}, Domain()).question)
+    P
+    """
+    domain = off_kinks((*equations, *should_vanish.values()), domain).strictly
+    named = {s for condition in domain.conditions for s in condition.free_symbols if isinstance(s, Symbol)}
+    given = [s for s in symbols_of(*equations, *should_vanish.values(), *old, *named) if s not in new]
+    conditions = [c for c in domain.conditions if c.free_symbols <= set(given)]
+    drawn = Domain(tuple(conditions), {s: ends for s, ends in domain.box.items() if s in given})
+    with precision(PRECISION):
+        for point in drawn.points(given, POINTS, seed=7):
+            try:
+                box = enclosed(equations, new, point, [point[s] for s in old])
+                if box is None or not _allowed(domain, new, point, box):
+                    continue
+                for name, expression in should_vanish.items():
+                    found = value(expression, point, _boxed(new, box))
+                    if not found.contains(0):
+                        return _refuted(name, expression, found, point, new, box)
+            except (NotDecided, Undefined):
+                continue
+            except Unmodelled:
+                return None
+    return None
+
+
+def enclosed(
+    equations: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    point: Mapping[Symbol, sp.Rational],
+    start: Sequence[sp.Rational],
+) -> list[arb] | None:
+    """Return a box that certainly holds one real solution, and a regular Jacobian; None where none was found.
+
+    The working precision should be that of this module.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> x = sp.Symbol("x", real=True)
+    >>> with precision(PRECISION):
+    ...     (root,) = enclosed([sp.cos(x) - x], [x], {}, [sp.Integer(1)])
+    >>> (root.cos() - root).contains(0), root.rad() < 1e-20
+    (True, True)
+    """
+    slopes = [[equation.diff(u) for u in unknowns] for equation in equations]
+    size = len(unknowns)
+    at = [arb(int(s.p)) / int(s.q) for s in start]
+    for _ in range(ITERATIONS):
+        step = _newton_step(equations, slopes, unknowns, point, at)
+        if step is None:
+            return None
+        at = [(a - s).mid() for a, s in zip(at, step, strict=True)]
+        if all(abs(s) < RADIUS / 1024 for s in step):
+            break
+    else:
+        return None
+    around = [arb(a, RADIUS) for a in at]
+    inverse = _inverse(_matrix(slopes, unknowns, point, at))
+    whole = _column(equations, unknowns, point, around)
+    if inverse is None or any(not f.rad() < RADIUS * 2**40 for f in whole.entries()):
+        return None  # wide although the box is narrow: it touches a jump
+    inverse = arb_mat([[inverse[i, j].mid() for j in range(size)] for i in range(size)])
+    unit = arb_mat([[int(i == j) for j in range(size)] for i in range(size)])
+    spread = unit - inverse * _matrix(slopes, unknowns, point, around)
+    gaps = arb_mat([[a - b] for a, b in zip(around, at, strict=True)])
+    image = arb_mat([[a] for a in at]) - inverse * _column(equations, unknowns, point, at) + spread * gaps
+    krawczyk = image.entries()
+    return krawczyk if all(a.contains_interior(k) for a, k in zip(around, krawczyk, strict=True)) else None
+
+
+def _newton_step(
+    equations: Sequence[Expr],
+    slopes: Sequence[Sequence[Expr]],
+    unknowns: Sequence[Symbol],
+    point: Mapping[Symbol, sp.Rational],
+    at: Sequence[arb],
+) -> list[arb] | None:
+    inverse = _inverse(_matrix(slopes, unknowns, point, at))
+    return None if inverse is None else (inverse * _column(equations, unknowns, point, at)).entries()
+
+
+def _inverse(matrix: arb_mat) -> arb_mat | None:
+    try:
+        return matrix.inv()
+    except ZeroDivisionError:
+        return None
+
+
+def _matrix(
+    rows: Sequence[Sequence[Expr]],
+    unknowns: Sequence[Symbol],
+    point: Mapping[Symbol, sp.Rational],
+    at: Sequence[arb],
+) -> arb_mat:
+    memo = _boxed(unknowns, at)
+    return arb_mat([[_real(value(f, point, memo)) for f in row] for row in rows])
+
+
+def _column(
+    equations: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    point: Mapping[Symbol, sp.Rational],
+    at: Sequence[arb],
+) -> arb_mat:
+    return _matrix([[equation] for equation in equations], unknowns, point, at)
+
+
+def _real(found: acb) -> arb:
+    if not found.imag.is_zero():
+        raise NotDecided("an equation is not certainly real here")
+    return found.real
+
+
+def _boxed(unknowns: Sequence[Symbol], box: Sequence[arb]) -> dict[sp.Basic, acb]:
+    return {u: acb(b) for u, b in zip(unknowns, box, strict=True)}
+
+
+def _allowed(
+    domain: Domain, new: Sequence[Symbol], point: Mapping[Symbol, sp.Rational], box: Sequence[arb]
+) -> bool:
+    """Whether the solution certainly satisfies what is assumed of the new variables, and all conditions."""
+    for symbol, ball in zip(new, box, strict=True):
+        if symbol.is_integer or (symbol.is_nonzero and ball.contains(0)):
+            return False
+        if (symbol.is_nonnegative and not ball > 0) or (symbol.is_nonpositive and not ball < 0):
+            return False
+    memo = _boxed(new, box)
+    return all(holds_at(condition, point, memo) for condition in domain.conditions)
+
+
+def _refuted(
+    name: str,
+    expression: Expr,
+    found: acb,
+    point: Mapping[Symbol, sp.Rational],
+    new: Sequence[Symbol],
+    box: Sequence[arb],
+) -> Verdict:
+    there = {s.name: str(number) for s, number in point.items()}
+    there |= {u.name: f"{b.str(DIGITS, radius=False)}…" for u, b in zip(new, box, strict=True)}
+    left = found.real.str(DIGITS, radius=False)
+    return Verdict(
+        Status.FAILS,
+        name,
+        certificate="ball",
+        residual=expression,
+        counterexample=Counterexample(there, left, "0", DIGITS),
+    )

@@ -1,0 +1,200 @@
+"""The form of a claim: its keys, their shapes and their sizes, before anything in it is read.
+
+What is found here costs time in proportion to the sheet, whatever stands in it.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Mapping
+from decimal import Decimal
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from canon.exercise.sheet.kinds import COMMON, KINDS, OF_PARAMETERS, Shape, kind_of
+from canon.expression.text.tokens import GREEK
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["ASSUMPTIONS", "MAX_NAMES", "faults"]
+
+ASSUMPTIONS = ("positive", "negative", "nonzero", "real", "integer")
+MAX_FAULTS = 20
+"""Faults of one claim that are told; a claim made of faults is not listed to its end."""
+MAX_NAMES = 500
+"""Most names in one list or table of a claim."""
+MAX_DIGITS = 1_000
+"""Most digits of a number that stands bare in a sheet."""
+_MAX_BITS = 3_320
+
+
+def faults(kind: str, keys: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return what is wrong with the keys of a claim: pairs of a key and a reason, the first few.
+
+    Examples
+    --------
+    >>> faults("equality-only", {"lhs": "1", "rsh": "2"})
+    [('rhs', 'missing (an expression)'), ('rsh', 'unknown key for the kind equality-only; is rhs meant?')]
+    """
+    return list(islice(_faults(kind, keys), MAX_FAULTS))
+
+
+def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    if kind not in KINDS:
+        close = difflib.get_close_matches(kind[:60], KINDS, n=2, cutoff=0.5)
+        remedy = f"is {' or '.join(close)} meant?" if close else f"known are {', '.join(KINDS)}"
+        yield "kind", f"unknown kind {kind[:60]!r}; {remedy}" if kind else f"missing; {remedy}"
+        return
+    wanted = kind_of(kind, keys)
+    if kind == "parameters" and isinstance(keys.get("of"), str) and keys["of"] not in OF_PARAMETERS:
+        yield "of", f"should be one of {', '.join(OF_PARAMETERS)}"
+        return
+    known = {**COMMON, **wanted.required, **wanted.optional}
+    for key, shape in wanted.required.items():
+        if key not in keys:
+            yield key, f"missing ({shape.value})"
+    if wanted.one_of and not any(all(key in keys for key in group) for group in wanted.one_of):
+        groups = " or ".join(" with ".join(group) for group in wanted.one_of)
+        yield wanted.one_of[0][-1], f"missing; a claim of kind {kind} needs {groups}"
+    complete = [group for group in wanted.one_of if all(key in keys for key in group)]
+    if wanted.exclusive and len(complete) > 1:
+        groups = " and ".join(" with ".join(group) for group in complete)
+        yield complete[1][-1], f"{groups} both say what it is about; leave one out"
+    given = [key for key in wanted.answer if key in keys and known[key] is not Shape.VALUES]
+    if given and all(keys[key] in ([], {}) and _fits(keys[key], known[key]) for key in given):
+        yield given[0], "nothing is claimed: the answer is empty"
+    for key, value in keys.items():
+        if key not in known:
+            close = difflib.get_close_matches(key[:60], known, n=1, cutoff=0.6)
+            remedy = f"is {close[0]} meant?" if close else f"known are {', '.join(known)}"
+            yield key[:60], f"unknown key for the kind {kind}; {remedy}"
+        elif isinstance(value, (list, Mapping)) and len(value) > MAX_NAMES:
+            yield key, f"{len(value)} entries, and at most {MAX_NAMES} are read; split the claim"
+        elif not _fits(value, known[key]):
+            yield key, f"should be {known[key].value}{_remedy(value, known[key])}"
+
+
+def _remedy(value: Any, shape: Shape) -> str:
+    """Say which entry is at fault, where one is."""
+    table = value if isinstance(value, Mapping) else {}
+    names = [value] if isinstance(value, str) else value if isinstance(value, list) else list(table)
+    for name in names if shape in _OF_NAMES else ():
+        if isinstance(name, str) and not _name(name):
+            plain = "".join(GREEK.get(letter, letter) for letter in name)
+            return f"; write {plain} for {name[:60]}" if _name(plain) else f"; {name[:60]!r} is not a name"
+    for name, item in table.items():
+        if shape is Shape.ASSUMPTIONS and item not in ASSUMPTIONS:
+            return f"; {name} is {', '.join(ASSUMPTIONS[:-1])} or {ASSUMPTIONS[-1]}, not {str(item)[:60]!r}"
+        if shape is Shape.BOX and not _interval(item):
+            return f"; that of {name} should be two numbers, the smaller one first"
+    return ""
+
+
+_OF_NAMES = (Shape.NAMES, Shape.ASSUMPTIONS, Shape.FUNCTIONS, Shape.BOX, Shape.EXPRESSIONS)
+
+
+def _number(value: Any) -> bool:
+    """Whether a bare number is one of a length that anyone means; the others cost more than their text."""
+    if isinstance(value, bool) or not isinstance(value, (int, Decimal)):
+        return False
+    if isinstance(value, int):
+        return value.bit_length() <= _MAX_BITS
+    return (
+        value.is_finite()
+        and len(value.as_tuple().digits) <= MAX_DIGITS
+        and abs(value.adjusted()) <= MAX_DIGITS
+    )
+
+
+def _text(value: Any) -> bool:
+    return isinstance(value, str) or _number(value)
+
+
+def _texts(value: Any) -> bool:
+    return _text(value) or (isinstance(value, list) and len(value) > 0 and all(_text(item) for item in value))
+
+
+def _name(value: Any) -> bool:
+    return isinstance(value, str) and value.isidentifier() and value.isascii()
+
+
+def _names(value: Any) -> bool:
+    return _name(value) or (isinstance(value, list) and all(_name(item) for item in value))
+
+
+def _table(value: Any) -> bool:
+    return isinstance(value, Mapping) and all(_name(key) for key in value)
+
+
+def _fits(value: Any, shape: Shape) -> bool:
+    match shape:
+        case Shape.TEXT:  # a list of one is read as the one
+            return _text(value) or (isinstance(value, list) and len(value) == 1 and _text(value[0]))
+        case Shape.TEXTS:
+            return _texts(value) or value == []
+        case Shape.NAMES:
+            return _names(value)
+        case Shape.WORD:
+            return isinstance(value, str)
+        case Shape.TRUE:
+            return value is True
+        case Shape.SWITCH:
+            return isinstance(value, bool)
+        case Shape.NUMBER:
+            return _number(value)
+        case Shape.ASSUMPTIONS:
+            return _table(value) and all(item in ASSUMPTIONS for item in value.values())
+        case Shape.FUNCTIONS:
+            return _table(value) and all(_names(item) and item != [] for item in value.values())
+        case Shape.BOX:
+            return _table(value) and all(_interval(item) for item in value.values())
+        case Shape.EXPRESSIONS:
+            return _table(value) and all(_text(item) for item in value.values())
+        case Shape.LISTS:
+            return _table(value) and all(_texts(item) for item in value.values())
+        case Shape.BRACKETS:
+            return isinstance(value, list) and len(value) > 0 and all(_bracket(item) for item in value)
+        case Shape.BODIES:
+            return isinstance(value, list) and len(value) > 0 and all(_body(item) for item in value)
+        case Shape.FORCES:
+            return isinstance(value, list) and len(value) > 0 and all(_force(item) for item in value)
+        case Shape.WORDS:
+            return isinstance(value, list) and len(value) > 0 and all(isinstance(w, str) for w in value)
+        case Shape.VALUES:
+            return isinstance(value, list) and all(_fits(item, Shape.EXPRESSIONS) for item in value)
+
+
+def _interval(value: Any) -> bool:
+    if not isinstance(value, list) or len(value) != 2:
+        return False
+    return all(_number(end) or _float(end) for end in value) and value[0] < value[1]
+
+
+def _float(value: Any) -> bool:
+    """Whether this is a finite float, as a hint given from Python may be; sheets have decimals."""
+    return isinstance(value, float) and math.isfinite(value)
+
+
+def _bracket(value: Any) -> bool:
+    return (
+        _table(value)
+        and set(value) in ({"f", "g", "value"}, {"u", "v", "value"})
+        and all(map(_text, value.values()))
+    )
+
+
+def _body(value: Any) -> bool:
+    if not _table(value) or not set(value) <= {"m", "r", "I", "angle", "omega"}:
+        return False
+    if ("m" in value) != ("r" in value) or {"angle", "omega"} <= set(value):
+        return False
+    point, rotor = "m" in value, bool({"angle", "omega"} & set(value))
+    return (point or rotor) and rotor == ("I" in value) and all(_texts(item) for item in value.values())
+
+
+def _force(value: Any) -> bool:
+    if not _table(value) or set(value) not in ({"F", "r"}, {"torque", "angle"}, {"torque", "omega"}):
+        return False
+    return all(_texts(item) for item in value.values())

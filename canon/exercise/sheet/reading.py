@@ -1,0 +1,354 @@
+"""What a claim says: its names and expressions as SymPy objects, its domain."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import sympy as sp
+from sympy import Expr, Rational, Symbol
+
+from canon.exercise.sheet.key_shapes import ASSUMPTIONS
+from canon.exercise.sheet.kinds import Shape, kind_of
+from canon.exercise.sheet.sheet import Claim, ClaimError
+from canon.expression.parse import (
+    LanguageError,
+    Scope,
+    exact,
+    parse_condition,
+    parse_equation,
+    parse_expression,
+)
+from canon.expression.symbols.symbol import Coordinate, Momentum, velocity
+from canon.expression.symbols.user_input import counted
+from canon.expression.text.units import units
+from canon.mechanics.algebra.substitution import substitute
+from canon.proof.domain.domain import Domain
+from canon.proof.rungs.ladder import is_empty
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from sympy.logic.boolalg import Boolean
+
+__all__ = ["InvalidClaim", "Reading"]
+
+_MAKERS: Mapping[str, Callable[..., Symbol]] = MappingProxyType(
+    {"q": Coordinate, "p": Momentum, "quasi": Coordinate, "new_p": Momentum, "momenta": Momentum}
+)
+_NAME_KEYS = (
+    "q",
+    "p",
+    "x",
+    "variables",
+    "new_q",
+    "new_p",
+    "cyclic",
+    "momenta",
+    "multipliers",
+    "quasi",
+    "constants",
+)
+_COMPLEX = {("positive-real", "variables")}
+"""Names of complex variables: of a real one |s|² is s², and would pass for a polynomial."""
+
+
+class InvalidClaim(ValueError):
+    """A claim that does not say something that could be judged."""
+
+    def __init__(self, error: ClaimError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A claim with its names resolved.
+
+    Parameters
+    ----------
+    claim
+        The claim as written; its form has been checked.
+    names
+        Symbols that the judge of a kind adds to the declared ones, such as ``d_x`` and ``delta_x``.
+    instead
+        Expressions that are read in place of what stands under a key, such as ``"Q[0]"``.
+    at
+        Values put in for parameters.
+
+    Raises
+    ------
+    InvalidClaim
+        From any attribute or method, with the key and column at fault.
+    """
+
+    claim: Claim
+    names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
+    instead: Mapping[str, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    at: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+
+    def has(self, key: str) -> bool:
+        """Whether the claim has this key."""
+        return key in self.claim.keys
+
+    def word(self, key: str) -> str:
+        """Return a word as written."""
+        return str(self.claim.keys[key])
+
+    def fault(self, key: str, reason: str) -> NoReturn:
+        """Refuse the claim for what stands under a key."""
+        raise InvalidClaim(ClaimError(self.claim.id, key, reason, file=self.claim.file))
+
+    def with_names(self, names: Mapping[str, Symbol]) -> Reading:
+        """Return the same claim read with more names."""
+        return replace(self, names=MappingProxyType({**self.names, **names}))
+
+    def with_instead(self, key: str, expression: Expr) -> Reading:
+        """Return the same claim with another expression under one key."""
+        return replace(self, instead=MappingProxyType({**self.instead, key: expression}))
+
+    def words(self, key: str) -> tuple[str, ...]:
+        """Return a list of words as written."""
+        return tuple(map(str, _as_list(self.claim.keys[key])))
+
+    @property
+    def complete(self) -> bool:
+        """Whether the answer should determine every unknown of its kind."""
+        return self.claim.keys.get("complete") is True
+
+    @cached_property
+    def time(self) -> Symbol:
+        """The symbol of the time."""
+        name = str(self.claim.keys.get("t", "t"))
+        if not (name.isidentifier() and name.isascii()):
+            self.fault("t", "should be the name of the time")
+        return Symbol(name, **self._assumptions(name))
+
+    @cached_property
+    def scope(self) -> Scope:
+        """The declared names."""
+        keys = self.claim.keys
+        names: dict[str, Symbol] = {}
+        for key in _NAME_KEYS:
+            if not self.is_names(key):
+                continue
+            for name in _as_list(keys[key]):
+                if name == self.time.name:
+                    self.fault(key, f"{name} is the name of the time; choose another, or say t = 'tau'")
+                if key == "cyclic":
+                    continue
+                if name in names:
+                    self.fault(key, f"{name} is declared twice")
+                real = (self.claim.kind, key) not in _COMPLEX
+                said = self._assumptions(name) if real else {"complex": True}
+                names[name] = _MAKERS.get(key, Symbol)(name, **said)
+        for name in names:
+            if _is_rate(name, names):
+                self.fault("q", f"{name} is the velocity of a coordinate that is declared too; rename one")
+        functions = {name: tuple(_as_list(args)) for name, args in keys.get("functions", {}).items()}
+        for name in keys.get("parameters", {}):
+            if name not in functions and name != self.time.name and not _is_rate(name, names):
+                names.setdefault(name, Symbol(name, **self._assumptions(name)))
+        if self.is_names("quasi"):
+            rates = {f"{u}_dot": velocity(names[u]) for u in _as_list(keys["quasi"])}
+            names = {**rates, **names}
+        for name in functions:
+            if name in names:
+                self.fault("functions", f"{name} is declared as a symbol too")
+        signs = {name: self._assumptions(name) for name in functions}
+        implicit = keys.get("implicit_multiplication") is True
+        return Scope({**self.names, **names}, functions, self.time, signs, implicit)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is passed over in reading the claim: units after numbers."""
+        kind = kind_of(self.claim.kind, self.claim.keys)
+        shapes = {**kind.required, **kind.optional, "domain": Shape.TEXTS}
+        said = {
+            key: value
+            for key, value in self.claim.keys.items()
+            if key in shapes and shapes[key] not in (Shape.NAMES, Shape.WORD)
+        }
+        found = {(key, unit.text): None for key, text in _texts_in(said) for unit in units(text, self.scope)}
+        return tuple(
+            f"the unit {unit} in {key} is passed over: numbers are read in any one consistent system of units"
+            for key, unit in found
+        )
+
+    @cached_property
+    def domain(self) -> Domain:
+        """The conditions of the claim and the box of its hints."""
+        conditions = [*self._of_rates()]
+        for position, text in enumerate(_as_list(self.claim.keys.get("domain", []))):
+            condition = self._parse(parse_condition, text, f"domain[{position}]")
+            if condition is sp.false:
+                self.fault(f"domain[{position}]", "no point satisfies this condition")
+            if condition is not sp.true:
+                conditions += condition.args if isinstance(condition, sp.And) else (condition,)
+        box: dict[Symbol, tuple[Rational, Rational]] = {}
+        for name, (low, high) in self.claim.keys.get("box", {}).items():
+            symbol = self.scope.symbol(name)
+            if symbol is None:
+                self.fault("box", f"{name} is not declared; {self.scope.near(name)}")
+            box[symbol] = (exact(low), exact(high))
+        domain = Domain(tuple(conditions), MappingProxyType(box))
+        if (
+            conditions
+            and next(domain.points((), 1), None) is None
+            and is_empty(domain, time.monotonic() + 0.5)
+        ):
+            self.fault("domain", "no point satisfies these conditions and assumptions together")
+        return domain
+
+    def _of_rates(self) -> Iterator[Boolean]:
+        """Yield what ``parameters`` assumes of velocities and accelerations, as conditions."""
+        relations = {"positive": sp.Gt, "negative": sp.Lt, "nonzero": sp.Ne}
+        for name, word in self.claim.keys.get("parameters", {}).items():
+            symbol = self.scope.symbol(name)
+            if (
+                symbol is not None
+                and name not in self.scope.names
+                and word in relations
+                and symbol != self.time
+            ):
+                yield relations[word](symbol, 0)
+
+    def symbols(self, key: str) -> tuple[Symbol, ...]:
+        """Return the symbols of a list of names."""
+        return tuple(self.scope.names[name] for name in _as_list(self.claim.keys.get(key, [])))
+
+    def subset(self, key: str, of: str) -> tuple[Symbol, ...]:
+        """Return the symbols of a list of names that must be among those of another list."""
+        allowed = _as_list(self.claim.keys[of])
+        for name in _as_list(self.claim.keys[key]):
+            if name not in allowed:
+                self.fault(key, f"{name} is not among {of} = {', '.join(allowed)}")
+        return self.symbols(key)
+
+    def phase_space(self, q: str, p: str) -> tuple[tuple[Symbol, ...], tuple[Symbol, ...]]:
+        """Return coordinates and momenta, as many of each."""
+        coordinates, momenta = self.symbols(q), self.symbols(p)
+        if len(coordinates) != len(momenta):
+            self.fault(
+                p,
+                f"{counted(len(momenta), 'momentum', 'momenta')} "
+                f"for {counted(len(coordinates), 'coordinate')}",
+            )
+        return coordinates, momenta
+
+    def expression(self, key: str, default: Expr | None = None) -> Expr:
+        """Return the expression under a key."""
+        if default is not None and not self.has(key):
+            return default
+        return self._parse(parse_expression, _the_one(self.claim.keys[key]), key)
+
+    def expressions(self, key: str, like: str = "") -> tuple[Expr, ...]:
+        """Return the expressions of a list, as many as there are names under ``like``."""
+        found = tuple(
+            self._parse(parse_expression, text, f"{key}[{i}]")
+            for i, text in enumerate(_as_list(self.claim.keys[key]))
+        )
+        return self._as_many(key, found, like)
+
+    def equations(self, key: str) -> tuple[Expr, ...]:
+        """Return the equations of a list, each as what should vanish."""
+        texts = _as_list(self.claim.keys[key])
+        if not texts:
+            self.fault(key, "at least one equation is needed")
+        return tuple(self._parse(parse_equation, text, f"{key}[{i}]") for i, text in enumerate(texts))
+
+    def equation(self, where: str, text: object) -> Expr:
+        """Return one equation, or expression, that stands somewhere in the claim."""
+        return self._parse(parse_equation, text, where)
+
+    def table(self, key: str) -> dict[str, Expr]:
+        """Return the expressions of a table {name: expression}."""
+        table = self.claim.keys[key]
+        return {name: self._parse(parse_expression, text, f"{key}.{name}") for name, text in table.items()}
+
+    def lists(self, key: str, parts: Mapping[str, str]) -> tuple[tuple[Expr, ...], ...]:
+        """Return the lists of a table, ``parts`` saying as many as which names each of them has."""
+        table = self.claim.keys[key]
+        if set(table) != set(parts):
+            self.fault(key, f"should be a table of {' and '.join(parts)}")
+        return tuple(self.inside(f"{key}.{part}", table[part], like) for part, like in parts.items())
+
+    def inside(self, where: str, value: Any, like: str = "") -> tuple[Expr, ...]:
+        """Return the expressions of a list that stands inside another key."""
+        found = tuple(
+            self._parse(parse_expression, text, f"{where}[{i}]") for i, text in enumerate(_as_list(value))
+        )
+        return self._as_many(where, found, like)
+
+    def brackets(self, first: str, second: str) -> list[tuple[Expr, Expr, Expr]]:
+        """Return the triples (first, second, value) under ``pairs``."""
+        found: list[tuple[Expr, Expr, Expr]] = []
+        for i, pair in enumerate(self.claim.keys["pairs"]):
+            if set(pair) != {first, second, "value"}:
+                self.fault(f"pairs[{i}]", f"should be a table of {first}, {second} and value")
+            a, b, value = (
+                self._parse(parse_expression, pair[k], f"pairs[{i}].{k}") for k in (first, second, "value")
+            )
+            found.append((a, b, value))
+        return found
+
+    def _as_many(self, key: str, found: tuple[Expr, ...], like: str) -> tuple[Expr, ...]:
+        if like and len(found) != len(_as_list(self.claim.keys[like])):
+            self.fault(
+                key,
+                f"{counted(len(found), 'expression')} for the "
+                f"{len(_as_list(self.claim.keys[like]))} names of {like}",
+            )
+        return found
+
+    def is_names(self, key: str) -> bool:
+        """Whether a list of names stands under a key."""
+        kind = kind_of(self.claim.kind, self.claim.keys)
+        return self.has(key) and {**kind.required, **kind.optional}.get(key) is Shape.NAMES
+
+    def _assumptions(self, name: str) -> dict[str, bool]:
+        word = self.claim.keys.get("parameters", {}).get(name, "real")
+        if word not in ASSUMPTIONS:
+            self.fault("parameters", f"{word} can't be assumed of {name}; write {', '.join(ASSUMPTIONS)}")
+        return {"real": True} if word == "real" else {"real": True, word: True}
+
+    def _parse(self, parse: Callable[[str, Scope], Any], text: Any, key: str) -> Any:
+        if key in self.instead:
+            return self.instead[key]
+        try:
+            parsed = parse(str(text), self.scope)
+            return substitute(parsed, self.at) if self.at else parsed
+        except LanguageError as error:
+            raise InvalidClaim(
+                ClaimError(self.claim.id, key, error.message, error.column, error.caret(), self.claim.file)
+            ) from error
+
+
+def _is_rate(name: str, names: Mapping[str, Symbol]) -> bool:
+    """Whether a name is that of a declared coordinate's velocity or acceleration."""
+    bases = (name.removesuffix(ending) for ending in ("_ddot", "_dot") if name.endswith(ending))
+    return any(isinstance(names.get(base), Coordinate) for base in bases)
+
+
+def _texts_in(value: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every text under some keys, each with the first of the keys that lead to it."""
+    if isinstance(value, str):
+        yield key, value
+    elif isinstance(value, dict | MappingProxyType):
+        for name, item in value.items():
+            yield from _texts_in(item, key or str(name))
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from _texts_in(item, key)
+
+
+def _the_one(value: Any) -> Any:
+    """Return what stands alone in a list, or the value itself."""
+    return value[0] if isinstance(value, list) and len(value) == 1 else value
+
+
+def _as_list(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]

@@ -1,0 +1,344 @@
+"""Sheets of claims: read from TOML or JSON, checked for their form, nothing evaluated.
+
+What a claim says is read by :mod:`canon.exercise.sheet.reading`, when it is judged. Limits: 10 MB a file, 10 000
+claims a sheet.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from dataclasses import dataclass, field, replace
+from decimal import Decimal, InvalidOperation
+from importlib import resources
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from canon.exercise.sheet.key_shapes import MAX_DIGITS, faults
+from canon.expression.symbols.input_in_words import counted, given_kind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = [
+    "Claim",
+    "ClaimError",
+    "Sheet",
+    "SheetError",
+    "bundled_sheet",
+    "claim_from",
+    "read_sheet",
+    "sheet_from",
+]
+
+MAX_BYTES = 10_000_000
+MAX_TOML_BYTES = 2_000_000
+"""TOML is written by people, and its parser takes longer than JSON's."""
+MAX_CLAIMS = 10_000
+MAX_REASON = 2_000
+"""Characters of what is told against a claim; only a stranger's name in it can make it longer."""
+MIN_BUDGET = Decimal("0.01")
+_FOR_ALL = ("implicit_multiplication", "complete", "in")
+"""Keys that may stand beside the claims and are meant for each of them."""
+DEFAULT_BUDGET = 10.0
+
+
+class SheetError(ValueError):
+    """A file that is no sheet at all."""
+
+
+@dataclass(frozen=True)
+class ClaimError:
+    """What is wrong with the form of a claim, and where.
+
+    Parameters
+    ----------
+    claim
+        The claim's id, or ``#n`` for the n-th claim where it has none.
+    key
+        The key under which the fault stands; empty for the claim as a whole.
+    reason
+        What is wrong and what to do instead.
+    column
+        Column of the expression, counted from 1, or 0 where there is none.
+    caret
+        The text with a caret under the column, for expressions.
+    file
+        The file the claim stands in.
+    """
+
+    claim: str
+    key: str
+    reason: str
+    column: int = 0
+    caret: str = ""
+    file: str = ""
+
+    @property
+    def brief(self) -> str:
+        """What is wrong inside the claim, without saying which claim it is."""
+        places = (f"key {self.key}" if self.key else "", f"column {self.column}" if self.column else "")
+        where = ", ".join(place for place in places if place)
+        told = self.reason if len(self.reason) <= MAX_REASON else f"{self.reason[:MAX_REASON]}…"
+        reason = f"{where}: {told}" if where else told
+        return f"{reason}\n{self.caret}" if self.caret else reason
+
+    def __str__(self) -> str:
+        where = f"{self.file}, claim {self.claim}" if self.file else f"claim {self.claim}"
+        return f"{where}{', ' if self.key or self.column else ': '}{self.brief}"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One claim of a sheet, as it was written.
+
+    Parameters
+    ----------
+    id, kind
+        Its name in the sheet and what sort of thing it claims.
+    keys
+        Everything that stands in the claim, by key.
+    expect
+        What the author expects, ``holds``, ``fails`` or nothing; never used to judge.
+    budget
+        Seconds that the judgement may take.
+    errors
+        What is wrong with its form; a claim with errors is invalid.
+    file
+        The file it stands in.
+    """
+
+    id: str
+    kind: str
+    keys: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    expect: str = ""
+    budget: float = DEFAULT_BUDGET
+    errors: tuple[ClaimError, ...] = ()
+    file: str = ""
+
+    def __repr__(self) -> str:
+        return f"<Claim {self.id!r}: {self.kind}{', ill-formed' if self.errors else ''}>"
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Claims in their order, the ill-formed among them marked."""
+
+    title: str
+    claims: tuple[Claim, ...]
+    file: str = ""
+
+    def __repr__(self) -> str:
+        return f"<Sheet {self.title!r}: {counted(len(self.claims), 'claim')}>"
+
+    @property
+    def errors(self) -> tuple[ClaimError, ...]:
+        """Everything that is wrong with the form of the claims."""
+        return tuple(error for claim in self.claims for error in claim.errors)
+
+
+def read_sheet(path: str | Path) -> Sheet:
+    """Read a sheet of claims from a ``.toml`` or ``.json`` file.
+
+    Parameters
+    ----------
+    path
+        The file; anything that does not end in ``.toml`` is read as JSON.
+
+    Returns
+    -------
+    Sheet
+        With every claim in its order. Claims of a wrong form are there too and carry their errors.
+
+    Raises
+    ------
+    SheetError
+        Where the file can't be read, is too large, or is no sheet.
+    """
+    path = Path(given_kind(path, (str, Path), "the path of the sheet"))
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)  # never more, even of what has no size, such as a pipe
+        if len(data) > MAX_BYTES:
+            size = path.stat().st_size
+            raise SheetError(f"{path}: {size} bytes, and at most {MAX_BYTES} are read; split the sheet")
+    except OSError as error:
+        raise SheetError(f"{path}: can't be read ({error.strerror or error})") from error
+    return sheet_from(data, file=str(path), toml=path.suffix.lower() == ".toml")
+
+
+def bundled_sheet(name: str = "tour") -> Sheet:
+    """Return a sheet that comes with canon.
+
+    Examples
+    --------
+    >>> bundled_sheet().claims[0].id
+    'pendulum'
+    """
+    data = resources.files("canon.exercise").joinpath("sheets", f"{name}.toml").read_bytes()
+    return sheet_from(data, file=f"{name}.toml", toml=True)
+
+
+def sheet_from(data: bytes, *, file: str = "", toml: bool = False) -> Sheet:
+    """Read a sheet from the bytes of a file.
+
+    Raises
+    ------
+    SheetError
+        Where the bytes are no sheet.
+
+    Examples
+    --------
+    >>> sheet = sheet_from(b'{"claims": [{"id": "a", "kind": "equality-only", "lhs": "1"}]}')
+    >>> print(*sheet.errors)
+    claim a, key rhs: missing (an expression)
+    """
+    shown = file or "the sheet"
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise SheetError(f"{shown}: not UTF-8 text (byte {error.start})") from error
+    try:
+        found = _toml(text) if toml else _json(text)
+    except RecursionError as error:
+        raise SheetError(f"{shown}: nested too deeply to be a sheet") from error
+    except ValueError as error:
+        remedy = _QUOTES if toml and "\\" in str(error) else ""
+        raise SheetError(f"{shown}: not valid {'TOML' if toml else 'JSON'} ({error}){remedy}") from error
+    return _sheet(found, file, shown)
+
+
+_QUOTES = (
+    "; a backslash means something to TOML between double quotes: write LaTeX between single quotes, '…'"
+)
+
+_EATEN = re.compile(
+    "\t(?=au|an|heta|ext|imes|frac|o\\b)|\x08(?=eta|ar|igl?|oldsymbol)|\x0c(?=rac)|\r(?=ho|ight|angle|m\\b)|\n(?=abla|eq?\\b|u\\b)"
+)
+"""What is left of \\theta, \\beta, \\frac, \\rho, \\nabla where a backslash and a letter became one character."""
+
+
+def _eaten(value: Any) -> bool:
+    """Tell whether LaTeX in a value lost backslashes to the quotes it stood in."""
+    if isinstance(value, str):
+        return value.lstrip().startswith("$") and _EATEN.search(value) is not None
+    if isinstance(value, dict):
+        return any(map(_eaten, value.values()))
+    return isinstance(value, list) and any(map(_eaten, value))
+
+
+def _decimal(text: str) -> Decimal | str:
+    """Return a decimal; what is no number, or one that nobody means, stays text and is refused where it stands."""
+    try:
+        value = Decimal(text)
+    except InvalidOperation:
+        return text
+    return value if value.is_finite() and abs(value.adjusted()) <= MAX_DIGITS else text
+
+
+_LONG_DOTTED_KEY = re.compile(
+    r"""(?<![\w.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""", re.ASCII
+)
+"""Python's TOML parser takes time in proportion to the square of the length of such a key."""
+
+
+def _toml(text: str) -> Any:
+    if len(text) > MAX_TOML_BYTES:
+        raise ValueError(f"{len(text)} characters, and at most {MAX_TOML_BYTES} are read; split the sheet")
+    long = _LONG_DOTTED_KEY.search(text)
+    if long:
+        line = text.count("\n", 0, long.start()) + 1
+        raise ValueError(f"a key of more than 32 parts, at line {line}")
+    return tomllib.loads(text, parse_float=_decimal)
+
+
+def _json(text: str) -> Any:
+    def no_constant(name: str) -> NoReturn:
+        raise ValueError(f"{name} is not a number of JSON")
+
+    def no_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for key, value in pairs:
+            if key in found:
+                raise ValueError(f"the key {key[:60]!r} stands twice in one object")
+            found[key] = value
+        return found
+
+    return json.loads(text, parse_float=_decimal, parse_constant=no_constant, object_pairs_hook=no_repeats)
+
+
+def _sheet(found: Any, file: str, shown: str) -> Sheet:
+    raw = found.get("claims", found.get("claim")) if isinstance(found, dict) else found
+    if not isinstance(raw, list):
+        raise SheetError(
+            f"{shown}: no claims; write [[claim]] tables in TOML, or {{'claims': [ … ]}} in JSON"
+        )
+    if isinstance(found, dict):
+        unknown = sorted(set(found) - {"title", "claims", "claim", "source", *_FOR_ALL})
+        if unknown:
+            raise SheetError(f"{shown}: unknown key {unknown[0]!r} beside the claims")
+    if len(raw) > MAX_CLAIMS:
+        raise SheetError(f"{shown}: {len(raw)} claims, and at most {MAX_CLAIMS} are read; split the sheet")
+    for_all = {key: found[key] for key in _FOR_ALL if key in found} if isinstance(found, dict) else {}
+    seen: set[str] = set()
+    claims: list[Claim] = []
+    for number, keys in enumerate(raw, 1):
+        claim = claim_from({**for_all, **keys} if isinstance(keys, dict) else keys, number, file)
+        if claim.id in seen:
+            error = ClaimError(
+                claim.id, "id", "another claim before it has the same id; rename one", file=file
+            )
+            claim = replace(claim, errors=(*claim.errors, error))
+        seen.add(claim.id)
+        claims.append(claim)
+    title = found.get("title", "") if isinstance(found, dict) else ""
+    return Sheet(str(title), tuple(claims), file)
+
+
+def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
+    """Return the claim that a table of keys is, with what is wrong with its form.
+
+    Parameters
+    ----------
+    keys
+        What stands in the claim, ``id`` and ``kind`` included.
+    number, file
+        Where it stands.
+
+    Examples
+    --------
+    >>> claim_from({"id": "a", "kind": "equality-only", "lhs": "1"}).errors[0].brief
+    'key rhs: missing (an expression)'
+    """
+    if not isinstance(keys, dict):
+        error = ClaimError(f"#{number}", "", "a claim is a table of keys", file=file)
+        return Claim(f"#{number}", "", errors=(error,), file=file)
+    name = keys.get("id")
+    id_ = name if isinstance(name, str) and name else f"#{number}"
+    said = keys.get("kind")
+    kind = said if isinstance(said, str) else ""
+    found = [("id", "missing (a name for the claim)")] if id_ != name else []
+    found += faults(kind, keys)
+    found += [
+        (key, f"a backslash and a letter became one sign here{_QUOTES}") for key in keys if _eaten(keys[key])
+    ]
+    expect = keys.get("expect", "")
+    if expect not in ("", "holds", "fails"):
+        found.append(("expect", "write holds or fails"))
+    budget = keys.get("budget", int(DEFAULT_BUDGET))
+    usable = (
+        isinstance(budget, (int, Decimal)) and not isinstance(budget, bool) and MIN_BUDGET <= budget <= 3600
+    )
+    if not usable:
+        found.append(("budget", f"write a number of seconds from {MIN_BUDGET} to 3600"))
+    return Claim(
+        id_,
+        kind,
+        MappingProxyType(keys),
+        expect=str(expect),
+        budget=float(budget) if usable else DEFAULT_BUDGET,
+        errors=tuple(ClaimError(id_, key, reason, file=file) for key, reason in found),
+        file=file,
+    )

@@ -1,0 +1,68 @@
+"""Expression trees with their types: what SymPy gives back untyped, said once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.expression.symbols.magnitude import written
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["arguments", "replaced", "shown", "symbols_of"]
+
+
+def arguments(f: Expr) -> tuple[Expr, ...]:
+    """Return the arguments of an expression."""
+    return cast("tuple[Expr, ...]", f.args)
+
+
+def replaced(f: Expr, values: Mapping[Symbol, Expr] | Mapping[Expr, Expr]) -> Expr:
+    """Return f with subexpressions replaced all at once."""
+    return cast("Expr", f.xreplace(dict(values)))
+
+
+def shown(item: object) -> str:
+    """Return an expression as a sheet writes it: the derivative of V at the place q − X(t) as one by q.
+
+    What SymPy writes for the derivative of sign(u) at u = 0, where it has none, is left out.
+
+    Examples
+    --------
+    >>> q, t = sp.symbols("q t")
+    >>> V, X = sp.Function("V"), sp.Function("X")
+    >>> force = -V(q - X(t)).diff(q)
+    >>> print(force)
+    -Subs(Derivative(V(_xi_1), _xi_1), _xi_1, q - X(t))
+    >>> shown(force)
+    '-Derivative(V(q - X(t)), q)'
+    """
+    if not (isinstance(item, sp.Basic) and item.has(sp.Subs, sp.DiracDelta)):
+        return written(item)
+    off_the_kinks = item.replace(lambda e: isinstance(e, sp.DiracDelta), lambda _: sp.S.Zero)
+    return written(off_the_kinks.replace(lambda e: isinstance(e, sp.Subs), _by_a_symbol))
+
+
+def _by_a_symbol(there: sp.Subs) -> Expr:
+    """Return a derivative at a place as one by a symbol on which the place depends with slope ±1, if it does."""
+    derivative, places, values = there.args
+    if (
+        isinstance(derivative, sp.Derivative)
+        and len(places.args) == 1
+        and derivative.variables == places.args
+    ):
+        place = cast("Expr", values.args[0])
+        for s in symbols_of(place):
+            slope = place.diff(s)
+            if abs(slope) == 1 and not derivative.expr.has(s):
+                return slope * sp.Derivative(derivative.expr.xreplace({places.args[0]: place}), s)
+    return there
+
+
+def symbols_of(*expressions: Expr) -> list[Symbol]:
+    """Return the symbols of some expressions by name."""
+    found = {s for f in expressions for s in f.free_symbols if isinstance(s, Symbol)}
+    return sorted(found, key=lambda s: s.name)

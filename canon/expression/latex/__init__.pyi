@@ -1,0 +1,1 @@
+from .grammar import parse_latex as parse_latex

@@ -1,0 +1,127 @@
+r"""Derivatives written as fractions: ``\frac{\partial^2 V}{\partial x\partial y}``, ``\frac{d\theta}{dt}``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NoReturn
+
+from canon.expression.latex.pieces import Operator, Piece, Powered, items_of, mark_of, whole
+from canon.expression.symbols.symbol import Coordinate
+from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Tuple
+
+if TYPE_CHECKING:
+    from canon.expression.parse import Scope
+
+__all__ = ["Derivatives", "derivative"]
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """Reads the derivatives of one text.
+
+    Parameters
+    ----------
+    text
+        The whole LaTeX text, for errors.
+    scope
+        The declared names.
+    """
+
+    text: str
+    scope: Scope
+
+    def _refuse(self, column: int, reason: str, remedy: str) -> NoReturn:
+        raise LanguageError(self.text, column, reason, remedy)
+
+    def operator(self, above: Piece, below: Piece, column: int) -> Operator | None:
+        r"""Return the derivative that a fraction begins like, None where the fraction is a quotient.
+
+        Raises
+        ------
+        LanguageError
+            Where it could be either, or the orders above and below differ.
+        """
+        found = _variables(below)
+        if found is None:
+            return None
+        mark, variables = found
+        first = items_of(above)[0]
+        base, order = (first.base, whole(first.exponent)) if isinstance(first, Powered) else (first, 1)
+        same = mark_of(base) == mark and order == sum(order for _, order in variables)
+        if mark == "declared":
+            if same:
+                remedy = r"write \mathrm{d} for the derivative, or cancel d"
+                self._refuse(column, "d is declared, so this is a derivative or a quotient", remedy)
+            return None
+        if not same:
+            remedy = r"write \frac{\partial^2 V}{\partial x^2}"
+            self._refuse(column, "this is neither a quotient nor a derivative", remedy)
+        return Operator(mark == "d", variables, column)
+
+    def of(self, operator: Operator, operand: Node) -> Node:
+        """Return the derivative of an operand.
+
+        Raises
+        ------
+        LanguageError
+            For the total derivative with respect to the time of anything but a coordinate or a function of the
+            time alone, and for the derivative of a symbol.
+        """
+        time = self.scope.time.name
+        of_time = operator.total and any(name.text == time for name, _ in operator.variables)
+        if isinstance(operand, Name) and operand.text in self.scope.functions:
+            names = self.scope.functions[operand.text]
+            operand = Call(
+                operand.text, tuple(Name(name, 0, operand.column) for name in names), operand.column
+            )
+        if isinstance(operand, Name):
+            return self._rate(operator, operand, of_time=of_time)
+        arguments = self._arguments(operand)
+        if of_time and not (
+            len(arguments) == 1 and isinstance(arguments[0], Name) and arguments[0].text == time
+        ):
+            remedy = r"write it out with \dot x and \ddot x"
+            self._refuse(
+                operator.column, "the total derivative with respect to the time is not carried out", remedy
+            )
+        if operator.total and len(arguments) > 1:
+            self._refuse(operator.column, "the function has more than one argument", r"write \partial")
+        return derivative(operand, operator.variables, operator.column)
+
+    def _arguments(self, operand: Node) -> tuple[Node, ...]:
+        """Return the arguments of a declared function, none for any other operand."""
+        declared = isinstance(operand, Call) and operand.function in self.scope.functions
+        return operand.arguments if isinstance(operand, Call) and declared else ()
+
+    def _rate(self, operator: Operator, operand: Name, *, of_time: bool) -> Name:
+        r"""Return the θ̇ or θ̈ that ``\frac{d\theta}{dt}`` writes."""
+        order = sum(order for _, order in operator.variables)
+        coordinate = isinstance(self.scope.symbol(operand.text), Coordinate)
+        if not (of_time and coordinate and len(operator.variables) == 1 and order in (1, 2)):
+            name = operand.text
+            self._refuse(
+                operand.column, f"{name} is a symbol of its own, not a function", "declare it in functions"
+            )
+        return Name(operand.text + ("_dot", "_ddot")[order - 1], 0, operator.column)
+
+
+def derivative(operand: Node, variables: tuple[tuple[Name, int], ...], column: int) -> Node:
+    """Return the derivative with respect to variables, each with its order."""
+    orders = tuple(Tuple((name, Number(order, 1, name.column)), name.column) for name, order in variables)
+    return Call("Derivative", (operand, *orders), column)
+
+
+def _variables(below: Piece) -> tuple[str, tuple[tuple[Name, int], ...]] | None:
+    r"""Return the mark and the variables of ``\partial x^2\partial y``, None for any other denominator."""
+    items = items_of(below)
+    marks = {mark_of(item) for item in items[::2]}
+    mark = marks.pop()
+    if len(items) % 2 or marks or mark is None:
+        return None
+    variables: list[tuple[Name, int]] = []
+    for item in items[1::2]:
+        base, order = (item.base, whole(item.exponent)) if isinstance(item, Powered) else (item, 1)
+        if not isinstance(base, Name) or order is None:
+            return None
+        variables.append((base, order))
+    return mark, tuple(variables)

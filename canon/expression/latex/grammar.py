@@ -1,0 +1,273 @@
+r"""LaTeX formulas to the syntax tree of the expression language, each column that of the LaTeX text.
+
+Names are resolved while the text is cut into words (:mod:`canon.expression.latex.words`), an LALR(1) grammar
+finds the structure in linear time, and :mod:`canon.expression.latex.meaning` says what stands side by side means.
+Nothing is evaluated, and what a reader could take two ways is refused with what to write instead.
+
+Conventions
+-----------
+* ``a b`` is a product; ``mgl`` is m g l where these are declared and ``mgl`` is not.
+* A function without brackets takes the factors that follow it, up to the next sign, operator or function:
+  ``\sin 2\theta`` is sin(2θ), ``\sin\theta\cos\theta`` is sin(θ) cos(θ), ``\cos\omega t`` is cos(ω t). Only
+  numbers and parameters may stand before the last of these factors; ``\sin\theta\,x``, ``\sin\theta\dot\theta``,
+  ``\sin a(b+c)``, ``\sin\theta^2`` and ``\sin\theta/2`` are refused.
+* With brackets or braces it takes exactly these: ``\sin(a)b`` is sin(a) b, ``\sin(a)^2`` is sin(a)².
+* ``\sin^2 x`` is sin(x)², ``\sin^{-1}x`` the inverse function; ``\log`` is the natural logarithm.
+* Braces are not seen in print: ``{x^a}^b`` and ``\frac{a}{b}^2`` are refused.
+* ``a/b c`` is refused; ``\frac{d}{dt}`` is read of coordinates and of functions of the time only.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from lark import Lark, Token, Transformer_NonRecursive, UnexpectedToken
+from lark.exceptions import VisitError
+
+from canon.expression.latex.meaning import Meaning
+from canon.expression.latex.pieces import Group, Head, Piece, Powered, Run
+from canon.expression.latex.words import Word, Words, words_of
+from canon.expression.text.syntax import (
+    Call,
+    Comparison,
+    LanguageError,
+    Negative,
+    Node,
+    Number,
+    Power,
+    Product,
+    Sum,
+    Tuple,
+)
+
+if TYPE_CHECKING:
+    from lark import ParseTree
+
+    from canon.expression.parse import Scope
+
+__all__ = ["parse_latex"]
+
+_GRAMMAR = """
+start: sum (RELATION sum)*
+?sum: SIGN? product (SIGN product)*
+?product: run ((TIMES | SLASH) run)*
+?run: item+
+?item: atom | power | head
+power: atom CARET script
+head: HEAD (_UNDER script)? (CARET script)?
+?atom: ATOM | group | brace | bars | fraction | root
+?script: ATOM | brace | fraction | root
+?part: ATOM | brace
+group: LPAR sum (_COMMA sum)* _RPAR
+brace: LBRACE sum _RBRACE
+bars: LBAR sum _RBAR
+fraction: FRAC part part
+root: SQRT (_LINDEX sum _RINDEX)? part
+"""
+_RELATIONS = {
+    **dict.fromkeys(("<", "\\lt"), "<"), **dict.fromkeys((">", "\\gt"), ">"), "=": "=",
+    **dict.fromkeys(("\\le", "\\leq", "\\leqslant"), "<="), **dict.fromkeys(("\\ge", "\\geq", "\\geqslant"), ">="),
+    **dict.fromkeys(("\\ne", "\\neq"), "!="),
+}  # fmt: skip
+_SILENT = ("UNDER", "COMMA", "RPAR", "RBRACE", "RBAR", "LINDEX", "RINDEX")
+
+
+@cache
+def _parser() -> Lark:
+    terminals = (
+        "ATOM",
+        "HEAD",
+        "SIGN",
+        "TIMES",
+        "SLASH",
+        "RELATION",
+        "CARET",
+        "LPAR",
+        "LBRACE",
+        "LBAR",
+        "FRAC",
+        "SQRT",
+    )
+    declared = " ".join((*terminals, *(f"_{kind}" for kind in _SILENT)))
+    return Lark(f"{_GRAMMAR}\n%declare {declared}\n", parser="lalr", lexer="basic")
+
+
+def parse_latex(text: str, scope: Scope) -> Node:
+    r"""Return the syntax tree of one expression, condition or equation in LaTeX.
+
+    Parameters
+    ----------
+    text
+        The formula; it begins with ``$``, which need not be closed.
+    scope
+        The declared names; ``\theta_1`` is ``theta_1`` or ``theta1``, ``\varphi`` is ``varphi`` or ``phi``,
+        whichever is declared.
+
+    Raises
+    ------
+    LanguageError
+        With the column in the LaTeX text, the reason and a remedy.
+
+    Examples
+    --------
+    >>> from canon import coordinates, parameters
+    >>> from canon.expression.parse import Scope, parse_equation
+    >>> (theta,), (g, l) = coordinates("theta"), parameters("g l")
+    >>> scope = Scope({"theta": theta, "g": g, "l": l})
+    >>> formula = parse_equation(r"$\ddot\theta + \frac{g}{l}\sin\theta = 0$", scope)
+    >>> formula == parse_equation("theta_ddot + g/l*sin(theta)", scope)
+    True
+    >>> parse_equation(r"$\sin\theta\dot\theta = 0$", scope)
+    Traceback (most recent call last):
+        ...
+    canon.expression.text.tokens.LanguageError: column 12: does this factor still belong to the argument of sin?; ...
+    """
+    words = words_of(text, scope)
+    try:
+        return _Build(words, Meaning(text, scope, words.spaced)).transform(_structure(text, words))
+    except VisitError as error:
+        raise error.orig_exc from None
+
+
+def _structure(text: str, words: Words) -> ParseTree:
+    """Return the parse tree; each of its tokens holds the number of a word."""
+    state = _parser().parse_interactive("")
+    before: Word | None = None
+    for index, word in enumerate(words.words):
+        kind = f"_{word.kind}" if word.kind in _SILENT else word.kind
+        try:
+            state.feed_token(Token(kind, "", start_pos=index))
+        except UnexpectedToken:
+            raise _unexpected(text, before, word, words.end) from None
+        before = word
+    try:
+        return state.feed_eof()
+    except UnexpectedToken:
+        raise _unexpected(text, before, None, words.end) from None
+
+
+class _Build(Transformer_NonRecursive[Token, Any]):
+    """Builds the tree from the leaves up, without recursion."""
+
+    def __init__(self, words: Words, meaning: Meaning) -> None:
+        super().__init__(visit_tokens=True)
+        self.words = words.words
+        self.meaning = meaning
+
+    def __default_token__(self, token: Token) -> Any:
+        word = self.words[token.start_pos or 0]
+        return word if word.item is None else word.item
+
+    def start(self, children: list[Any]) -> Node:
+        nodes = tuple(self.meaning.node(child) for child in children[::2])
+        if len(nodes) == 1:
+            return nodes[0]
+        return Comparison(nodes, tuple(_RELATIONS[word.shown] for word in children[1::2]), nodes[0].column)
+
+    def sum(self, children: list[Any]) -> Node:
+        signed: list[Any] = children if isinstance(children[0], Word) else [None, *children]
+        terms: tuple[tuple[bool, Node], ...] = tuple(
+            (sign is not None and sign.shown != "+", self.meaning.node(term))
+            for sign, term in zip(signed[::2], signed[1::2], strict=True)
+        )
+        if terms[1:]:
+            return Sum(terms, children[0].column)
+        ((minus, node),) = terms
+        return Negative(node, children[0].column) if minus else node
+
+    def product(self, children: list[Any]) -> Node:
+        factors: list[tuple[bool, Node]] = []
+        signs: list[Word | None] = [None, *children[1::2], None]
+        for before, piece, after in zip(signs[:-1], children[::2], signs[1:], strict=True):
+            items = _items(piece)
+            divides = before is not None and before.kind == "SLASH"
+            found = self.meaning.factors(items)
+            if divides and before and len(found) > 1:
+                self.meaning.refuse(
+                    before.column, "does the quotient end after one factor?", r"write \frac{a}{b} or a/(b c)"
+                )
+            if after and after.kind == "SLASH" and self.meaning.ends_bare(items):
+                self.meaning.refuse(
+                    after.column, "does this divide the function or its argument?", r"write \frac{a}{b}"
+                )
+            factors += [(divides, node) for node in found]
+        return Product(tuple(factors), children[0].column)
+
+    def run(self, children: list[Any]) -> Run:
+        return Run(tuple(children), children[0].column)
+
+    def power(self, children: list[Any]) -> Powered:
+        base, _, exponent = children
+        return self.meaning.raised(base, self.meaning.node(exponent))
+
+    def head(self, children: list[Any]) -> Head:
+        function, *scripts = children
+        base = exponent = None
+        while scripts:
+            script = scripts.pop()
+            if scripts and isinstance(scripts[-1], Word):
+                scripts.pop()
+                exponent = self.meaning.node(script)
+            else:
+                base = self.meaning.node(script)
+        return Head(function, base, exponent, function.column)
+
+    def group(self, children: list[Any]) -> Group:
+        opening, *inner = children
+        if len(inner) == 1:
+            return Group(self.meaning.node(inner[0]), braces=False, column=opening.column)
+        if opening.shown != "(":
+            self.meaning.refuse(opening.column, "a bracket of two is not an expression", "write it out")
+        pair = Tuple(tuple(self.meaning.node(piece) for piece in inner), opening.column)
+        return Group(pair, braces=False, column=opening.column)
+
+    def brace(self, children: list[Any]) -> Group:
+        return Group(children[1], braces=True, column=children[0].column)
+
+    def bars(self, children: list[Any]) -> Node:
+        return Call("Abs", (self.meaning.node(children[1]),), children[0].column)
+
+    def fraction(self, children: list[Any]) -> Piece:
+        return self.meaning.fraction(children[1], children[2], children[0].column)
+
+    def root(self, children: list[Any]) -> Node:
+        column = children[0].column
+        radicand = self.meaning.node(children[-1])
+        index = self.meaning.node(children[1]) if len(children) == 3 else Number(2, 1, column)
+        one = (False, Number(1, 1, column))
+        return Power(radicand, Product((one, (True, index)), column), column)
+
+
+def _items(piece: Piece) -> tuple[Piece, ...]:
+    return piece.items if isinstance(piece, Run) else (piece,)
+
+
+def _unexpected(text: str, before: Word | None, word: Word | None, end: int) -> LanguageError:
+    """Return the error of a word that the grammar has no place for, in terms of what stands before it."""
+    column = word.column if word else end
+    last = before.kind if before else ""
+    kind = word.kind if word else ""
+    remedy = ""
+    if last in ("CARET", "UNDER") and kind == "SIGN":
+        reason, remedy = "LaTeX raises only the sign", "write braces, x^{-1}"
+    elif last in ("SIGN", "TIMES", "SLASH") and kind == "SIGN":
+        reason, remedy = "two signs in a row", "write brackets, a - (-b)"
+    elif kind == "CARET" and last not in ("SIGN", "TIMES", "SLASH", "RELATION", "LPAR", "LBRACE", ""):
+        reason, remedy = "a second exponent, or one of nothing", "write (x^a)^b or x^{a b}"
+    elif kind == "UNDER":
+        reason, remedy = "a subscript belongs directly after a name", "write x_1^2, q_{12}"
+    elif kind == "COMMA":
+        reason, remedy = "a comma separates arguments only", "write 0.5 for a decimal"
+    elif kind == "RELATION":
+        reason, remedy = f"{word.shown if word else ''} where an expression should be", ""
+    elif last in ("FRAC", "SQRT"):
+        reason, remedy = (
+            f"{before.shown if before else ''} needs its arguments",
+            r"write \frac{a}{b}, \sqrt{x}",
+        )
+    elif word is None or kind in ("RPAR", "RBRACE", "RBAR", "RINDEX"):
+        reason = "the formula ends too early" if word is None else f"something is missing before {word.shown}"
+    else:
+        reason = f"{word.shown} where a number, a name or a bracket should be"
+    return LanguageError(text, column, reason, remedy)

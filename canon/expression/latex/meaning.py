@@ -1,0 +1,360 @@
+r"""What LaTeX factors side by side mean: products, applied functions, derivatives.
+
+The conventions are those of :mod:`canon.expression.latex.grammar`. Each piece is turned into a node once, so the work
+stays linear in the text.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, NoReturn
+
+from canon.expression.latex.derivatives import Derivatives, derivative
+from canon.expression.latex.names import Applied, Function, Mark
+from canon.expression.latex.pieces import (
+    Fraction,
+    Group,
+    Head,
+    Operator,
+    Piece,
+    Powered,
+    Run,
+    is_function,
+    is_minus_one,
+    items_of,
+    names_in,
+    raised,
+    unbraced,
+)
+from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
+from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Power, Product, Tuple
+
+if TYPE_CHECKING:
+    from canon.expression.parse import Scope
+
+__all__ = ["Meaning"]
+
+_INVERSE = {"sin": "asin", "cos": "acos", "tan": "atan", "cot": "acot", "sinh": "asinh", "cosh": "acosh",
+            "tanh": "atanh"}  # fmt: skip
+_MAX_CHAIN = 4
+r"""Most functions in a row without brackets, ``\ln\sin x``."""
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """Gives pieces their meaning.
+
+    Parameters
+    ----------
+    text
+        The whole LaTeX text, for errors.
+    scope
+        The declared names.
+    spaced
+        Columns that a visible space stands before.
+    """
+
+    text: str
+    scope: Scope
+    spaced: frozenset[int]
+
+    @cached_property
+    def derivatives(self) -> Derivatives:
+        """What reads the derivatives of this text."""
+        return Derivatives(self.text, self.scope)
+
+    def refuse(self, column: int, reason: str, remedy: str = "") -> NoReturn:
+        """Raise the error of this text."""
+        raise LanguageError(self.text, column, reason, remedy)
+
+    def node(self, piece: Piece) -> Node:
+        """Return the syntax tree of a piece."""
+        match piece:
+            case Group():
+                return self.node(piece.inner)
+            case Powered():
+                return self._power(piece)
+            case Run():
+                factors = self.factors(piece.items)
+                if len(factors) == 1:
+                    return factors[0]
+                return Product(tuple((False, factor) for factor in factors), piece.column)
+            case Fraction():
+                return piece.node
+            case Head() | Operator() | Mark():
+                return self.factors((piece,))[0]
+            case _:
+                return piece
+
+    def _power(self, piece: Powered) -> Node:
+        if isinstance(piece.base, Mark):
+            if piece.base.text == "e":
+                return Call("exp", (piece.exponent,), piece.column)
+            self._stray(piece.base)
+        return Power(self.node(piece.base), piece.exponent, piece.column)
+
+    def factors(self, items: tuple[Piece, ...]) -> list[Node]:
+        """Return the factors of pieces side by side."""
+        for left, right in pairwise(items):
+            self._neighbours(left, right)
+        found: list[Node] = []
+        at = 0
+        while at < len(items):
+            item = items[at]
+            match item:
+                case Head(function=Function() as function):
+                    node, at = self._application(items, at, item, function)
+                case Head(function=Applied() as function):
+                    node, at = self._declared(items, at, item, function)
+                case Operator():
+                    node, at = self._operated(items, at, item)
+                case Mark():
+                    node, at = self._varied(items, at, item), at + 2
+                case _:
+                    node, at = self.node(item), at + 1
+            found.append(node)
+        return found
+
+    def _neighbours(self, left: Piece, right: Piece) -> None:
+        """Refuse two factors that side by side look like something else."""
+        column = right.column
+        hidden = isinstance(left, Group) and not left.printed
+        left, right = unbraced(left), unbraced(right)
+        first = unbraced(right.base) if isinstance(right, Powered) else right
+        if isinstance(first, Number) and (hidden or isinstance(left, Name | Number)):
+            self.refuse(column, "a number after a factor", r"write x_2, x^2, 2x or \cdot, whichever is meant")
+        if isinstance(left, Number) and isinstance(first, Fraction) and first.numbers:
+            self.refuse(
+                column, "a number before a fraction of numbers: a product or a mixed number?", r"put \cdot"
+            )
+        inner = first.inner if isinstance(left, Name) and isinstance(first, Group) else None
+        if isinstance(left, Name) and isinstance(inner, Tuple | Number | Name):
+            symbol = self.scope.symbol(left.text)
+            time = isinstance(inner, Name) and inner.text == self.scope.time.name
+            if time and isinstance(symbol, Coordinate | Rate):
+                reason = f"{left.text} is a symbol here, its dependence on the time is understood"
+                self.refuse(column, reason, "leave the argument out")
+            reason = f"{left.text} is a declared symbol and can't be applied to anything"
+            self.refuse(column, reason, "leave the brackets out for a product, or declare it in functions")
+
+    def raised(self, base: Piece, exponent: Node) -> Powered:
+        """Return a factor with its exponent, where print shows what is raised."""
+        hidden = (
+            isinstance(base, Group) and not base.printed and not isinstance(unbraced(base), Name | Number)
+        )
+        if hidden or isinstance(base, Fraction):
+            self.refuse(
+                base.column, "print does not show what is raised here", r"write \left( \right) around it"
+            )
+        return Powered(base, exponent, base.column)
+
+    def _application(
+        self, items: tuple[Piece, ...], at: int, head: Head, function: Function, chain: int = 1
+    ) -> tuple[Node, int]:
+        """Return a built-in function with its argument, and where that ends."""
+        following = items[at + 1] if at + 1 < len(items) else None
+        after: Node | None = None
+        if following is None:
+            self.refuse(head.column, f"{function.name} needs its argument")
+        if isinstance(following, Group):
+            argument, end = self.node(following), at + 2
+        elif isinstance(following, Powered) and isinstance(following.base, Group):
+            if not following.base.printed:
+                self._ambiguous_power(following, function)
+            argument, after, end = self.node(following.base), following.exponent, at + 2
+        elif isinstance(following, Head) and isinstance(following.function, Function):
+            if chain >= _MAX_CHAIN:
+                self.refuse(
+                    following.column, f"more than {_MAX_CHAIN} functions without brackets", "write brackets"
+                )
+            argument, end = self._application(items, at + 1, following, following.function, chain + 1)
+        else:
+            argument, end = self._bare(items, at, function)
+        return self._called(head, function, argument, after), end
+
+    def _bare(self, items: tuple[Piece, ...], at: int, function: Function) -> tuple[Node, int]:
+        """Return the argument that a function without brackets takes, and where it ends."""
+        end = at + 1
+        taken: list[Node] = []
+        numeric, moving = True, False
+        while end < len(items) and not is_function(items[end]) and not isinstance(items[end], Operator):
+            item = items[end]
+            if not numeric and (moving or item.column in self.spaced or not self._still_argument(item)):
+                self.refuse(
+                    item.column,
+                    f"does this factor still belong to the argument of {function.name}?",
+                    f"write \\{function.name}(x) y or \\{function.name}(x y), or this factor first",
+                )
+            if isinstance(item, Head) and isinstance(item.function, Applied):
+                node, end = self._declared(items, end, item, item.function)
+            elif isinstance(item, Mark):
+                node, end = self._varied(items, end, item), end + 2
+            else:
+                node, end = self.node(item), end + 1
+            taken.append(node)
+            names = {name.text for name in names_in(node)}
+            numeric = numeric and all(name == "pi" and self.scope.symbol(name) is None for name in names)
+            moving = moving or any(self._moves(name) for name in names)
+        if not taken:
+            self.refuse(items[at].column, f"{function.name} needs its argument")
+        last = items[end - 1]
+        if isinstance(last, Powered) and not isinstance(last.base, Number | Mark):
+            self._ambiguous_power(last, function)
+        if numeric and end < len(items):
+            self.refuse(
+                items[end].column,
+                f"does this still belong to the argument of {function.name}?",
+                "write brackets",
+            )
+        if len(taken) == 1:
+            return taken[0], end
+        return Product(tuple((False, node) for node in taken), taken[0].column), end
+
+    def _still_argument(self, item: Piece) -> bool:
+        """Whether a factor after a parameter continues an argument: a name, not a rate."""
+        base = item.base if isinstance(item, Powered) else item
+        return isinstance(base, Name) and not isinstance(self.scope.symbol(base.text), Rate)
+
+    def _moves(self, name: str) -> bool:
+        symbol = self.scope.symbol(name)
+        return (
+            symbol == self.scope.time
+            or name in self.scope.functions
+            or isinstance(symbol, Coordinate | Momentum | Rate)
+        )
+
+    def _ambiguous_power(self, piece: Powered, function: Function) -> NoReturn:
+        name = function.name
+        self.refuse(
+            piece.column, f"is {name} squared, or its argument?", f"write \\{name}^2(x) or \\{name}(x^2)"
+        )
+
+    def ends_bare(self, items: tuple[Piece, ...]) -> bool:
+        """Whether pieces side by side end with an argument without brackets."""
+        heads = [at for at, item in enumerate(items) if is_function(item)]
+        if not heads or heads[-1] + 1 == len(items):
+            return False
+        argument = items[heads[-1] + 1]
+        return not isinstance(argument.base if isinstance(argument, Powered) else argument, Group)
+
+    def _called(self, head: Head, function: Function, argument: Node, after: Node | None) -> Node:
+        r"""Return a built-in function of its argument, raised as ``\sin^2`` or after the brackets."""
+        name, column = function.name, head.column
+        arguments = argument.items if isinstance(argument, Tuple) else (argument,)
+        if head.base is not None:
+            if name == "log":
+                arguments = (*arguments, head.base)
+            elif name == "atan" and isinstance(head.base, Number) and head.base.numerator == 2:
+                name = "atan2"
+            else:
+                self.refuse(head.column, f"{name} takes no subscript")
+        exponent = head.exponent
+        if exponent is not None and after is not None:
+            self.refuse(after.column, f"two exponents of {name}", "write one")
+        inverse = is_minus_one(exponent)
+        if inverse and name not in _INVERSE:
+            self.refuse(
+                column,
+                f"the inverse of {name}, or its reciprocal?",
+                f"write the inverse out, or \\frac{{1}}{{{name}}}",
+            )
+        if inverse:
+            return Call(_INVERSE[name], arguments, column)
+        node: Node = Call("tanh" if name == "coth" else name, arguments, column)
+        if name == "coth":
+            node = Product(((False, Number(1, 1, column)), (True, node)), column)
+        return raised(node, exponent or after)
+
+    def _declared(self, items: tuple[Piece, ...], at: int, head: Head, function: Applied) -> tuple[Node, int]:
+        """Return a declared function with its arguments, and where they end."""
+        if head.base is not None or is_minus_one(head.exponent):
+            self.refuse(
+                head.column, f"{function.name} takes no subscript and no inverse", f"write {function.name}(…)"
+            )
+        following = items[at + 1] if at + 1 < len(items) else None
+        group = following.base if isinstance(following, Powered) else following
+        if not (isinstance(group, Group) and group.printed):
+            if not function.order:
+                return raised(Name(function.name, 0, head.column), head.exponent), at + 1
+            names = self.scope.functions[function.name]
+            arguments: tuple[Node, ...] = tuple(Name(name, 0, head.column) for name in names)
+            return raised(self._rate(function, arguments), head.exponent), at + 1
+        inner = self.node(group)
+        arguments = inner.items if isinstance(inner, Tuple) else (inner,)
+        after = following.exponent if isinstance(following, Powered) else None
+        if head.exponent is not None and after is not None:
+            self.refuse(after.column, f"two exponents of {function.name}", "write one")
+        return raised(self._rate(function, arguments), head.exponent or after), at + 2
+
+    def _rate(self, function: Applied, arguments: tuple[Node, ...]) -> Node:
+        r"""Return f(x), its derivative ``f'(x)``, or ``\dot f`` of a function of the time."""
+        column = function.column
+        call = Call(function.name, arguments, column)
+        if not function.order:
+            return call
+        variable = arguments[0]
+        if len(arguments) > 1 or not isinstance(variable, Name):
+            self.refuse(
+                column,
+                f"the derivative of {function.name} with respect to what?",
+                rf"write \frac{{\partial {function.name}}}{{\partial x}}",
+            )
+        if function.dotted and variable.text != self.scope.time.name:
+            self.refuse(
+                column,
+                f"{function.name} is not a function of the time alone",
+                f"write {function.name}'(x)\\dot x",
+            )
+        return derivative(call, ((variable, function.order),), column)
+
+    def _operated(self, items: tuple[Piece, ...], at: int, operator: Operator) -> tuple[Node, int]:
+        """Return the derivative of what follows an operator such as d/dx."""
+        following = items[at + 1] if at + 1 < len(items) else None
+        if (
+            isinstance(following, Head)
+            and isinstance(following.function, Applied)
+            and following.exponent is None
+        ):
+            operand, end = self._declared(items, at + 1, following, following.function)
+            if not isinstance(operand, Power):
+                return self.derivatives.of(operator, operand), end
+        if isinstance(following, Group):
+            return self.derivatives.of(operator, self.node(following)), at + 2
+        return self.refuse(
+            operator.column,
+            "the derivative of what?",
+            r"write \frac{\partial V}{\partial x}, or what it acts on in brackets",
+        )
+
+    def _varied(self, items: tuple[Piece, ...], at: int, mark: Mark) -> Node:
+        r"""Return the declared ``d_x`` or ``delta_x`` that ``dx`` or ``\delta x`` writes."""
+        following = items[at + 1] if at + 1 < len(items) else None
+        if isinstance(following, Name) and mark.text in ("d", "delta"):
+            name = f"{mark.text}_{following.text}"
+            if self.scope.symbol(name) is not None:
+                return Name(name, 0, mark.column)
+        return self._stray(mark)
+
+    def _stray(self, mark: Mark) -> NoReturn:
+        if mark.text == "e":
+            self.refuse(mark.column, "e is not declared", r"write e^{1} or \exp(1) for Euler's number")
+        if mark.text == "partial":
+            self.refuse(
+                mark.column, "a partial derivative is not complete", r"write \frac{\partial V}{\partial x}"
+            )
+        shown = {"d": "d", "delta": r"\delta"}[mark.text]
+        self.refuse(mark.column, f"{shown} is not declared", "a derivative is written \\frac{dV}{dx}")
+
+    def fraction(self, above: Piece, below: Piece, column: int) -> Piece:
+        """Return a quotient, or the derivative that it spells."""
+        operator = self.derivatives.operator(above, below, column)
+        if operator is not None:
+            operand = items_of(above)[1:]
+            if not operand:
+                return operator
+            return self.derivatives.of(operator, self.node(Run(operand, operand[0].column)))
+        numerator, denominator = self.node(above), self.node(below)
+        numbers = isinstance(numerator, Number) and isinstance(denominator, Number)
+        return Fraction(Product(((False, numerator), (True, denominator)), column), numbers, column)

@@ -1,0 +1,264 @@
+r"""The names of LaTeX: how ``\dot\theta_1``, ``mgl`` or ``p_{\varphi}`` become declared names.
+
+Only declared names are ever read. A run of letters is the name it spells as a whole; otherwise it is a
+product of declared names (``mgl`` is m g l), and a run that splits in two ways is refused.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import TYPE_CHECKING, NoReturn, TypeAlias
+
+from canon.expression.text.syntax import LanguageError, Name, Number
+
+if TYPE_CHECKING:
+    from canon.expression.parse import Scope
+
+__all__ = ["FUNCTIONS", "Applied", "Function", "Item", "Mark", "Names", "Pieces", "spellings", "stems"]
+
+FUNCTIONS = {
+    **{name: name for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "coth", "exp")},
+    "ln": "log", "log": "log", "max": "Max", "min": "Min",
+    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arccot": "acot",
+    "arsinh": "asinh", "arcosh": "acosh", "artanh": "atanh",
+    "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh", "sgn": "sign",
+    **{name: name for name in ("asin", "acos", "atan", "acot", "asinh", "acosh", "atanh", "sign", "LambertW")},
+}  # fmt: skip
+r"""What ``\sin``, ``\operatorname{arsinh}``, … are called in the plain language."""
+
+_GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu",
+          "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta",
+          "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi", "Psi", "Omega", "hbar")  # fmt: skip
+_VARIANTS = {f"var{name}": name for name in ("epsilon", "theta", "kappa", "pi", "rho", "sigma", "phi")}
+_RATES = ("", "_dot", "_ddot")
+_MAX_RUN = 100
+"""Most letters in a row; more are no product anyone wrote, and splitting them would cost their square."""
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    r"""The name of a built-in function, ``\sin``, before its argument is known."""
+
+    name: str
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Applied:
+    """The name of a declared function; ``order`` counts its primes or dots."""
+
+    name: str
+    order: int
+    dotted: bool
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A letter that means nothing alone: the d, partial or delta of a differential, Euler's e."""
+
+    text: str
+    column: int
+
+
+Item: TypeAlias = Name | Number | Function | Applied | Mark
+Pieces: TypeAlias = tuple[tuple[str, ...], ...]
+"""A subscript piece by piece, each with its possible spellings."""
+
+
+def stems(command: str) -> tuple[str, ...]:
+    r"""Return how a letter's command may be declared, best first; empty for any other command.
+
+    Examples
+    --------
+    >>> stems("varphi"), stems("theta"), stems("frac")
+    (('varphi', 'phi'), ('theta',), ())
+    """
+    if command in _VARIANTS:
+        return (command, _VARIANTS[command])
+    if command == "lambda":
+        return ("lambda", "lamda")
+    if command == "ell":
+        return ("ell", "l")
+    return (command,) if command in _GREEK else ()
+
+
+@dataclass(frozen=True)
+class Names:
+    """Looks spelled names up in a scope.
+
+    Parameters
+    ----------
+    text
+        The whole LaTeX text, for errors.
+    scope
+        The declared names.
+    """
+
+    text: str
+    scope: Scope
+
+    @cached_property
+    def longest(self) -> int:
+        """Length of the longest declared name."""
+        return max(map(len, (*self.scope.names, *self.scope.functions, self.scope.time.name)))
+
+    def declares(self, name: str) -> bool:
+        """Whether a name is declared, as a symbol or a function."""
+        return name in self.scope.functions or self.scope.symbol(name) is not None
+
+    def spelled(
+        self, stems: tuple[str, ...], pieces: Pieces, order: int, column: int, *, dotted: bool = False
+    ) -> Name | Applied | None:
+        """Return the one declared name that stem, subscript and rate can mean, None if there is none.
+
+        Raises
+        ------
+        LanguageError
+            Where two declared names, such as ``theta1`` and ``theta_1``, would be written alike.
+        """
+        for stem in stems:
+            found = [name for name in spellings(stem, pieces) if self._has_rate(name, order)]
+            if len(found) > 1:
+                self._refuse(
+                    column, f"this could be {' or '.join(found)}; both are declared", "rename one of them"
+                )
+            if found and found[0] in self.scope.functions:
+                return Applied(found[0], order, dotted, column)
+            if found:
+                return Name(found[0] + _RATES[order], 0, column)
+        return None
+
+    def _has_rate(self, name: str, order: int) -> bool:
+        if name in self.scope.functions:
+            return True
+        return order < len(_RATES) and self.scope.symbol(name + _RATES[order]) is not None
+
+    def run(self, letters: str, column: int, pieces: Pieces, order: int, *, powered: bool) -> list[Item]:
+        """Return the declared names of a run of letters; subscript and rate belong to the last of them.
+
+        Parameters
+        ----------
+        letters
+            Letters and digits as they stand, beginning with a letter.
+        column
+            Where they begin.
+        pieces, order
+            Subscript and rate of the last name.
+        powered
+            Whether ``^`` follows, which makes an undeclared last ``e`` Euler's number.
+
+        Raises
+        ------
+        LanguageError
+            Where no split into declared names exists, or more than one.
+        """
+        if len(letters) > _MAX_RUN:
+            self._refuse(column, f"more than {_MAX_RUN} letters in a row", "put spaces between the names")
+        whole = self.spelled((letters,), pieces, order, column) or self._mark(letters, 0, column)
+        if whole is not None:
+            return [whole]
+        if letters in FUNCTIONS:
+            self._refuse(column, f"{letters} is not declared", f"write \\{letters} for the function")
+        splits = self._splits(letters, column)
+        ends = self._ends(letters, column, pieces, order, splits, powered=powered)
+        if not ends:
+            self._unknown(letters, column, max(i for i, s in enumerate(splits) if s), pieces, order)
+        ways = [[*split, end] for start, end in ends for split in splits[start]]
+        if len(ways) > 1:
+            shown = " and as ".join(" ".join(_shown(item) for item in way) for way in ways[:2])
+            self._refuse(column, f"{letters} can be read as {shown}", "put spaces between the names")
+        return ways[0]
+
+    def _splits(self, letters: str, column: int) -> list[list[list[Item]]]:
+        """Return for each beginning of the run at most two ways to split it into declared names."""
+        splits: list[list[list[Item]]] = [[[]]]
+        for end in range(1, len(letters)):
+            ways: list[list[Item]] = []
+            for start in range(max(0, end - self.longest), end):
+                if not splits[start] or len(ways) > 1:
+                    continue
+                part = letters[start:end]
+                item = self.spelled((part,), (), 0, column + start)
+                item = item or (self._mark(part, start, column) if part == "d" else None)
+                if item is not None:
+                    ways += [[*way, item] for way in splits[start]]
+            splits.append(ways[:2])
+        return splits
+
+    def _ends(
+        self,
+        letters: str,
+        column: int,
+        pieces: Pieces,
+        order: int,
+        splits: list[list[list[Item]]],
+        *,
+        powered: bool,
+    ) -> list[tuple[int, Item]]:
+        """Return the names that can end the run, each with where it starts."""
+        found: list[tuple[int, Item]] = []
+        for start in range(max(1, len(letters) - self.longest), len(letters)):
+            if not splits[start]:
+                continue
+            item: Item | None = self.spelled((letters[start:],), pieces, order, column + start)
+            if item is None and letters[start:] == "e" and powered and not pieces and not order:
+                item = Mark("e", column + start)
+            if item is not None:
+                found.append((start, item))
+        return found
+
+    def _mark(self, part: str, start: int, column: int) -> Mark | None:
+        """Return the d of a differential, which begins a run, or a lone e, where they are not declared."""
+        if start == 0 and part in ("d", "e") and not self.declares(part):
+            return Mark(part, column)
+        return None
+
+    def _unknown(self, letters: str, column: int, start: int, pieces: Pieces, order: int) -> NoReturn:
+        rest = letters[start:]
+        if rest[0].isdigit():
+            self._refuse(column + start, "a number after a name", "write x_2, x^2 or 2x, whichever is meant")
+        name = spellings(rest, pieces)[0]
+        if self.spelled((rest,), pieces, 0, column + start) and order:
+            self.no_rate(name, column + start)
+        function = next((f for f in sorted(FUNCTIONS, key=len, reverse=True) if rest.startswith(f)), None)
+        if function:
+            remedy = f"write \\{function} for the function"
+        elif rest in ("i", "j"):
+            remedy = r"write \mathrm{i} for the imaginary unit"
+        elif rest == "pi":
+            remedy = r"write \pi"
+        else:
+            remedy = self.scope.near(name)
+        self._refuse(column + start, f"{name} is not declared", remedy)
+
+    def no_rate(self, name: str, column: int) -> NoReturn:
+        """Refuse the dot or prime of what is not a coordinate."""
+        self._refuse(
+            column,
+            f"{name} has no such rate here",
+            "one or two dots or primes belong to a coordinate, or to a declared function",
+        )
+
+    def _refuse(self, column: int, reason: str, remedy: str) -> NoReturn:
+        raise LanguageError(self.text, column, reason, remedy)
+
+
+def spellings(stem: str, pieces: Pieces) -> tuple[str, ...]:
+    """Return ``theta_1`` and ``theta1``, and for a subscript of several pieces ``q_1_2`` too."""
+    if not pieces:
+        return (stem,)
+    return tuple(
+        dict.fromkeys(
+            f"{stem}{gap}{joint.join(choice)}"
+            for choice in product(*pieces)
+            for gap in ("_", "")
+            for joint in ("", "_")
+        )
+    )
+
+
+def _shown(item: Item) -> str:
+    return item.text if isinstance(item, Name | Mark) else getattr(item, "name", "")

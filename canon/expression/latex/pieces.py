@@ -1,0 +1,155 @@
+"""The pieces of a LaTeX formula: factors before it is known how they hang together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from canon.expression.latex.names import Applied, Function, Mark
+from canon.expression.text.syntax import (
+    Call,
+    Comparison,
+    Name,
+    Negative,
+    Node,
+    Number,
+    Power,
+    Product,
+    Sum,
+    Tuple,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = [
+    "Fraction", "Group", "Head", "Operator", "Piece", "Powered", "Run", "is_function", "is_minus_one",
+    "items_of", "mark_of", "names_in", "raised", "unbraced", "whole",
+]  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """What stands in brackets, or in braces, which are not seen in print."""
+
+    inner: Piece
+    braces: bool
+    column: int
+
+    @property
+    def printed(self) -> bool:
+        """Whether brackets are seen in print."""
+        return not self.braces or (isinstance(self.inner, Group) and self.inner.printed)
+
+
+@dataclass(frozen=True, slots=True)
+class Powered:
+    """A factor with an exponent."""
+
+    base: Piece
+    exponent: Node
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    r"""A function before its argument is known, with the exponent of ``\sin^2`` and the base of ``\log_2``."""
+
+    function: Function | Applied
+    base: Node | None
+    exponent: Node | None
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Fraction:
+    """A fraction; ``numbers`` says whether it is one of two numbers."""
+
+    node: Product
+    numbers: bool
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    r"""A derivative before its operand is known, ``\frac{\partial}{\partial x}``."""
+
+    total: bool
+    variables: tuple[tuple[Name, int], ...]
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Factors side by side."""
+
+    items: tuple[Piece, ...]
+    column: int
+
+
+Piece: TypeAlias = Node | Group | Powered | Head | Fraction | Operator | Run | Mark
+
+
+def is_function(piece: Piece) -> bool:
+    r"""Whether a piece is a built-in function that waits for its argument."""
+    return isinstance(piece, Head) and isinstance(piece.function, Function)
+
+
+def is_minus_one(exponent: Node | None) -> bool:
+    """Whether an exponent is the −1 of an inverse function."""
+    return isinstance(exponent, Negative) and whole(exponent.operand) == 1
+
+
+def whole(node: Node) -> int | None:
+    """Return the whole number that a node is, None for any other node."""
+    return node.numerator if isinstance(node, Number) and node.denominator == 1 else None
+
+
+def raised(node: Node, exponent: Node | None) -> Node:
+    """Return a node raised to an exponent, if there is one."""
+    return node if exponent is None else Power(node, exponent, node.column)
+
+
+def unbraced(piece: Piece) -> Piece:
+    """Return what stands in braces, which are not seen in print."""
+    while isinstance(piece, Group) and piece.braces:
+        piece = piece.inner
+    return piece
+
+
+def items_of(piece: Piece) -> tuple[Piece, ...]:
+    """Return what stands side by side in a piece, seen through braces."""
+    piece = unbraced(piece)
+    return piece.items if isinstance(piece, Run) else (piece,)
+
+
+def mark_of(piece: Piece) -> str | None:
+    """Return ``d`` or ``partial``, and ``declared`` for the d of a declared symbol."""
+    if isinstance(piece, Mark) and piece.text in ("d", "partial"):
+        return piece.text
+    return "declared" if isinstance(piece, Name) and piece.text == "d" else None
+
+
+def names_in(node: Node) -> Iterator[Name]:
+    """Yield the names and the called functions of a tree."""
+    waiting: list[Node] = [node]
+    while waiting:
+        found = waiting.pop()
+        match found:
+            case Name():
+                yield found
+            case Call():
+                yield Name(found.function, 0, found.column)
+                waiting += found.arguments
+            case Sum() | Product():
+                waiting += [part for _, part in (found.terms if isinstance(found, Sum) else found.factors)]
+            case Power():
+                waiting += (found.base, found.exponent)
+            case Negative():
+                waiting.append(found.operand)
+            case Tuple():
+                waiting += found.items
+            case Comparison():
+                waiting += found.operands
+            case Number():
+                pass

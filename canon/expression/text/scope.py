@@ -1,0 +1,77 @@
+"""The names that an expression may use, and what each of them means."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from canon.expression.symbols.symbol import Coordinate, acceleration, time, velocity
+from canon.expression.text.juxtaposition import split
+from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from sympy import Symbol
+
+__all__ = ["Scope"]
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The names an expression may use.
+
+    A declared name overrides any built-in meaning. Each :class:`Coordinate` brings its rates along:
+    ``theta_dot`` and ``theta_ddot``, or ``theta'`` and ``theta''``.
+
+    Parameters
+    ----------
+    names
+        Symbol of each declared name.
+    functions
+        Arbitrary smooth functions: the names of the arguments each was declared with.
+    time
+        The symbol of the time.
+    signs
+        SymPy assumptions on the values of declared functions, where they are more than real.
+    implicit
+        Whether factors may stand side by side, ``2 m g``, as :mod:`canon.expression.text.juxtaposition` reads them.
+
+    Examples
+    --------
+    >>> from canon import coordinates, parse_expression
+    >>> (theta,) = coordinates("theta")
+    >>> parse_expression("theta'' + 0.5*sin(theta)", Scope({"theta": theta}))
+    theta_ddot + sin(theta)/2
+    """
+
+    names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
+    functions: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    time: Symbol = time
+    signs: Mapping[str, Mapping[str, bool]] = field(default_factory=lambda: MappingProxyType({}))
+    implicit: bool = False
+
+    def symbol(self, name: str) -> Symbol | None:
+        """Return the symbol of a declared name or of a coordinate's rate, None for any other name."""
+        if name in self.names:
+            return self.names[name]
+        if name == self.time.name:
+            return self.time
+        for ending, rate in (("_ddot", acceleration), ("_dot", velocity)):
+            base = self.names.get(name.removesuffix(ending))
+            if name.endswith(ending) and isinstance(base, Coordinate):
+                return rate(base)
+        return None
+
+    def near(self, name: str) -> str:
+        """Return a remedy for an unknown name."""
+        if name in OTHER_NAMES:
+            return f"write {OTHER_NAMES[name]}, or declare the name"
+        if self.implicit and (factors := split(name, self)):
+            return f"write {factors}"
+        known = [*self.names, self.time.name, *self.functions, *FUNCTIONS, *CONSTANTS]
+        known += [f"{n}_dot" for n, s in self.names.items() if isinstance(s, Coordinate)]
+        close = difflib.get_close_matches(name[:60], known, n=1, cutoff=0.75)
+        return f"is {close[0]} meant?" if close else "declare it in parameters or functions"

@@ -1,0 +1,109 @@
+r"""Units after numbers, which are passed over: ``9.81 m/s^2`` is read as 9.81, and a warning says so.
+
+A unit is passed over only where that changes nothing: it must be made of SI units without prefixes, in which every
+law of mechanics has the same form. It stands directly after a number, in square brackets, ``9.81 [m/s^2]``, or bare
+where it is one of mechanics, none of its letters is declared and factors can't stand side by side; in LaTeX
+upright, ``9.81\,\mathrm{m/s^2}``.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.expression.text.scope import Scope
+
+__all__ = ["Unit", "units", "without_units"]
+
+OF_MECHANICS = ("kg", "rad", "Hz", "Pa", "m", "s", "N", "J", "W")
+"""Units that may stand without brackets; the other letters are more often a quantity that was not declared."""
+COHERENT = (*OF_MECHANICS, "mol", "Wb", "A", "K", "C", "V", "F", "T", "H", "Ω")
+_NUMBER = re.compile(r"(?<![\w.\\])(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?(?![\w.])")
+_POWER = r"(?:[²³]|⁻[¹²³]|(?:\^|\*\*)(?:[-−]?[0-9]{1,2}|\([-−]?[0-9]{1,2}\)|\{[-−]?[0-9]{1,2}\}))?"
+
+
+def _symbol(names: tuple[str, ...]) -> str:
+    return rf"(?:{'|'.join(names)})(?![A-Za-z0-9_(']){_POWER}"
+
+
+_SYMBOL, _PLAIN = _symbol(COHERENT), _symbol(OF_MECHANICS)
+_BARE = re.compile(rf"[ ]?(?:{_PLAIN})(?:(?:[ ]?[*·/][ ]?|[ ]){_PLAIN})*")
+_INSIDE = re.compile(rf"\s*(?:1/)?\(?{_SYMBOL}(?:\s*(?:[*·/]|\s|\\cdot|\\,)\s*\(?{_SYMBOL}\)?)*\)?\s*")
+_BRACKET = re.compile(r"\s{0,3}\[([^\[\]]{0,80})\]")
+_UPRIGHT = re.compile(
+    r"(?:\\[,;: ]|~|\s){0,5}\\(?:mathrm|text|textrm|unit|si)\s?\{([^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4})\}"
+)
+_LETTERS = re.compile(r"[A-Za-zΩ]+")
+_REMEDY = f"SI units without prefixes can stand there: {', '.join(sorted(COHERENT))}; or leave it out"
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit in a text, and where it begins and ends there."""
+
+    text: str
+    start: int
+    end: int
+
+
+def units(text: str, scope: Scope) -> tuple[Unit, ...]:
+    r"""Return the units in a text that are passed over.
+
+    Raises
+    ------
+    LanguageError
+        Where square brackets after a number hold something else than a unit of the SI without prefix.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> [unit.text for unit in units("9.81 m/s^2 + 2 [kg*m]", Scope())]
+    ['m/s^2', 'kg*m']
+    """
+    return tuple(_units(text, scope)) if len(text) <= MAX_CHARACTERS else ()
+
+
+def _units(text: str, scope: Scope) -> Iterator[Unit]:
+    latex = text.lstrip().startswith("$")
+    for number in _NUMBER.finditer(text):
+        at = number.end()
+        if latex:
+            found = _UPRIGHT.match(text, at)
+            if found and _INSIDE.fullmatch(found.group(1)) and not _declares(found.group(1), scope):
+                yield Unit(found.group(1).strip(), at, found.end())
+        elif found := _BRACKET.match(text, at):
+            if not _INSIDE.fullmatch(found.group(1)):
+                reason = f"{found.group(1)[:40]!r} is not a unit that can be passed over"
+                raise LanguageError(text, found.start(1) + 1, reason, _REMEDY)
+            yield Unit(found.group(1).strip(), at, found.end())
+        elif not scope.implicit and (bare := _BARE.match(text, at)) and not _declares(bare.group(), scope):
+            yield Unit(bare.group().strip(), at, bare.end())
+
+
+def _declares(unit: str, scope: Scope) -> bool:
+    """Whether any letter of a unit is a declared name, so that it could be meant instead."""
+    names = _LETTERS.findall(unit)
+    return any(name in scope.functions or scope.symbol(name) is not None for name in names)
+
+
+def without_units(text: str, scope: Scope) -> str:
+    """Return a text with blanks in place of its units, so that every column stays where it was.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> without_units("9.81 m/s^2*2", Scope())
+    '9.81      *2'
+    """
+    pieces: list[str] = []
+    at = 0
+    for unit in units(text, scope):
+        pieces += (text[at : unit.start], " " * (unit.end - unit.start))
+        at = unit.end
+    return "".join((*pieces, text[at:]))

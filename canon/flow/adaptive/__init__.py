@@ -1,0 +1,5 @@
+"""Adaptive methods: heyoka's Taylor method and DOP853."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

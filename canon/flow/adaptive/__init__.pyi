@@ -1,0 +1,1 @@
+from .dop853 import dop853_motion as dop853_motion

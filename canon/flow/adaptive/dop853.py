@@ -1,0 +1,107 @@
+"""SciPy's adaptive Runge–Kutta method DOP853 on the compiled right-hand side."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
+from canon.flow.trajectory import Array, Samples
+from canon.kernel.llvm.loop import field_function
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from canon.flow.method.method import DOP853
+    from canon.flow.run.sampling_plan import Plan
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["dop853_motion"]
+
+
+def dop853_motion(
+    system: Equations,
+    states: Array,
+    plan: Plan,
+    method: DOP853,
+    progress: Callable[[float], None],
+    so_far: Samples | None = None,
+) -> Samples:
+    """Integrate orbits one after the other and sample them; a resumed motion chooses its first step anew.
+
+    Raises
+    ------
+    NonFiniteStateError
+        A state stops being finite, or the step size becomes too small.
+    """
+    times = plan.instants[0 if so_far is None else len(so_far.t) - 1 :]
+    orbits, done = states.shape[1], list[Samples]()
+    for y0 in states.T:
+
+        def report(fraction: float, before: int = len(done)) -> None:
+            progress((before + fraction) / orbits)
+
+        done.append(_dop853(system, y0, times, method, report))
+        if len(done[-1].t) < len(times) and orbits > 1:
+            raise KeyboardInterrupt("an ensemble under DOP853 is done orbit by orbit: nothing of it is kept")
+    return Samples(
+        t=done[0].t,
+        y=np.stack([each.y for each in done], axis=2),
+        carried=np.stack([each.carried for each in done], axis=2),
+        steps=sum(each.steps for each in done),
+        evaluations=sum(each.evaluations for each in done),
+        step=None,
+        cpu_seconds=sum(each.cpu_seconds for each in done),
+        compile_seconds=sum(each.compile_seconds for each in done),
+    )
+
+
+def _dop853(
+    system: Equations, y0: Array, times: Array, method: DOP853, progress: Callable[[float], None]
+) -> Samples:
+    """Integrate with SciPy's DOP853 on the compiled right-hand side."""
+    from scipy import integrate
+
+    field = field_function(system.program(system.rates))
+    x, out = np.empty(len(y0) + 1), np.empty(len(y0))
+
+    def rate(t: float, y: Array) -> Array:
+        x[:-1], x[-1] = y, t
+        field.call(x.ctypes.data, out.ctypes.data)
+        return out.copy()
+
+    started, steps, sample = time.thread_time(), 0, 1
+    tolerance = method.tolerance
+    integrator = integrate.DOP853(rate, times[0], y0, times[-1], rtol=max(tolerance, 2.3e-14), atol=tolerance)
+    states = np.empty((len(y0), len(times)))
+    states[:, 0] = y0
+    direction = np.sign(times[-1] - times[0])
+    try:
+        while sample < len(times):
+            before, kept = integrator.t, integrator.y.copy()
+            message = integrator.step()
+            steps += 1
+            if integrator.status == "failed" or not np.isfinite(integrator.y).all():
+                raise _lost(float(before), kept[system.rows], message)
+            reached = sample
+            while reached < len(times) and direction * (times[reached] - integrator.t) <= 0:
+                reached += 1
+            if reached > sample:
+                states[:, sample:reached] = integrator.dense_output()(times[sample:reached])
+                sample = reached
+            progress(float((integrator.t - times[0]) / (times[-1] - times[0])))
+    except KeyboardInterrupt:
+        times, states = times[:sample], states[:, :sample]
+    spent = time.thread_time() - started
+    return Samples(times, states, np.zeros_like(states), steps, integrator.nfev, None, spent, field.seconds)
+
+
+def _lost(t: float, state: Array, reason: object) -> NonFiniteStateError:
+    return NonFiniteStateError(
+        f"the motion can't be continued after {described(t, state)} ({reason}): a collision or the edge of H's "
+        "domain; stop earlier",
+        t,
+        state,
+    )

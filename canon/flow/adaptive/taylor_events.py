@@ -1,0 +1,203 @@
+"""Events as heyoka meets them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
+from canon.flow.run.event import Crossing
+from canon.flow.run.observables_along import values_in
+from canon.kernel.heyoka_bridge import heyoka_functions
+from canon.kernel.llvm.number_types import DOUBLE, DOUBLE_DOUBLE, EXTENDED
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.flow.fixed_step.loop_buffers import Array
+    from canon.flow.run.event import Prepared
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["Meeting"]
+
+_ROUNDING = 2.0**-9
+"""What part of the motion on leaving a zero rounding may make up."""
+
+
+class Meeting:
+    """Events of one orbit as heyoka's, and the crossings it tells of.
+
+    Parameters
+    ----------
+    system, events
+        The equations and what to look for.
+    precision, number
+        The precision's keyword and what makes its numbers.
+    forward
+        1 where time runs forward, −1 where it runs back.
+
+    Raises
+    ------
+    ValueError
+        An event changes the state in a precision in which that is not done.
+    """
+
+    def __init__(
+        self,
+        system: Equations,
+        events: Sequence[Prepared],
+        precision: str | int,
+        number: Callable[[Fraction], Any],
+        *,
+        forward: int,
+    ) -> None:
+        self.system, self.events, self.number, self.forward = system, events, number, forward
+        self.recorded = [event for event in events if event.event.action == "record"]
+        self.terminal = [event for event in events if event.event.action != "record"]
+        self.met: list[Crossing] = []
+        self.met_state: Any = None
+        self.wide = {"double": EXTENDED if EXTENDED.available() else DOUBLE}.get(
+            str(precision), DOUBLE_DOUBLE
+        )
+        if precision not in ("double", "extended") and any(event.jump for event in events):
+            raise ValueError(
+                f"precision={precision!r}: the state is changed at events in 'double' and 'extended' only"
+            )
+
+    def heyoka_events(self) -> dict[str, list[Any]]:
+        """Return what heyoka's integrator takes."""
+        import heyoka as hy
+
+        if not self.events:
+            return {}
+        kinds = {0: hy.event_direction.any, 1: hy.event_direction.positive, -1: hy.event_direction.negative}
+
+        def of(event: Prepared, make: Any, callback: Any) -> Any:
+            direction = kinds[event.event.direction * self.forward]
+            (function,) = heyoka_functions(self.system, [event.value], self.number)
+            kind = type(self.number(Fraction(0)))
+            return make(function, direction=direction, fp_type=kind, callback=callback)
+
+        return {
+            "nt_events": [of(e, hy.nt_event, self._recorder(e)) for e in self.recorded],
+            "t_events": [of(e, hy.t_event, self._stopper(e)) for e in self.terminal],
+        }
+
+    def event_of(self, outcome: Any) -> Prepared | None:
+        """Return the event at which the motion stands, if its outcome is one."""
+        place = -outcome.value - 1
+        return self.terminal[place] if 0 <= place < len(self.terminal) else None
+
+    def at_zero(self, t: float, high: Array, low: Array) -> bool:
+        """Return whether the motion starts where some event's function is exactly zero."""
+        return any(self._value(event, t, high[:, 0], low[:, 0]) == 0 for event in self.events)
+
+    def check_domain(self, t: Array, y: Array) -> None:
+        """Make sure that every event's function is finite along samples y of shape (2n, times).
+
+        heyoka looks for no zeros in a step in which a function is not finite.
+
+        Raises
+        ------
+        NonFiniteStateError
+            One is not: the motion has left its domain, and zeros may have been missed.
+        """
+        values = dict(zip(self.system.inputs, (*y, t), strict=True))
+        with np.errstate(all="ignore"):
+            found = self.system.graph.evaluate([event.value for event in self.events], values)
+        for event, value in zip(self.events, found, strict=True):
+            lost = ~np.isfinite(np.broadcast_to(value, t.shape))
+            if lost.any():
+                first = int(np.argmax(lost))
+                state = y[self.system.rows, first]
+                raise NonFiniteStateError(
+                    f"the function of {event.event} is not finite at {described(float(t[first]), state)}: it left its "
+                    "own domain there, and its zeros may have been missed",
+                    float(t[first]),
+                    state,
+                )
+
+    def crossed(
+        self, handled: Sequence[Prepared], t: Any, part: float, before: Any, after: Any
+    ) -> Prepared | None:
+        """Meet the first of the other events whose function changes its sign from one state to the next, if any.
+
+        Rounding may have put the first state a little beyond the zero already.
+        """
+        near = part * _ROUNDING
+        for event in self.events:
+            known = any(met.event is event.event and abs(met.t - float(t)) <= near for met in self.met[-9:])
+            if known or any(event is other for other in handled):
+                continue
+            old, new = (self._value(event, float(t), *_parts(state)) for state in (before, after))
+            if old * new < 0 or (new != 0 and abs(old) < abs(new) * _ROUNDING):
+                if not event.event.counts(new > 0):
+                    continue
+                changed = None if event.jump is None else self._changed(event.jump, float(t), before)
+                self.met_state = before if changed is None else changed
+                self._meet(event, float(t), before, self.forward if new > 0 else -self.forward, changed)
+                return event
+        return None
+
+    def check_left(self, event: Prepared, changed: Any, t: Any, after: Any) -> None:
+        """Make sure that a motion has left an event's zero to the side to which it was sent.
+
+        Raises
+        ------
+        NonFiniteStateError
+            It is back already: events pile up.
+        """
+        now = self._value(event, float(t), *_parts(after))
+        sent = self._value(event, float(t), *_parts(changed), rate=True) * self.forward
+        if now * sent <= 0:
+            y = changed.astype(np.float64)[self.system.rows]
+            raise NonFiniteStateError(
+                f"{event.event} is met again at once at {described(float(t), y)}: events pile up there; stop the "
+                "motion before",
+                float(t),
+                y,
+            )
+
+    def _value(self, event: Prepared, t: float, high: Array, low: Array, *, rate: bool = False) -> float:
+        node = event.rate if rate else event.value
+        found = values_in(self.wide, self.system, [node], t, high[:, np.newaxis], low[:, np.newaxis])
+        return float(found[0, 0].sum())
+
+    def _recorder(self, event: Prepared) -> Callable[[Any, Any, int], None]:
+        def recorded(integrator: Any, t: Any, sign: int) -> None:
+            integrator.update_d_output(t)
+            self._meet(event, float(t), integrator.d_output, sign, None)
+
+        return recorded
+
+    def _stopper(self, event: Prepared) -> Callable[[Any, int], bool]:
+        def met(integrator: Any, sign: int) -> bool:
+            t, state = float(integrator.time), integrator.state.copy()
+            after = None if event.jump is None else self._changed(event.jump, t, state)
+            self.met_state = after
+            self._meet(event, t, state, sign, after)
+            return False
+
+        return met
+
+    def _changed(self, jump: tuple[int, ...], t: float, state: Any) -> Any:
+        high, low = _parts(state)
+        found = values_in(self.wide, self.system, jump, t, high[:, np.newaxis], low[:, np.newaxis])[:, 0]
+        if not np.isfinite(found.astype(np.float64)).all():
+            y = high[self.system.rows]
+            raise NonFiniteStateError(f"the new state of an event is not finite at {described(t, y)}", t, y)
+        exact = [sum((Fraction(*x.as_integer_ratio()) for x in parts), Fraction(0)) for parts in found]
+        return np.array([self.number(x) for x in exact])
+
+    def _meet(self, event: Prepared, t: float, state: Any, sign: int, after: Any) -> None:
+        rows = self.system.rows
+        moved = None if after is None else after.astype(np.float64)[rows]
+        y = state.astype(np.float64)[rows]
+        self.met.append(Crossing(event.event, t, y, sign * self.forward > 0, moved))
+
+
+def _parts(state: Any) -> tuple[Array, Array]:
+    high = state.astype(np.float64)
+    return high, (state - high).astype(np.float64)

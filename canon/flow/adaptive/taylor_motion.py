@@ -1,0 +1,197 @@
+"""heyoka's Taylor method: orbits side by side, slices, samples, and the motion as a function of time."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.adaptive.taylor_events import Meeting
+from canon.flow.adaptive.taylor_orbit import Orbit, Slice, ends_of, orbits_of
+from canon.flow.trajectory import Samples
+from canon.kernel.heyoka_bridge import heyoka_number
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Sequence
+
+    from canon.flow.method.method import Taylor
+    from canon.flow.run.event import Prepared
+    from canon.flow.run.sampling_plan import Plan
+    from canon.flow.trajectory import Array
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["Polynomials", "taylor_motion"]
+
+
+def taylor_motion(
+    system: Equations,
+    states: tuple[Array, Array],
+    plan: Plan,
+    method: Taylor,
+    precision: str | int,
+    progress: Callable[[float], None],
+    so_far: Samples | None = None,
+    events: Sequence[Prepared] = (),
+    *,
+    dense: bool = False,
+) -> Samples:
+    """Integrate with heyoka, the orbits on threads, and evaluate the steps' own Taylor polynomials.
+
+    Parameters
+    ----------
+    system, method, precision
+        What to integrate and how.
+    states
+        The states to start from, as sums of two doubles, each of shape (2n, orbits).
+    plan
+        When to sample.
+    progress
+        Called between slices with the fraction done.
+    so_far
+        What was done before, where the motion is resumed.
+    events
+        Events, of one orbit.
+    dense
+        Whether to keep all polynomials.
+
+    Raises
+    ------
+    NonFiniteStateError
+        A state stops being finite, or the step size becomes too small.
+    """
+    compiling = time.perf_counter()
+    number = heyoka_number(precision)
+    first = 0 if so_far is None else len(so_far.t) - 1
+    grid = np.array([number(Fraction(t)) for t in plan.instants[first:].tolist()])
+    meeting = Meeting(system, events, precision, number, forward=plan.forward)
+    t0, span = Fraction(float(plan.instants[first])), grid[-1] - grid[0]
+    orbits = orbits_of(system, states, t0, method, number, meeting, span)
+    if so_far is not None:
+        for orbit, (state, clock) in zip(orbits, so_far.beyond, strict=True):
+            orbit.integrator.state[:], orbit.integrator.dtime = state, clock
+    compiled = time.perf_counter() - compiling
+    if events and so_far is None and meeting.at_zero(float(plan.instants[0]), *states):
+        orbits[0].leave([], (), dense=dense)
+    course = _Course(orbits, meeting, [_stacked(states, number)], ends_of(orbits))
+    course.follow(grid, plan, first, progress, system.rows, dense=dense)
+    found = np.concatenate(course.rows).transpose(1, 0, 2)
+    y = found.astype(np.float64)
+    exact = np.array([number(Fraction(x)) for x in y.ravel().tolist()]).reshape(y.shape)
+    t = plan.instants[first : first + y.shape[1]]
+    if course.stopped:
+        t = np.append(t[: y.shape[1] - 1], meeting.met[-1].t)
+    if events:
+        meeting.check_domain(t, y[:, :, 0])
+    return Samples(
+        t=t,
+        y=y,
+        carried=(found - exact).astype(np.float64),
+        steps=course.steps,
+        evaluations=course.steps,
+        step=None,
+        cpu_seconds=course.seconds,
+        compile_seconds=compiled,
+        beyond=course.beyond,
+        crossings=tuple(meeting.met),
+        dense=tuple(Polynomials(tuple(orbit.pieces), number) for orbit in orbits) if dense else (),
+    )
+
+
+def _stacked(states: tuple[Array, Array], number: Callable[[Fraction], Any]) -> Any:
+    """Return the states to start from in heyoka's numbers, shape (1, 2n, orbits)."""
+    pairs = zip(states[0].ravel().tolist(), states[1].ravel().tolist(), strict=True)
+    exact = [number(Fraction(high) + Fraction(low)) for high, low in pairs]
+    return np.array(exact).reshape(1, *states[0].shape)
+
+
+@dataclass(eq=False)
+class _Course:
+    """Orbits side by side on their way: what was reached by all of them, and what it cost."""
+
+    orbits: list[Orbit]
+    meeting: Meeting
+    rows: list[Any]
+    beyond: list[tuple[Any, Any]]
+    steps: int = 0
+    seconds: float = 0.0
+    stopped: bool = False
+
+    def follow(
+        self,
+        grid: Any,
+        plan: Plan,
+        first: int,
+        progress: Callable[[float], None],
+        rows: Sequence[int],
+        *,
+        dense: bool,
+    ) -> None:
+        """Go along the plan from a sample on; an interruption ends that where all orbits have arrived."""
+        met = 0
+        with _side_by_side(len(self.orbits)) as each_in_turn:
+            try:
+                for begin, end in plan.slices(first):
+                    part = grid[begin - first : end - first + 1]
+                    made = list(
+                        each_in_turn(lambda orbit, part=part: orbit.advance(part, dense=dense), self.orbits)
+                    )
+                    for orbit, each in zip(self.orbits, made, strict=True):
+                        if each.outcome is not None:
+                            raise orbit.lost(each.outcome, rows)
+                    self._add(made)
+                    met = len(self.meeting.met)
+                    if self.stopped:
+                        return
+                    progress(end / (len(plan.instants) - 1))
+            except KeyboardInterrupt:
+                del self.meeting.met[met:]
+
+    def _add(self, made: Sequence[Slice]) -> None:
+        self.stopped = any(each.stopped for each in made)
+        self.rows.append(np.stack([each.rows for each in made], axis=2))
+        self.steps += sum(each.steps for each in made)
+        self.seconds += sum(each.seconds for each in made)
+        self.beyond = ends_of(self.orbits)
+
+
+@contextlib.contextmanager
+def _side_by_side(
+    orbits: int,
+) -> Generator[Callable[[Callable[[Orbit], Slice], list[Orbit]], Iterable[Slice]]]:
+    """Yield a map over orbits: on threads where there are several, and in this one where there is one."""
+    if orbits == 1:
+        yield map
+        return
+    with ThreadPoolExecutor(min(os.cpu_count() or 1, orbits)) as pool:
+        yield pool.map
+
+
+@dataclass(frozen=True, eq=False)
+class Polynomials:
+    """One orbit as a function of time: the Taylor polynomials of its steps.
+
+    Parameters
+    ----------
+    pieces
+        heyoka's continuous outputs, one after the other.
+    number
+        Makes the numbers they are evaluated at.
+    """
+
+    pieces: tuple[Any, ...]
+    number: Callable[[Fraction], Any]
+
+    def __call__(self, t: Array) -> Array:
+        """Return the states (2n, times) at times inside the span."""
+        found = np.empty((len(self.pieces[0](self.pieces[0].bounds[0])), len(t)))
+        for k, instant in enumerate(t.tolist()):
+            at = self.number(Fraction(instant))
+            piece = next(p for p in self.pieces if min(p.bounds) <= at <= max(p.bounds))
+            found[:, k] = np.asarray(piece(at)).astype(np.float64)
+        return found

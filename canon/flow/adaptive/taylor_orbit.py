@@ -1,0 +1,210 @@
+"""One orbit under heyoka's integrator: from sample to sample, over events, to where it can't go on."""
+
+from __future__ import annotations
+
+import copy
+import time
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
+from canon.kernel.heyoka_bridge import taylor_integrator
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.flow.adaptive.taylor_events import Meeting
+    from canon.flow.method.method import Taylor
+    from canon.flow.run.event import Prepared
+    from canon.flow.trajectory import Array
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["Orbit", "Slice", "ends_of", "orbits_of"]
+
+_MANY_STEPS, _CREEPING = 50_000, 1e-10
+"""Where so many steps pass less than this part of what is left, they shrink towards a singularity."""
+
+_SMALL_PART = 2.0**-30
+"""What part of a step is passed without events after one that changed the state."""
+
+
+@dataclass(frozen=True)
+class Slice:
+    """States reached, shape (times, 2n), and what they cost; ``outcome`` where the motion can't go on."""
+
+    rows: Any
+    steps: int
+    seconds: float
+    outcome: Any
+    stopped: bool
+
+
+@dataclass(eq=False)
+class Orbit:
+    """One orbit on its way: heyoka's integrator, and one without events to leave their zeros with."""
+
+    integrator: Any
+    meeting: Meeting
+    free: Any
+    span: Any
+    pieces: list[Any] = field(default_factory=list[Any])
+    safe: tuple[Any, Any] = (None, None)
+
+    def advance(self, grid: Any, *, dense: bool) -> Slice:
+        """Go from the first time of a grid to its last and return the states at all but the first."""
+        started, rows, steps, left = time.thread_time(), list[Any](), 0, list(grid[1:])
+        failure, stopped = None, False
+        while left:
+            steps_taken, found, outcome = self._towards(self.integrator, left, dense=dense)
+            steps += steps_taken
+            rows += found
+            left = left[len(found) :]
+            event = self.meeting.event_of(outcome)
+            if event is None:
+                failure = outcome
+                break
+            handled = [event] if event.jump is None else self._at_the_same_time(event)
+            if handled[-1].event.action == "stop":
+                rows.append(self.integrator.state.copy())
+                stopped = True
+                break
+            steps_taken, found = self.leave(left, handled, dense=dense)
+            steps += steps_taken
+            rows += found
+            left = left[len(found) :]
+        made = np.array(rows).reshape(len(rows), len(self.integrator.state))
+        if not left and not np.isfinite(made.astype(np.float64)).all():
+            failure = "the state is not finite"
+        if stopped or (not left and not isinstance(failure, str)):
+            failure = None
+        return Slice(made, steps, time.thread_time() - started, failure, stopped)
+
+    def _at_the_same_time(self, event: Prepared) -> list[Prepared]:
+        """Change the state as an event does, then as every other does that would be met on leaving its zero.
+
+        heyoka tells of one event that changes the state; another at the same instant, as in a corner between two
+        walls, would be passed unseen.
+        """
+        own, handled = self.integrator, [event]
+        own.state[:] = self.meeting.met_state
+        while True:
+            before, clock = own.state.copy(), own.dtime
+            self.free.state[:], self.free.dtime = before, clock
+            _, natural = self.free.step(self.span)
+            self.free.state[:], self.free.dtime = before, clock
+            part = natural * type(natural)(_SMALL_PART)
+            self.free.propagate_until(own.time + part)
+            found = self.meeting.crossed(handled, own.time, abs(float(part)), before, self.free.state)
+            if found is None:
+                return handled
+            handled.append(found)
+            own.state[:] = self.meeting.met_state
+            if found.event.action == "stop":
+                return handled
+
+    def leave(self, left: list[Any], events: Sequence[Prepared], *, dense: bool) -> tuple[int, list[Any]]:
+        """Move off an event's zero, by a small part of a step that looks for no events.
+
+        heyoka takes a zero at the very beginning of a step for others of the step too.
+        """
+        free, own = self.free, self.integrator
+        free.state[:], free.dtime = own.state, own.dtime
+        before, clock = own.state.copy(), own.dtime
+        _, natural = free.step(self.span)
+        free.state[:], free.dtime = before, clock
+        end = own.time + natural * type(natural)(_SMALL_PART)
+        at_once = [before for t in left if t == own.time]
+        near = [t for t in left if t != own.time and (t - end) * self.meeting.forward < 0]
+        steps, found, _ = self._towards(free, [*near, end], dense=dense)
+        for event in events:
+            if event.jump is not None:
+                self.meeting.check_left(event, before, own.time, free.state)
+        own.state[:], own.dtime = free.state, free.dtime
+        if self.meeting.terminal:
+            own.reset_cooldowns()
+        return steps, [*at_once, *found[: len(near)]]
+
+    def _towards(self, integrator: Any, times: list[Any], *, dense: bool) -> tuple[int, list[Any], Any]:
+        """Return steps taken, the states at the times reached, and the outcome."""
+        from heyoka import taylor_outcome
+
+        steps, rows = 0, list[Any]()
+        while True:
+            self.safe = (integrator.state.copy(), integrator.dtime)
+            before, left = integrator.time, times[len(rows) :]
+            taken, found, outcome = self._some_steps(integrator, left, dense=dense)
+            steps += taken
+            rows += found
+            passed, ahead = abs(integrator.time - before), abs(times[-1] - integrator.time)
+            if outcome != taylor_outcome.step_limit or not passed > ahead * _CREEPING:
+                return steps, rows, outcome
+
+    def _some_steps(self, integrator: Any, times: list[Any], *, dense: bool) -> tuple[int, list[Any], Any]:
+        from heyoka import taylor_outcome
+
+        limits = {"max_steps": _MANY_STEPS}
+        if self.meeting.events:
+            limits["max_delta_t"] = abs(self.span)
+        if not dense and len(times) == 1:  # keeping every step's series for times between costs a fifth
+            outcome, _, _, steps, _, _ = integrator.propagate_until(times[-1], **limits)
+            return steps, [integrator.state.copy()] if outcome == taylor_outcome.time_limit else [], outcome
+        if not dense:
+            grid = np.array([integrator.time, *times])
+            outcome, _, _, steps, _, found = integrator.propagate_grid(grid, **limits)
+            return steps, list(found[1:]), outcome
+        outcome, _, _, steps, piece, _ = integrator.propagate_until(times[-1], c_output=True, **limits)
+        if piece is None:
+            return steps, [], outcome
+        self.pieces.append(piece)
+        first, last = sorted(piece.bounds)
+        return steps, [np.array(piece(t)) for t in times if first <= t <= last], outcome
+
+    def lost(self, outcome: object, rows: Sequence[int]) -> NonFiniteStateError:
+        """Return the error that says where the motion ended: its last finite step is looked for again."""
+        own = self.integrator
+        own.state[:], own.dtime = self.safe
+        t, state = own.time, own.state.copy()
+        for _ in range(_MANY_STEPS):
+            own.step(self.span)
+            if not np.isfinite(own.state.astype(np.float64)).all() or own.time == t:
+                break
+            t, state = own.time, own.state.copy()
+        y = state.astype(np.float64)[list(rows)]
+        return NonFiniteStateError(
+            f"the motion can't be continued after {described(float(t), y)} ({outcome}): a collision or the edge of "
+            "H's domain; stop earlier",
+            float(t),
+            y,
+        )
+
+
+def orbits_of(
+    system: Equations,
+    states: tuple[Array, Array],
+    t0: Fraction,
+    method: Taylor,
+    number: Callable[[Fraction], Any],
+    meeting: Meeting,
+    span: Any,
+) -> list[Orbit]:
+    """Compile one integrator and copy it for the other orbits."""
+    made, free = list[Orbit](), None
+    for high, low in zip(states[0].T.tolist(), states[1].T.tolist(), strict=True):
+        y0 = [Fraction(a) + Fraction(b) for a, b in zip(high, low, strict=True)]
+        if not made:
+            settings = system, y0, t0, method.tolerance, number
+            integrator = taylor_integrator(*settings, meeting.heyoka_events())
+            free = taylor_integrator(*settings) if meeting.events else None
+        else:
+            integrator = copy.deepcopy(made[0].integrator)
+            integrator.state[:] = [number(x) for x in y0]
+        made.append(Orbit(integrator, meeting, free, span))
+    return made
+
+
+def ends_of(orbits: Sequence[Orbit]) -> list[tuple[Any, Any]]:
+    """Return each orbit's state and time, which go on with the same bits."""
+    return [(orbit.integrator.state.copy(), orbit.integrator.dtime) for orbit in orbits]

@@ -1,0 +1,284 @@
+"""What the user says about a run, checked and made a task."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from sympy import Symbol
+
+from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE
+from canon.expression.symbols.user_input import counted
+from canon.flow.fixed_step.fixed_steps import planned
+from canon.flow.method.method import DOP853, FixedStep, Method, Taylor, TimeTransformed
+from canon.flow.run.event import Event, prepared
+from canon.flow.run.range_check import check_magnitudes, is_narrow
+from canon.flow.run.sampling_plan import adaptive_plan, fictitious_plan, sampling
+from canon.flow.task import Task
+from canon.flow.transformed.extended_hamiltonian import extended, fictitious
+from canon.kernel.llvm.number_types import double_pair
+from canon.kernel.program.hamilton_equations import Equations, equations, exact, exact_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import numpy.typing as npt
+    from sympy import Expr
+
+    from canon.flow.trajectory import Array
+
+__all__ = ["HamiltonianSystem", "system_of", "task_of"]
+
+_KEPT = 64
+"""Systems kept for the next call."""
+
+
+class HamiltonianSystem(Protocol):
+    """What ``propagate`` needs of a Hamiltonian, such as :class:`canon.Hamiltonian`."""
+
+    @property
+    def H(self) -> Expr:
+        """H(q, p, t)."""
+        ...
+
+    @property
+    def q(self) -> tuple[Symbol, ...]:
+        """The coordinates."""
+        ...
+
+    @property
+    def p(self) -> tuple[Symbol, ...]:
+        """The momenta."""
+        ...
+
+    @property
+    def t(self) -> Symbol:
+        """The time."""
+        ...
+
+
+def task_of(
+    hamiltonian: HamiltonianSystem,
+    y0: Sequence[Any] | npt.NDArray[Any],
+    t_span: tuple[float, float],
+    *,
+    method: Method | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    precision: str | int | None = None,
+    parameters: Mapping[Symbol | str, Any] | None = None,
+    samples: int | None = None,
+    times: npt.ArrayLike | None = None,
+    observables: Mapping[str, Expr] | None = None,
+    cadence: int | None = None,
+    events: Sequence[Event] = (),
+    dense: bool = False,
+) -> Task:
+    """Return the task of :func:`canon.flow.propagate.propagate`, which documents the arguments and errors."""
+    method = _with_tolerance(Taylor() if method is None else method, tolerance)
+    extra = dict(observables or {})
+    if "energy" in extra:
+        raise ValueError(
+            "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
+        )
+    fixed, varying = _by_orbit(parameters or {})
+    system = system_of(hamiltonian, fixed, tuple(varying))
+    nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
+    given, single = _with_parameters(y0, len(hamiltonian.q), varying)
+    start, end = (exact(t, "t_span") for t in t_span)
+    wanted = sampling((start, end), samples, times)
+    _check_start(system, given, start, precision)
+    check_magnitudes(system, given[0], start, method, precision)
+    frame = None
+    if isinstance(method, FixedStep):
+        plan = planned(wanted, step, method)
+    elif isinstance(method, TimeTransformed):
+        _check_transformed(method, step, cadence)
+        larger = extended(hamiltonian, method)
+        frame = fictitious(larger, system_of(larger, fixed, tuple(varying)), hamiltonian, Fraction(step or 0))
+        plan = fictitious_plan(wanted, named=times is not None or not single)
+    else:
+        _check_adaptive(method, step, cadence, precision)
+        plan = adaptive_plan(wanted)
+    task = Task(
+        system=system,
+        method=method,
+        precision=precision,
+        states=given,
+        single=single,
+        plan=plan,
+        names=tuple(extra),
+        nodes=tuple(nodes),
+        cadence=cadence,
+        events=tuple(events),
+        dense=dense,
+        fictitious=frame,
+    )
+    _check_events(task)
+    return task
+
+
+# what the user said --------------------------------------------------------------------------------
+
+
+def _with_tolerance(method: Method, tolerance: float | None) -> Method:
+    if tolerance is None:
+        return method
+    if isinstance(method, Taylor | DOP853):
+        return replace(method, tolerance=tolerance)
+    raise ValueError(f"{method} takes fixed steps: give step=, not tolerance=")
+
+
+def system_of(
+    hamiltonian: HamiltonianSystem,
+    parameters: Mapping[Symbol | str, Any],
+    varying: tuple[str, ...] = (),
+) -> Equations:
+    """Return a Hamiltonian's equations, kept from an earlier call if there was one.
+
+    Parameters
+    ----------
+    hamiltonian
+        The Hamiltonian.
+    parameters
+        A number for every parameter, by symbol or name.
+    varying
+        Names of the parameters that differ from orbit to orbit.
+
+    Raises
+    ------
+    KeyError
+        A parameter of H has no value.
+    """
+    q, p = tuple(hamiltonian.q), tuple(hamiltonian.p)
+    numbers = frozenset(exact_numbers(parameters).items())
+    return _kept_system(hamiltonian.H, q, p, hamiltonian.t, numbers, varying)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_system(
+    H: Expr,
+    q: tuple[Symbol, ...],
+    p: tuple[Symbol, ...],
+    t: Symbol,
+    parameters: frozenset[tuple[str, Fraction]],
+    varying: tuple[str, ...],
+) -> Equations:
+    known = {symbol.name: symbol for symbol in H.free_symbols if isinstance(symbol, Symbol)}
+    missing = [name for name in varying if name not in known]
+    if missing:
+        raise KeyError(f"an array is given for {', '.join(missing)}, which H does not hold")
+    return equations(H, q, p, t, dict(parameters), [known[name] for name in varying])
+
+
+def _by_orbit(
+    parameters: Mapping[Symbol | str, Any],
+) -> tuple[dict[Symbol | str, Any], dict[str, npt.NDArray[Any]]]:
+    """Part parameters into those with one value and those with one for each orbit."""
+    varying = {str(name): np.asarray(value) for name, value in parameters.items() if np.ndim(value)}
+    return {name: value for name, value in parameters.items() if str(name) not in varying}, varying
+
+
+def _with_parameters(
+    y0: Sequence[Any] | npt.NDArray[Any], n: int, varying: Mapping[str, npt.NDArray[Any]]
+) -> tuple[tuple[Array, Array], bool]:
+    """Return the starting states with the parameters that vary, and whether it is a single one."""
+    high, low = _states(y0, n)
+    if not varying:
+        return (high, low), np.ndim(y0) == 1
+    orbits = {values.size for values in varying.values()} | (
+        {high.shape[1]} if np.ndim(y0) == 2 else set[int]()
+    )
+    shapes = {name: values.shape for name, values in varying.items() if values.ndim != 1 or not values.size}
+    if shapes or len(orbits) > 1:
+        given = ", ".join(f"{name} of shape {values.shape}" for name, values in varying.items())
+        raise ValueError(f"{given} for y0 of shape {np.shape(y0)}: parameters by orbit have shape (orbits,)")
+    count = orbits.pop()
+    pairs = [
+        [double_pair(exact(value, f"{name}[{k}]")) for k, value in enumerate(values.tolist())]
+        for name, values in varying.items()
+    ]
+    parameters = np.array(pairs).transpose(2, 0, 1)
+    states: list[Array] = []
+    for part, own in zip((high, low), parameters, strict=True):
+        wide = np.broadcast_to(part, (2 * n, count))
+        states.append(np.concatenate([wide[:n], own, wide[n:], own]))
+    return (states[0], states[1]), False
+
+
+def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]:
+    """Return the starting states as sums of two doubles, each of shape (2n, orbits)."""
+    given = np.asarray(y0)
+    if given.ndim not in (1, 2) or given.shape[0] != 2 * n or not given.size:
+        raise ValueError(
+            f"y0 has shape {given.shape}; {counted(n, 'coordinate')} and "
+            f"{counted(n, 'momentum', 'momenta')} make a state (q, p) of shape ({2 * n},), "
+            f"several of them ({2 * n}, orbits)"
+        )
+    if given.dtype == np.float64 and not np.isfinite(given).all():
+        raise ValueError(f"y0 = {given} is not finite: give a state (q, p) of finite numbers")
+    if given.dtype != np.float64:
+        pairs = [double_pair(exact(x, "a component of y0")) for x in given.ravel().tolist()]
+        high, low = (np.array(part).reshape(2 * n, -1) for part in zip(*pairs, strict=True))
+        return high, low
+    return given.reshape(2 * n, -1), np.zeros((2 * n, given.size // (2 * n)))
+
+
+def _check_start(
+    system: Equations, given: tuple[Array, Array], start: Fraction, precision: str | int | None
+) -> None:
+    states, low = given
+    narrow = is_narrow(precision)
+    point = states if narrow else states.astype(np.longdouble) + low
+    values = dict(zip(system.inputs, (*point, point.dtype.type(float(start))), strict=True))
+    nodes = [system.hamiltonian, *system.velocity, *system.force]
+    try:
+        found = system.graph.evaluate(nodes, values, FLOAT64 if narrow else LONGDOUBLE)
+    except OverflowError as large:
+        raise ValueError("a constant or a parameter of H is beyond 1e308: choose other units") from large
+    finite = np.logical_and.reduce([np.isfinite(np.broadcast_to(x, states.shape[1:])) for x in found])
+    if not finite.all():
+        wrong = states[system.rows, np.argmin(finite)]
+        raise ValueError(
+            f"H or its derivatives are not finite at y0 = {wrong}: start inside H's domain, in units "
+            "in which no number on the way is beyond 1e±308"
+        )
+
+
+def _check_transformed(method: TimeTransformed, step: float | None, cadence: int | None) -> None:
+    if step is None or not (math.isfinite(step) and step > 0):
+        raise ValueError(f"step={step}: {method} takes the size in t of its first step, a positive number")
+    if cadence is not None:
+        raise ValueError(
+            f"cadence={cadence}: {method} has no statistics inside the loop, as its samples are not whole numbers of "
+            "steps apart; observables= at many samples= do instead"
+        )
+
+
+def _check_adaptive(
+    method: Taylor | DOP853, step: float | None, cadence: int | None, precision: str | int | None
+) -> None:
+    if step is not None:
+        raise ValueError(f"{method} chooses its own steps: leave step out and set its tolerance")
+    if cadence is not None:
+        raise ValueError(f"{method} chooses its own steps: cadence counts those of fixed-step methods")
+    if isinstance(method, DOP853) and precision not in (None, "double"):
+        raise ValueError(f"precision={precision!r}: {method} runs in double precision")
+
+
+def _check_events(task: Task) -> None:
+    if task.dense and not isinstance(task.method, Taylor):
+        raise ValueError(f"dense=True: {task.method} has no polynomials to keep; Taylor() has")
+    if not task.events:
+        return
+    if isinstance(task.method, DOP853):
+        raise ValueError(f"events: {task.method} does not meet any; Taylor() and methods of fixed steps do")
+    if task.states[0].shape[1] > 1:
+        raise ValueError("events are met at times of each orbit's own: propagate the orbits one by one")
+    if task.cadence is not None:
+        raise ValueError("events and cadence: statistics inside the loop do not see events; leave one out")
+    prepared(task.system, task.events)

@@ -1,0 +1,368 @@
+"""How far a computed motion is from the true one: a companion run, done more exactly, and how errors grow.
+
+A method of fixed steps is repeated with half the step in wider numbers; every other one is compared with Taylor's
+method in wider numbers. The difference is the error of the motion, but for what the companion itself errs: a third of
+it for a method of order 2, less for higher ones. A second companion starts a little beside the first; how their
+distance grows says what becomes of every error, of the start's as of each step's. In a chaotic motion it grows like
+exp(t/τ) until the two have nothing to do with each other; from there on no single trajectory means anything, however it
+is computed, and only averages may.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.display import preformatted
+from canon.expression.graph.number_systems import LONGDOUBLE
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.method.method import Gauss, Taylor
+from canon.flow.method.number_formats import FIXED
+from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.flow.run.observables_along import jumped
+from canon.flow.run.sampling_plan import Plan
+from canon.kernel.llvm.number_types import EXTENDED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    import numpy.typing as npt
+
+    from canon.flow.task import Task
+    from canon.flow.trajectory import Array, Samples, Trajectory
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["ErrorEstimate", "error_estimate"]
+
+_SAFETY = 2.0
+"""The error is stated so many times larger than it was found: the companion errs too."""
+
+_BESIDE = 2.0**-40
+"""How far beside the motion its neighbour starts, in parts of the motion's size."""
+
+_SMALLEST_PART = 1e-10
+"""A coordinate or momentum smaller than this part of the largest one is measured by that part."""
+
+_MEANINGLESS = 0.1
+"""A motion that errs by this part of its size is not the system's."""
+
+_CHAOTIC = math.log(100.0)
+"""Growth by less than 100 in the latter half of the time may be that of a regular motion, a power of time."""
+
+_OFTEN = 4
+"""Of the latter six eighths of the time so many have growth where it is chaotic; it may pause in the others."""
+
+_FEWEST = 8
+"""Samples from which growth is judged."""
+
+_SLICES = 20
+
+_BITS = {"single": 23, "double": 52, "compensated": 52, "extended": 63, "double-double": 104}
+"""With so many bits the numbers of a precision are rounded at worst."""
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """What is known of the error of a motion at its samples.
+
+    Parameters
+    ----------
+    t
+        Sample times, shape (times,).
+    error
+        A bound, not proved, for the size of y's error up to each sample, in the units of y; inf where nothing is
+        known. The shape of y.
+    relative
+        The largest of the errors of a state, each in parts of the largest size that its coordinate or momentum has on
+        the way; shape (times,) or (times, orbits).
+    condition
+        How many times larger a small change of the start has become, at most, up to each sample; NaN where the motion
+        has events, or its neighbour leaves H's domain. The shape of ``relative``.
+    events
+        Bounds for the errors of the events' times, in their order; inf for one that the companion does not meet.
+    companion
+        What the motion was compared with.
+    """
+
+    t: Array
+    error: Array
+    relative: Array
+    condition: Array
+    events: Array
+    companion: str
+
+    @property
+    def digits(self) -> Array:
+        """Correct decimal digits left at each sample, 0 … 17."""
+        with np.errstate(divide="ignore"):
+            return np.clip(-np.log10(self.relative), 0.0, 17.0)
+
+    @property
+    def digits_lost(self) -> Array:
+        """Decimal digits that the motion itself takes from every number on the way: log₁₀ of the condition."""
+        return np.log10(np.maximum(self.condition, 1.0))
+
+    @property
+    def meaningful_until(self) -> float | None:
+        """The first sample time at which the error is a tenth of the motion's size (of any orbit); None: never."""
+        wrong = (self.relative > _MEANINGLESS).reshape(len(self.t), -1).any(axis=1)
+        return float(self.t[np.argmax(wrong)]) if wrong.any() else None
+
+    @property
+    def lyapunov_time(self) -> float | None:
+        """In how long a time errors grow e-fold where they grow exponentially (the fastest orbit); None where not.
+
+        By the least squares line of log(condition) over time until the neighbours have nothing to do with each other.
+        """
+        columns = self.condition.reshape(len(self.t), -1).T
+        found = [x for x in (_e_folding(abs(self.t - self.t[0]), c) for c in columns) if x is not None]
+        return min(found) if found else None
+
+    def __repr__(self) -> str:
+        return f"<ErrorEstimate: {self._sentences[0]}>"
+
+    def __str__(self) -> str:
+        return "; ".join(self._sentences)
+
+    def _repr_html_(self) -> str:
+        return preformatted("\n".join(self._sentences))
+
+    @property
+    def _sentences(self) -> list[str]:
+        worst = float(np.max(self.relative))
+        said = [f"relative error up to {worst:.1e} ({-math.log10(worst):.1f} digits)" if 0 < worst < 1 else
+                f"relative error up to {worst:.1e}"]  # fmt: skip
+        if np.isfinite(self.condition).any():
+            said.append(f"small changes grow up to {np.nanmax(self.condition):.1e}-fold")
+        if (tau := self.lyapunov_time) is not None:
+            said.append(f"e-fold in {tau:.3g} units of time (chaotic)")
+        if (until := self.meaningful_until) is not None:
+            said.append(f"after t = {until:.6g} this single trajectory means nothing")
+        return [*said, f"by {self.companion}"]
+
+
+def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> ErrorEstimate:
+    """Return the error of a motion by a companion run; see :meth:`canon.Trajectory.error_estimate`."""
+    task, samples = motion.origin
+    chosen = list(range(samples.y.shape[2])) if orbits is None else list(orbits)
+    rows = task.system.rows
+    own = samples.y[rows][:, :, chosen]
+    scale = _sizes(own)
+    states = (task.states[0][:, chosen], task.states[1][:, chosen])
+    task = replace(task, states=states, single=False, cadence=None, dense=False)
+    away, apart, found, words = np.full(own.shape, np.inf), np.full(own.shape, np.nan), None, "no companion"
+    for better in _better(task, samples):
+        made, known = _companions(better, samples, scale)
+        if made is None:
+            continue
+        found, words = made, better.words
+        away, (apart, rounded) = _compared(own, made.y[rows][:, :known], made.carried[rows][:, :known])
+        its_own = np.where(np.isnan(rounded), scale * better.unit, rounded)
+        told = (its_own[:, -1] <= away[:, -1]).all()
+        away = away + its_own
+        if told:
+            break
+    if task.system.autonomous and not any(met.after is not None for met in samples.crossings):
+        change = motion.energy_change.reshape(len(motion.t), -1)[:, chosen]
+        deluded = _deluded(
+            task.system, replace(samples, y=samples.y[:, :, chosen]), change, away / scale, scale
+        )
+        away = np.where(np.maximum.accumulate(deluded, axis=0), np.inf, away)
+    if task.plan.h is not None:  # its states are those of exact times, which t has rounded
+        rates = _rates(task.system, samples.t, samples.y[:, :, chosen])
+        away = (away + rates * np.spacing(abs(samples.t))[:, np.newaxis]).astype(np.float64)
+    relative = (away / scale).max(axis=0)
+    condition = _growth(apart / scale)
+    if motion.y.ndim == 2:
+        away, relative, condition = away[:, :, 0], relative[:, 0], condition[:, 0]
+    events = _event_errors(samples, found)
+    return ErrorEstimate(motion.t, away, relative, condition, events, words)
+
+
+def _deluded(
+    system: Equations, samples: Samples, change: Array, relative: Array, scale: Array
+) -> npt.NDArray[np.bool_]:
+    """Return where the energy's error shows that a motion errs by more than it differs from its companion.
+
+    Both may have jumped over the same singularity. An error of size ε in parts of the motion's size changes H by no
+    more than ε Σ |∂H/∂y| · size, to first order.
+    """
+    slopes = np.roll(_rates(system, samples.t, samples.y), len(scale) // 2, axis=0)
+    reach = (slopes * scale).sum(axis=0)
+    return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach)
+
+
+def _rates(system: Equations, t: Array, y: Array) -> npt.NDArray[Any]:
+    """Return the sizes of q̇ and ṗ, shape (2n, times, orbits)."""
+    nodes = (*system.velocity, *system.force)
+    wide = (part.astype(np.longdouble) for part in (*y, t[:, np.newaxis]))
+    state = dict(zip(system.inputs, wide, strict=True))
+    found = system.graph.evaluate([nodes[row] for row in system.rows], state, LONGDOUBLE)
+    sizes = np.empty(y[system.rows].shape, dtype=np.longdouble)
+    for each, x in zip(sizes, found, strict=True):
+        each[:] = np.abs(np.broadcast_to(np.asarray(x), y.shape[1:]))
+    return sizes
+
+
+def _compared(own: Array, y: Array, rest: Array) -> tuple[Array, list[Array]]:
+    """Return how far a motion is from its companion so far, and how far that is from both its neighbours."""
+    m = own.shape[2]
+    away, apart = np.full(own.shape, np.inf), [np.full(own.shape, np.nan), np.full(own.shape, np.nan)]
+    known = y.shape[1]
+    missed = abs((own[:, :known] - y[:, :, :m]) - rest[:, :, :m])
+    away[:, :known] = _SAFETY * np.maximum.accumulate(missed, axis=1) + np.spacing(abs(own[:, :known]))
+    for each, begin in zip(apart, range(m, y.shape[2], m), strict=False):
+        beside = slice(begin, begin + m)
+        distance = (y[:, :, beside] - y[:, :, :m]) + (rest[:, :, beside] - rest[:, :, :m])
+        each[:, :known] = np.maximum.accumulate(abs(distance), axis=1)
+    return away, apart
+
+
+def _growth(apart: Array) -> Array:
+    """Return how many times larger a distance has become; NaN where it was none, as between the smallest numbers."""
+    largest = apart.max(axis=0)
+    at_start = np.broadcast_to(largest[0], largest.shape)
+    return np.divide(largest, at_start, out=np.full(largest.shape, np.nan), where=at_start > 0)
+
+
+def _sizes(y: Array) -> Array:
+    """Return what each coordinate and momentum is measured by, shape (2n, 1, orbits)."""
+    largest = abs(y).max(axis=1, keepdims=True)
+    halves = np.split(largest, 2)
+    blocks = np.concatenate([np.broadcast_to(half.max(axis=0), half.shape) for half in halves])
+    sizes = np.maximum(largest, _SMALLEST_PART * blocks)
+    return np.where(sizes > 0, sizes, 1.0)
+
+
+@dataclass(frozen=True)
+class _Better:
+    """A companion's task, what to call it, and the rounding unit of its numbers."""
+
+    task: Task
+    words: str
+    unit: float
+
+
+def _better(task: Task, samples: Samples) -> Iterator[_Better]:
+    """Yield companions, each more exact than the one before."""
+    plan = task.plan
+    if plan.h is None:
+        # An event that has ended the motion may end the companion a little later.
+        t = plan.instants if samples.crossings and len(samples.t) < len(plan.instants) else samples.t
+        ends = sorted({round(k * (len(t) - 1) / _SLICES) for k in range(1, _SLICES + 1)} - {0})
+        plan = Plan(plan.start, t, ends=tuple(ends))
+        given = str(task.precision or "double") if isinstance(task.method, Taylor) else "double"
+        for precision, bits in _wider_taylor(given):
+            better = replace(task, method=Taylor(), plan=plan, precision=precision)
+            yield _Better(
+                better, f"Taylor, {precision}{'' if isinstance(precision, str) else ' digits'}", 2.0**-bits
+            )
+        return
+    half = replace(plan, h=plan.h / 2, stops=tuple(2 * stop for stop in plan.stops))
+    for precision in _wider(task):
+        words = f"{task.method}, step {float(half.h or 0):g}, {precision}"
+        yield _Better(replace(task, plan=half, precision=precision), words, 2.0 ** -_BITS[precision])
+
+
+def _wider_taylor(given: str) -> list[tuple[str | int, int]]:
+    ladder: list[tuple[str | int, int]] = [("extended", 63), ("quad", 112), (50, 166)]
+    names = ["double", *(str(name) for name, _ in ladder)]
+    if given not in names:
+        return [(int(given) + 16, math.floor((int(given) + 16) / math.log10(2)))]
+    left = ladder[names.index(given) :]
+    return left if EXTENDED.available() else [each for each in left if each[0] != "extended"]
+
+
+def _wider(task: Task) -> list[str]:
+    """Return the precisions of the companions of a method of fixed steps."""
+    given = FIXED[task.precision_name]
+    if isinstance(task.method, SolvableSplitting) or getattr(task.method, "parts", None) is not None:
+        return [given.name]
+    # Extended numbers once more, as they may hold numbers that double-double does not.
+    ready = EXTENDED.available() and given.number.mantissa <= EXTENDED.mantissa
+    return (
+        ["extended", "double-double"] if ready and not isinstance(task.method, Gauss) else ["double-double"]
+    )
+
+
+def _companions(better: _Better, samples: Samples, scale: Array) -> tuple[Samples | None, int]:
+    """Return the companion, with two neighbours as further orbits where there can be any, and its samples.
+
+    One starts a small part of the motion's size beside it, the other so near that rounding might have put it there.
+    """
+    task, (high, low) = better.task, better.task.states
+    shifts = scale[:, 0] * _directions(len(scale))[:, np.newaxis]
+    near, far = low.copy(), low.copy()
+    near[task.system.rows] += 2 * better.unit * shifts
+    far[task.system.rows] += _BESIDE * shifts
+    highs = [high, high + far, high + near]
+    lows = [low, (high - highs[1]) + far, (high - highs[2]) + near]
+    pairs = np.concatenate(highs, axis=1), np.concatenate(lows, axis=1)
+    together = None if task.events else replace(task, states=pairs)
+    for each in (together, task):
+        if each is None:
+            continue
+        try:
+            return _known(each.samples(), samples)
+        except NonFiniteStateError as lost:
+            last = lost
+    forward = task.plan.forward
+    before = int(np.searchsorted(forward * samples.t, forward * last.time))
+    if before < 2:
+        return None, 0
+    try:
+        return _known(_first(task, before).samples(), samples)
+    except NonFiniteStateError:
+        return None, 0
+
+
+def _first(task: Task, count: int) -> Task:
+    """Return a task that ends at an earlier sample."""
+    plan = task.plan
+    ends = (*(end for end in plan.ends if end < count - 1), count - 1) if plan.ends else ()
+    shorter = replace(plan, instants=plan.instants[:count], stops=plan.stops[:count], ends=ends)
+    return replace(task, plan=shorter)
+
+
+def _known(found: Samples, samples: Samples) -> tuple[Samples, int]:
+    """Return a companion and how many of the motion's samples it has too."""
+    count = min(len(found.t), len(samples.t))
+    cut = replace(found, t=found.t[:count], y=found.y[:, :count], carried=found.carried[:, :count])
+    return cut, count
+
+
+def _directions(size: int) -> Array:
+    """Return numbers between ½ and 1 in size with signs, as unlike a special direction as the golden ratio makes it."""
+    places = np.arange(1, size + 1) * ((math.sqrt(5) - 1) / 2) % 1
+    return np.where(np.arange(size) % 2, -1.0, 1.0) * (0.5 + places / 2)
+
+
+def _event_errors(samples: Samples, found: Samples | None) -> Array:
+    errors = np.full(len(samples.crossings), np.inf)
+    for k, (mine, other) in enumerate(
+        zip(samples.crossings, () if found is None else found.crossings, strict=False)
+    ):
+        if mine.event is not other.event:
+            break
+        errors[k] = _SAFETY * abs(mine.t - other.t) + float(np.spacing(abs(mine.t)))
+    return errors
+
+
+def _e_folding(t: Array, condition: Array) -> float | None:
+    """Return τ where a condition grows like exp(t/τ) rather than like a power of t.
+
+    A power of t grows by a small factor in the latter half of the time, exp(t/τ) as in the former half.
+    """
+    used = np.isfinite(condition) & (condition < _MEANINGLESS / _BESIDE / 10)
+    if used.sum() < _FEWEST:
+        return None
+    times, logarithm = t[used], np.log(condition[used])
+    growth = np.diff(np.interp(times[-1] * np.arange(9) / 8, times, logarithm))
+    # A power of t grows in the first quarter of the time, a single close encounter in one or two of the eighths.
+    often = (growth[2:] >= logarithm[-1] / 24).sum()
+    if growth[4:].sum() < _CHAOTIC or often < _OFTEN:
+        return None
+    return float(1 / np.polyfit(times, logarithm, 1)[0])

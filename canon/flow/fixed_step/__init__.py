@@ -1,0 +1,1 @@
+"""Methods of fixed step run by compiled loops: samples, statistics and events along them."""

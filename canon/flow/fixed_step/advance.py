@@ -1,0 +1,184 @@
+"""Running a compiled loop: in slices, with progress, stopping where the motion stops being finite."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.fixed_step.loop_buffers import Array, Job, Memory, Watch
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.kernel.llvm.loop import Loop
+
+__all__ = ["Interruption", "Run", "run"]
+
+_SLICE_SECONDS = 0.1
+"""Between calls of compiled code Python can handle an interruption and report progress."""
+
+_KEPT_NUMBERS = 1 << 16
+"""So many numbers of states are kept as the loop has them before they are brought into order."""
+
+
+class Interruption(Exception):
+    """Tells a thread to end its run at once and hand over what it has."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """States at the wanted steps, and what they cost.
+
+    Parameters
+    ----------
+    high, low
+        The states are high + low, shape (2n, times, orbits).
+    watched
+        Where observables were watched: of each interval between two stops, orbit and observable the sum, the
+        least and the greatest change, shape (times − 1, orbits, observables, 3).
+    beyond
+        What an implicit method kept beyond each state, shape (times, blocks, …).
+    iterations
+        Iterations of an implicit method, 0 of others.
+    cpu_seconds
+        Processor time of this thread.
+    """
+
+    high: Array
+    low: Array
+    watched: Array | None
+    beyond: Memory
+    iterations: int
+    cpu_seconds: float
+
+    def first(self, samples: int) -> Run:
+        """Return the first so many samples of this run."""
+        watched = None if self.watched is None else self.watched[: samples - 1]
+        high, low = self.high[:, :samples], self.low[:, :samples]
+        return Run(high, low, watched, self.beyond[:samples], self.iterations, self.cpu_seconds)
+
+
+def run(
+    loop: Loop,
+    high: Array,
+    low: Array,
+    coefficients: tuple[Array, Array],
+    stops: Sequence[int],
+    progress: Callable[[float], None] = lambda _: None,
+    watch: Watch | None = None,
+    memory: Memory | None = None,
+    rows: Memory | None = None,
+) -> Run:
+    """Advance orbits step by step and keep their states at the wanted step numbers.
+
+    An interruption (Ctrl-C, or :class:`Interruption` from ``progress``) ends the run at its last stop: fewer
+    samples than stops come back.
+
+    Parameters
+    ----------
+    loop
+        The compiled loop.
+    high, low
+        The states at the first stop are high + low, shape (2n, orbits); orbits a multiple of the loop's lanes.
+    coefficients
+        t0, h and the method's coefficients times h, likewise as sums of two doubles.
+    stops
+        Rising step numbers at which to keep the states; the first is where the motion is, the last is the end.
+    progress
+        Called now and then with the fraction done, 0 … 1.
+    watch
+        Observables to follow between the stops.
+    memory
+        What an implicit method kept beyond the state, where a run is resumed.
+    rows
+        The components that are coordinates and momenta, for messages.
+
+    Raises
+    ------
+    NonFiniteStateError
+        A state is not finite; the error knows the last finite one.
+    """
+    job = Job(loop, high, low, coefficients, watch, memory)
+    rows_kept, watched = _Rows(job, len(stops)), list[Array]()
+    started, done, slice_steps = time.thread_time(), stops[0], 64
+    clock, safe, checked = time.perf_counter(), (job.y.copy(), job.e.copy()), done
+    try:
+        for sample, stop in enumerate(stops):
+            while done < stop:
+                steps = min(slice_steps - (done - checked), stop - done)
+                job.advance(done, steps)
+                done += steps
+                if done - checked < slice_steps and done < stops[-1]:
+                    continue
+                if not job.finite():
+                    raise job.lost(*safe, checked, done - checked, rows)
+                spent, steps = time.perf_counter() - clock, done - checked
+                if steps == slice_steps and spent < _SLICE_SECONDS / 2:
+                    slice_steps *= 2
+                elif spent > _SLICE_SECONDS and slice_steps > 1:
+                    slice_steps //= 2
+                safe, checked = (job.y.copy(), job.e.copy()), done
+                progress(done / stops[-1])
+                clock = time.perf_counter()
+            if sample and watch is not None:
+                watched.append(job.watched())
+            rows_kept.keep()
+    except (KeyboardInterrupt, Interruption):
+        if not rows_kept.count:
+            raise
+        if not job.finite():
+            raise job.lost(*safe, checked, done - checked, rows) from None
+    kept, beyond = rows_kept.all()
+    entries = (job.orbits, job.watch.start.shape[1], 3) if job.watch is not None else ()
+    found = Run(
+        kept[0],
+        kept[1],
+        np.array(watched).reshape(-1, *entries) if watch is not None else None,
+        beyond,
+        int(beyond[-1][:, 0].sum()) if loop.implicit else 0,
+        time.thread_time() - started,
+    )
+    return found.first(rows_kept.count)
+
+
+class _Rows:
+    """The states kept: copies of a job's memory, brought into order many at a time.
+
+    Parameters
+    ----------
+    job
+        The job.
+    samples
+        How many there will be.
+    """
+
+    def __init__(self, job: Job, samples: int) -> None:
+        self.job, self.count, self._ordered = job, 0, 0
+        self._kept = np.empty((2, job.size, samples, job.orbits))
+        at_once = max(1, min(samples, _KEPT_NUMBERS // job.y.size))
+        self._y = np.empty((at_once, *job.y.shape), dtype=job.y.dtype)
+        self._e = np.empty((at_once, *job.e.shape), dtype=job.e.dtype)
+        self._beyond = np.empty((samples, *job.beyond().shape), dtype=job.e.dtype)
+
+    def keep(self) -> None:
+        """Keep the state that the job has reached."""
+        place = self.count - self._ordered
+        if place == len(self._y):
+            self._order()
+            place = 0
+        self._y[place], self._e[place] = self.job.y, self.job.e
+        self.count += 1
+
+    def _order(self) -> None:
+        part, new = slice(self._ordered, self.count), self.count - self._ordered
+        self._kept[:, :, part] = self.job.states_in(self._y[:new], self._e[:new])
+        self._beyond[part] = self.job.beyond_in(self._e[:new])
+        self._ordered = self.count
+
+    def all(self) -> tuple[Array, Memory]:
+        """Return the states as sums of two doubles, and what implicit methods kept beyond them."""
+        self._order()
+        return self._kept, self._beyond[: self.count]

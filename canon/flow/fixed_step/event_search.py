@@ -1,0 +1,244 @@
+"""Events on the way of a fixed-step method: noticed between steps, located by partial steps of the same method."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
+from canon.flow.fixed_step.partial_step import PartialSteps, State
+from canon.flow.run.event import Crossing
+from canon.flow.run.observables_along import values_in
+from canon.kernel.loops.statistics_loop import wide_number
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.flow.run.event import Prepared
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["Guard"]
+
+_IN_ONE_STEP = 100
+"""More events in one step than this pile up towards an instant."""
+
+_AT_ONCE = Fraction(1, 2**30)
+"""Nor does one that changes the state come again after so small a part of a step unless it does."""
+
+_TRIES = 200
+
+
+class Guard:
+    """What is known of events while a motion goes on.
+
+    Parameters
+    ----------
+    system
+        The equations.
+    steps
+        Steps of the method between the run's own.
+    events
+        What to look for.
+    """
+
+    def __init__(self, system: Equations, steps: PartialSteps, events: Sequence[Prepared]) -> None:
+        self.system, self.steps, self.events = system, steps, events
+        self.forward = 1 if steps.h > 0 else -1
+        self.wide = wide_number(steps.loop.number)
+        self.bits = steps.loop.number.mantissa + 4
+        self.met: list[Crossing] = []
+        self.sides: list[int] = []
+        self.legs: list[tuple[Fraction, State]] = []
+        """Where the latest step that was gone through began, and where in it events changed the state."""
+
+    def look(self, state: State, t: Fraction) -> list[tuple[float, float]]:
+        """Return each event's g and dg/dt, positive where g rises in the order of passing."""
+        nodes = [node for event in self.events for node in (event.value, event.rate)]
+        found = values_in(self.wide, self.system, nodes, float(t), state.high, state.low)[:, 0]
+        numbers = [float(x.sum()) for x in found]
+        if not all(map(math.isfinite, numbers)):
+            y = state.high[self.system.rows, 0]
+            raise NonFiniteStateError(
+                f"an event's function is not finite at {described(float(t), y)}: it left its own domain there",
+                float(t),
+                y,
+            )
+        return [(g, self.forward * rate) for g, rate in zip(numbers[::2], numbers[1::2], strict=True)]
+
+    def start(self, state: State, t: Fraction) -> list[tuple[int, float, float]]:
+        """Note on which side of zero each g is and return that with dg/dt and g, for the compiled loop."""
+        looks = self.look(state, t)
+        self.sides = [_sign(g) or _sign(rate) for g, rate in looks]
+        return self.known(looks)
+
+    def known(self, looks: Sequence[tuple[float, float]]) -> list[tuple[int, float, float]]:
+        """Return what the compiled loop is to know of each event."""
+        return [(side, rate, g) for side, (g, rate) in zip(self.sides, looks, strict=True)]
+
+    def through(
+        self, n: int, before: State, after: State
+    ) -> tuple[State, Fraction, list[tuple[int, float, float]]]:
+        """Meet the events of step n + 1 in their order.
+
+        Parameters
+        ----------
+        n
+            Steps taken before it.
+        before, after
+            The states at its two ends, were it not for the events.
+
+        Returns
+        -------
+        tuple
+            The state where the motion goes on, or where it stopped; which part of the step that is, 1 where
+            all of it was passed; what the compiled loop is to know, empty where the motion stopped.
+        """
+        base, begin, end = before, Fraction(0), after
+        self.legs = [(begin, base)]
+        at_end = self.look(end, self.steps.time(n, Fraction(1)))
+        found_at = [(begin, rate) for _, rate in self.look(base, self.steps.time(n, begin))]
+        self.sides = [side or _sign(g) for side, (g, _) in zip(self.sides, at_end, strict=True)]
+        changed = dict[int, Fraction]()
+        for _ in range(_IN_ONE_STEP):
+            places = [self._first(i, n, base, begin, found_at[i], at_end[i]) for i in range(len(self.events))]
+            earliest = min((p, i) for i, p in enumerate(places)) if places else (Fraction(2), 0)
+            place, i = earliest
+            if place > 1:
+                return end, Fraction(1), self.known(at_end)
+            here, t = self.steps.moved(base, n, begin, place), self.steps.time(n, place)
+            rising, event = self.sides[i] < 0, self.events[i]
+            self.sides[i] = -self.sides[i]
+            found_at[i] = (place, self.look(here, t)[i][1])
+            if not event.event.counts(rising):
+                continue
+            if event.event.action == "stop":
+                self._meet(event, t, here, rising, None)
+                return here, place, []
+            if event.jump is None:
+                self._meet(event, t, here, rising, None)
+                continue
+            if changed.get(i, Fraction(-1)) > place - _AT_ONCE:
+                break
+            changed[i] = place
+            base, begin = self._jumped(event, here, t), place
+            self.legs.append((begin, base))
+            self._meet(event, t, here, rising, base)
+            end = self.steps.moved(base, n, begin, Fraction(1))
+            looks = self.look(base, t)
+            self.sides[i] = _sign(looks[i][1]) or -self.sides[i]
+            found_at = [(begin, rate) for _, rate in looks]
+            at_end = self.look(end, self.steps.time(n, Fraction(1)))
+        t, y = float(self.steps.time(n, begin)), base.high[self.system.rows, 0]
+        raise NonFiniteStateError(
+            f"{self.met[-1].event if self.met else 'an event'} is met again at once at {described(t, y)}: events "
+            "pile up there; stop the motion before",
+            t,
+            y,
+        )
+
+    def _meet(self, event: Prepared, t: Fraction, here: State, rising: bool, after: State | None) -> None:
+        rows = self.system.rows
+        moved = None if after is None else after.high[rows, 0]
+        self.met.append(Crossing(event.event, float(t), here.high[rows, 0], rising, moved))
+
+    def _jumped(self, event: Prepared, here: State, t: Fraction) -> State:
+        assert event.jump is not None
+        found = values_in(self.wide, self.system, event.jump, float(t), here.high, here.low)
+        high = found[..., 0].astype(np.float64)
+        low = ((found[..., 0] - high) + found[..., 1:].sum(axis=-1)).astype(np.float64)
+        if not np.isfinite(high).all():
+            y = here.high[self.system.rows, 0]
+            raise NonFiniteStateError(
+                f"the new state of {event.event} is not finite at {described(float(t), y)}", float(t), y
+            )
+        return State(high, low, here.beyond)
+
+    def _first(
+        self,
+        i: int,
+        n: int,
+        base: State,
+        begin: Fraction,
+        latest: tuple[Fraction, float],
+        at_end: tuple[float, float],
+    ) -> Fraction:
+        """Return the first part of a step at which g crosses zero after its latest crossing, or 2.
+
+        ``latest`` has that place, or where the step begins, and dg/dt there.
+        """
+        side, (place, came), (g, goes) = self.sides[i], latest, at_end
+
+        def ahead(part: Fraction) -> tuple[float, float]:
+            """Return g and dg/d(part), taken with the side's sign: positive until the crossing."""
+            state = self.steps.moved(base, n, begin, part)
+            value, rate = self.look(state, self.steps.time(n, part))[i]
+            return side * value, side * rate * abs(float(self.steps.h))
+
+        last = Fraction(1)
+        if side * g >= 0:
+            if not (side * came < 0 < side * goes):
+                return Fraction(2)
+            dip = _dip(ahead, (place, side * came), (last, side * goes), self.bits // 2)
+            if dip is None:
+                return Fraction(2)
+            last = dip
+        return _root(ahead, place, last, self.bits)
+
+
+def _dip(
+    f: Callable[[Fraction], tuple[float, float]],
+    falling: tuple[Fraction, float],
+    rising: tuple[Fraction, float],
+    bits: int,
+) -> Fraction | None:
+    """Return a place where f, which falls at one place and rises at a later one, is negative, or None.
+
+    Its least value is approached by false positions of the slope (Illinois) until f is negative or the place known.
+    """
+    (low, down), (high, up) = falling, rising
+    for _ in range(_TRIES):
+        part = down / (down - up) if down != up else 0.5
+        x = low + (high - low) * Fraction(round(min(max(part, 0.01), 0.99) * 2**20), 2**20)
+        value, slope = f(x)
+        if value < 0:
+            return x
+        if slope == 0 or high - low <= Fraction(1, 2**bits):
+            return None
+        if slope < 0:
+            low, down, up = x, slope, up / 2
+        else:
+            high, up, down = x, slope, down / 2
+        if value + min(slope, -abs(slope)) * float(high - low) > 0:  # too far from zero to reach it
+            return None
+    return None
+
+
+def _root(f: Callable[[Fraction], tuple[float, float]], low: Fraction, high: Fraction, bits: int) -> Fraction:
+    """Return where f, positive at ``low``, becomes negative before ``high``: Newton's method kept in a bracket.
+
+    f returns its value and its slope.
+    """
+    smallest, near = Fraction(1, 2**bits), Fraction(1, 2 ** (bits // 2))
+    x, moved = (low + high) / 2, high - low
+    for _ in range(_TRIES):
+        value, slope = f(x)
+        if value == 0:
+            return x
+        low, high = (x, high) if value > 0 else (low, x)
+        new = x - Fraction(value) / Fraction(slope) if slope else (low + high) / 2
+        if not low <= new <= high:
+            new = (low + high) / 2
+        new = Fraction(round(new * 2**bits), 2**bits)
+        before, moved = moved, abs(new - x)
+        # Near the end steps shrink to those that round-off makes.
+        if moved <= 2 * smallest or high - low <= smallest or before / 4 <= moved <= near:
+            return min(max(new, low), high)
+        x = new
+    return x
+
+
+def _sign(x: float) -> int:
+    return (x > 0) - (x < 0)

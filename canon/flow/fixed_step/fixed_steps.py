@@ -1,0 +1,167 @@
+"""Runs in steps of one size: the plan of a run, orbits on threads, samples on the way."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+import threading
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.fixed_step.advance import Interruption, Run, run
+from canon.flow.fixed_step.compiled_loop import steps_between
+from canon.flow.fixed_step.partial_step import State, coefficient_pairs
+from canon.flow.fixed_step.statistics import check_cadence, statistics
+from canon.flow.fixed_step.steps_with_events import run_with_events
+from canon.flow.run.sampling_plan import Plan, Sampling, fixed_plan, steps_over
+from canon.flow.trajectory import Array, Samples
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.flow.fixed_step.loop_buffers import Memory, Watch
+    from canon.flow.method.method import FixedStep
+    from canon.flow.run.event import Prepared
+    from canon.kernel.llvm.loop import Loop
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["fixed_steps", "planned"]
+
+
+def planned(wanted: Sampling, step: float | None, method: FixedStep) -> Plan:
+    """Return the plan of a run: the largest step, not above the given one, that divides the span.
+
+    Raises
+    ------
+    ValueError
+        The step is missing or makes no sense.
+    """
+    steps = steps_over(wanted.start, wanted.end, step, method)
+    return fixed_plan(wanted.start, (wanted.end - wanted.start) / steps, tuple(wanted.stops(steps)))
+
+
+def fixed_steps(
+    system: Equations,
+    loop: Loop,
+    method: FixedStep,
+    states: tuple[Array, Array],
+    plan: Plan,
+    progress: Callable[[float], None],
+    watch: Watch | None = None,
+    so_far: Samples | None = None,
+    events: Sequence[Prepared] = (),
+) -> Samples:
+    """Step along a plan and sample on the way; an interruption ends that at the last sample reached by all orbits.
+
+    Parameters
+    ----------
+    system
+        The equations.
+    loop, method
+        The compiled loop and the method it was compiled for.
+    states
+        The states to start from as sums of two doubles, each of shape (2n, orbits).
+    plan
+        The steps, and after which of them to sample.
+    progress
+        Called now and then with the fraction done.
+    watch
+        Observables to follow inside the loop.
+    so_far
+        What was done before, where the motion is resumed.
+    events
+        Events, of one orbit.
+    """
+    steps, orbits = steps_between(loop, method, plan), states[0].shape[1]
+    first = 0 if so_far is None else len(so_far.t) - 1
+    stops, memory = plan.stops[first:], None if so_far is None else so_far.beyond
+    if watch is not None:
+        check_cadence(watch, stops)
+    pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
+    met, end = (), Fraction(0)
+    if events:
+        start = State(*states, memory)
+        found, met, end = run_with_events(system, steps, start, stops, events, progress)
+        runs = [found]
+    else:
+        runs = _on_threads(loop, states, pairs, stops, progress, watch, memory, np.array(system.rows))
+    samples = min(found.high.shape[1] for found in runs)
+    runs = [found.first(samples) for found in runs]
+    high, low = (np.concatenate(parts, axis=2) for parts in ([r.high for r in runs], [r.low for r in runs]))
+    t = plan.instants[first : first + samples].copy()
+    taken = stops[samples - 1] - stops[0]
+    if met and met[-1].event.action == "stop":
+        t[-1], taken = met[-1].t, math.ceil(end) - stops[0]
+    beyond = np.concatenate([found.beyond[-1] for found in runs])
+    iterations = taken * orbits
+    if loop.implicit:
+        iterations = round(float(beyond[:, 0].sum() - (0 if memory is None else memory[:, 0].sum())))
+    return Samples(
+        t=t,
+        y=high[:, :, :orbits],
+        carried=low[:, :, :orbits],
+        steps=taken,
+        evaluations=iterations * method.stages,
+        step=float(steps.h),
+        cpu_seconds=sum(r.cpu_seconds for r in runs),
+        compile_seconds=loop.code.seconds,
+        watched=statistics(runs, stops[:samples], watch, orbits),
+        beyond=beyond,
+        crossings=met,
+    )
+
+
+def _on_threads(
+    loop: Loop,
+    states: tuple[Array, Array],
+    coefficients: tuple[Array, Array],
+    stops: Sequence[int],
+    progress: Callable[[float], None],
+    watch: Watch | None,
+    memory: Memory | None,
+    rows: Memory,
+) -> list[Run]:
+    """Run orbits on as many threads as there are processors, each a whole number of blocks."""
+    (high, low), lanes = states, loop.number.lanes
+    orbits = high.shape[1]
+    blocks = -(-orbits // lanes)
+    if blocks == 1 and lanes == 1:
+        return [run(loop, high, low, coefficients, stops, progress, watch, memory, rows)]
+    # The last block is filled up with copies of the last orbit.
+    filled = np.minimum(np.arange(blocks * lanes), orbits - 1)
+    parts = np.array_split(filled.reshape(blocks, lanes), min(os.cpu_count() or 1, blocks))
+    own_blocks = np.array_split(np.arange(blocks), len(parts))
+    stopped, done, lock = threading.Event(), [0.0] * len(parts), threading.Lock()
+
+    def part(k: int) -> Run:
+        def report(fraction: float) -> None:
+            if stopped.is_set():
+                raise Interruption
+            with lock:
+                done[k] = fraction
+                progress(min(done))
+
+        chosen = parts[k].ravel()
+        own = None if watch is None else dataclasses.replace(watch, start=watch.start[chosen])
+        kept = None if memory is None else memory[own_blocks[k]]
+        found = run(loop, high[:, chosen], low[:, chosen], coefficients, stops, report, own, kept, rows)
+        if found.high.shape[1] < len(stops):
+            stopped.set()
+        return found
+
+    with ThreadPoolExecutor(len(parts)) as pool:
+        futures = [pool.submit(part, k) for k in range(len(parts))]
+        try:
+            wait(futures, return_when=FIRST_EXCEPTION)
+        except KeyboardInterrupt:
+            pass
+        finally:
+            stopped.set()
+        found = [future.result() for future in futures]
+    if min(each.high.shape[1] for each in found) == len(stops):
+        progress(1.0)
+    return found

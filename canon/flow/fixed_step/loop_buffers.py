@@ -1,0 +1,223 @@
+"""The memory of one run of a compiled loop: orbits in blocks of as many as the number type has lanes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from canon.kernel.loops.statistics_loop import ENTRIES
+
+if TYPE_CHECKING:
+    from canon.kernel.llvm.loop import Loop
+    from canon.kernel.llvm.machine_code import MachineCode
+
+__all__ = ["Job", "NonFiniteStateError", "Watch", "described"]
+
+Array = npt.NDArray[np.float64]
+Memory = npt.NDArray[Any]
+
+
+class NonFiniteStateError(ArithmeticError):
+    """The motion left the finite numbers: a collision, a domain left, or a step too large.
+
+    Parameters
+    ----------
+    time
+        The time of the last finite state.
+    state
+        That state (q, p), shape (2n,).
+    """
+
+    def __init__(self, message: str, time: float, state: Array) -> None:
+        super().__init__(message)
+        self.time = time
+        self.state = state
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Observables to follow inside the loop.
+
+    Parameters
+    ----------
+    code
+        The machine code of :func:`canon.kernel.loops.statistics_loop.watching_function`.
+    cadence
+        After how many steps they are evaluated each time.
+    start
+        Their values at the start in wide numbers, shape (orbits, observables, 1), or 2 parts of double-doubles.
+    """
+
+    code: MachineCode
+    cadence: int
+    start: Memory
+
+
+class Job:
+    """Orbits on their way: states, what compensation carries, coefficients, statistics.
+
+    Parameters
+    ----------
+    loop
+        The compiled loop.
+    high, low
+        The states are high + low, shape (2n, orbits); orbits a multiple of the loop's lanes.
+    coefficients
+        t0, h and the method's coefficients times h, as sums of two doubles.
+    watch
+        Observables to follow.
+    memory
+        What an implicit method kept beyond the state, from :meth:`beyond` of an earlier job.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        high: Array,
+        low: Array,
+        coefficients: tuple[Array, Array],
+        watch: Watch | None = None,
+        memory: Memory | None = None,
+    ) -> None:
+        self.loop, number = loop, loop.number
+        self.size, self.orbits = high.shape
+        self.blocks = self.orbits // number.lanes
+        # A compensated state starts with its low part in the compensation, any other rounds it to its type.
+        into_y, into_e = (np.zeros_like(low), low) if loop.compensated else (low, np.zeros_like(low))
+        self.y = number.packed(self._by_block(high), self._by_block(into_y))
+        self._scalars = self.y.size // (self.blocks * self.size)
+        self.e = np.zeros((self.blocks, loop.carry * self._scalars), dtype=number.dtype)
+        carried = self._by_block(into_e)
+        self.e[:, : self.size * self._scalars] = number.packed(carried, np.zeros_like(carried)).reshape(
+            self.blocks, -1
+        )
+        if memory is not None:
+            self.e[:, self.size * self._scalars :] = memory
+        self.c = number.packed(*(np.repeat(part, number.lanes) for part in coefficients))
+        self._addresses = self.y.ctypes.data, self.e.ctypes.data, self.c.ctypes.data
+        self.t0, self.h = (float(part) for part in coefficients[0][:2])
+        self.watch = watch
+        if watch is not None:
+            *observed, parts = watch.start.shape
+            self.record = np.zeros((*observed, ENTRIES, parts), dtype=watch.start.dtype)
+            self.record[..., 0, :] = watch.start
+            self._forget()
+
+    def _forget(self) -> None:
+        self.record[..., 1:, :] = 0
+        self.record[..., 2, 0], self.record[..., 3, 0] = np.inf, -np.inf
+
+    def watched(self) -> Array:
+        """Return the sums and bounds of the changes since they were last asked for, and start anew."""
+        found = self.record[..., 1:, :].sum(axis=-1).astype(np.float64)
+        self._forget()
+        return found
+
+    def _by_block(self, states: Array) -> Array:
+        """Reorder (2n, orbits) as blocks, components, lanes: shape (blocks · 2n, lanes)."""
+        lanes = self.loop.number.lanes
+        return states.reshape(self.size, self.blocks, lanes).transpose(1, 0, 2).reshape(-1, lanes)
+
+    def advance(self, first: int, steps: int) -> None:
+        """Take steps, the first of which has a given number."""
+        if self.watch is None:
+            self.loop.code.call(*self._addresses, first, steps, self.blocks)
+            return
+        numbers = (first, steps, self.blocks, self.watch.cadence)
+        self.watch.code.call(self.loop.code.address, *self._addresses, *numbers, self.record.ctypes.data)
+
+    def _call(self, y: Memory, e: Memory, first: int, steps: int, blocks: int) -> None:
+        self.loop.code.call(y.ctypes.data, e.ctypes.data, self.c.ctypes.data, first, steps, blocks)
+
+    def finite(self) -> bool:
+        """Return whether every state is finite."""
+        return bool(np.isfinite(self.y).all())
+
+    def states(self) -> tuple[Array, Array]:
+        """Return the states as sums of two doubles, each of shape (2n, orbits)."""
+        high, low = self.states_in(self.y[np.newaxis], self.e[np.newaxis])
+        return high[:, 0], low[:, 0]
+
+    def states_in(self, y: Memory, e: Memory) -> tuple[Array, Array]:
+        """Return states of which y and e are copies, each of shape (2n, times, orbits).
+
+        Parameters
+        ----------
+        y, e
+            Copies of this job's memory, one after the other along the first axis.
+        """
+        times = len(y)
+
+        def by_orbit(numbers: Array) -> Array:
+            shaped = numbers.reshape(times, self.blocks, self.size, self.loop.number.lanes)
+            return shaped.transpose(2, 0, 1, 3).reshape(self.size, times, self.orbits)
+
+        high, low = (by_orbit(part) for part in self.loop.number.unpacked(y))
+        if self.loop.compensated:
+            carried, _ = self.loop.number.unpacked(e[:, :, : self.size * self._scalars].copy())
+            low = low + by_orbit(carried)
+        return high, low
+
+    def beyond(self) -> Memory:
+        """Return what an implicit method keeps beyond the state, its iterations first, shape (blocks, …)."""
+        return self.beyond_in(self.e).copy()
+
+    def beyond_in(self, e: Memory) -> Memory:
+        """Return what lies beyond the states in copies of this job's e, shape (…, blocks, …)."""
+        return e[..., self.size * self._scalars :]
+
+    def lost(self, y: Memory, e: Memory, first: int, steps: int, rows: Memory | None) -> NonFiniteStateError:
+        """Find the last finite state of the first orbit that was lost, halving the slice of steps.
+
+        Parameters
+        ----------
+        y, e
+            The memory before the slice.
+        first, steps
+            The slice.
+        rows
+            The components that are coordinates and momenta; all of them where None.
+        """
+        number = self.loop.number
+        lost = np.argwhere(~np.isfinite(self.y.reshape(self.blocks, self.size, -1, number.lanes)))
+        block, _, _, lane = (int(index) for index in lost[0])
+        length = self.y.size // self.blocks
+        y, e = y[block * length : (block + 1) * length].copy(), e[block].copy()
+
+        def finite(memory: Memory) -> bool:
+            return bool(np.isfinite(number.unpacked(memory)[0][:, lane]).all())
+
+        while steps > 1:
+            half, half_e = y.copy(), e.copy()
+            self._call(half, half_e, first, steps // 2, 1)
+            if finite(half):
+                y, e, first, steps = half, half_e, first + steps // 2, steps - steps // 2
+            else:
+                steps //= 2
+        after = e.copy()
+        self._call(y.copy(), after, first, 1, 1)
+        state = number.unpacked(y)[0][:, lane]
+        change = float(after[(self.size + 1) * self._scalars]) if self.loop.implicit else 0.0
+        orbit = block * number.lanes + lane if self.orbits > 1 else None
+        state = state if rows is None else state[rows]
+        return _complaint(self.t0 + first * self.h, first + 1, state, change, orbit)
+
+
+def _complaint(t: float, step: int, state: Array, change: float, orbit: int | None) -> NonFiniteStateError:
+    if change:
+        what = f"the stages of step {step} do not converge (last change {change:.2g})"
+        why = "the step is too large for the iteration; take a smaller one, or Taylor()"
+    else:
+        what = f"the state stops being finite in step {step}"
+        why = "a collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()"
+    which = "" if orbit is None else f" of orbit {orbit}"
+    return NonFiniteStateError(f"{what}{which}, after {described(t, state)}: {why}", t, state)
+
+
+def described(t: float, state: Array) -> str:
+    """Return a time and a state in words."""
+    shown = ", ".join(f"{x:.6g}" for x in state[:8]) + (", …" if len(state) > 8 else "")
+    return f"t = {t:.9g} where (q, p) = ({shown})"

@@ -1,0 +1,77 @@
+"""Single steps of any length from any state: between the steps of a run, for events and for states in between."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.fixed_step.loop_buffers import Job
+from canon.kernel.llvm.number_types import double_pair
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from fractions import Fraction
+
+    from canon.flow.fixed_step.loop_buffers import Array, Memory
+    from canon.kernel.llvm.loop import Loop
+
+__all__ = ["PartialSteps", "State", "coefficient_pairs"]
+
+
+@dataclass(frozen=True)
+class State:
+    """States high + low, each of shape (2n, orbits), and what an implicit method keeps beyond them."""
+
+    high: Array
+    low: Array
+    beyond: Memory | None = None
+
+
+def coefficient_pairs(
+    coefficients: Callable[[Fraction], list[Fraction]], t: Fraction, h: Fraction
+) -> tuple[Array, Array]:
+    """Return what a loop reads, t, h and the method's coefficients times h, as sums of two doubles."""
+    pairs = np.array([double_pair(c) for c in (t, h, *coefficients(h))])
+    return pairs[:, 0].copy(), pairs[:, 1].copy()
+
+
+@dataclass(frozen=True, eq=False)
+class PartialSteps:
+    """Steps between the times t0 + n h of a run.
+
+    Parameters
+    ----------
+    loop
+        The compiled loop.
+    coefficients
+        The method's coefficients for a step size.
+    t0, h
+        The run's first time and its step.
+    """
+
+    loop: Loop
+    coefficients: Callable[[Fraction], list[Fraction]]
+    t0: Fraction
+    h: Fraction
+
+    def time(self, n: int, part: Fraction) -> Fraction:
+        """Return the time of a part of step n + 1."""
+        return self.t0 + (n + part) * self.h
+
+    def moved(self, state: State, n: int, begin: Fraction, end: Fraction) -> State:
+        """Return the state after one step from t0 + (n + begin) h to t0 + (n + end) h."""
+        if begin == end:
+            return state
+        pairs = coefficient_pairs(self.coefficients, self.time(n, begin), (end - begin) * self.h)
+        job = Job(self.loop, state.high, state.low, pairs, memory=state.beyond)
+        job.advance(0, 1)
+        return State(*job.states(), job.beyond())
+
+    def whole(self, state: State, n: int, steps: int) -> State:
+        """Return the state after whole steps of the run, from the one at t0 + n h."""
+        pairs = coefficient_pairs(self.coefficients, self.t0, self.h)
+        job = Job(self.loop, state.high, state.low, pairs, memory=state.beyond)
+        job.advance(n, steps)
+        return State(*job.states(), job.beyond())

@@ -1,0 +1,262 @@
+"""The geometry of what is computed: Jacobians of flows and of discrete maps, symplecticity, reversal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.expression.symbols.user_input import counted
+from canon.flow.checked_request import task_of
+from canon.flow.geometry.solvable_jacobian import solvable_jacobian
+from canon.flow.geometry.transformed_jacobian import section_jacobian
+from canon.flow.method.method import DOP853, Taylor, TimeTransformed
+from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.flow.propagate import propagate
+from canon.flow.run.sampling_plan import Plan, fixed_plan
+from canon.kernel.program.variational import variational
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import numpy.typing as npt
+    from sympy import Symbol
+
+    from canon.flow.method.method import Method
+    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.trajectory import Array
+
+__all__ = ["FlowJacobian", "flow_jacobian", "reversal_error", "symplecticity_defect"]
+
+_UNIT = 2**200
+"""Jacobians are multiplied in whole numbers of 2⁻²⁰⁰, so that a defect is theirs and not the product's."""
+
+
+@dataclass(frozen=True)
+class FlowJacobian:
+    """The derivative M = ∂(q, p)(t)/∂(q, p)(start) of a motion by its starting state.
+
+    Parameters
+    ----------
+    t
+        Times, shape (times,).
+    y
+        The motion itself, shape (2n, times).
+    M
+        The Jacobian, shape (2n, 2n, times): ``M[i, j]`` is ∂y_i/∂y0_j; the identity at the start.
+    low
+        What M is beyond doubles: it is M + low.
+    """
+
+    t: Array
+    y: Array
+    M: Array
+    low: Array
+
+    def __repr__(self) -> str:
+        n = len(self.M)
+        return (
+            f"<FlowJacobian: {n} × {n} at {counted(len(self.t), 'time')}, t = {self.t[0]:g} … {self.t[-1]:g}>"
+        )
+
+    @property
+    def final(self) -> Array:
+        """The Jacobian at the last time, shape (2n, 2n)."""
+        return self.M[:, :, -1]
+
+    @property
+    def symplecticity_defect(self) -> Array:
+        """The largest size of an entry of MᵀJM − J at each time, see :func:`symplecticity_defect`."""
+        pairs = zip(self.M.ravel().tolist(), self.low.ravel().tolist(), strict=True)
+        whole = [round((Fraction(high) + Fraction(low)) * _UNIT) for high, low in pairs]
+        exact = np.array(whole, dtype=object).reshape(self.M.shape)
+        return np.array(
+            [float(Fraction(_defect(exact[:, :, k], _UNIT**2), _UNIT**2)) for k in range(len(self.t))]
+        )
+
+
+def flow_jacobian(
+    hamiltonian: HamiltonianSystem,
+    y0: Sequence[Any] | npt.NDArray[Any],
+    t_span: tuple[float, float],
+    *,
+    method: Method | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    precision: str | int | None = None,
+    parameters: Mapping[Symbol | str, Any] | None = None,
+    samples: int | None = None,
+    times: npt.ArrayLike | None = None,
+) -> FlowJacobian:
+    """Return the Jacobian of the flow by the variational equations, with the method that carries the motion.
+
+    For methods of fixed steps it is the exact derivative of the discrete map that the compiled steps make, up to
+    round-off, so that a symplectic method's is symplectic to round-off at any step. For Taylor and DOP853 it is
+    the flow's, to their tolerance.
+
+    Parameters
+    ----------
+    hamiltonian, t_span, method, step, tolerance, precision, parameters, samples, times
+        As :func:`canon.propagate` takes them; one sample, at the end, where neither samples nor times are given.
+    y0
+        One starting state (q, p), shape (2n,).
+
+    Raises
+    ------
+    ValueError
+        As ``propagate``; or the planets' coordinates are democratic heliocentric ones, or several states or parameters
+        by orbit are given.
+
+    Examples
+    --------
+    >>> from canon import Hamiltonian, Splitting, coordinates
+    >>> import sympy
+    >>> (x,) = coordinates("x")
+    >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
+    >>> coarse = flow_jacobian(pendulum, [1.0, 0.0], (0, 50), method=Splitting("verlet"), step=0.5)
+    >>> coarse.final.shape, bool(coarse.symplecticity_defect[-1] < 1e-13)
+    ((2, 2), True)
+    """
+    if samples is None and times is None:
+        samples = 1
+    task = task_of(
+        hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
+        parameters=parameters, samples=samples, times=times,
+    )  # fmt: skip
+    if not task.single:
+        raise ValueError(
+            "the Jacobian is made of one orbit at a time: give one state and one set of parameters"
+        )
+    if isinstance(task.method, TimeTransformed):
+        return FlowJacobian(*section_jacobian(task, hamiltonian, parameters or {}))
+    if isinstance(task.method, SolvableSplitting) or getattr(task.method, "parts", None) is not None:
+        t, motion, slopes = solvable_jacobian(task)
+        return FlowJacobian(t, motion, slopes, np.zeros_like(slopes))
+    size = len(y0)
+    # Orbits side by side, one variation each; where steps adapt, all variations of one orbit.
+    together = isinstance(task.method, Taylor | DOP853)
+    orbits, columns = (1, size) if together else (size, 1)
+    made = replace(
+        task,
+        system=variational(task.system, columns),
+        states=(_varied(task.states[0], orbits, columns), _varied(task.states[1], orbits, columns, unit=0.0)),
+        single=False,
+    )
+    found = made.trajectory(lambda _: None)
+    y, M = _parted(found.y, size, columns)
+    _, low = _parted(found.carried, size, columns)
+    return FlowJacobian(found.t, y, M, low)
+
+
+def _varied(state: Array, orbits: int, columns: int, unit: float = 1.0) -> Array:
+    """Return starting states of shape (2n (1 + columns), orbits) with unit variations."""
+    n = len(state) // 2
+    units = unit * np.eye(2 * n)
+    shape = (columns, 2, n, orbits)
+    varied = units.T.reshape(columns, 2 * n, 1) if orbits == 1 else units.reshape(1, 2 * n, orbits)
+    varied = varied.reshape(shape).transpose(1, 0, 2, 3).reshape(2, -1, orbits)
+    own = np.broadcast_to(state, (2 * n, orbits)).reshape(2, n, orbits)
+    return np.concatenate([own, varied], axis=1).reshape(-1, orbits)
+
+
+def _parted(y: Array, size: int, columns: int) -> tuple[Array, Array]:
+    """Return motion (2n, times) and Jacobian (2n, 2n, times) from states with variations."""
+    n, (_, times, orbits) = size // 2, y.shape
+    parts = y.reshape(2, 1 + columns, n, times, orbits)
+    variations = parts[:, 1:].transpose(0, 2, 1, 4, 3).reshape(size, size, times)
+    return parts[:, 0, :, :, 0].reshape(size, times), variations
+
+
+def symplecticity_defect(M: npt.ArrayLike) -> float:
+    """Return the largest size of an entry of MᵀJM − J, J = [[0, 1], [−1, 0]]; 0 where it is symplectic.
+
+    Its round-off is some units of the last place of the square of M's largest entries.
+
+    Parameters
+    ----------
+    M
+        A matrix, shape (2n, 2n), rows and columns ordered (q, p).
+
+    Raises
+    ------
+    ValueError
+        The matrix is not of even size and finite.
+
+    Examples
+    --------
+    >>> symplecticity_defect([[1.0, 0.5], [0.0, 1.0]]), symplecticity_defect([[1.0, 0.0], [0.0, 0.75]])
+    (0.0, 0.25)
+    """
+    given = np.asarray(M)
+    if given.ndim != 2 or given.shape[0] != given.shape[1] or given.shape[0] % 2 or not given.size:
+        raise ValueError(f"a matrix of shape {given.shape}: a Jacobian of (q, p) has shape (2n, 2n)")
+    if not np.isfinite(given).all():
+        raise ValueError(
+            "the matrix has entries that are not finite: the motion it belongs to has left the finite numbers"
+        )
+    return float(_defect(given, 1))
+
+
+def _defect(M: npt.NDArray[Any], one: int) -> Any:
+    """Return the largest size of an entry of MᵀJM − J for a matrix whose entries are given in parts of √one."""
+    n = len(M) // 2
+    upper, lower = M[:n], M[n:]
+    found = upper.T @ lower - lower.T @ upper
+    unit = np.array([[one * (i == j) for j in range(n)] for i in range(n)], dtype=M.dtype)
+    found[:n, n:] -= unit
+    found[n:, :n] += unit
+    return abs(found).max()
+
+
+def reversal_error(
+    hamiltonian: HamiltonianSystem,
+    y0: Sequence[Any] | npt.NDArray[Any],
+    t_span: tuple[float, float],
+    *,
+    method: Method | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    precision: str | int | None = None,
+    parameters: Mapping[Symbol | str, Any] | None = None,
+) -> Array:
+    """Go there and back again and return how far from the start the motion arrives, shape of y0.
+
+    A symmetric method arrives to round-off, times what the motion makes of it; others miss by their error, and so do
+    time-transformed ones, which land within a step.
+
+    Parameters
+    ----------
+    hamiltonian, y0, t_span, method, step, tolerance, precision, parameters
+        As :func:`canon.propagate` takes them.
+
+    Examples
+    --------
+    >>> from canon import Hamiltonian, RK4, Splitting, coordinates
+    >>> import sympy
+    >>> (x,) = coordinates("x")
+    >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
+    >>> far = [
+    ...     abs(reversal_error(pendulum, [1.0, 0.0], (0, 50), method=method, step=0.25)).max()
+    ...     for method in (Splitting("verlet"), RK4())
+    ... ]
+    >>> bool(far[0] < 1e-13), bool(far[1] > 1e-3)
+    (True, True)
+    """
+    there = propagate(
+        hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
+        parameters=parameters, samples=1,
+    )  # fmt: skip
+    task, kept = there.origin
+    plan, (high, low) = task.plan, task.states
+    if plan.h is None:
+        back = Plan(Fraction(float(plan.instants[-1])), plan.instants[::-1].copy(), ends=plan.ends)
+    else:
+        back = fixed_plan(plan.last(-1), -plan.h, plan.stops)
+    returned = replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back).trajectory(
+        lambda _: None
+    )
+    _, end = returned.origin
+    missed = ((end.y[:, -1] - high) + (end.carried[:, -1] - low))[task.system.rows]
+    return missed[:, 0] if task.single else missed

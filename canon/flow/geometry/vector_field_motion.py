@@ -1,0 +1,185 @@
+"""Equations of motion and of its variations, carried by heyoka; what a function does along the motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import sympy as sp
+
+from canon.expression.graph.graph import Graph
+from canon.expression.symbols.symbol import time
+from canon.expression.symbols.user_input import counted
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.geometry.certified_derivatives import Miss, Value, definite_node, values_at
+from canon.kernel.heyoka_bridge import heyoka_expressions
+from canon.kernel.program.hamilton_equations import exact, exact_numbers
+from canon.mechanics.hamilton.vector_field import VectorField
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from sympy import Expr, Symbol
+
+    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.trajectory import Array
+
+__all__ = ["COMPACT_FROM", "Field", "Look", "carried", "field_of", "look_at", "step_error"]
+
+COMPACT_FROM = 60
+"""Equations with more operations are compiled in heyoka's compact mode."""
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """Equations of motion ẋ = X(x, t) on a graph, with numbers for their parameters."""
+
+    graph: Graph
+    x: tuple[Symbol, ...]
+    t: Symbol
+    numbers: Mapping[str, Fraction]
+    rates: tuple[int, ...]
+
+    def node(self, f: Expr, what: str) -> int:
+        """Return the node of a function of x, t and the parameters."""
+        general = definite_node(self.graph, f, what)
+        others = self.graph.symbols(general) - {*self.x, self.t}
+        unknown = sorted(s.name for s in others if s.name not in self.numbers)
+        if unknown:
+            raise KeyError(
+                f"{what} holds {', '.join(unknown)}: give each a number, parameters={{symbol: value}}"
+            )
+        known = {self.graph.symbol(s): self.graph.number(self.numbers[s.name]) for s in others}
+        return self.graph.substitute([general], known)[0]
+
+    def half(self) -> int:
+        """Return n of the 2n variables (q, p)."""
+        if len(self.x) % 2:
+            raise ValueError(
+                f"the field has {counted(len(self.x), 'variable')}, "
+                "which can't be coordinates and momenta (q, p)"
+            )
+        return len(self.x) // 2
+
+    def state(self, y: Sequence[Any]) -> Array:
+        """Return a state as doubles."""
+        given = np.array([float(exact(value, "a component of the state")) for value in y])
+        if given.shape != (len(self.x),):
+            raise ValueError(
+                f"{counted(given.size, 'number')} given for the "
+                f"state ({', '.join(map(str, self.x))}): give one each"
+            )
+        return given
+
+    def heyoka_pairs(self, variations: int = 0) -> list[tuple[Any, Any]]:
+        """Return heyoka's equations of x and, after them, of so many variations δx."""
+        import heyoka as hy
+
+        graph, dummies = self.graph, [sp.Dummy(s.name) for _ in range(variations) for s in self.x]
+        rates = list(self.rates)
+        for k in range(variations):
+            d = [graph.symbol(s) for s in dummies[k * len(self.x) : (k + 1) * len(self.x)]]
+            for rate in self.rates:
+                slopes = graph.gradient(rate, self.x)
+                rates.append(graph.add([graph.mul([a, b]) for a, b in zip(slopes, d, strict=True)]))
+        symbols = (*self.x, *dummies)
+        variables = {s: hy.expression(f"x{i}") for i, s in enumerate(symbols)}
+        made = heyoka_expressions(graph, rates, {**variables, self.t: hy.time})
+        return list(zip(variables.values(), made, strict=True))
+
+
+def field_of(motion: HamiltonianSystem | VectorField, parameters: Mapping[Symbol | str, Any]) -> Field:
+    """Return Hamilton's equations, or those of a vector field, with numbers for the parameters."""
+    graph, numbers = Graph(), exact_numbers(parameters)
+    if isinstance(motion, VectorField):
+        empty = Field(graph, motion.x, time, numbers, ())
+        rates = tuple(empty.node(f, "the vector field") for f in motion.components)
+        return Field(graph, motion.x, time, numbers, rates)
+    x, n = (*motion.q, *motion.p), len(motion.q)
+    empty = Field(graph, x, motion.t, numbers, ())
+    slopes = graph.gradient(empty.node(motion.H, "the Hamiltonian"), x)
+    rates = (*slopes[n:], *(graph.negative(slope) for slope in slopes[:n]))
+    return Field(graph, x, motion.t, numbers, rates)
+
+
+def carried(
+    field: Field, equations: Any, y0: Array, t_span: tuple[float, float], samples: int, variations: int = 0
+) -> tuple[Array, int]:
+    """Return the states at evenly spaced times, shape (samples + 1, …), and the steps taken.
+
+    ``equations`` are heyoka's, of the field's variables and of so many ``variations`` of them.
+
+    Raises
+    ------
+    NonFiniteStateError
+        The motion can't be continued over the whole span.
+    """
+    import heyoka as hy
+
+    start, end = (float(exact(t, "t_span")) for t in t_span)
+    if start == end or samples < 1:
+        raise ValueError(f"t_span = {t_span} with samples={samples}: there is no motion to look at")
+    large = len(field.graph.reachable(field.rates)) * (1 + variations) > COMPACT_FROM
+    integrator = hy.taylor_adaptive(equations, y0, time=start, compact_mode=large)
+    outcome, _, _, steps, _, rows = integrator.propagate_grid(np.linspace(start, end, samples + 1))
+    if outcome != hy.taylor_outcome.time_limit or not np.isfinite(rows).all():
+        state = np.array(integrator.state[: len(field.x)])
+        raise NonFiniteStateError(
+            f"the motion can't be continued after t = {integrator.time:.9g} ({outcome}): a collision or the "
+            "edge of the equations' domain; stop earlier",
+            float(integrator.time),
+            state,
+        )
+    return rows, int(steps)
+
+
+def step_error(states: Array, steps: int) -> Array:
+    """Return the error of each component after so many steps that are each right to a rounding, shape (2n,).
+
+    A rounding is that of the component's largest value on the way: heyoka controls a step by the largest of
+    all components, but its series converge alike for all.
+    """
+    return np.finfo(float).eps * math.sqrt(steps + 1) * np.abs(states).max(axis=0)
+
+
+class Look(NamedTuple):
+    """A claimed integral at one state: its value, the |∂I/∂x|, the size of its terms, and dI/dt."""
+
+    value: Fraction
+    slopes: tuple[float, ...]
+    scale: Fraction
+    rate: Miss
+
+
+def look_at(field: Field, claimed: int, y: Array, t: float) -> Look:
+    """Return a claimed integral and its rate at a state, taken for the exact numbers it is.
+
+    Raises
+    ------
+    ValueError
+        One of them has no finite real value there.
+    """
+    graph, variables = field.graph, (*field.x, field.t)
+    slopes = graph.gradient(claimed, variables)
+    where = dict(zip(variables, map(Fraction, (*y.tolist(), t)), strict=True))
+    values = values_at(graph, [claimed, *slopes, *field.rates], where)
+    if values is None:
+        raise ValueError(
+            f"the claimed integral or its rate has no finite real value at t = {t:.9g} of the motion"
+        )
+    I, by, rates = values[0], values[1 : 1 + len(slopes)], values[1 + len(slopes) :]
+    terms = [(a, X) for a, X in zip(by, (*rates, Value(Fraction(1), Fraction(0))), strict=True)]
+    rate = Miss(
+        abs(sum((a.number * X.number for a, X in terms), Fraction(0))),
+        sum((abs(a.number) * X.error + abs(X.number) * a.error for a, X in terms), Fraction(0)),
+        sum((abs(a.number * X.number) for a, X in terms), Fraction(0)),
+        "dI/dt",
+        where,
+    )
+    scale = abs(I.number) + sum(
+        (abs(a.number * where[s]) for a, s in zip(by, variables, strict=True)), Fraction(0)
+    )
+    return Look(I.number, tuple(abs(float(a.number)) for a in by[:-1]), scale, rate)

@@ -1,0 +1,351 @@
+"""Methods of integration as values: what to use, not how it runs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from canon.expression.symbols.user_input import counted
+from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
+from canon.kernel.schemes.order_conditions import order
+from canon.kernel.schemes.splitting_schemes import SCHEMES, Scheme
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sympy import Expr
+
+__all__ = [
+    "DOP853",
+    "RK4",
+    "FixedStep",
+    "Gauss",
+    "Method",
+    "Splitting",
+    "Stepped",
+    "Taylor",
+    "TimeTransformed",
+]
+
+Coefficient = float | int | str | Fraction
+"""Text is read as the exact decimal or quotient it spells, a float as the binary number it is."""
+
+
+@dataclass(frozen=True, init=False)
+class Splitting:
+    """A symplectic splitting method for H = T(p, t) + V(q, t): drifts and kicks in turn.
+
+    Parameters
+    ----------
+    name
+        One of ``verlet``, ``forest-ruth``, ``suzuki-4``, ``mclachlan-4``, ``blanes-moan-4``,
+        ``blanes-moan-6``, ``kahan-li-6``, ``kahan-li-8``, ``sofroniou-spaletta-10``; or ``srkn-6a``,
+        ``srkn-6b`` where T is quadratic in p.
+    a, b
+        Coefficients of your own instead: drift a₁h, kick b₁h, drift a₂h …; as many drifts as kicks, or one
+        more.
+    parts
+        H₀ and H₁ with H = H₀ + H₁, in place of T and V: the flow of H₀, which is quadratic in (q, p) or Kepler's
+        motion, takes the drifts' place, kicks by H₁, a function of q, the kicks'. See also
+        :func:`canon.flow.method.solvable_splitting.SABA`.
+
+    Raises
+    ------
+    ValueError
+        No such method; or coefficients whose number is wrong or which do not add up to 1.
+
+    Examples
+    --------
+    >>> Splitting("kahan-li-8")
+    Splitting('kahan-li-8')
+    >>> Splitting("kahan-li-8").order, Splitting("kahan-li-8").stages
+    (8, 17)
+    >>> Splitting(a=["1/2", "1/2"], b=[1]).order
+    2
+    """
+
+    scheme: Scheme
+    parts: tuple[Expr, Expr] | None = None
+
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        a: Sequence[Coefficient] | None = None,
+        b: Sequence[Coefficient] | None = None,
+        parts: tuple[Expr, Expr] | None = None,
+    ) -> None:
+        object.__setattr__(self, "parts", parts)
+        if (name is None) == (a is None) or (a is None) != (b is None):
+            raise ValueError("say which splitting: Splitting('kahan-li-8'), or Splitting(a=[…], b=[…])")
+        if name is not None:
+            if name not in SCHEMES:
+                raise ValueError(f"no splitting is called {name!r}; there are {', '.join(SCHEMES)}")
+            object.__setattr__(self, "scheme", SCHEMES[name])
+        elif a is not None and b is not None:
+            object.__setattr__(self, "scheme", _own_scheme(a, b))
+
+    def __repr__(self) -> str:
+        parts = f", parts={self.parts}" if self.parts else ""
+        if self.scheme.name:
+            return f"Splitting({self.scheme.name!r}{parts})"
+        a, b = ([float(x) for x in half] for half in (self.scheme.a, self.scheme.b))
+        return f"Splitting(a={a}, b={b}{parts})"
+
+    def __str__(self) -> str:
+        name = self.scheme.name or f"splitting, order {self.order}, {counted(self.stages, 'stage')}"
+        return f"{name}, own parts" if self.parts else name
+
+    @cached_property
+    def order(self) -> int:
+        """The order of the method; for ``srkn`` methods on kinetic energies quadratic in p."""
+        return self.scheme.order
+
+    @property
+    def stages(self) -> int:
+        """Force evaluations in a step."""
+        return self.scheme.stages
+
+    @property
+    def citation(self) -> str:
+        """Where the method was published."""
+        return self.scheme.citation
+
+
+def _own_scheme(a: Sequence[Coefficient], b: Sequence[Coefficient]) -> Scheme:
+    drifts, kicks = ([_exact(x) for x in half] for half in (a, b))
+    if len(drifts) == len(kicks):
+        drifts.append(Fraction(0))
+    if len(drifts) != len(kicks) + 1 or not kicks:
+        raise ValueError(
+            f"{counted(len(drifts), 'drift')} and {counted(len(kicks), 'kick')}: "
+            "they alternate, so give as many or one drift more"
+        )
+    for letter, half in (("a", drifts), ("b", kicks)):
+        if abs(sum(half) - 1) > Fraction(1, 10**12):
+            raise ValueError(
+                f"the coefficients {letter} add up to {float(sum(half))!r}; a consistent method has 1"
+            )
+    found = order([float(x) for x in drifts], [float(x) for x in kicks])
+    return Scheme("", found, tuple(drifts), tuple(kicks), "coefficients given by the user")
+
+
+def _exact(x: Coefficient) -> Fraction:
+    if isinstance(x, float) and not math.isfinite(x):
+        raise ValueError(f"{x} is no coefficient: give finite numbers")
+    return Fraction(x)
+
+
+@dataclass(frozen=True)
+class Gauss:
+    """A Gauss–Legendre method: implicit, symplectic and symmetric for every Hamiltonian, of order 2s.
+
+    Parameters
+    ----------
+    stages
+        s = 1 (the implicit midpoint rule) … 8.
+
+    Examples
+    --------
+    >>> Gauss(6).order
+    12
+    """
+
+    stages: int = 6
+    citation = (
+        "E. Hairer, R. I. McLachlan, A. Razakarivony, Achieving Brouwer’s law with implicit Runge–Kutta methods, "
+        "BIT 48 (2008) 231–243, doi:10.1007/s10543-008-0170-3"
+    )
+
+    def __post_init__(self) -> None:
+        if self.stages not in range(1, HIGHEST_STAGES + 1):
+            raise ValueError(f"Gauss({self.stages}): the number of stages is 1 … {HIGHEST_STAGES}")
+
+    def __str__(self) -> str:
+        return f"Gauss({self.stages})"
+
+    @property
+    def order(self) -> int:
+        """2s."""
+        return 2 * self.stages
+
+
+@dataclass(frozen=True)
+class RK4:
+    """The classical fourth-order Runge–Kutta method: not symplectic, its energy error grows with time.
+
+    Examples
+    --------
+    >>> RK4().order, RK4().stages
+    (4, 4)
+    """
+
+    order = 4
+    stages = 4
+    citation = (
+        "W. Kutta, Beitrag zur näherungsweisen Integration totaler Differentialgleichungen, "
+        "Z. Math. Phys. 46 (1901) 435–453"
+    )
+
+    def __str__(self) -> str:
+        return "RK4"
+
+
+@dataclass(frozen=True)
+class Taylor:
+    """heyoka's adaptive Taylor method, of the order and with the steps its tolerance asks for.
+
+    Parameters
+    ----------
+    tolerance
+        Relative tolerance of a step; the rounding unit 2⁻⁵² where not given.
+
+    Examples
+    --------
+    >>> Taylor().order
+    20
+    """
+
+    tolerance: float | None = None
+    citation = (
+        "F. Biscani, D. Izzo, Revisiting high-order Taylor methods for astrodynamics and celestial "
+        "mechanics, Mon. Not. R. Astron. Soc. 504 (2021) 2614–2628, doi:10.1093/mnras/stab1032"
+    )
+
+    def __post_init__(self) -> None:
+        _check_tolerance(self.tolerance)
+
+    def __str__(self) -> str:
+        return "Taylor" if self.tolerance is None else f"Taylor({self.tolerance:g})"
+
+    @property
+    def order(self) -> int:
+        """The order that the tolerance leads to: ⌈1 − ½ ln(tolerance)⌉."""
+        return math.ceil(1 - math.log(self.tolerance or 2.0**-52) / 2)
+
+    @property
+    def stages(self) -> int:
+        """Taylor series in a step."""
+        return 1
+
+
+@dataclass(frozen=True)
+class DOP853:
+    """SciPy's adaptive Runge–Kutta method of order 8: the ordinary choice, for comparison.
+
+    Parameters
+    ----------
+    tolerance
+        Relative and absolute tolerance of a step.
+    """
+
+    tolerance: float = 1e-12
+    order = 8
+    stages = 12
+    citation = (
+        "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., "
+        "Springer 1993, doi:10.1007/978-3-540-78862-1"
+    )
+
+    def __post_init__(self) -> None:
+        _check_tolerance(self.tolerance)
+
+    def __str__(self) -> str:
+        return f"DOP853({self.tolerance:g})"
+
+
+@dataclass(frozen=True)
+class TimeTransformed:
+    """A symplectic method in a fictitious time, whose steps in t vary with the state, for close encounters.
+
+    Parameters
+    ----------
+    method
+        A splitting, with the logarithmic Hamiltonian of Mikkola and Tanikawa and of Preto and Tremaine, for H = T(p) +
+        V(q, t) with V < 0 along the motion: dt/ds = −1/V. Or a Gauss method with a function g.
+    g
+        dt/ds as a function of (q, p), positive along the motion, for Poincaré's K = g(H − E₀), which takes a
+        Gauss method; a constant factor in it is of no account.
+
+    Raises
+    ------
+    ValueError
+        A splitting with g, or a Gauss method without.
+
+    Notes
+    -----
+    ``step`` is the size in t of the first step; elsewhere steps are longer or shorter as dt/ds is. The end, named
+    ``times`` and events are reached by a part of a step, so that those states err by one more part of a step than the
+    motion itself, which goes on from its own whole steps. ``samples`` of one orbit are evenly spaced in steps, more
+    where steps are short; of many orbits in t.
+
+    Examples
+    --------
+    >>> from canon.flow.propagate import propagate
+    >>> from canon.scene import find
+    >>> kepler = find("kepler")
+    >>> near = kepler.start("e=0.9")
+    >>> method = TimeTransformed(Splitting("verlet"))
+    >>> motion = propagate(
+    ...     kepler.hamiltonian, [*near.q, *near.p], (0, 10), method=method, step=1e-4, parameters=kepler.values
+    ... )
+    >>> bool(abs(motion.energy_error).max() < 1e-14)
+    True
+    """
+
+    method: Splitting | Gauss
+    g: Expr | None = None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.method, Splitting) and (self.g is not None or self.method.parts is not None):
+            raise ValueError(
+                "g(q, p)(H − E0) does not split: give a Gauss method with g, or a splitting without g and parts"
+            )
+        if isinstance(self.method, Gauss) and self.g is None:
+            raise ValueError(
+                "say how long a step is to be where: TimeTransformed(Gauss(6), g=…), such as g = r near a centre"
+            )
+
+    def __str__(self) -> str:
+        return f"{self.method}, time-transformed"
+
+    @property
+    def order(self) -> int:
+        """The method's own."""
+        return self.method.order
+
+    @property
+    def stages(self) -> int:
+        """The method's own."""
+        return self.method.stages
+
+    @property
+    def citation(self) -> str:
+        """Where the transformation was published."""
+        if self.g is not None:
+            return "E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2nd ed., Springer 2006), § VIII.2"
+        return (
+            "S. Mikkola, K. Tanikawa, Explicit symplectic algorithms for time-transformed Hamiltonians, Celest. Mech. "
+            "Dyn. Astron. 74 (1999) 287–295, doi:10.1023/A:1008368322547; M. Preto, S. Tremaine, A class of symplectic "
+            "integrators with adaptive time step for separable Hamiltonian systems, Astron. J. 118 (1999) 2532–2541, "
+            "doi:10.1086/301102"
+        )
+
+
+FixedStep = Splitting | Gauss | RK4 | SolvableSplitting
+"""Methods that take steps of one size."""
+
+Stepped = FixedStep | TimeTransformed
+"""Methods that take ``step=``; the others choose theirs by ``tolerance=``."""
+
+Method = Stepped | Taylor | DOP853
+"""What ``propagate`` takes as ``method``."""
+
+
+def _check_tolerance(tolerance: float | None) -> None:
+    if tolerance is not None and not 0 < tolerance < 1:
+        raise ValueError(f"tolerance {tolerance}: give a number between 0 and 1, such as 1e-12")

@@ -1,0 +1,5 @@
+"""What a run records: sampled times, events, observables, ranges of numbers."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,195 @@
+"""Events: what is to happen where a function of the state crosses zero."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+import sympy as sp
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sympy import Expr, Symbol
+
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["Crossing", "Event", "Prepared", "prepared"]
+
+Array = npt.NDArray[np.float64]
+Action = Literal["record", "stop", "bounce"]
+
+
+@dataclass(frozen=True)
+class Event:
+    """What is to happen where g(q, p, t) crosses zero.
+
+    A crossing is a change of sign. A motion that touches g = 0 and turns back on the same side crosses nothing,
+    nor does one that starts at g = 0 cross at its start.
+
+    With :class:`canon.Taylor` the zero is that of the step's own Taylor polynomial. With a method of
+    fixed steps an event is noticed where g has another sign after a step than before it, or where g
+    approached zero before the step and recedes after it (then the extremum between is looked for, so that two
+    crossings in one step are found); it is located to the round-off of time by partial steps of the same
+    method from the start of that step. Several events in one step are met in their order; crossings escape
+    only where g turns more than once within one step. ``"record"`` and ``"stop"`` leave the motion as it is, bit
+    for bit; after a change of the state the rest of the step is one partial step, and the grid of times stays.
+
+    Parameters
+    ----------
+    function
+        g(q, p, t), with the parameters of H.
+    direction
+        1: only where g rises, −1: only where it falls, in the order in which the motion passes; 0: both.
+    action
+        ``"record"``: note time and state. ``"stop"``: end the motion there. ``"bounce"``: reflect it
+        elastically from the wall g(q, t) = 0, p → p − 2 ġ ∇g/(∇g·M⁻¹∇g), which keeps H where the wall is at
+        rest; H is to be quadratic in p. Or new values of some coordinates and momenta: ``{p: -p/2}``.
+    name
+        What to call it.
+
+    Raises
+    ------
+    ValueError
+        The direction or the action is none of these.
+
+    Examples
+    --------
+    >>> from canon import Event, Hamiltonian, Splitting, coordinates, propagate
+    >>> (x,) = coordinates("x")
+    >>> falling = Hamiltonian(x.momentum**2 / 2 + x, [x], [x.momentum])
+    >>> motion = propagate(
+    ...     falling, [0.5, 0.0], (0, 6), method=Splitting("verlet"), step=0.01, events=[Event(x, -1, "bounce")]
+    ... )
+    >>> [round(met.t, 9) for met in motion.events], bool(abs(motion.energy_error).max() < 1e-14)
+    ([1.0, 3.0, 5.0], True)
+    """
+
+    function: Expr
+    direction: int = 0
+    action: Action | Mapping[Symbol, Expr] = "record"
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        if self.direction not in (-1, 0, 1):
+            raise ValueError(f"direction={self.direction}: 1 where g rises, -1 where it falls, 0 both")
+        if not isinstance(self.action, Mapping) and self.action not in ("record", "stop", "bounce"):
+            raise ValueError(
+                f"action={self.action!r}: 'record', 'stop', 'bounce', or new values {{p: -p}} of the state"
+            )
+
+    def __str__(self) -> str:
+        return self.name or f"{self.function} = 0"
+
+    def counts(self, rising: bool) -> bool:
+        """Return whether a crossing in that direction is this event."""
+        return self.direction == 0 or (self.direction > 0) == rising
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """An event met.
+
+    Parameters
+    ----------
+    event
+        Which one.
+    t
+        When.
+    y
+        The state (q, p) there, before any change, shape (2n,).
+    rising
+        Whether g rose through zero in the order in which the motion passes.
+    after
+        The state after the change, where the event changes it.
+    """
+
+    event: Event
+    t: float
+    y: Array
+    rising: bool
+    after: Array | None = None
+
+    def __repr__(self) -> str:
+        return f"<Crossing: {self.event} {'rising' if self.rising else 'falling'} at t = {self.t:.9g}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """An event's nodes in a system's graph: g, dg/dt along the motion, and the state after its change."""
+
+    event: Event
+    value: int
+    rate: int
+    jump: tuple[int, ...] | None
+
+
+def prepared(system: Equations, events: Sequence[Event]) -> tuple[Prepared, ...]:
+    """Return events on a system's graph.
+
+    Raises
+    ------
+    KeyError
+        A function holds a symbol that is neither coordinate, momentum, time nor a known parameter.
+    ValueError
+        A function is constant; a wall depends on momenta; H is not quadratic in p, so that there is no
+        reflection known; a new value is given for what is no coordinate or momentum.
+    """
+    return tuple(_prepared(system, event) for event in events)
+
+
+def _prepared(system: Equations, event: Event) -> Prepared:
+    graph, state = system.graph, (*system.q, *system.p)
+    value = system.node(sp.sympify(event.function, strict=True), f"the event {event}")
+    if not graph.symbols(value):
+        raise ValueError(f"the event {event} does not depend on the motion")
+    slopes = graph.gradient(value, (*state, system.t))
+    rates = (*system.velocity, *system.force, graph.one)
+    rate = graph.add([graph.mul([a, b]) for a, b in zip(slopes, rates, strict=True)])
+    if event.action == "bounce":
+        return Prepared(event, value, rate, _reflected(system, event, slopes[: len(system.q)], value, rate))
+    if isinstance(event.action, str):
+        return Prepared(event, value, rate, None)
+    given: dict[Any, Expr] = dict(event.action)
+    rows = system.rows
+    strange = [str(s) for s in given if s not in {state[row] for row in rows}]
+    if strange:
+        raise ValueError(
+            f"the event {event} changes {', '.join(strange)}: it can change coordinates and momenta"
+        )
+    jump = [
+        system.node(sp.sympify(given[s], strict=True), f"the new {s} of the event {event}")
+        if s in given
+        else graph.symbol(s)
+        for s in state
+    ]
+    return Prepared(event, value, rate, tuple(jump))
+
+
+def _reflected(
+    system: Equations, event: Event, normal: Sequence[int], value: int, rate: int
+) -> tuple[int, ...]:
+    graph, p = system.graph, frozenset[Any](system.p)
+    if graph.symbols(value) & p or not frozenset[Any](system.q) & graph.symbols(value):
+        raise ValueError(
+            f"the event {event} is no wall g(q, t) = 0 to bounce from: give its action as {{p: …}}"
+        )
+    inverse_mass = [graph.gradient(velocity, system.p) for velocity in system.velocity]
+    twins = frozenset[Any](system.p[len(system.p) - system.varying :])
+    if any((graph.symbols(entry) & p) - twins for row in inverse_mass for entry in row):
+        raise ValueError(
+            f"H is not quadratic in the momenta, so it is not known how they bounce at {event}: give {{p: …}}"
+        )
+    pushed = [
+        graph.add([graph.mul([entry, n]) for entry, n in zip(row, normal, strict=True)])
+        for row in inverse_mass
+    ]
+    across = graph.add([graph.mul([n, m]) for n, m in zip(normal, pushed, strict=True)])
+    impulse = graph.scaled(-2, graph.mul([rate, graph.power(across, -1)]))
+    momenta = [
+        graph.add([graph.symbol(s), graph.mul([impulse, n])]) for s, n in zip(system.p, normal, strict=True)
+    ]
+    return (*(graph.symbol(s) for s in system.q), *momenta)

@@ -1,0 +1,149 @@
+"""What functions of the state are along a motion, evaluated in higher precision than the state."""
+
+from __future__ import annotations
+
+import warnings
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE, multiprecision
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.flow.trajectory import Samples
+    from canon.kernel.llvm.number_types import MachineType
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["AccuracyWarning", "jumped", "measured", "values_in", "warn_of_jumps"]
+
+Array = npt.NDArray[np.float64]
+
+_IMPLAUSIBLE = 0.5
+"""An energy that changes by more than this part of the size of H's terms at the start is no small error."""
+
+_WIDE = bool(np.finfo(np.longdouble).nmant >= 63)
+
+
+def measured(
+    system: Equations, nodes: Sequence[int], samples: Samples, precision: str
+) -> list[tuple[Array, Array]]:
+    """Return each node's values along a trajectory and their changes since the start.
+
+    They are evaluated with a 64-bit mantissa where the states are doubles and the platform's long double has
+    one (x86), with 40 digits otherwise, at the state with what it is beyond doubles: what is reported is
+    the trajectory's error, not the evaluation's.
+    """
+    doubles = precision in ("single", "double", "compensated")
+    values = _wide_values if _WIDE and doubles else _many_digits
+    found = values(system, nodes, samples.t, samples.y, samples.carried)
+    return [(_rounded(value), _rounded(value - value[0])) for value in found]
+
+
+def values_in(
+    wide: MachineType, system: Equations, nodes: Sequence[int], t: float, y: Array, carried: Array
+) -> npt.NDArray[Any]:
+    """Return nodes at one time and states y + carried of shape (2n, orbits), as wide machine numbers.
+
+    The shape is (nodes, orbits, 1), or (nodes, orbits, 2) where a number is the sum of two doubles.
+    """
+    if not wide.pair:
+        arithmetic, dtype = (FLOAT64, np.float64) if wide.scalar == "double" else (LONGDOUBLE, np.longdouble)
+        point = [a.astype(dtype) + b.astype(dtype) for a, b in zip(y, carried, strict=True)]
+        found = system.graph.evaluate(
+            nodes, dict(zip(system.inputs, (*point, dtype(t)), strict=True)), arithmetic
+        )
+        return np.stack([np.broadcast_to(np.asarray(v, dtype=dtype), y.shape[1:]) for v in found])[
+            ..., np.newaxis
+        ]
+    exactly = np.stack(_many_digits(system, nodes, np.array([t]), y[:, np.newaxis], carried[:, np.newaxis]))[
+        :, 0
+    ]
+    high = exactly.astype(np.float64)
+    return np.stack([high, (exactly - high).astype(np.float64)], axis=-1)
+
+
+class AccuracyWarning(UserWarning):
+    """The computed motion is certainly not the system's."""
+
+
+def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
+    """Warn where the energy of an autonomous system changed as by a step over a singularity.
+
+    Steps of one size may pass a collision from one side to the other without ever meeting an infinity. The
+    energy does not survive it: where it has changed by half the size of H's terms at the start, the motion
+    after that is not the system's.
+
+    Parameters
+    ----------
+    system
+        The equations.
+    samples
+        The motion.
+    change
+        H − H(start), shape (times, orbits).
+
+    Warns
+    -----
+    AccuracyWarning
+        With the interval of time in which that was first seen.
+    """
+    wrong = jumped(system, samples, change)
+    if not wrong.any():
+        return
+    first, orbit = (int(k[0]) for k in np.nonzero(wrong))
+    which = f" of orbit {orbit}" if change.shape[1] > 1 else ""
+    warnings.warn(
+        f"the energy{which} changes by {change[first, orbit]:.3g} up to t = {samples.t[first]:.9g} (t = "
+        f"{samples.t[first - 1]:.9g} before that): a step jumped over a collision or is far too large; what follows is "
+        "not the system's motion. Take a smaller step, Taylor(), or stop before with an Event",
+        AccuracyWarning,
+        stacklevel=5,  # the line that called propagate() or resume()
+    )
+
+
+def jumped(system: Equations, samples: Samples, change: Array) -> npt.NDArray[np.bool_]:
+    """Return where the energy has changed by half the size of H's terms at the start, shape (times, orbits)."""
+    node = system.graph.nodes[system.hamiltonian]
+    terms = node.operands if node.kind == "add" else (system.hamiltonian,)
+    values = dict(zip(system.inputs, (*samples.y[:, 0], np.float64(samples.t[0])), strict=True))
+    sizes = [abs(np.broadcast_to(v, change.shape[1:])) for v in system.graph.evaluate(terms, values)]
+    size = np.sum(sizes, axis=0)
+    # Where H and its terms are 0 at the start there is nothing to compare with.
+    return (np.abs(change) > _IMPLAUSIBLE * size) & (size > 0)
+
+
+def _rounded(values: npt.NDArray[Any]) -> Array:
+    rounded = np.array(values, dtype=np.float64)
+    if not np.isfinite(rounded).all():
+        raise ArithmeticError(
+            "the energy or an observable is not finite at a sample: it left its own domain there"
+        )
+    return rounded
+
+
+def _wide_values(
+    system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
+) -> list[npt.NDArray[Any]]:
+    state = y.astype(np.longdouble) + carried.astype(np.longdouble)
+    times = t.astype(np.longdouble).reshape((-1,) + (1,) * (y.ndim - 2))
+    found = system.graph.evaluate(nodes, dict(zip(system.inputs, (*state, times), strict=True)), LONGDOUBLE)
+    return [np.broadcast_to(np.asarray(value, dtype=np.longdouble), y.shape[1:]) for value in found]
+
+
+def _many_digits(
+    system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
+) -> list[npt.NDArray[Any]]:
+    digits = multiprecision(40)
+    found = np.empty((len(nodes), *y.shape[1:]), dtype=object)
+    for place in np.ndindex(y.shape[1:]):
+        pairs = zip(y[(slice(None), *place)].tolist(), carried[(slice(None), *place)].tolist(), strict=True)
+        point = [*(Fraction(high) + Fraction(low) for high, low in pairs), Fraction(float(t[place[0]]))]
+        values = dict(zip(system.inputs, map(digits.number, point), strict=True))
+        for k, value in enumerate(system.graph.evaluate(nodes, values, digits)):
+            # Outside a function's real domain mpmath goes on with complex numbers.
+            found[(k, *place)] = value if hasattr(value, "man_exp") else np.nan
+    return list(found)

@@ -1,0 +1,101 @@
+"""Starts whose numbers leave the range of doubles on the way: units in which nothing can be computed."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.expression.graph.number_systems import FLOAT64, multiprecision
+from canon.flow.method.method import Taylor
+from canon.kernel.llvm.double_double_functions import LARGEST_ANGLE
+
+if TYPE_CHECKING:
+    from canon.flow.method.method import Method
+    from canon.flow.trajectory import Array
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["check_magnitudes", "is_narrow"]
+
+_FAR = 1e100
+"""Within 1/_FAR … _FAR nothing that a Hamiltonian of mechanics makes of numbers overflows or underflows."""
+
+_LOST = 1e-6
+"""A force that doubles get wrong by this part has overflowed or underflowed on the way."""
+
+_RANGE = 300.0
+"""Doubles reach from 10⁻³⁰⁸ to 10³⁰⁸."""
+
+
+def check_magnitudes(
+    system: Equations, states: Array, start: Fraction, method: Method, precision: str | int | None
+) -> None:
+    """Make sure that doubles can hold what is computed on the way from a state to its rate of change.
+
+    r⁻³ underflows at r = 10¹¹⁰ however large the mass is that it is multiplied with, and the motion would go
+    straight on. Only the first state is looked at, and only where its numbers are far from 1.
+
+    Raises
+    ------
+    ValueError
+        The equations in doubles differ from those in numbers of any size; or the coefficients of Taylor series
+        leave doubles, as time is measured in units much too large or too small.
+    """
+    if not is_narrow(precision):
+        return
+    if precision == "double-double":
+        _check_angles(system, states[:, 0], start)
+    state = states[:, 0]
+    nodes = [*system.velocity, *system.force]
+    point = [*state.tolist(), float(start)]
+    rates = np.array(
+        system.graph.evaluate(nodes, dict(zip(system.inputs, point, strict=True)), FLOAT64), float
+    )
+    if isinstance(method, Taylor):
+        _check_series(state, rates, method)
+    sizes = abs(np.concatenate([state, rates]))
+    ordinary = (sizes == 0) | ((sizes > 1 / _FAR) & (sizes < _FAR))
+    if ordinary.all() and all(not x or 1 / _FAR < abs(x) < _FAR for x in system.parameters.values()):
+        return
+    digits = multiprecision(40)
+    exact = {s: digits.number(x) for s, x in zip(system.inputs, map(Fraction, point), strict=True)}
+    for name, found, node in zip((*system.q, *system.p), rates, nodes, strict=True):
+        true: Any = system.graph.evaluate([node], exact, digits)[0]
+        if abs(float(found) - true) > _LOST * abs(true) and abs(true) > 0:
+            raise ValueError(
+                f"the rate of {name} at the start is {float(true):.3g}, but {float(found):.3g} in doubles: numbers on "
+                "the way are beyond 1e±308. Choose units in which lengths, times and masses are nearer to 1, or "
+                "precision='extended'"
+            )
+
+
+def _check_angles(system: Equations, state: Array, start: Fraction) -> None:
+    nodes = system.graph.reachable((*system.velocity, *system.force))
+    kinds = [system.graph.nodes[node] for node in nodes]
+    angles = [each.operands[0] for each in kinds if each.kind in ("sin", "cos", "tan")]
+    point = dict(zip(system.inputs, (*state.tolist(), float(start)), strict=True))
+    for value in system.graph.evaluate(angles, point, FLOAT64):
+        if abs(float(value)) > LARGEST_ANGLE:
+            raise ValueError(
+                f"an angle is {float(value):.3g} rad at the start: double-double has sines up to "
+                f"{float(LARGEST_ANGLE):.2g} rad. Take whole turns off it, or Taylor() with precision='quad'"
+            )
+
+
+def is_narrow(precision: str | int | None) -> bool:
+    """Return whether the numbers of a precision have the exponents of doubles."""
+    return precision in (None, "single", "double", "compensated", "double-double")
+
+
+def _check_series(state: Array, rates: Array, method: Taylor) -> None:
+    halves = zip(np.split(abs(state), 2), np.split(abs(rates), 2), strict=True)
+    speeds = [float(b.max() / a.max()) for a, b in halves if a.max() > 0 and b.max() > 0]
+    for speed in speeds:
+        if not speed or math.isinf(speed) or abs(math.log10(speed)) * method.order > _RANGE:
+            raise ValueError(
+                f"the motion begins with a time scale of {1 / speed if speed else math.inf:.3g}: the coefficients of "
+                f"Taylor series of order {method.order} are beyond 1e±308. Measure time in other units, or take "
+                "precision='extended'"
+            )

@@ -1,0 +1,1 @@
+"""Time-transformed methods: the extended Hamiltonian, its motion, and states at given times."""

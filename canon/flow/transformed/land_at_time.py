@@ -1,0 +1,132 @@
+"""The part of a step in a fictitious time that ends at a given time."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from canon.expression.graph.number_systems import FLOAT64
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.flow.fixed_step.partial_step import PartialSteps, State
+    from canon.flow.transformed.extended_hamiltonian import Fictitious
+
+__all__ = ["Landed", "Leg", "iterations", "landed", "time_of"]
+
+_TRIES = 60
+"""Trials of a part of a step; bisection alone would need 53."""
+
+
+class Leg(NamedTuple):
+    """Where in a step a smooth part of the motion begins, and the state there."""
+
+    begin: Fraction
+    state: State
+
+
+class Landed(NamedTuple):
+    """A state at a given time: reached from a leg's state by a part of a step, and the steps that the search took."""
+
+    state: State
+    leg: Leg
+    part: Fraction
+    work: int
+
+
+def time_of(state: State, clock: int) -> Fraction:
+    """Return the time that is a component of an extended state."""
+    return Fraction(float(state.high[clock, 0])) + Fraction(float(state.low[clock, 0]))
+
+
+def iterations(before: Any, after: Any) -> int:
+    """Return how many iterations an implicit method took between two memories of it."""
+    return round(float(after[0, 0])) - (0 if before is None else round(float(before[0, 0])))
+
+
+def landed(
+    frame: Fictitious,
+    steps: PartialSteps,
+    legs: Sequence[Leg],
+    goal: Fraction,
+    fine: Fraction,
+    coarse: Fraction,
+) -> Landed:
+    """Return the state at a time within a step.
+
+    The first trial is that of a cubic polynomial with the right slopes, the others are the secant's.
+
+    Parameters
+    ----------
+    frame, steps
+        The equations, and what takes parts of a step.
+    legs
+        The step's smooth parts, from its beginning to its end.
+    goal
+        The time.
+    fine, coarse
+        To what part of itself the time is to be met where it can be, and at least.
+
+    Raises
+    ------
+    ArithmeticError
+        No part of the step ends there.
+    """
+    forward, clock = (1 if steps.h > 0 else -1), frame.clock
+    times = [time_of(leg.state, clock) for leg in legs]
+    misses = [forward * (t - goal) for t in times]
+    scale = max(map(abs, (goal, times[0], times[-1])))
+    if misses[-1] <= fine * scale:
+        return Landed(legs[-1].state, legs[-2], legs[-1].begin, 0)
+    k = max((i for i, miss in enumerate(misses) if miss <= 0), default=0)
+    leg, last = legs[k], legs[k + 1].begin
+    if misses[k] >= -fine * scale:
+        return Landed(leg.state, leg, leg.begin, 0)
+    low, high = (leg.begin, misses[k]), (last, misses[k + 1])
+    x, known, best, work = _guess(frame, steps, legs[k], legs[k + 1], goal), low, None, 0
+    for _ in range(_TRIES):
+        state = steps.moved(leg.state, 0, leg.begin, x)
+        work += iterations(leg.state.beyond, state.beyond) if steps.loop.implicit else 1
+        miss = forward * (time_of(state, clock) - goal)
+        if best is None or abs(miss) < best[0]:
+            best = abs(miss), state, x
+        low, high = ((x, miss), high) if miss < 0 else (low, (x, miss))
+        new = _secant(known, (x, miss), low[0], high[0])
+        if abs(miss) <= fine * scale or new in (low[0], high[0]):
+            break
+        known, x = (x, miss), new
+    assert best is not None
+    if best[0] > coarse * scale:
+        raise ArithmeticError(
+            f"no part of a step ends at t = {float(goal):.9g}: dt/ds varies too fast there; take smaller steps"
+        )
+    return Landed(best[1], leg, best[2], work)
+
+
+def _secant(
+    a: tuple[Fraction, Fraction], b: tuple[Fraction, Fraction], low: Fraction, high: Fraction
+) -> Fraction:
+    """Return where the line through two points is zero, or the middle of the bracket where that is outside."""
+    (x, f), (z, g) = a, b
+    found = z - g * (z - x) / (g - f) if g != f else low
+    if not low < found < high:
+        found = (low + high) / 2
+    return Fraction(float(found))
+
+
+def _guess(frame: Fictitious, steps: PartialSteps, first: Leg, last: Leg, goal: Fraction) -> Fraction:
+    """Return about where in a step the time is: the cubic polynomial s(t) with the slopes at both ends."""
+    start, end = (time_of(leg.state, frame.clock) for leg in (first, last))
+    length = last.begin - first.begin
+    u = float((goal - start) / (end - start))
+    slopes = [float((end - start) / (length * steps.h)) / _rate(frame, leg.state) for leg in (first, last)]
+    part = u * u * (3 - 2 * u) + slopes[0] * u * (1 - u) ** 2 - slopes[1] * u * u * (1 - u)
+    return first.begin + length * Fraction(min(max(part, u / 2), (1 + u) / 2))
+
+
+def _rate(frame: Fictitious, state: State) -> float:
+    """Return dt/ds."""
+    system = frame.system
+    values = dict(zip(system.inputs, (*state.high[:, 0].tolist(), 0.0), strict=True))
+    return float(system.graph.evaluate([system.velocity[frame.clock]], values, FLOAT64)[0])

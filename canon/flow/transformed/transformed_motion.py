@@ -1,0 +1,251 @@
+"""Motions in a fictitious time: kept after evenly many steps, or at the times that are asked for."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
+from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
+from canon.flow.fixed_step.partial_step import State
+from canon.flow.method.method import TimeTransformed
+from canon.flow.method.number_formats import fixed_precision
+from canon.flow.run.sampling_plan import fixed_plan
+from canon.flow.trajectory import Samples
+from canon.flow.transformed.transformed_orbit import Footing, Walk
+from canon.kernel.llvm.number_types import DOUBLE, double_pair
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.flow.run.event import Crossing
+    from canon.flow.task import Task
+    from canon.flow.trajectory import Array
+    from canon.flow.transformed.extended_hamiltonian import Fictitious
+
+__all__ = ["Standing", "transformed_motion"]
+
+Row = tuple[float, "Array", "Array"]
+"""A time and the states y + carried there, each of shape (2n, orbits)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """Where a motion in a fictitious time stands.
+
+    Parameters
+    ----------
+    footings
+        Of each orbit the end of its last whole step before the last state that is kept.
+    stride
+        How many steps apart states are kept, where they are.
+    rows
+        How many states are kept.
+    arrived
+        Whether the motion has come to its end, where the last state need not be the end of a stride.
+    """
+
+    footings: tuple[Footing, ...]
+    stride: int = 1
+    rows: int = 0
+    arrived: bool = False
+
+
+def transformed_motion(task: Task, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
+    """Integrate in the fictitious time until the time has come, and land there with a part of a step.
+
+    Parameters
+    ----------
+    task
+        What to do. Its plan's instants are landed at, one part of a step aside from the motion each; where it has
+        ``wanted`` states, they are kept after evenly many steps, up to twice as many.
+    progress
+        Called now and then with the fraction of the time span that is done.
+    so_far
+        What was done before, where the motion is resumed.
+
+    Returns
+    -------
+    Samples
+        All of the motion, what was done before included; an interruption ends it at the last state that is kept.
+
+    Raises
+    ------
+    ValueError
+        dt/ds is not positive at the start.
+    ArithmeticError
+        The time stops or turns back, or no part of a step ends at an instant.
+    NonFiniteStateError
+        The motion can't be continued.
+    """
+    frame = task.fictitious
+    assert frame is not None
+    course, started = _Course(task, frame, progress, so_far), time.thread_time()
+    try:
+        if task.plan.wanted:
+            course.in_steps()
+        else:
+            course.at_instants()
+    except NonFiniteStateError as lost:
+        raise _told(frame, lost, course.busy if course.orbits > 1 else None) from None
+    except KeyboardInterrupt:
+        pass  # what is kept comes back
+    return course.samples(time.thread_time() - started)
+
+
+class _Course:
+    """A motion on its way: its orbits, and what of it is kept."""
+
+    def __init__(
+        self, task: Task, frame: Fictitious, progress: Callable[[float], None], so_far: Samples | None
+    ) -> None:
+        assert isinstance(task.method, TimeTransformed)
+        self.task, self.frame, self.so_far, self.progress = task, frame, so_far, progress
+        self.start, self.end = task.plan.start, Fraction(float(task.plan.instants[-1]))
+        self.method, kind = task.method.method, fixed_precision(task.precision)
+        self.bits = min(kind.number.mantissa, DOUBLE.mantissa)
+        self.loop = compiled_loop(frame.system, self.method, kind)
+        self.orbits, self.busy = task.states[0].shape[1], 0
+        self.walks = [self._walk(k) for k in range(self.orbits)]
+        # In one attribute, so that an interruption finds rows and standing of the same moment.
+        self.kept = self._kept_before()
+
+    def _walk(self, k: int) -> Walk:
+        (high, low), frame, plan = self.task.states, self.frame, self.task.plan
+        pairs = zip(high[:, k].tolist(), low[:, k].tolist(), strict=True)
+        state, h = frame.start([Fraction(a) + Fraction(b) for a, b in pairs], self.start)
+        if self.so_far is None:
+            parts = [np.array(half)[:, np.newaxis] for half in zip(*map(double_pair, state), strict=True)]
+            footing = Footing(0, State(parts[0], parts[1]))
+        else:
+            footing = self.so_far.beyond.footings[k]
+        steps = steps_between(self.loop, self.method, fixed_plan(Fraction(0), plan.forward * h, (0,)))
+        return Walk(frame, steps, footing, frame.events(self.task.events), self.bits, self._report)
+
+    def _kept_before(self) -> tuple[list[Row], Standing]:
+        """Return the times and states that are kept already, and where the motion stands."""
+        if self.so_far is None:
+            footings = tuple(walk.footing for walk in self.walks)
+            return [(float(self.start), *self.task.states)], Standing(footings, rows=1)
+        standing: Standing = self.so_far.beyond
+        count = standing.rows - bool(standing.arrived and self.task.plan.wanted)
+        parts = (np.moveaxis(part, 1, 0) for part in (self.so_far.y, self.so_far.carried))
+        rows = list(zip(self.so_far.t.tolist(), *parts, strict=True))[:count]
+        return rows, replace(standing, rows=count, arrived=False)
+
+    def _report(self, t: float) -> None:
+        if self.orbits == 1:
+            self.progress(min(1.0, float((Fraction(t) - self.start) / (self.end - self.start))))
+
+    def _row(self, t: float, states: Sequence[State]) -> Row:
+        high, low = (
+            np.concatenate(parts, axis=1) for parts in ([s.high for s in states], [s.low for s in states])
+        )
+        return t, high[self.frame.rows], low[self.frame.rows]
+
+    # at the times that are asked for -------------------------------------------------------------------
+
+    def at_instants(self) -> None:
+        """Land at every instant, each time with all orbits."""
+        instants, first, (rows, standing) = self.task.plan.instants.tolist(), self.walks[0], self.kept
+        for k in range(standing.rows, len(instants)):
+            goal, states = Fraction(instants[k]), list[State]()
+            for orbit, walk in enumerate(self.walks):
+                self.busy = orbit
+                states.append(walk.landing(goal).state if walk.go(goal) else walk.state)
+            # Where there are events there is one orbit.
+            ended = first.stopped and not first.go(goal)
+            rows.append(self._row(first.time if ended else instants[k], states))
+            footings = tuple(walk.before for walk in self.walks)
+            self.kept = rows, Standing(footings, rows=k + 1, arrived=ended or k + 1 == len(instants))
+            if self.orbits > 1:
+                self.progress(k / (len(instants) - 1))
+            if ended:
+                break
+
+    # after evenly many steps ---------------------------------------------------------------------------
+
+    def in_steps(self) -> None:
+        """Keep every so manieth state, twice as far apart whenever there are twice as many as wanted."""
+        (walk,), end, (rows, standing) = self.walks, self.end, self.kept
+        stride, most = standing.stride, 2 * self.task.plan.wanted
+        while True:
+            more = self._leap(walk, stride, most + 1 - len(rows))
+            if not more:
+                reached = walk.go(end, (walk.n // stride + 1) * stride)
+                if reached or walk.stopped:
+                    break
+                more = [self._row(walk.time, [walk.state])]
+            rows += more
+            if len(rows) > most:
+                rows, stride = rows[::2], 2 * stride
+            self.kept = rows, Standing((walk.footing,), stride, len(rows))
+            if walk.interrupted:
+                raise KeyboardInterrupt
+        last = walk.landing(end).state if reached else walk.state
+        rows = [*rows, self._row(float(end) if reached else walk.time, [last])]
+        self.kept = rows, Standing((walk.before,), stride, len(rows), arrived=True)
+
+    def _leap(self, walk: Walk, stride: int, most: int) -> list[Row]:
+        """Return the states of many strides taken in one go; none where so many are not surely left."""
+        stops = walk.strides(self.end, stride)[: most + 1]
+        if walk.n % stride or len(stops) < 2:
+            return []
+        found = walk.leap(stops, self.end)
+        if found is None:
+            return []
+        times = found.high[self.frame.clock, 1:, 0] + found.low[self.frame.clock, 1:, 0]
+        parts = (np.moveaxis(part[self.frame.rows, 1:], 1, 0) for part in (found.high, found.low))
+        return list(zip(times.tolist(), *parts, strict=True))
+
+    # what came out -------------------------------------------------------------------------------------
+
+    def samples(self, seconds: float) -> Samples:
+        """Return all of the motion."""
+        before, (rows, standing) = self.so_far, self.kept
+        t, high, low = zip(*rows[: standing.rows], strict=True)
+        ended = standing.arrived
+        steps = sum(walk.n for walk in self.walks) if ended else sum(f.n for f in standing.footings)
+        work = sum(walk.work for walk in self.walks) * self.method.stages
+        return Samples(
+            t=np.array(t),
+            y=np.stack(high, axis=1),
+            carried=np.stack(low, axis=1),
+            steps=steps,
+            evaluations=work + (before.evaluations if before else 0),
+            step=float(self.frame.step),
+            cpu_seconds=seconds + (before.cpu_seconds if before else 0.0),
+            compile_seconds=self.loop.code.seconds,
+            beyond=standing,
+            crossings=self._crossings(t[-1]),
+        )
+
+    def _crossings(self, last: float) -> tuple[Crossing, ...]:
+        """Return the events met up to the last state that is kept."""
+        (walk, *_), forward = self.walks, self.task.plan.forward
+        earlier = () if self.so_far is None else self.so_far.crossings[: self.so_far.beyond.footings[0].met]
+        found = [*earlier, *(_crossing(self.frame, met) for met in walk.guard.met)]
+        return tuple(met for met in found if (met.t - last) * forward <= 0)
+
+
+def _crossing(frame: Fictitious, met: Crossing) -> Crossing:
+    """Return an event met as one of the motion in t."""
+    t, y = _in_time(frame, met.y)
+    return replace(met, t=t, y=y, after=None if met.after is None else _in_time(frame, met.after)[1])
+
+
+def _told(frame: Fictitious, lost: NonFiniteStateError, orbit: int | None) -> NonFiniteStateError:
+    """Return an error in the fictitious time as one in t."""
+    t, y = _in_time(frame, lost.state)
+    said = str(lost).replace(described(lost.time, lost.state), described(t, y))
+    return NonFiniteStateError(said if orbit is None else f"{said} (orbit {orbit})", t, y)
+
+
+def _in_time(frame: Fictitious, state: Array) -> tuple[float, Array]:
+    """Return t and (q, p) of an extended state without parameters that vary."""
+    clock = frame.clock
+    return float(state[clock]), np.delete(state, [clock, 2 * clock + 1])

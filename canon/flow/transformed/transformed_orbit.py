@@ -1,0 +1,288 @@
+"""One orbit on its way in a fictitious time: steps until its time has come, and a part of one that ends there.
+
+Far from the wanted time many steps are taken in one go, half as many as would lead there if they stayed as long as
+the latest; should they pass it nevertheless they are taken back. Near it the compiled loop looks at the time after
+every step. So no motion is asked for more than one step behind its end.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.fixed_step.advance import Run, run
+from canon.flow.fixed_step.event_search import Guard
+from canon.flow.fixed_step.loop_buffers import Job, NonFiniteStateError
+from canon.flow.fixed_step.partial_step import PartialSteps, State, coefficient_pairs
+from canon.flow.transformed.land_at_time import Leg, iterations, landed, time_of
+from canon.kernel.loops.event_loop import sentry_function
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.flow.fixed_step.loop_buffers import Memory
+    from canon.flow.run.event import Prepared
+    from canon.flow.transformed.extended_hamiltonian import Fictitious
+    from canon.flow.transformed.land_at_time import Landed
+    from canon.kernel.llvm.loop import Loop
+    from canon.kernel.llvm.machine_code import MachineCode
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["Footing", "Walk"]
+
+_SLICE = 10_000
+"""Steps between looks at progress and interruptions; a time that stands still for so many has stopped."""
+
+_LEAP = 16
+"""So many steps at least are taken in one go."""
+
+
+@dataclass(frozen=True, eq=False)
+class Footing:
+    """The end of a whole step, from which a motion goes on with the same bits.
+
+    Parameters
+    ----------
+    n
+        Steps since the start.
+    state
+        The extended state, shape (2n, 1).
+    sides
+        On which side of zero the events' functions are; empty where that is not known yet.
+    met
+        How many events have been met.
+    """
+
+    n: int
+    state: State
+    sides: tuple[int, ...] = ()
+    met: int = 0
+
+
+@functools.lru_cache(maxsize=64)
+def _kept_sentry(
+    system: Equations, values: tuple[int, ...], rates: tuple[int, ...], loop: Loop, clock: int
+) -> MachineCode:
+    return sentry_function(system, values, rates, loop, clock)
+
+
+class Walk:
+    """One orbit on its way.
+
+    Parameters
+    ----------
+    frame
+        The extended equations.
+    steps
+        The method's steps in the fictitious time; negative ones where time runs back.
+    footing
+        Where it stands.
+    events
+        What to look for.
+    bits
+        Bits of the mantissa that times are known to.
+    report
+        Called now and then with the time.
+    """
+
+    def __init__(
+        self,
+        frame: Fictitious,
+        steps: PartialSteps,
+        footing: Footing,
+        events: Sequence[Prepared],
+        bits: int,
+        report: Callable[[float], None],
+    ) -> None:
+        self.frame, self.steps, self.events, self.bits, self.report = frame, steps, events, bits, report
+        self.forward = 1 if steps.h > 0 else -1
+        self.pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
+        values, rates = tuple(e.value for e in events), tuple(e.rate for e in events)
+        self.code = _kept_sentry(frame.system, values, rates, steps.loop, frame.clock)
+        self.n, self.stopped, self.work, self.interrupted = footing.n, False, 0, False
+        self.before, self.legs, self._earlier = footing, [Leg(Fraction(0), footing.state)], footing.met
+        self._pace, self._stride, self._still = _LEAP, float(frame.step), 0
+        self._stand(footing.state)
+        self.guard = Guard(frame.system, steps, events)
+        self.kept = np.zeros(2 + 3 * len(events))
+        self.kept[0] = self.forward
+        if events:
+            self.kept[1:-1] = np.ravel(self._sides(footing))
+
+    def _sides(self, footing: Footing) -> list[tuple[int, float, float]]:
+        guard, t = self.guard, Fraction(0)
+        known = guard.start(footing.state, t)
+        if footing.sides:
+            guard.sides = list(footing.sides)
+            known = guard.known(guard.look(footing.state, t))
+        return known
+
+    def _stand(self, state: State) -> None:
+        self.job = Job(self.steps.loop, state.high, state.low, self.pairs, memory=state.beyond)
+        self._read()
+
+    def _read(self) -> None:
+        """Note the state and the time at the end of the latest step, or where an event ended the motion."""
+        self.state = State(*self.job.states(), self.job.beyond())
+        self.time = float(time_of(self.state, self.frame.clock))
+
+    @property
+    def footing(self) -> Footing:
+        """Where the latest step has ended."""
+        return Footing(self.n, self.state, tuple(self.guard.sides), self._met)
+
+    @property
+    def _met(self) -> int:
+        return self._earlier + len(self.guard.met)
+
+    # steps ----------------------------------------------------------------------------------------------
+
+    def go(self, goal: Fraction, last: int | None = None) -> bool:
+        """Take steps until the time has come, or a step has a number, or an event ends the motion.
+
+        Returns
+        -------
+        bool
+            Whether the time has come.
+
+        Raises
+        ------
+        ArithmeticError
+            The time stops or turns back.
+        """
+        there = self._there(goal)
+        while not self.stopped and not self._has_come(there) and (last is None or self.n < last):
+            left = _SLICE if last is None else min(_SLICE, last - self.n)
+            safe = min(left, self._safe(there))
+            if safe < _LEAP or self.leap([self.n, self.n + safe], goal) is None:
+                self._watched(left if self.events else min(left, _LEAP), there)
+            if self.interrupted:
+                raise KeyboardInterrupt
+            self.report(self.time)
+        return self._has_come(there)
+
+    def strides(self, goal: Fraction, stride: int) -> list[int]:
+        """Return the numbers of steps, a stride apart, that surely end before a time; one where there are none."""
+        steps = self._safe(self._there(goal))
+        return list(range(self.n, self.n + (steps if steps >= _LEAP else 0) + 1, stride))
+
+    def leap(self, stops: Sequence[int], goal: Fraction) -> Run | None:
+        """Take steps in one go and return the states at some of them; take them back where they pass a time."""
+        start, there, old = self.state, self._there(goal), self.time
+        rows = np.array(self.frame.system.rows)
+        try:
+            found = run(
+                self.steps.loop, start.high, start.low, self.pairs, stops, lambda _: self.report(old),
+                memory=start.beyond, rows=rows,
+            )  # fmt: skip
+        except NonFiniteStateError:
+            found = None
+        steps = stops[-1] - stops[0]
+        if found is None:
+            self.work += steps
+            self._pace //= 4
+            return None
+        reached = stops[found.high.shape[1] - 1]
+        self._count(start, found.beyond[-1], reached - stops[0])
+        times = self.forward * (found.high[self.frame.clock, :, 0] + found.low[self.frame.clock, :, 0])
+        if (np.diff(times) <= 0).any() or times[-1] >= self.forward * there:
+            self._pace //= 4
+            return None
+        self.n, self._pace = reached, 2 * self._pace
+        self._stand(State(found.high[:, -1], found.low[:, -1], found.beyond[-1]))
+        self._stride = abs(self.time - old) / max(1, steps)
+        self.before, self.legs = self.footing, [Leg(Fraction(0), self.state)]
+        self.interrupted = reached < stops[-1]
+        return found
+
+    def _safe(self, there: float) -> int:
+        """Return how many steps surely end before a time, as far as the latest ones tell."""
+        if self.events or not self._stride:
+            return 0
+        return min(self._pace, int(min(abs(there - self.time) / self._stride / 2, 2.0**40)))
+
+    def _watched(self, steps: int, there: float) -> None:
+        """Take steps one by one until the time has come or an event may have happened."""
+        job, first, start = self.job, self.n, self.state
+        safe, before = (job.y.copy(), job.e.copy()), (np.empty_like(job.y), np.empty_like(job.e))
+        self.kept[-1] = there
+        done = np.array([first], dtype=np.int64)
+        memory = (job.y, job.e, job.c, *before, self.kept, done)
+        self.code.call(job.loop.code.address, *(m.ctypes.data for m in memory), first, steps)
+        self.n = int(done[0])
+        self._count(start, job.beyond(), self.n - first)
+        if not job.finite():
+            raise job.lost(*safe, first, self.n - first, np.array(self.frame.system.rows))
+        self._read()
+        self.before = Footing(self.n - 1, _state_in(job, *before), tuple(self.guard.sides), self._met)
+        self.legs = [Leg(Fraction(0), self.before.state)]
+        if self.events:
+            self._meet()
+        self._check_time(start, self.n - first)
+
+    def _meet(self) -> None:
+        """Meet the events of the latest step."""
+        end = self.state
+        new, part, known = self.guard.through(self.n - 1, self.before.state, end)
+        self.legs = [Leg(*leg) for leg in self.guard.legs]
+        if not known:
+            self.stopped = True
+            self.legs.append(Leg(part, new))
+            self._stand(new)
+            return
+        if new is not end:
+            self._stand(new)
+        self.kept[1:-1] = np.ravel(known)
+
+    def _check_time(self, start: State, steps: int) -> None:
+        """Make sure that the time goes on: not back in a step, nor by nothing in very many."""
+        clock = self.frame.clock
+        now, before, first = (time_of(s, clock) for s in (self.state, self.before.state, start))
+        self._stride = abs(float(now - first)) / steps
+        self._still = 0 if now != first else self._still + steps
+        if self.forward * (now - before) < 0 or self._still >= _SLICE:
+            raise ArithmeticError(
+                f"the time stops or turns back after t = {float(before):.9g}: dt/ds is to be positive along the motion"
+            )
+
+    def _count(self, start: State, beyond: object, steps: int) -> None:
+        """Count steps, of implicit methods iterations."""
+        self.work += iterations(start.beyond, beyond) if self.steps.loop.implicit else steps
+
+    # times ----------------------------------------------------------------------------------------------
+
+    def _has_come(self, there: float) -> bool:
+        return self.forward * (self.time - there) >= 0
+
+    def _there(self, goal: Fraction) -> float:
+        return float(goal - self.forward * abs(goal) * self.fine)
+
+    @property
+    def fine(self) -> Fraction:
+        """To what part of itself a time is met, where that can be."""
+        number, compensated = self.steps.loop.number, self.steps.loop.compensated
+        wide = compensated or number.mantissa > self.bits
+        return Fraction(1, 2 ** (self.bits + 3 if wide else self.bits - 1))
+
+    def landing(self, goal: Fraction) -> Landed:
+        """Return the state at a time that the latest step has reached, by a part of that step.
+
+        Raises
+        ------
+        ArithmeticError
+            No part of the step ends there.
+        """
+        ends = self.legs if self.stopped else [*self.legs, Leg(Fraction(1), self.state)]
+        found = landed(self.frame, self.steps, ends, goal, self.fine, Fraction(4, 2**self.bits))
+        self.work += found.work
+        return found
+
+
+def _state_in(job: Job, y: Memory, e: Memory) -> State:
+    """Return the state of which y and e are a copy."""
+    high, low = job.states_in(y[np.newaxis], e[np.newaxis])
+    return State(high[:, 0], low[:, 0], job.beyond_in(e).copy())

@@ -1,0 +1,203 @@
+"""Graphs to heyoka expressions, and heyoka's adaptive Taylor integrator for Hamilton's equations."""
+
+from __future__ import annotations
+
+import decimal
+import math
+from fractions import Fraction
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.expression.graph.number_systems import LONGDOUBLE
+from canon.kernel.program.program import exact_value
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from sympy import Symbol
+
+    from canon.expression.graph.graph import Graph
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = [
+    "heyoka_equations", "heyoka_expressions", "heyoka_functions", "heyoka_number", "taylor_integrator",
+]  # fmt: skip
+
+_SAME_NAME = (
+    "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
+    "atanh", "atan2",
+)  # fmt: skip
+
+_COMPACT_FROM = 300
+"""Graphs with more nodes are compiled in heyoka's compact mode, which keeps compile times short."""
+
+
+_LARGEST_PRODUCT = 64
+"""Natural powers up to this one are written as products."""
+
+
+def heyoka_number(precision: str | int) -> Callable[[Fraction], Any]:
+    """Return what turns exact numbers into heyoka's numbers of a precision.
+
+    Parameters
+    ----------
+    precision
+        ``"double"``, ``"extended"`` (the platform's long double), ``"quad"`` (113 bits) or decimal digits.
+
+    Raises
+    ------
+    ValueError
+        There is no such precision.
+    """
+    import heyoka as hy
+
+    if precision == "double":
+        return float
+    if precision == "extended":
+        return LONGDOUBLE.number
+    if precision == "quad":
+        if not hasattr(hy, "real128"):
+            raise ValueError(
+                f"heyoka {hy.__version__} was built without quad precision here; install a newer one, or take 34 "
+                "decimal digits"
+            )
+        return lambda value: hy.real128(_decimal(value, 40))
+    if not isinstance(precision, int) or not 16 <= precision <= 1000:
+        raise ValueError(
+            f"precision={precision!r}: Taylor() has 'double', 'extended', 'quad' and decimal digits, 16 … 1000"
+        )
+    bits = math.ceil(precision * math.log2(10)) + 2
+    return lambda value: hy.real(_decimal(value, precision + 5), bits)
+
+
+def _decimal(value: Fraction, digits: int) -> str:
+    with decimal.localcontext(prec=digits):
+        return str(decimal.Decimal(value.numerator) / decimal.Decimal(value.denominator))
+
+
+def heyoka_expressions(
+    graph: Graph,
+    nodes: Sequence[int],
+    variables: Mapping[Symbol, Any],
+    number: Callable[[Fraction], Any] = float,
+) -> list[Any]:
+    """Return nodes as heyoka expressions in given heyoka variables, constants as numbers of one kind.
+
+    Raises
+    ------
+    ValueError
+        A node holds sign(x), which no Taylor series crosses.
+    """
+    import heyoka as hy
+
+    done = dict[int, Any]()
+    for each in graph.reachable(nodes):
+        kind, operands, value = graph.nodes[each]
+        x = [done[o] for o in operands]
+        if kind == "symbol":
+            done[each] = variables[value]
+        elif kind == "number":
+            done[each] = hy.expression(number(value))
+        elif kind == "named":
+            done[each] = hy.pi if value == "pi" else hy.expression(number(exact_value(graph, each)))
+        elif kind == "add":
+            done[each] = hy.sum(x)
+        elif kind == "mul":
+            done[each] = hy.prod(x)
+        elif kind == "pow":
+            exponent = graph.nodes[operands[1]]
+            value = exponent.value if exponent.kind == "number" else None
+            if value == Fraction(1, 2):
+                done[each] = hy.sqrt(x[0])
+            elif value is not None and value.denominator == 1 and 2 < value <= _LARGEST_PRODUCT:
+                done[each] = _product_of_squares(x[0], int(value))
+            else:
+                done[each] = x[0] ** x[1]
+        elif kind in _SAME_NAME:
+            done[each] = getattr(hy, kind)(*x)
+        elif kind == "Abs":
+            done[each] = hy.select(hy.gte(x[0], hy.expression(0.0)), x[0], -x[0])
+        else:
+            raise ValueError(
+                f"{kind}(…) has no Taylor series where it jumps: use a smooth Hamiltonian, or RK4()"
+            )
+    return [done[node] for node in nodes]
+
+
+def heyoka_functions(
+    system: Equations, nodes: Sequence[int], number: Callable[[Fraction], Any] = float
+) -> list[Any]:
+    """Return functions of (q, p, t) in the variables of :func:`heyoka_equations`."""
+    import heyoka as hy
+
+    return heyoka_expressions(system.graph, nodes, {**_variables(system), system.t: hy.time}, number)
+
+
+def _product_of_squares(x: Any, power: int) -> Any:
+    """Return xⁿ as products: heyoka's Taylor series of x ** 3 and higher powers divide by x, and are lost at x = 0."""
+    result, square = None, x
+    while True:
+        if power & 1:
+            result = square if result is None else result * square
+        power >>= 1
+        if not power:
+            return result
+        square = square * square
+
+
+def heyoka_equations(system: Equations, number: Callable[[Fraction], Any] = float) -> list[tuple[Any, Any]]:
+    """Return Hamilton's equations as heyoka takes them: pairs of a variable and its rate, (q, p) in order."""
+    return list(zip(_variables(system).values(), heyoka_functions(system, system.rates, number), strict=True))
+
+
+def _variables(system: Equations) -> dict[Symbol, Any]:
+    import heyoka as hy
+
+    names = [f"{letter}{i}" for letter in "qp" for i in range(len(system.q))]
+    return dict(zip((*system.q, *system.p), map(hy.expression, names), strict=True))
+
+
+def taylor_integrator(
+    system: Equations,
+    y0: Sequence[Fraction],
+    t0: Fraction,
+    tolerance: float | None,
+    number: Callable[[Fraction], Any] = float,
+    events: Mapping[str, Sequence[Any]] = MappingProxyType({}),
+) -> Any:
+    """Return heyoka's adaptive integrator of Hamilton's equations.
+
+    In doubles the terms of a Taylor coefficient may be added in any order, and quotients by one number become
+    products with its reciprocal, which errs as little and takes less time (benchmarks/peers.py has both): not where
+    events are looked for, whose search counts on the order of operations, and not in compact mode, which does not gain.
+
+    Parameters
+    ----------
+    system
+        The equations.
+    y0, t0
+        The state (q, p) and the time to start from.
+    tolerance
+        Relative tolerance of a step; the rounding unit where None.
+    number
+        Makes the numbers it computes with; see :func:`heyoka_number`.
+    events
+        heyoka's ``t_events`` and ``nt_events``.
+    """
+    import heyoka as hy
+
+    compact = number is not float or len(system.graph.reachable(system.rates)) > _COMPACT_FROM
+    state = [number(x) for x in y0]
+    options: dict[str, Any] = {} if tolerance is None else {"tol": number(Fraction(tolerance))}
+    return hy.taylor_adaptive(
+        heyoka_equations(system, number),
+        np.array(state),
+        time=number(t0),
+        fp_type=type(state[0]),
+        compact_mode=compact,
+        fast_math=not compact and not events,
+        **options,
+        **events,
+    )

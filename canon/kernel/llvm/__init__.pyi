@@ -1,0 +1,2 @@
+from .machine_code import MachineCode as MachineCode
+from .machine_code import compiled as compiled

@@ -1,0 +1,237 @@
+"""Gauss–Legendre methods: symplectic for every Hamiltonian, order 2s with s stages, implicit.
+
+The stages solve L_i = h b_i f(Y_i), Y_i = y + (e + Σ_j µ_ij L_j) with µ_ij = a_ij/b_j. A Runge–Kutta method is
+symplectic where µ_ij + µ_ji = 1, which the rounded µ fulfil exactly here; the iteration goes on until no
+component's change still decreases, then once more, so that what is left is round-off without a trend; the sum
+y + Σ L_i is compensated.
+
+Sources: E. Hairer, R. I. McLachlan, A. Razakarivony, Achieving Brouwer's law with implicit Runge–Kutta methods,
+BIT 48 (2008) 231–243, doi:10.1007/s10543-008-0170-3; M. Antoñana, J. Makazaga, A. Murua, Reducing and monitoring
+round-off error propagation for symplectic implicit Runge–Kutta schemes, Numer. Algorithms 76 (2017) 861–880,
+doi:10.1007/s11075-017-0287-z.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, finished, increase, steps_of
+from canon.kernel.llvm.number_types import DOUBLE, SINGLE
+from canon.kernel.llvm.writer import Writer
+from canon.kernel.schemes.gauss_tableau import lanes_for
+
+if TYPE_CHECKING:
+    from canon.kernel.llvm.number_types import MachineType
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["gauss_loop"]
+
+_ITERATIONS = 100
+_SETTLED, _CONVERGED = 42, 20
+"""In doubles, changes above 2⁻⁴² of the largest component are not taken for round-off while iterations are left; a
+last change above 2⁻²⁰ of it means that the iteration has not converged. In other numbers accordingly."""
+
+
+def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
+    """Compile Gauss–Legendre steps, the stages side by side in SIMD lanes.
+
+    After the 2n numbers of compensation, ``e`` keeps the number of iterations, the last change of an iteration
+    that did not converge, and the stages L, from which the next step's are predicted. A step whose
+    iteration does not converge makes the state NaN. In single precision iterations are counted up to 2²⁴.
+    """
+    size, lanes = 2 * len(system.q), lanes_for(stages)
+    w = Writer(number)
+    v = w.side_by_side(lanes)
+    carry = size + 2 + size * lanes
+    y, e = w.array(size), w.array(size) if compensated else ""
+    method = _Stages(w, v, w.at("%c", METHOD), stages)
+    iteration = _Iteration.of(w, v, system, y, e, method)
+    with blocks_of(w, y, e, size, carry) as kept:
+        count, failed, guess = size, size + 1, w.at(kept, size + 2)
+        with w.loop(0, size) as i:
+            v.store(_row(w, v, guess, i), iteration.stage, i)
+        with steps_of(w, system) as time:
+            clock = iteration.begin(time)
+            with w.loop(0, _ITERATIONS):
+                w.store(w.algebra("add", w.load(kept, count), w.constant(Fraction(1))), kept, count)
+                iteration.once(clock)
+            lost, last_change = iteration.end()
+            w.store(w.select(lost, last_change, w.load(kept, failed)), kept, failed)
+            nothing = w.widened(iteration.d.nan(), iteration.watched)
+            with w.loop(0, size) as i:
+                w.store(w.select(lost, nothing, w.load(y, i)), y, i)
+                found = v.load(iteration.stage, i)
+                for j in range(stages):
+                    increase(w, y, e, i, w.constant(Fraction(1)), v.lane(found, j))
+        with w.loop(0, size) as i:
+            _store_row(w, v, v.load(iteration.stage, i), guess, i)
+    return finished(w, len(system.q), compensated=compensated, carry=carry)
+
+
+@dataclass(frozen=True)
+class _Iteration:
+    """Writes the fixed-point iteration for the stages of one step.
+
+    Parameters
+    ----------
+    w, v, d, g
+        Writers of scalars and of lanes, in the loop's numbers and in those that changes and sizes are watched in.
+    system, y, e, method
+        The equations, the state, its compensation or "", and the method's numbers.
+    watched
+        The numbers that d writes.
+    stage, place
+        L and Y.
+    least
+        The least change so far, by component and stage.
+    done, change, reach
+        Whether no change decreased; the largest change; the size of what changed.
+    """
+
+    w: Writer
+    v: Writer
+    d: Writer
+    g: Writer
+    system: Equations
+    y: str
+    e: str
+    method: _Stages
+    watched: MachineType
+    stage: str
+    place: str
+    least: str
+    done: str
+    change: str
+    reach: str
+
+    @classmethod
+    def of(cls, w: Writer, v: Writer, system: Equations, y: str, e: str, method: _Stages) -> _Iteration:
+        size = 2 * len(system.q)
+        # Changes and sizes are watched in numbers no wider than doubles, of pairs by their high parts.
+        watched = w.number if w.number == SINGLE else DOUBLE
+        d, g = (each.in_numbers(replace(watched, lanes=each.number.lanes)) for each in (w, v))
+        arrays = v.array(size), v.array(size), g.array(size), d.array(1), g.array(1), g.array(1)
+        return cls(w, v, d, g, system, y, e, method, watched, *arrays)
+
+    @property
+    def size(self) -> int:
+        return 2 * len(self.system.q)
+
+    def begin(self, time: str) -> str:
+        """Predict the stages of the step that starts at a time, and return the stages' times."""
+        v, g = self.v, self.g
+        clock = v.algebra("add", v.splat(time), self.method.node)
+        with self.w.loop(0, self.size) as i:
+            v.store(self.method.predicted(v.load(self.stage, i)), self.stage, i)
+            g.store(g.infinity(), self.least, i)
+        self.d.store(self._zero, self.done, 0)
+        return clock
+
+    def once(self, clock: str) -> None:
+        """Write one iteration, and leave the loop that it stands in after the last one."""
+        w, v, d, g = self.w, self.v, self.d, self.g
+        last = d.less(self._zero, d.load(self.done, 0))
+        self._move()
+        g.store(g.constant(Fraction(0)), self.change, 0)
+        g.store(g.constant(Fraction(0)), self.reach, 0)
+        d.store(d.constant(Fraction(1)), self.done, 0)
+        field = self.system.program(self.system.rates)
+        places = [v.load(self.place, i) for i in range(self.size)]
+        for i, rate in enumerate(v.program(field, [*places, clock])):
+            self._renew(i, v.algebra("mul", self.method.weight, rate))
+        moves, coarse = self._moves_by_more_than(_SETTLED)
+        d.store(d.select(coarse, self._zero, d.load(self.done, 0)), self.done, 0)
+        w.leave_if(w.let(f"or i1 {last}, {d.equal(moves, self._zero)}"))
+
+    def end(self) -> tuple[str, str]:
+        """Return whether the iteration has not converged, and its last change."""
+        moves, large = self._moves_by_more_than(_CONVERGED)
+        scale = self.g.greatest(self.g.load(self.reach, 0))
+        diverges = self.w.let(f"or i1 {large}, {self.d.equal(scale, self.d.infinity())}")
+        return diverges, self.w.widened(moves, self.watched)
+
+    @property
+    def _zero(self) -> str:
+        return self.d.constant(Fraction(0))
+
+    def _move(self) -> None:
+        """Write Y_i = y + (e + Σ_j µ_ij L_j)."""
+        w, v = self.w, self.v
+        with w.loop(0, self.size) as i:
+            carried = v.splat(w.load(self.e, i)) if self.e else v.constant(Fraction(0))
+            moved = self.method.moved(carried, v.load(self.stage, i))
+            v.store(v.algebra("add", v.splat(w.load(self.y, i)), moved), self.place, i)
+
+    def _renew(self, i: int, new: str) -> None:
+        """Replace a component of L and note by how much it changed."""
+        v, d, g = self.v, self.d, self.g
+        difference = _size(v, g, v.algebra("sub", new, v.load(self.stage, i)))
+        before = g.load(self.least, i)
+        decreasing = g.any_lane(g.less(difference, before))
+        v.store(new, self.stage, i)
+        g.store(g.intrinsic("minnum", before, difference), self.least, i)
+        g.store(g.intrinsic("maxnum", g.load(self.change, 0), difference), self.change, 0)
+        far = g.algebra("add", _size(v, g, new), _size(v, g, v.load(self.place, i)))
+        g.store(g.intrinsic("maxnum", g.load(self.reach, 0), far), self.reach, 0)
+        d.store(d.select(decreasing, self._zero, d.load(self.done, 0)), self.done, 0)
+
+    def _moves_by_more_than(self, bits: int) -> tuple[str, str]:
+        """Return the largest change, and whether it is above 2⁻ᵇⁱᵗˢ of the size of what changed."""
+        d, g = self.d, self.g
+        part = Fraction(1, 2 ** (bits * self.w.number.mantissa // 53))
+        moves, scale = g.greatest(g.load(self.change, 0)), g.greatest(g.load(self.reach, 0))
+        return moves, d.less(d.algebra("mul", scale, d.constant(part)), moves)
+
+
+def _size(v: Writer, g: Writer, value: str) -> str:
+    """Write the sizes of numbers in lanes, in the numbers that sizes are watched in."""
+    if v.number.pair:
+        value = v.let(f"extractvalue {v.number.name} {value}, 0")
+    elif v.number.scalar != g.number.scalar:
+        value = v.let(f"fptrunc {v.number.name} {value} to {g.number.name}")
+    return g.intrinsic("fabs", value)
+
+
+def _row(w: Writer, v: Writer, table: str, k: int | str) -> str:
+    """Read numbers that lie in memory one by one into lanes."""
+    lanes = v.number.lanes
+    if lanes == 1 or not (v.number.pair or v.number.scalar == "x86_fp80"):
+        return v.load(table, k)
+    first = w.let(f"mul i64 {k}, {lanes}")
+    return v.from_lanes([w.load(table, w.let(f"add i64 {first}, {lane}")) for lane in range(lanes)])
+
+
+def _store_row(w: Writer, v: Writer, value: str, table: str, k: str) -> None:
+    """Store lanes as numbers that lie in memory one by one."""
+    first = w.let(f"mul i64 {k}, {v.number.lanes}")
+    for lane in range(v.number.lanes):
+        w.store(v.lane(value, lane), table, w.let(f"add i64 {first}, {lane}"))
+
+
+class _Stages:
+    """The method's numbers, read from the loop's coefficients, and the sums over stages made with them."""
+
+    def __init__(self, w: Writer, v: Writer, table: str, stages: int) -> None:
+        self.v, self.stages = v, stages
+
+        def row(k: int) -> str:
+            return _row(w, v, table, k)
+
+        self.weight, self.node = row(0), row(1)
+        columns = [row(2 + column) for column in range(2 * stages)]
+        self.mu, self.prediction = columns[:stages], columns[stages:]
+
+    def moved(self, carried: str, stage: str) -> str:
+        """Write e + Σ_j µ_ij L_j for all stages i."""
+        return self._sum(carried, self.mu, stage)
+
+    def predicted(self, stage: str) -> str:
+        """Write Σ_j ν_ij L_j for all stages i."""
+        return self._sum(self.v.constant(Fraction(0)), self.prediction, stage)
+
+    def _sum(self, total: str, columns: list[str], stage: str) -> str:
+        for j, column in enumerate(columns):
+            total = self.v.multiply_add(column, self.v.splat(self.v.lane(stage, j)), total)
+        return total

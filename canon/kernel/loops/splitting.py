@@ -1,0 +1,181 @@
+"""Loops of splittings: drifts q ← q + aᵢ h ∂H/∂p and kicks p ← p − bᵢ h ∂H/∂q of H = T(p, t) + V(q, t) in turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, finished, increase, steps_of
+from canon.kernel.llvm.number_types import DOUBLE, MachineType
+from canon.kernel.llvm.rolled import is_worth_rolling, write_rolled
+from canon.kernel.llvm.writer import Writer
+from canon.kernel.program.pairwise import pair_forces, write_pair_forces
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from typing import TypeAlias
+
+    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.pairwise import PairForces
+
+    _Take: TypeAlias = Callable[[str, str], None]
+    """What is done with the number of a component and its rate."""
+
+__all__ = ["splitting_loop"]
+
+_LONG, _ALIGNED, _APART = 64, 8, 24
+
+
+def splitting_loop(
+    system: Equations,
+    stages: int,
+    *,
+    compensated: bool,
+    number: MachineType = DOUBLE,
+    kick_first: bool = False,
+) -> Loop:
+    """Compile drift–kick–…–drift steps for H = T(p, t) + V(q, t).
+
+    The coefficients are h·a₁, h·b₁, …, h·a_s, h·b_s, h·a_{s+1}. Two clocks make time-dependent parts exact
+    splittings of the extended phase space: a kick reads the clock that drifts advance, and the other way
+    round.
+
+    Parameters
+    ----------
+    system, stages
+        The equations, and the number s of kicks.
+    compensated, number
+        The arithmetic.
+    kick_first
+        Whether a₁ = a_{s+1} = 0 and t is absent from H: a step's first kick then uses the force of the last one.
+    """
+    n = len(system.q)
+    w = Writer(number)
+    writing = _SplittingWriter.of(w, system, compensated=compensated, kick_first=kick_first)
+    with blocks_of(w, writing.y, writing.e, 2 * n, 2 * n, writing.gap):
+        if kick_first:
+            writing.keep_force()
+        with steps_of(w, system) as time:
+            writing.set_clocks(time)
+            if kick_first:
+                writing.kick_again(w.load("%c", METHOD + 1))
+            with w.loop(int(kick_first), stages) as s:
+                pair = w.let(f"shl i64 {s}, 1")
+                writing.drift(w.load("%c", w.let(f"add i64 {pair}, {METHOD}")))
+                writing.kick(w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}")))
+            if not kick_first:
+                writing.drift(w.load("%c", METHOD + 2 * stages))
+    return finished(w, n, compensated=compensated)
+
+
+@dataclass(frozen=True)
+class _SplittingWriter:
+    """Writes drifts and kicks of one Hamiltonian.
+
+    Parameters
+    ----------
+    w, system
+        What is written to, and the equations.
+    y, e, gap
+        The state, its compensation or "", and the gap between q and p.
+    force
+        Where the last force is kept.
+    drift_clock, kick_clock
+        The times that drifts and kicks have come to.
+    pairs
+        The force as a sum over pairs of bodies, where it is one.
+    kick_first
+        Whether the last force is used again.
+    """
+
+    w: Writer
+    system: Equations
+    y: str
+    e: str
+    gap: int
+    force: str
+    drift_clock: str
+    kick_clock: str
+    pairs: PairForces | None
+    kick_first: bool
+
+    @classmethod
+    def of(cls, w: Writer, system: Equations, *, compensated: bool, kick_first: bool) -> _SplittingWriter:
+        n = len(system.q)
+        gap = _gap(n)
+        y, e = w.array(2 * n + gap), w.array(2 * n + gap) if compensated else ""
+        force, drift_clock, kick_clock = w.array(n), w.array(1), w.array(1)
+        return cls(w, system, y, e, gap, force, drift_clock, kick_clock, pair_forces(system), kick_first)
+
+    @property
+    def n(self) -> int:
+        return len(self.system.q)
+
+    def drift(self, coefficient: str) -> None:
+        """Write q ← q + coefficient · ∂H/∂p."""
+        self._evaluate(self.system.velocity, self.n, self.kick_clock, self._moving(0, coefficient))
+        self._advance(self.drift_clock, coefficient)
+
+    def kick(self, coefficient: str) -> None:
+        """Write p ← p − coefficient · ∂H/∂q."""
+        if self.kick_first:
+            self.keep_force()
+            self.kick_again(coefficient)
+        else:
+            self._evaluate_force(self._moving(self.n + self.gap, coefficient))
+        self._advance(self.kick_clock, coefficient)
+
+    def kick_again(self, coefficient: str) -> None:
+        """Write a kick with the force that was kept."""
+        with self.w.loop(0, self.n) as i:
+            self._moving(self.n + self.gap, coefficient)(i, self.w.load(self.force, i))
+
+    def keep_force(self) -> None:
+        """Write the force to where it is kept."""
+        self._evaluate_force(lambda i, rate: self.w.store(rate, self.force, i))
+
+    def set_clocks(self, time: str) -> None:
+        """Write the time that a step starts at."""
+        self.w.store(time, self.drift_clock, 0)
+        self.w.store(time, self.kick_clock, 0)
+
+    def _evaluate_force(self, take: _Take) -> None:
+        w, force, clock = self.w, self.system.force, self.drift_clock
+        if self.pairs is None:
+            self._evaluate(force, 0, clock, take)
+            return
+        others = self.pairs.rest
+        write_pair_forces(w, self.pairs, self.y, lambda each: self._evaluate(others, 0, clock, each), take)
+
+    def _evaluate(self, nodes: Sequence[int], reads: int, clock: str, take: _Take) -> None:
+        """Write functions of t and the n components from ``reads`` on, and hand each to ``take``."""
+        w, n, system = self.w, self.n, self.system
+        steps = system.program(nodes)
+        state = w.at(self.y, self.gap) if reads else self.y
+        if is_worth_rolling(steps, system.program(system.force) if reads else None):
+            write_rolled(w, steps, state, clock, take)
+            return
+        arguments = ["poison"] * (2 * n + 1)
+        for i in range(n):
+            arguments[reads + i] = w.load(state, reads + i)
+        arguments[2 * n] = w.load(clock, 0)
+        for i, value in enumerate(w.program(steps, arguments)):
+            take(str(i), value)
+
+    def _moving(self, first: int, coefficient: str) -> _Take:
+        """Return what adds coefficient · rate to the components from ``first`` on."""
+        w = self.w
+        return lambda i, rate: increase(w, self.y, self.e, w.let(f"add i64 {i}, {first}"), coefficient, rate)
+
+    def _advance(self, clock: str, coefficient: str) -> None:
+        if not self.system.autonomous:
+            self.w.store(self.w.algebra("add", self.w.load(clock, 0), coefficient), clock, 0)
+
+
+def _gap(n: int) -> int:
+    """Return how many numbers to leave free between q and p.
+
+    Where they are many, q starts where SIMD stores do and p one number before: it is the inner members of a chain that
+    are moved together. Both are set apart, for addresses that differ by a multiple of 4096 bytes delay each other.
+    """
+    return _APART + -(n + 1) % _ALIGNED if n >= _LONG else 0

@@ -1,0 +1,2 @@
+from .hamilton_equations import Equations as Equations
+from .program import Program as Program

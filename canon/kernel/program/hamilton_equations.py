@@ -1,0 +1,242 @@
+"""What kind of Hamiltonian it is, and the programs of its equations of motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from canon.expression.graph.graph import Graph
+from canon.kernel.program.program import Program, exact_value, program
+from canon.kernel.program.shared_products import with_shared_products
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from sympy import Expr, Symbol
+
+__all__ = ["Equations", "equations", "exact", "exact_numbers"]
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """Hamilton's equations of one Hamiltonian with numbers for its parameters.
+
+    Parameters
+    ----------
+    graph
+        The graph that holds the Hamiltonian and its gradient.
+    q, p, t
+        Coordinates, momenta and time.
+    parameters
+        The parameters' numbers by name.
+    hamiltonian
+        The node of H.
+    velocity, force
+        The nodes of ∂H/∂p and of −∂H/∂q.
+    separable
+        Whether H = T(p, t) + V(q, t): then drifts and kicks are exact flows.
+    quadratic_kinetic
+        Whether moreover ∂²T/∂p² is constant, as Nyström methods ask.
+    autonomous
+        Whether t is absent from H.
+    varying
+        How many parameters differ from orbit to orbit: the last so many of q, which keep their values, and of
+        p, where each has a twin for the velocities to read.
+    """
+
+    graph: Graph
+    q: tuple[Symbol, ...]
+    p: tuple[Symbol, ...]
+    t: Symbol
+    parameters: Mapping[str, Fraction]
+    hamiltonian: int
+    velocity: tuple[int, ...]
+    force: tuple[int, ...]
+    separable: bool
+    quadratic_kinetic: bool
+    autonomous: bool
+    varying: int = 0
+
+    @property
+    def rows(self) -> list[int]:
+        """The components of a state that are coordinates and momenta rather than parameters."""
+        n = len(self.q) - self.varying
+        return [*range(n), *range(len(self.q), len(self.q) + n)]
+
+    @property
+    def inputs(self) -> tuple[Symbol, ...]:
+        """The arguments of every program of these equations: q, p and t."""
+        return (*self.q, *self.p, self.t)
+
+    @cached_property
+    def rates(self) -> tuple[int, ...]:
+        """The nodes of ∂H/∂p and −∂H/∂q together, written with as few products of functions as are found."""
+        return tuple(with_shared_products(self.graph, (*self.velocity, *self.force)))
+
+    def program(self, nodes: Sequence[int]) -> Program:
+        """Return the program of some nodes, a function of (q, p, t)."""
+        return program(self.graph, nodes, self.inputs)
+
+    def node(self, expression: Expr, what: str) -> int:
+        """Return the node of a function of (q, p, t) and the parameters; ``what`` names it in errors."""
+        return _with_numbers(self.graph, expression, self.inputs, self.parameters, what)
+
+
+def equations(
+    hamiltonian: Expr,
+    q: Sequence[Symbol],
+    p: Sequence[Symbol],
+    t: Symbol,
+    parameters: Mapping[str, Fraction],
+    varying: Sequence[Symbol] = (),
+) -> Equations:
+    """Return Hamilton's equations q̇ = ∂H/∂p, ṗ = −∂H/∂q, ready to compile.
+
+    Parameters
+    ----------
+    hamiltonian
+        H(q, p, t) as a SymPy expression.
+    q, p, t
+        Its coordinates, momenta and time.
+    parameters
+        An exact number for every other symbol, by name.
+    varying
+        Parameters that differ from orbit to orbit: part of the state, where they stay what they are.
+
+    Raises
+    ------
+    KeyError
+        A symbol of H is neither a coordinate, a momentum, the time nor a given parameter.
+    """
+    q, p = tuple(q), tuple(p)
+    varying = tuple(varying)
+    made = _equations(hamiltonian, q, p, t, parameters, varying)
+    if made.separable or not hamiltonian.is_polynomial(*q, *p):
+        return made
+    # (q + p)² − 2qp is separable only after multiplying out, which is cheap for polynomials.
+    expanded = _equations(sp.expand(hamiltonian), q, p, t, parameters, varying)
+    return expanded if expanded.separable else made
+
+
+def _equations(
+    hamiltonian: Expr,
+    q: tuple[Symbol, ...],
+    p: tuple[Symbol, ...],
+    t: Symbol,
+    parameters: Mapping[str, Fraction],
+    varying: tuple[Symbol, ...],
+) -> Equations:
+    graph = Graph()
+    node = _with_numbers(graph, hamiltonian, (*q, *p, t, *varying), parameters, "the Hamiltonian")
+    gradient = graph.gradient(node, (*q, *p))
+    velocity = gradient[len(q) :]
+    force = tuple(graph.negative(slope) for slope in gradient[: len(q)])
+    separable = not (_depends(graph, velocity, q) or _depends(graph, force, p))
+    quadratic = _is_linear(graph, velocity, p, (*q, t), varying)
+    # A drift reads momenta only: what it needs of the parameters lies there once more.
+    twins: tuple[Symbol, ...] = tuple(sp.Dummy(each.name, real=True) for each in varying)
+    if varying:
+        stays = (graph.number(Fraction(0)),) * len(varying)
+        moved = {graph.symbol(a): graph.symbol(b) for a, b in zip(varying, twins, strict=True)}
+        velocity = (*graph.substitute(velocity, moved), *stays)
+        force = (*force, *stays)
+    return Equations(
+        graph=graph,
+        q=(*q, *varying),
+        p=(*p, *twins),
+        t=t,
+        parameters=parameters,
+        hamiltonian=node,
+        velocity=tuple(velocity),
+        force=tuple(force),
+        separable=separable,
+        quadratic_kinetic=quadratic,
+        autonomous=t not in graph.symbols(node),
+        varying=len(varying),
+    )
+
+
+def _depends(graph: Graph, nodes: Sequence[int], symbols: Sequence[Symbol]) -> bool:
+    wanted = frozenset[Any](symbols)
+    return any(wanted & graph.symbols(node) for node in nodes)
+
+
+def _is_linear(
+    graph: Graph,
+    velocity: Sequence[int],
+    p: tuple[Symbol, ...],
+    others: tuple[Symbol, ...],
+    constants: tuple[Symbol, ...],
+) -> bool:
+    """Return whether velocities are linear in the momenta with constant coefficients."""
+    if _depends(graph, velocity, others):
+        return False
+    momenta = frozenset[Any](p)
+    return not any(
+        graph.symbols(slope) - set(constants)
+        for v in velocity
+        for slope in graph.gradient(v, tuple(momenta & graph.symbols(v)))
+    )
+
+
+def _with_numbers(
+    graph: Graph, expression: Expr, variables: Sequence[Symbol], parameters: Mapping[str, Fraction], what: str
+) -> int:
+    general = graph.from_sympy(expression)
+    others = graph.symbols(general) - set(variables)
+    unknown = sorted(symbol.name for symbol in others if symbol.name not in parameters)
+    if unknown:
+        raise KeyError(f"{what} holds {', '.join(unknown)}: give each a number, parameters={{symbol: value}}")
+    known = {graph.symbol(symbol): graph.number(parameters[symbol.name]) for symbol in others}
+    return graph.substitute([general], known)[0]
+
+
+def exact(value: Any, what: str) -> Fraction:
+    """Return a number exactly: floats as the binary numbers they are, text as the decimal it spells.
+
+    Raises
+    ------
+    ValueError
+        The value is no finite real number; ``what`` says in the message what it was given for.
+
+    Examples
+    --------
+    >>> exact("0.1", "g"), exact(0.5, "g")
+    (Fraction(1, 10), Fraction(1, 2))
+    """
+    if isinstance(value, sp.Expr):
+        graph = Graph()
+        node = graph.from_sympy(value)
+        if graph.symbols(node):
+            raise ValueError(f"{what} = {value} is no number; give one, such as 9.81 or Rational(1, 10)")
+        return exact_value(graph, node)
+    if isinstance(value, bool):
+        raise ValueError(f"{what} = {value} is no number; give one, such as 9.81 or Rational(1, 10)")
+    try:
+        return (
+            Fraction(value)
+            if isinstance(value, str | int | Fraction)
+            else Fraction(*value.as_integer_ratio())
+        )
+    except (ValueError, OverflowError, AttributeError):
+        raise ValueError(f"{what} = {value!r} is no finite real number") from None
+
+
+def exact_numbers(parameters: Mapping[Symbol | str, Any]) -> dict[str, Fraction]:
+    """Return parameters' exact numbers by name.
+
+    Raises
+    ------
+    ValueError
+        A value is no finite real number.
+
+    Examples
+    --------
+    >>> exact_numbers({sp.Symbol("g"): "9.81", "m": 0.5})
+    {'g': Fraction(981, 100), 'm': Fraction(1, 2)}
+    """
+    return {str(name): exact(value, str(name)) for name, value in parameters.items()}

@@ -1,0 +1,268 @@
+"""Forces of many bodies on each other: H holds Σ c_ij φ(x_i, x_j), the same symmetric function of every pair.
+
+Written out, the force of fifty bodies takes seconds to compile and does not fit the processor's caches. Here it is a
+loop over the sources j around a loop over the targets i, F_i ← F_i − c_ij ∂φ/∂x_i, which compilers turn into SIMD
+instructions: no sum runs along the inner loop, so nothing is reordered. Every pair is computed twice, which costs
+less than taking the reactions from the first time would.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from canon.kernel.program.program import Program, exact_value, program
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from sympy import Symbol
+
+    from canon.expression.graph.graph import Graph
+    from canon.kernel.llvm.writer import Writer
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["PairForces", "pair_forces", "write_pair_forces"]
+
+_FEWEST = 12
+"""Fewer bodies are written out: then the compiler sees every pair, and computes it once."""
+
+_ALIGNED = 8
+"""Bodies are filled up to a multiple of this, so that the inner loop has no remainder."""
+
+_Key = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class PairForces:
+    """−∂H/∂q as a sum over pairs of bodies and a rest.
+
+    Parameters
+    ----------
+    bodies, axes
+        Body i has the coordinates q[axes · i], …, q[axes · i + axes − 1].
+    gradient
+        −∂φ/∂x_i as a function of x_i and x_j.
+    strengths
+        c_ij, symmetric, zero on the diagonal.
+    rest
+        The nodes of what the pairs leave of −∂H/∂q; none where that is nothing.
+    """
+
+    bodies: int
+    axes: int
+    gradient: Program
+    strengths: tuple[tuple[Fraction, ...], ...]
+    rest: tuple[int, ...]
+
+
+def pair_forces(system: Equations) -> PairForces | None:
+    """Find the forces of pairs in the sum that H is, or return None where there are none, or few.
+
+    Every pair of bodies has to occur once, in terms that differ by a factor only; a body's coordinates follow each
+    other in q.
+    """
+    graph, n = system.graph, len(system.q)
+    place = {symbol: i for i, symbol in enumerate(system.q)}
+    terms = _terms(graph, system.hamiltonian)
+    for axes in (3, 2, 1):
+        bodies, odd = divmod(n, axes)
+        if odd or bodies < _FEWEST:
+            continue
+        found = _pairs(graph, terms, place, bodies, axes)
+        if found is not None:
+            return _forces(system, terms, found, bodies, axes)
+    return None
+
+
+@dataclass(frozen=True)
+class _Pairs:
+    """Which terms belong to pairs, their factors, and one of them, without its factor, to stand for all."""
+
+    members: Mapping[tuple[int, int], int]
+    factors: Mapping[tuple[int, int], Fraction]
+    first: tuple[int, int]
+    function: int
+
+
+def _terms(graph: Graph, node: int) -> list[int]:
+    found, waiting = list[int](), [node]
+    while waiting:
+        each = waiting.pop()
+        if graph.nodes[each].kind == "add":
+            waiting.extend(graph.nodes[each].operands)
+        else:
+            found.append(each)
+    return found
+
+
+def _factored(graph: Graph, term: int) -> tuple[Fraction, int]:
+    """Return a term's constant factor, and the rest of it."""
+    if graph.nodes[term].kind != "mul":
+        return Fraction(1), term
+    factor, rest = Fraction(1), list[int]()
+    for operand in graph.nodes[term].operands:
+        if graph.symbols(operand):
+            rest.append(operand)
+        else:
+            factor *= exact_value(graph, operand)
+    return factor, graph.mul(rest)
+
+
+def _pairs(
+    graph: Graph, terms: Sequence[int], place: Mapping[Symbol, int], bodies: int, axes: int
+) -> _Pairs | None:
+    """Return the family of terms that has every pair of bodies once, in a symmetric function."""
+    wanted = bodies * (bodies - 1) // 2
+    terms = [term for term in terms if len(graph.symbols(term)) == 2 * axes]
+    if len(terms) < wanted:
+        return None
+    families: dict[_Key, dict[tuple[int, int], tuple[int, Fraction, int]]] = {}
+    for term in terms:
+        symbols = graph.symbols(term)
+        if not all(symbol in place for symbol in symbols):
+            continue
+        own = sorted({place[symbol] // axes for symbol in symbols})
+        if len(own) != 2:
+            continue
+        factor, function = _factored(graph, term)
+        slots = {s: (own.index(place[s] // axes), place[s] % axes) for s in symbols}
+        key = _key(graph, function, slots)
+        swapped = _key(graph, function, {s: (1 - body, axis) for s, (body, axis) in slots.items()})
+        if key != swapped:
+            continue
+        members = families.setdefault(key, {})
+        if (own[0], own[1]) in members:
+            return None
+        members[own[0], own[1]] = term, factor, function
+    for members in families.values():
+        if len(members) == wanted:
+            first = min(members)
+            return _Pairs(
+                {pair: term for pair, (term, _, _) in members.items()},
+                {pair: factor for pair, (_, factor, _) in members.items()},
+                first,
+                members[first][2],
+            )
+    return None
+
+
+def _key(graph: Graph, node: int, slots: Mapping[Symbol, tuple[int, int]]) -> _Key:
+    """Return what two functions of two bodies have in common that are the same, up to the order of sums and products.
+
+    Of an even power of a sum only the sum's absolute value counts: (x_i − x_j)² is (x_j − x_i)².
+    """
+    kind, operands, value = graph.nodes[node]
+    if kind == "symbol":
+        return ("symbol", slots[value])
+    if not graph.symbols(node):
+        return ("number", exact_value(graph, node))
+    if kind == "add":
+        return ("add", *sorted(_signed(graph, term, slots) for term in operands))
+    if kind == "mul":
+        factor, rest = _factored(graph, node)
+        inner = [rest] if graph.nodes[rest].kind != "mul" else list(graph.nodes[rest].operands)
+        return ("mul", factor, *sorted((_key(graph, each, slots) for each in inner), key=repr))
+    if kind == "pow":
+        exponent = graph.nodes[operands[1]]
+        base = graph.nodes[operands[0]]
+        is_even = exponent.kind == "number" and exponent.value.denominator == 1 and exponent.value % 2 == 0
+        if is_even and base.kind == "add":
+            signed = [_signed(graph, term, slots) for term in base.operands]
+            either = min(sorted(signed), sorted((key, -factor) for key, factor in signed))
+            return ("pow", exponent.value, *either)
+    return (kind, *(_key(graph, operand, slots) for operand in operands))
+
+
+def _signed(graph: Graph, term: int, slots: Mapping[Symbol, tuple[int, int]]) -> tuple[str, Fraction]:
+    factor, rest = _factored(graph, term)
+    return repr(_key(graph, rest, slots)), factor
+
+
+def _forces(system: Equations, terms: Sequence[int], found: _Pairs, bodies: int, axes: int) -> PairForces:
+    graph = system.graph
+    target, source = ([sp.Dummy(f"{letter}{k}", real=True) for k in range(axes)] for letter in ("x", "y"))
+    renamed = {
+        graph.symbol(system.q[axes * body + k]): graph.symbol(new[k])
+        for body, new in zip(found.first, (target, source), strict=True)
+        for k in range(axes)
+    }
+    function = graph.negative(graph.substitute([found.function], renamed)[0])
+    gradient = program(graph, graph.gradient(function, target), [*target, *source])
+    strengths = [[Fraction(0)] * bodies for _ in range(bodies)]
+    for (i, j), factor in found.factors.items():
+        strengths[i][j] = strengths[j][i] = factor
+    taken = set(found.members.values())
+    coordinates = frozenset(system.q)
+    others = [term for term in terms if term not in taken and graph.symbols(term) & coordinates]
+    rest = tuple(graph.negative(slope) for slope in graph.gradient(graph.add(others), system.q))
+    return PairForces(bodies, axes, gradient, tuple(map(tuple, strengths)), rest if others else ())
+
+
+def write_pair_forces(
+    w: Writer, forces: PairForces, state: str, rest: Callable[[Callable[[str, str], None]], None],
+    take: Callable[[str, str], None],
+) -> None:  # fmt: skip
+    """Write the forces of pairs, and what is left, as loops.
+
+    Parameters
+    ----------
+    w
+        The function's writer.
+    forces
+        What was found.
+    state
+        The array that holds q.
+    rest
+        Writes the rest of the forces; what it is given takes the number of a component and its value.
+    take
+        Writes what is done with a component of the force, given its number and its value; called inside a loop.
+    """
+    bodies, axes = forces.bodies, forces.axes
+    filled = -(-bodies // _ALIGNED) * _ALIGNED
+    place, force = ([w.array(filled) for _ in range(axes)] for _ in range(2))
+    zero = w.constant(Fraction(0))
+    with w.loop(0, filled) as i:
+        for array in (*place, *force):
+            w.store(zero, array, i)
+    with w.loop(0, bodies) as i:
+        own = w.let(f"mul i64 {i}, {axes}")
+        for k, array in enumerate(place):
+            w.store(w.load(state, w.let(f"add i64 {own}, {k}")), array, i)
+    if forces.rest:
+        left = w.array(bodies * axes)
+        rest(lambda i, value: w.store(value, left, i))
+        with w.loop(0, bodies) as i:
+            own = w.let(f"mul i64 {i}, {axes}")
+            for k, array in enumerate(force):
+                w.store(w.load(left, w.let(f"add i64 {own}, {k}")), array, i)
+    strength = _strength(w, forces.strengths, filled)
+    with w.loop(0, bodies) as j:
+        source = [w.load(array, j) for array in place]
+        row = w.let(f"mul i64 {j}, {filled}")
+        with w.loop(0, filled) as i:
+            target = [w.load(array, i) for array in place]
+            is_itself = w.let(f"icmp eq i64 {i}, {j}")
+            factor = strength(w.let(f"add i64 {row}, {i}"))
+            for array, pull in zip(force, w.program(forces.gradient, [*target, *source]), strict=True):
+                kind = w.number.name
+                kept = w.let(f"select i1 {is_itself}, {kind} {zero}, {kind} {pull}")
+                w.store(w.multiply_add(factor, kept, w.load(array, i)), array, i)
+    with w.loop(0, bodies) as i:
+        own = w.let(f"mul i64 {i}, {axes}")
+        for k, array in enumerate(force):
+            take(w.let(f"add i64 {own}, {k}"), w.load(array, i))
+
+
+def _strength(w: Writer, strengths: Sequence[Sequence[Fraction]], filled: int) -> Callable[[str], str]:
+    """Return what writes c_ij, given j · filled + i: one number for all, or a table's entry."""
+    pairs = {c for i, row in enumerate(strengths) for j, c in enumerate(row) if i != j}
+    if len(pairs) == 1:
+        known = w.constant(pairs.pop())
+        return lambda _: known
+    rows = [[*row, *[Fraction(0)] * (filled - len(row))] for row in strengths]
+    return w.number_table(list(itertools.chain.from_iterable(rows)))

@@ -1,0 +1,45 @@
+"""Hamilton's equations together with the equations of their variations."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+if TYPE_CHECKING:
+    from sympy import Symbol
+
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = ["variational"]
+
+
+def variational(system: Equations, variations: int) -> Equations:
+    """Return the equations of (q, δq; p, δp) with so many variations δ: δẋ_i = Σ_j ∂ẋ_i/∂x_j δx_j.
+
+    A velocity ∂H/∂p gives δq̇ and a force gives δṗ, so that what splits still splits. Splitting and Runge–Kutta
+    methods commute with differentiation: a step of these equations is the step of Hamilton's equations and,
+    exactly, its derivative (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed., Springer
+    2006, Lemma VI.4.1).
+
+    Parameters
+    ----------
+    system
+        Hamilton's equations, without parameters that vary.
+    variations
+        How many variations.
+    """
+    graph, x = system.graph, (*system.q, *system.p)
+    slopes = [graph.gradient(rate, x) for rate in (*system.velocity, *system.force)]
+    n = len(system.q)
+    q, p, velocity, force = list(system.q), list(system.p), list(system.velocity), list(system.force)
+    for _ in range(variations):
+        varied: list[Symbol] = [sp.Dummy(f"delta_{s.name}", real=True) for s in x]
+        nodes = [graph.symbol(s) for s in varied]
+        rates = [graph.add([graph.mul([a, b]) for a, b in zip(row, nodes, strict=True)]) for row in slopes]
+        q += varied[:n]
+        p += varied[n:]
+        velocity += rates[:n]
+        force += rates[n:]
+    return replace(system, q=tuple(q), p=tuple(p), velocity=tuple(velocity), force=tuple(force))

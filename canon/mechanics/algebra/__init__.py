@@ -1,0 +1,5 @@
+"""Algebra that mechanics rests on: linear systems, Jacobians, substitution, inversion on a branch, quadratures."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

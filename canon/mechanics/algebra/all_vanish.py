@@ -1,0 +1,78 @@
+"""Claims that consist of many expressions, each of which must vanish."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from canon.proof.domain.domain import Domain, as_domain
+from canon.proof.domain.verdict import Evidence, Status, Verdict, all_hold
+from canon.proof.kinks import vanishes_off_kinks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from sympy import Expr
+
+__all__ = ["all_vanish", "differ"]
+
+
+def all_vanish(
+    claims: Iterable[tuple[str, Expr]], question: str, domain: Domain | None = None, budget: float = 10.0
+) -> Verdict:
+    """Tell whether all of these expressions vanish, within one budget of time.
+
+    Parameters
+    ----------
+    claims
+        Pairs of what is asked, in words, and the expression that should vanish.
+    question
+        The whole claim, in words.
+    domain
+        Where it is meant.
+    budget
+        Seconds for all of them together.
+
+    Kinks are no part of the domain: an expression may have any value there.
+
+    Returns
+    -------
+    Verdict
+        The first claim that fails gives the residual, the counterexample and is named in the feedback.
+    """
+    domain = as_domain(domain)
+    end = clock.monotonic() + budget
+
+    def verdicts() -> Iterator[Verdict]:
+        for part, expression in claims:
+            if expression == 0:
+                continue
+            left = end - clock.monotonic()
+            if left <= 0:
+                yield Verdict(
+                    Status.UNDECIDED,
+                    part,
+                    evidence=(Evidence("budget", f"{budget:.1f} s were spent before {part}"),),
+                )
+                return
+            verdict = vanishes_off_kinks(expression, domain, left)
+            if verdict.holds:
+                yield verdict
+                continue
+            yield replace(
+                verdict,
+                question=part,
+                residual=expression,
+                feedback=verdict.feedback or (f"not so: {part}" if verdict.fails else ""),
+            )
+
+    verdict = all_hold(verdicts(), question)
+    return replace(verdict, certificate=verdict.certificate or "exact") if verdict.holds else verdict
+
+
+def differ(expression: Expr, domain: Domain | None = None) -> bool:
+    """Whether an expression certainly does not vanish identically on the domain."""
+    if expression.is_Rational:
+        return bool(expression != 0)
+    return vanishes_off_kinks(expression, as_domain(domain)).fails

@@ -1,0 +1,116 @@
+"""SymPy's dynamicsymbols at the door: theta(t), its derivatives and t become canon's symbols."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+from sympy import Derivative, Expr, Symbol
+from sympy.core.function import AppliedUndef
+
+from canon.expression.symbols.symbol import Coordinate, acceleration, time, velocity, without_dynamicsymbols
+from canon.expression.symbols.user_input import given_expression, given_kind
+from canon.mechanics.algebra.substitution import exchanged
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+
+__all__ = ["coordinate", "coordinate_symbols", "needs_plain", "plain", "plain_all", "plain_places"]
+
+
+def coordinate(x: Any) -> Symbol:
+    """Return the symbol of a coordinate given as a symbol, a function of time, or the derivative of one.
+
+    Raises
+    ------
+    TypeError
+        Where it is neither.
+
+    Examples
+    --------
+    >>> from sympy.physics.mechanics import dynamicsymbols
+    >>> coordinate(dynamicsymbols("theta")), coordinate(dynamicsymbols("theta", 1))
+    (theta, theta_dot)
+    """
+    if isinstance(x, Symbol):
+        return x
+    if isinstance(x, AppliedUndef) and len(x.args) == 1:
+        return Coordinate(x.func.__name__, real=True)
+    if isinstance(x, Derivative) and isinstance(x.expr, AppliedUndef) and x.derivative_count == 1:
+        return velocity(coordinate(x.expr))
+    raise TypeError(
+        f"{x!r} is no coordinate; use coordinates('theta'), a SymPy symbol, or one of SymPy's dynamicsymbols"
+    )
+
+
+def coordinate_symbols(q: Any) -> tuple[Symbol, ...]:
+    """Return the symbols of one coordinate or of several.
+
+    Examples
+    --------
+    >>> from sympy.physics.mechanics import dynamicsymbols
+    >>> coordinate_symbols(dynamicsymbols("x y"))
+    (x, y)
+    """
+    several = (q,) if isinstance(q, sp.Basic) or not hasattr(q, "__iter__") else q
+    return tuple(coordinate(x) for x in several)
+
+
+def plain_all(functions: Sequence[Any], q: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
+    """Return :func:`plain` of each."""
+    return tuple(plain(f, q, t) for f in functions)
+
+
+def plain_places(
+    places: Mapping[Any, Any], old: Sequence[Symbol], new: Sequence[Symbol], t: Symbol = time
+) -> dict[Symbol, Expr]:
+    """Return what each old coordinate is in terms of new ones, all in canon's symbols.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> from sympy.physics.mechanics import dynamicsymbols
+    >>> (x,), (s,) = coordinates("x"), coordinates("s")
+    >>> plain_places({dynamicsymbols("x"): 2*dynamicsymbols("s")}, [x], [s])
+    {x: 2*s}
+    """
+    return {coordinate(s): plain(place, (*old, *new), t) for s, place in places.items()}
+
+
+def needs_plain(symbols: Collection[Any], t: Symbol = time) -> bool:
+    """Tell whether SymPy's own time, ``dynamicsymbols._t``, is among symbols where another one is meant."""
+    bare = Symbol(t.name)
+    return bare != t and bare in symbols
+
+
+def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
+    """Return an expression with canon's symbols for dynamicsymbols of these coordinates, their rates and the time.
+
+    A function of one symbol whose name is that of a coordinate is that coordinate. Symbols named as rates
+    (``theta_dot``) become the rates, and a symbol without assumptions named as the time, which ``dynamicsymbols._t``
+    is, becomes the time.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> from sympy.physics.mechanics import dynamicsymbols
+    >>> (theta,) = coordinates("theta")
+    >>> plain(dynamicsymbols("theta", 1) ** 2 + dynamicsymbols("theta"), [theta]) == theta.dot**2 + theta
+    True
+    """
+    expression = given_expression(f)
+    given_kind(t, Symbol, "the time", "give a domain and the like by their names")
+    named = {s.name: s for s in q}
+    applied = {
+        g: named[g.func.__name__]
+        for g in expression.atoms(AppliedUndef)
+        if g.func.__name__ in named and len(g.args) == 1 and isinstance(g.args[0], Symbol)
+    }
+    clocks: dict[Symbol, Symbol] = {}
+    for g, s in applied.items():
+        clock: Any = g.args[0]
+        clocks[clock] = t
+        expression = without_dynamicsymbols(expression, {g: s}, clock)
+    rates: dict[str, Symbol] = {rate(s).name: rate(s) for s in q for rate in (velocity, acceleration)}
+    exact = {s: rates[s.name] for s in expression.atoms(Symbol) if s.name in rates}
+    return exchanged(expression, {Symbol(t.name): t, **clocks, **exact})

@@ -1,0 +1,262 @@
+"""Elimination over expressions: solving, rank and null directions without a symbolic inverse.
+
+Entries stay as they are built; only pivots are asked whether they vanish, and the proof room answers that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr
+
+from canon.mechanics.algebra.substitution import size
+from canon.proof.domain.domain import Domain, as_domain
+from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
+from canon.proof.kinks import vanishes_off_kinks
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["Elimination", "SingularMatrixError", "eliminate", "is_regular", "solve"]
+
+
+class SingularMatrixError(ValueError):
+    """A matrix that had to be regular has a null direction.
+
+    Parameters
+    ----------
+    message
+        What was wrong and what to do instead.
+    null_direction
+        The components v with A v = 0.
+    """
+
+    def __init__(self, message: str, null_direction: tuple[Expr, ...]) -> None:
+        super().__init__(message)
+        self.null_direction = null_direction
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """The row echelon form that elimination reached.
+
+    Parameters
+    ----------
+    rows
+        The rows of (A | B) after elimination, pivot rows first.
+    pivots
+        The column of the pivot of each of the first rows.
+    columns
+        How many columns belong to A.
+    order
+        Which row of (A | B) each row came from. Where a symmetric A kept its order, the pivots are D of
+        A = L D Lᵀ and the right-hand side has become L⁻¹ B.
+    assumed
+        What the zero tests of the pivots took for granted.
+    """
+
+    rows: tuple[tuple[Expr, ...], ...]
+    pivots: tuple[int, ...]
+    columns: int
+    order: tuple[int, ...]
+    assumed: tuple[str, ...] = ()
+
+    @property
+    def rank(self) -> int:
+        """The rank at generic points."""
+        return len(self.pivots)
+
+    @cached_property
+    def null_directions(self) -> tuple[tuple[Expr, ...], ...]:
+        """A basis of the v with A v = 0, each free of denominators where they are common.
+
+        Each has a component that the others have not: that of a column without pivot.
+        """
+        free = [j for j in range(self.columns) if j not in self.pivots]
+        return tuple(self._null_direction(j) for j in free)
+
+    @cached_property
+    def null_direction(self) -> tuple[Expr, ...] | None:
+        """One v with A v = 0, or None."""
+        return self.null_directions[0] if self.null_directions else None
+
+    def _null_direction(self, free: int) -> tuple[Expr, ...]:
+        direction: list[Expr] = [sp.S.Zero] * self.columns
+        direction[free] = sp.S.One
+        for row, j in reversed(list(zip(self.rows, self.pivots, strict=False))):
+            total = sp.Add(*(row[k] * direction[k] for k in range(j + 1, self.columns)))
+            direction[j] = sp.cancel(-total / row[j])
+        denominator = sp.lcm([sp.denom(v) for v in direction])
+        return tuple(sp.cancel(v * denominator) for v in direction)
+
+    def back_substituted(self) -> tuple[tuple[Expr, ...], ...]:
+        """Return X with A X = B, one tuple a row of X; A must have full column rank."""
+        width = len(self.rows[0]) - self.columns
+        solution: list[tuple[Expr, ...]] = [()] * self.columns
+        for row, j in reversed(list(zip(self.rows, self.pivots, strict=False))):
+            solution[j] = tuple(
+                (
+                    row[self.columns + b]
+                    - sp.Add(*(row[k] * solution[k][b] for k in range(j + 1, self.columns)))
+                )
+                / row[j]
+                for b in range(width)
+            )
+        return tuple(solution)
+
+
+def eliminate(
+    matrix: sp.MatrixBase, right: sp.MatrixBase | None = None, domain: Domain | None = None
+) -> Elimination:
+    """Bring (A | B) to row echelon form with pivots that certainly do not vanish identically.
+
+    The diagonal is preferred where A is symmetric, the simplest entry of the column elsewhere.
+
+    Parameters
+    ----------
+    matrix
+        A, of any shape.
+    right
+        B with as many rows as A; nothing where only the rank matters.
+    domain
+        Where the entries are meant; a pivot must not vanish identically there.
+
+    Raises
+    ------
+    Undecided
+        Where no entry of a column is certainly nonzero and one is not certainly zero.
+
+    Examples
+    --------
+    >>> from sympy import Matrix, symbols
+    >>> m = symbols("m", positive=True)
+    >>> eliminate(Matrix([[m, -m], [-m, m]])).null_direction
+    (1, 1)
+    """
+    domain = as_domain(domain)
+    whole = matrix if right is None else matrix.row_join(right)
+    rows: list[list[Expr]] = [list(whole.row(i)) for i in range(whole.rows)]
+    order = list(range(whole.rows))
+    symmetric = matrix.rows == matrix.cols and matrix == matrix.T
+    pivots: list[int] = []
+    assumed: dict[str, None] = {}
+    for j in range(matrix.cols):
+        top = len(pivots)
+        chosen = _pivot_row(rows, top, j, domain, assumed, by_size=not symmetric)
+        if chosen is None:
+            continue
+        rows[top], rows[chosen] = rows[chosen], rows[top]
+        order[top], order[chosen] = order[chosen], order[top]
+        for i in range(top + 1, len(rows)):
+            if rows[i][j] != 0:
+                factor = rows[i][j] / rows[top][j]
+                rows[i] = [a if b == 0 else a - factor * b for a, b in zip(rows[i], rows[top], strict=True)]
+                rows[i][j] = sp.S.Zero
+        pivots.append(j)
+    return Elimination(tuple(map(tuple, rows)), tuple(pivots), matrix.cols, tuple(order), tuple(assumed))
+
+
+def solve(
+    matrix: sp.MatrixBase, right: sp.MatrixBase, domain: Domain | None = None, name: str = "the matrix"
+) -> sp.Matrix:
+    """Return X with A X = B for a square A, by elimination.
+
+    Raises
+    ------
+    SingularMatrixError
+        With the null direction, where A is singular at every point.
+
+    Examples
+    --------
+    >>> from sympy import Matrix, symbols
+    >>> m = symbols("m", positive=True)
+    >>> solve(Matrix([[2 * m, 0], [0, m]]), Matrix([4, 3 * m]))
+    Matrix([
+    [2/m],
+    [  3]])
+    """
+    eliminated = eliminate(matrix, right, domain)
+    null = eliminated.null_direction
+    if null is not None:
+        raise SingularMatrixError(
+            f"{name} is singular: it maps the direction ({_listed(null)}) to zero", null
+        )
+    return sp.Matrix([list(row) for row in eliminated.back_substituted()])
+
+
+def is_regular(matrix: sp.MatrixBase, domain: Domain | None = None, name: str = "the matrix") -> Verdict:
+    """Tell whether a square matrix is regular at generic points of the domain.
+
+    Returns
+    -------
+    Verdict
+        FAILS names the null direction as evidence; UNDECIDED where a pivot's zero test was not decided.
+
+    Examples
+    --------
+    >>> from sympy import Matrix, symbols
+    >>> a = symbols("a", real=True)
+    >>> is_regular(Matrix([[a, 1], [a**2, a]])).status.name
+    'FAILS'
+    """
+    question = f"{name} is regular"
+    try:
+        eliminated = eliminate(matrix, domain=domain)
+    except Undecided as undecided:
+        return Verdict(Status.UNDECIDED, question, evidence=(Evidence("pivot", str(undecided)),))
+    null = eliminated.null_direction
+    if null is None:
+        return Verdict(Status.HOLDS, question, certificate="exact", assumed=eliminated.assumed)
+    return Verdict(
+        Status.FAILS,
+        question,
+        certificate="exact",
+        assumed=eliminated.assumed,
+        evidence=(Evidence("null direction", f"({_listed(null)})"),),
+        feedback=f"{name} is singular: it maps the direction ({_listed(null)}) to zero",
+    )
+
+
+def _pivot_row(
+    rows: list[list[Expr]], top: int, column: int, domain: Domain, assumed: dict[str, None], *, by_size: bool
+) -> int | None:
+    open_: Expr | None = None
+    candidates = [i for i in range(top, len(rows)) if rows[i][column] != 0]
+    for i in sorted(candidates, key=lambda i: (_complexity(rows[i][column]) if by_size else 0, i)):
+        entry = rows[i][column]
+        if _plainly_nonzero(entry):
+            return i
+        verdict = vanishes_off_kinks(entry, domain)
+        if verdict.fails:
+            assumed.update(dict.fromkeys(verdict.assumed))
+            return i
+        if verdict.holds:
+            rows[i][column] = sp.S.Zero
+        else:
+            open_ = entry
+    if open_ is not None:
+        raise Undecided(f"whether the pivot {open_} vanishes was not decided; narrow the domain")
+    return None
+
+
+def _complexity(entry: Expr) -> int:
+    return 0 if _plainly_nonzero(entry) else size(entry)
+
+
+def _plainly_nonzero(entry: Expr) -> bool:
+    """Whether a product of nonzero numbers and of powers of positive or nonzero symbols."""
+    factors = sp.Mul.make_args(entry)
+    return all(
+        factor != 0
+        if factor.is_Rational
+        else base.is_Symbol and base.is_nonzero is True and exponent.is_Integer
+        for factor in factors
+        for base, exponent in [factor.as_base_exp()]
+    )
+
+
+def _listed(direction: Sequence[Expr]) -> str:
+    return ", ".join(map(str, direction))

@@ -1,0 +1,124 @@
+"""Motions that are possible: real and continuous, and their velocities too, as there are no impacts.
+
+A coordinate that the equations know up to whole turns may be given so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.mechanics.algebra.substitution import substitute
+from canon.proof.continuity.continuity import continuity
+from canon.proof.continuity.jumps import shown
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Counterexample, Status, Verdict
+from canon.proof.trees.sympy_types import arguments, free_symbols
+from canon.proof.vanish import vanishes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from sympy import Expr, Symbol
+
+__all__ = ["motion_is_continuous", "motion_is_real"]
+
+POINTS = 40
+"""Points at which a motion is looked at."""
+
+
+def motion_is_real(motion: Mapping[Symbol, Expr], domain: Domain) -> Iterator[Verdict]:
+    """Yield whether x(t) is real; conditions on the coordinates themselves are left out."""
+    on_time = Domain(tuple(c for c in domain.conditions if not c.has(*motion)), domain.box)
+    for x, place in motion.items():
+        yield _is_real(place, x, on_time)
+
+
+def motion_is_continuous(
+    motion: Mapping[Symbol, Expr], t: Symbol, domain: Domain, laws: Sequence[Expr], *, velocities: bool
+) -> Iterator[Verdict]:
+    """Yield whether x(t) is continuous, and its velocity too where that is part of the state.
+
+    Parameters
+    ----------
+    motion
+        The claimed functions of time.
+    t
+        The time.
+    domain
+        Where they are claimed, with their constants and parameters.
+    laws
+        Expressions in the coordinates that make the equations of motion.
+    velocities
+        Whether velocities must be continuous beside the places.
+    """
+    for x, place in motion.items():
+        rest, turns = _without_turns(place, x, t, domain, laws)
+        verdict = continuity(rest, [t], domain, name=f"{x} = {place}")
+        yield replace(verdict, assumed=(*verdict.assumed, *turns))
+        if velocities:
+            yield continuity(place.diff(t), [t], domain, name=f"the velocity of {x} = {place}")
+
+
+def _is_real(place: Expr, x: Symbol, domain: Domain) -> Verdict:
+    """Tell whether a motion is real, as far as it is claimed to be one.
+
+    A root or logarithm leaves the real numbers where the motion ends: it is claimed up to there.
+    """
+    question = f"{x} is real"
+    real, example = 0, None
+    for point in domain.points(free_symbols(place), POINTS) if _may_be_complex(place) else ():
+        with precision(128):
+            try:
+                ball = value(place, point)
+            except (NotDecided, Undefined, Unmodelled):
+                continue
+            if ball.imag.contains(0):
+                real += 1
+            elif example is None:
+                names = {s.name: str(number) for s, number in point.items()}
+                example = Counterexample(names, shown(ball), "a real number", 8)
+    if example is None:
+        return Verdict(Status.HOLDS, question, "exact")
+    if real and not place.has(sp.I):
+        return Verdict(
+            Status.HOLDS, question, "exact", assumed=(f"{x} = {place} is claimed where it is real",)
+        )
+    where = ", ".join(f"{name} = {number}" for name, number in example.point.items())
+    why = f"{x} = {place} is no motion: it is not real, but {example.left} at {where}"
+    return Verdict(Status.FAILS, question, "ball", counterexample=example, feedback=why)
+
+
+def _may_be_complex(place: Expr) -> bool:
+    return place.is_real is not True
+
+
+def _without_turns(
+    place: Expr, x: Symbol, t: Symbol, domain: Domain, laws: Sequence[Expr]
+) -> tuple[Expr, tuple[str, ...]]:
+    """Leave out angles that jump by whole turns where the equations do not know of turns; say so.
+
+    An angle that goes on uniformly is no reason: ω t says the same without a jump.
+    """
+    turning = [term for term in sp.Add.make_args(place) if _jumps_by_turns(term)]
+    turning = [term for term in turning if not vanishes(term.diff(t, 2), domain, 0.5).holds]
+    if not turning or not all(_knows_no_turns(e, x) for e in laws):
+        return place, ()
+    return place - sp.Add(*turning), (f"{x} is an angle of which whole turns do not count",)
+
+
+def _jumps_by_turns(term: Expr) -> bool:
+    factor, angle = term.as_coeff_Mul()
+    if isinstance(angle, sp.atan2):
+        return factor.is_integer is True
+    return isinstance(angle, sp.atan) and factor.is_even is True and bool(arguments(angle)[0].has(sp.tan))
+
+
+def _knows_no_turns(equation: Expr, x: Symbol) -> bool:
+    if not equation.has(x):
+        return True
+    turned = substitute(equation, {x: x + 2 * sp.pi})
+    return vanishes(turned - equation, budget=0.5).holds

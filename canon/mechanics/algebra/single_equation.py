@@ -1,0 +1,142 @@
+"""Equations in which the unknown occurs several times, as polynomials in one of its functions.
+
+An equation in x, √x and the like, or in sin x and cos x, is a polynomial in those functions; the relations
+among them eliminate all but one, whose roots are found by factors that are linear, quadratic or binomial.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.mechanics.algebra.substitution import exchanged, size
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+__all__ = ["generator_values", "low_degree_roots"]
+
+
+def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, tuple[Expr, ...]]]:
+    """Yield functions of x with the values that the equation may give them.
+
+    Parameters
+    ----------
+    equation
+        An expression that is to vanish.
+    x
+        The unknown.
+
+    Yields
+    ------
+    tuple
+        A function of x, a value without x, and the expressions whose signs tell this root from its partners.
+
+    Examples
+    --------
+    >>> from sympy import symbols, sqrt
+    >>> x, y = symbols("x y", positive=True)
+    >>> [(str(f), str(value)) for f, value, _ in generator_values(x + sqrt(x) - y, x)][0]
+    ('x', 'y + sqrt(4*y + 1)/2 + 1/2')
+    """
+    equation = _in_few_functions(equation, x)
+    kernels = _kernels(equation, x)
+    names: dict[Expr, Symbol] = {kernel: sp.Dummy() for kernel in kernels}
+    back: dict[Symbol, Expr] = {name: kernel for kernel, name in names.items()}
+    polynomial = sp.numer(sp.together(exchanged(equation, names)))
+    for kernel in sorted(kernels, key=lambda k: (k != x, size(k))):
+        reduced = _eliminated(polynomial, kernel, names, x)
+        if reduced is None:
+            continue
+        for root, signs in low_degree_roots(reduced, names[kernel]):
+            value = exchanged(root, back)
+            if not value.has(x):
+                yield kernel, value, tuple(exchanged(sign, back) for sign in signs)
+
+
+def _eliminated(polynomial: Expr, kept: Expr, names: Mapping[Expr, Symbol], x: Symbol) -> Expr | None:
+    """Eliminate all generators but one by their relations with it: s² + c² = 1, r² = radicand, xⁿ."""
+    u = names[kept]
+    for kernel, name in names.items():
+        if kernel == kept or not polynomial.has(name):
+            continue
+        relation = _relation(kernel, name, kept, u, names)
+        if relation is None or relation.has(x):
+            return None
+        polynomial = cast("Expr", sp.resultant(polynomial, relation, name))
+    return polynomial if polynomial.has(u) else None
+
+
+def _relation(kernel: Expr, name: Symbol, kept: Expr, u: Symbol, names: Mapping[Expr, Symbol]) -> Expr | None:
+    if {kernel.func, kept.func} == {sp.sin, sp.cos} and kernel.args == kept.args:
+        return name**2 + u**2 - 1
+    if {kernel.func, kept.func} == {sp.sinh, sp.cosh} and kernel.args == kept.args:
+        return name**2 - u**2 + (1 if kernel.func == sp.sinh else -1)
+    base, exponent = kernel.as_base_exp()
+    if isinstance(exponent, sp.Rational) and not exponent.is_Integer:
+        return sp.numer(sp.together(name**exponent.q - exchanged(base, names) ** exponent.p))
+    kept_base, kept_exponent = kept.as_base_exp()
+    if isinstance(kept_exponent, sp.Rational) and kept_base == kernel and kept_exponent.p == 1:
+        return name - u**kept_exponent.q
+    return None
+
+
+def low_degree_roots(polynomial: Expr, u: Symbol) -> list[tuple[Expr, tuple[Expr, ...]]]:
+    """Return the roots in u of factors of low degree, each with the expressions whose signs tell it."""
+    if not polynomial.is_polynomial(u):
+        return []
+    poly = sp.Poly(polynomial, u)
+    factors = [poly] if poly.degree() <= 2 else [f for f, _ in poly.factor_list()[1]]
+    roots: list[tuple[Expr, tuple[Expr, ...]]] = []
+    for factor in factors:
+        coefficients = factor.all_coeffs()
+        if len(coefficients) == 2:
+            roots.append((-coefficients[1] / coefficients[0], ()))
+        elif len(coefficients) > 2 and all(c == 0 for c in coefficients[1:-1]):
+            root = sp.root(-coefficients[-1] / coefficients[0], len(coefficients) - 1)
+            roots.extend([(cast("Expr", root), (u,)), (cast("Expr", -root), (u,))])
+        elif len(coefficients) == 3:
+            a, b, c = coefficients
+            half = sp.sqrt(sp.factor(b**2 - 4 * a * c))
+            slope = 2 * a * u + b
+            roots.extend([((-b + half) / (2 * a), (slope,)), ((-b - half) / (2 * a), (slope,))])
+        elif len(coefficients) == 5 and all(c == 0 for c in coefficients[1::2]):
+            for square, signs in low_degree_roots(exchanged(factor.as_expr(), {u**4: u**2, u**2: u}), u):
+                told = (u, *(exchanged(sign, {u: u**2}) for sign in signs))
+                roots.extend([(sp.sqrt(square), told), (-sp.sqrt(square), told)])
+    return roots
+
+
+def _kernels(f: Expr, x: Symbol) -> set[Expr]:
+    """Return the parts of f from which sums, products and whole powers build it, as far as they hold x."""
+    if not f.has(x):
+        return set()
+    if f.is_Add or f.is_Mul:
+        return {k for part in f.args for k in _kernels(cast("Expr", part), x)}
+    if f.is_Pow and f.as_base_exp()[1].is_Integer:
+        return _kernels(f.as_base_exp()[0], x)
+    return {f}
+
+
+def _in_few_functions(f: Expr, x: Symbol) -> Expr:
+    """Write tan, cot, sec, csc by sin and cos where f holds those, else cot by tan."""
+
+    def holds(*kinds: Any) -> bool:
+        return any(g.has(x) for g in f.atoms(*kinds))
+
+    angles = {g: cast("Expr", g.args[0]) for g in f.atoms(sp.tan, sp.cot, sp.sec, sp.csc)}
+    if holds(sp.sin, sp.cos, sp.sec, sp.csc):
+        return exchanged(f, {g: _through_sin_and_cos(g, y) for g, y in angles.items()})
+    if holds(sp.cot) and holds(sp.tan):
+        return exchanged(f, {g: 1 / sp.tan(y) for g, y in angles.items() if g.func == sp.cot})
+    return f
+
+
+def _through_sin_and_cos(g: Expr, y: Expr) -> Expr:
+    if g.func == sp.sec:
+        return 1 / sp.cos(y)
+    if g.func == sp.csc:
+        return 1 / sp.sin(y)
+    return sp.sin(y) / sp.cos(y) if g.func == sp.tan else sp.cos(y) / sp.sin(y)

@@ -1,0 +1,83 @@
+"""Substitution that is simultaneous, and careful with derivatives of arbitrary functions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import sympy as sp
+from sympy import Expr
+
+from canon.expression.symbols.user_input import given_expression
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+__all__ = ["as_tuple", "entry", "exchanged", "shortened", "size", "substitute"]
+
+
+def substitute(f: Expr, values: Mapping[sp.Symbol, Expr]) -> Expr:
+    """Return f with every symbol replaced at once.
+
+    Where f holds a derivative V′(x) of an arbitrary function and x is replaced by an expression, the
+    derivative becomes SymPy's ``Subs``: V′ at that place, not the derivative by that place.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> q, p = symbols("q p")
+    >>> substitute(q - 2*p, {q: p, p: q})
+    p - 2*q
+    """
+    mapping = [(old, new) for old, new in values.items() if old != new]
+    if f.has(sp.Derivative, sp.Subs, sp.Integral):
+        return f.subs(mapping, simultaneous=True)
+    return cast("Expr", f.xreplace(dict(mapping)))
+
+
+def exchanged(f: Expr, values: Mapping[Any, Expr]) -> Expr:
+    """Return f with whole subexpressions exchanged for others, as they stand."""
+    return cast("Expr", f.xreplace(values))
+
+
+def entry(matrix: sp.MatrixBase, i: int, j: int) -> Expr:
+    """Return one entry of a matrix as an expression."""
+    return cast("Expr", matrix[i, j])
+
+
+def as_tuple(given: Sequence[Expr] | Expr) -> tuple[Expr, ...]:
+    """Return one expression, or several, as a tuple of expressions."""
+    if isinstance(given, Expr):
+        return (given,)
+    if not hasattr(given, "__iter__") or isinstance(given, str):
+        return (given_expression(given),)
+    return tuple(given_expression(f) for f in given)
+
+
+def shortened(F: Expr) -> Expr:
+    """Return the shortest of a few plain forms of F: as it stands, over one denominator, multiplied out."""
+    if size(F) > 350:
+        return F
+    return min((F, sp.factor_terms(F), sp.expand(F), sp.cancel(sp.together(F))), key=size)
+
+
+def size(f: sp.Basic) -> int:
+    """Return the number of nodes of the expression tree, walking parts that occur often only once.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, y = symbols("x y")
+    >>> size(x + 2*y)
+    5
+    """
+    sizes: dict[sp.Basic, int] = {}
+    stack: list[sp.Basic] = [f]
+    while stack:
+        node = stack[-1]
+        open_ = [part for part in node.args if part not in sizes]
+        if open_:
+            stack.extend(open_)
+        else:
+            sizes[node] = 1 + sum(sizes[part] for part in node.args)
+            stack.pop()
+    return sizes[f]

@@ -1,0 +1,5 @@
+"""Canonical transformations: tests, generating functions, inverses, the new Hamiltonian."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,3 @@
+from .generating_function import GeneratingFunction as GeneratingFunction
+from .transformation import CanonicalTransformation as CanonicalTransformation
+from .transformation import point_transformation as point_transformation

@@ -1,0 +1,109 @@
+"""What must vanish for a map to be canonical, as Poisson, Lagrange, matrices, δ and d, and contact say it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr
+
+from canon.mechanics.algebra.substitution import entry
+from canon.mechanics.hamilton.bracket import symplectic_unit
+from canon.mechanics.hamilton.pfaffian_form import canonical_covariant, curl, displacements
+from canon.proof.domain.verdict import Evidence, Status, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from canon.mechanics.canonical.transformation import CanonicalTransformation, Test
+
+__all__ = ["disagreement", "residuals"]
+
+
+def residuals(T: CanonicalTransformation, by: Test, c: Expr) -> Iterator[tuple[str, Expr]]:
+    """Yield what is asked, in the words of the test, and the expression that must vanish."""
+    match by:
+        case "poisson":
+            return _brackets(T.poisson_bracket_of, _names(T, "QP"), c, "{{{}, {}}}")
+        case "lagrange":
+            brackets = T.lagrange_brackets
+            return _brackets(lambda i, j: entry(brackets, i, j), [str(z) for z in T.variables], c, "[{}, {}]")
+        case "symplectic":
+            J = symplectic_unit(len(T.q))
+            whole = T.jacobian * J * T.jacobian.T
+            said = "the entry ({}, {}) of M J Mᵀ"
+            return _brackets(lambda i, j: entry(whole, i, j), _names(T, "QP"), c, said)
+        case "bilinear":
+            return _coefficients(T, c)
+        case "contact":
+            return _exactness(T, c)
+    raise ValueError(
+        f"no test is called {by!r}; choose poisson, lagrange, symplectic, bilinear, contact or all"
+    )
+
+
+def disagreement(verdicts: Mapping[str, Verdict]) -> Verdict:
+    """Return the verdict that all tests share; UNDECIDED, naming them, where two contradict each other."""
+    evidence = tuple(
+        Evidence(
+            f"{test} test",
+            f"{v.status.name} in {v.seconds:.3f} s" + (f", {v.certificate}" if v.certificate else ""),
+        )
+        for test, v in verdicts.items()
+    )
+    seconds = sum(v.seconds for v in verdicts.values())
+    holding = [v for v in verdicts.values() if v.holds]
+    failing = [v for v in verdicts.values() if v.fails]
+    question = "the map is canonical"
+    if holding and failing:
+        return Verdict(
+            Status.UNDECIDED,
+            question,
+            evidence=evidence,
+            seconds=seconds,
+            feedback="the tests disagree, which cannot be: please report this map as a fault of canon",
+        )
+    agreed = (failing or holding or list(verdicts.values()))[0]
+    return replace(agreed, evidence=evidence, seconds=seconds)
+
+
+def _brackets(
+    bracket: Callable[[int, int], Expr], names: list[str], c: Expr, written: str
+) -> Iterator[tuple[str, Expr]]:
+    """Yield bracket by bracket, each built when it is asked about: the budget may end before."""
+    n = len(names) // 2
+    for i in range(2 * n):
+        for j in range(i + 1, 2 * n):
+            due = c if j == i + n else sp.S.Zero
+            yield f"{written.format(names[i], names[j])} = {due}", bracket(i, j) - due
+
+
+def _coefficients(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]]:
+    """Yield the coefficients of δa db in Σ(δP dQ − dP δQ) − c Σ(δp dq − dp δq)."""
+    d, delta = displacements(T.variables)
+    n = len(T.q)
+    covariant = canonical_covariant(T.Q, T.P, T.variables)
+    for i in range(2 * n):
+        for j in range(i + 1, 2 * n):
+            due = c if j == i + n else sp.S.Zero
+            yield (
+                f"the coefficient of {delta[j]}*{d[i]} is {due}",
+                covariant.diff(delta[j]).diff(d[i]) - due,
+            )
+
+
+def _exactness(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]]:
+    rotation = curl(T.contact_form(c), T.variables)
+    z = T.variables
+    for i in range(len(z)):
+        for j in range(i + 1, len(z)):
+            yield (
+                f"the coefficients of d{z[i]} and d{z[j]} in p dq − P dQ have equal cross derivatives",
+                entry(rotation, i, j),
+            )
+
+
+def _names(T: CanonicalTransformation, letters: str) -> list[str]:
+    n = len(T.q)
+    return [f"{letter}{'' if n == 1 else i + 1}" for letter in letters for i in range(n)]

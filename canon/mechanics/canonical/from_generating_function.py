@@ -1,0 +1,210 @@
+"""From a generating function to its map, the inverse map, the new Hamiltonian, and the other types.
+
+The rules of a type give all 4n variables as functions of the 2n on which F depends; solving some of them for
+others, on the branch of a witness point, gives the map either way and Legendre's relations among the types.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.expression.symbols.user_input import given_kind
+from canon.mechanics.algebra.branch_point import far_from_principal, witnesses
+from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
+from canon.mechanics.algebra.substitution import shortened, substitute
+from canon.mechanics.canonical.generating_function import GeneratingFunction, kinds_of
+from canon.mechanics.canonical.implicit_transformation import ImplicitTransformation
+from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError
+from canon.mechanics.canonical.transformation import CanonicalTransformation
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.proof.domain.domain import Domain, as_domain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from sympy.logic.boolalg import Boolean
+
+__all__ = [
+    "generated_hamiltonian",
+    "generated_inverse",
+    "generated_transformation",
+    "implicit_map",
+    "of_kind",
+]
+
+
+def generated_transformation(F: GeneratingFunction, domain: Domain | None = None) -> CanonicalTransformation:
+    """Return the map Q(q, p, t), P(q, p, t) that F generates, proved by the rules.
+
+    Parameters
+    ----------
+    F
+        A generating function with regular mixed Hessian.
+    domain
+        Conditions on any of the variables that choose the branch.
+
+    Raises
+    ------
+    NoClosedInverseError
+        Where the rules could not be solved in closed form.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> q, p, Q, P, f = symbols("q p Q P f", real=True)
+    >>> generated_transformation(GeneratingFunction(2, q*P + f*q**2/2, q, p, Q, P)).images
+    (q, -f*q + p)
+    """
+    _is_generating(F)
+    return _solved(F, (*F.q, *F.p), (*F.new_q, *F.new_p), as_domain(domain, F.domain))
+
+
+def generated_inverse(F: GeneratingFunction, domain: Domain | None = None) -> CanonicalTransformation:
+    """Return the inverse map q(Q, P, t), p(Q, P, t) of the one that F generates, proved by the rules.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> q, p, Q, P, f = symbols("q p Q P f", real=True)
+    >>> generated_inverse(GeneratingFunction(2, q*P + f*q**2/2, q, p, Q, P)).images
+    (Q, P + Q*f)
+    """
+    _is_generating(F)
+    return _solved(F, (*F.new_q, *F.new_p), (*F.q, *F.p), as_domain(domain, F.domain))
+
+
+def _is_generating(F: GeneratingFunction) -> None:
+    given_kind(F, GeneratingFunction, "F", "write GeneratingFunction(2, q*P, q, p, Q, P)")
+
+
+def implicit_map(F: GeneratingFunction) -> ImplicitTransformation:
+    """Return the map that F generates as its rules stand, to be tested and evaluated where it has no formula.
+
+    Examples
+    --------
+    >>> from sympy import cos, symbols
+    >>> q, p, Q, P, h = symbols("q p Q P h", real=True)
+    >>> T = implicit_map(GeneratingFunction(2, q*P + h*(P**2/2 - cos(q)*cos(P)), q, p, Q, P))
+    >>> T.is_canonical().status.name
+    'HOLDS'
+    """
+    equations = tuple(rule.variable - rule.value for rule in F.rules)
+    return ImplicitTransformation(F.q, F.p, F.new_q, F.new_p, equations, F.t, F.domain)
+
+
+def generated_hamiltonian(F: GeneratingFunction, H: Expr, domain: Domain | None = None) -> Hamiltonian:
+    """Return K(Q, P, t) = H + ∂F/∂t in the new variables, with its Hamilton's equations.
+
+    Parameters
+    ----------
+    F
+        The generating function.
+    H
+        The old Hamiltonian H(q, p, t).
+    domain
+        Conditions that choose the branch.
+
+    Examples
+    --------
+    The oscillator becomes K = ω P:
+
+    >>> from sympy import cot, symbols
+    >>> q, p, Q = symbols("q p Q", real=True)
+    >>> m, w, P = symbols("m omega P", positive=True)
+    >>> F1 = GeneratingFunction(1, m*w*q**2*cot(Q)/2, q, p, Q, P)
+    >>> K = generated_hamiltonian(F1, p**2/(2*m) + m*w**2*q**2/2, Domain((Q > 0, Q < sp.pi/2, q > 0)))
+    >>> from canon import vanishes
+    >>> vanishes(K.H - w*P, Domain((Q > 0, Q < sp.pi/2))).status.name
+    'HOLDS'
+    """
+    back = generated_inverse(F, domain)
+    old = dict(zip((*F.q, *F.p), back.images, strict=True))
+    return Hamiltonian(substitute(F.new_hamiltonian(H), old), F.new_q, F.new_p, F.t)
+
+
+def of_kind(
+    F: GeneratingFunction, kind: int | Sequence[int], domain: Domain | None = None
+) -> GeneratingFunction:
+    """Return the generating function of another type for the same map, by Legendre's relations.
+
+    F₂ = F₁ + Σ QP, F₃ = F₁ − Σ qp, F₄ = F₁ + Σ QP − Σ qp.
+
+    Raises
+    ------
+    NoClosedInverseError
+        Where the rules could not be solved for the variables of the new type.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> q, p, Q, P = symbols("q p Q P", real=True)
+    >>> a = symbols("a", positive=True)
+    >>> of_kind(GeneratingFunction(1, -a*(q - Q)**2/2, q, p, Q, P), 2).F
+    P**2/(2*a) + P*q
+    """
+    kinds = kinds_of(kind, len(F.q))
+    total = F.F
+    for i, (old, new) in enumerate(zip(F.kind, kinds, strict=True)):
+        total += F.new_q[i] * F.new_p[i] * ((new in (2, 4)) - (old in (2, 4)))
+        total -= F.q[i] * F.p[i] * ((new in (3, 4)) - (old in (3, 4)))
+    empty = GeneratingFunction(kinds, sp.S.Zero, F.q, F.p, F.new_q, F.new_p, F.t)
+    for solved, narrowed in _expressed(F, (*empty.old, *empty.new), domain or F.domain):
+        found = GeneratingFunction(
+            kinds, shortened(substitute(total, solved)), F.q, F.p, F.new_q, F.new_p, F.t
+        )
+        if found.holds_on(_graph(F), narrowed).holds:
+            return found
+    raise NoClosedInverseError(
+        f"the rules could not be solved for {(*empty.old, *empty.new)} in closed form; give conditions that "
+        "choose a branch"
+    )
+
+
+def _graph(F: GeneratingFunction) -> dict[Symbol, Expr]:
+    """All 4n variables as functions of those on which F depends."""
+    graph: dict[Symbol, Expr] = {s: s for s in (*F.old, *F.new)}
+    return {**graph, **{rule.variable: rule.value for rule in F.rules}}
+
+
+def _solved(
+    F: GeneratingFunction, start: tuple[Symbol, ...], target: tuple[Symbol, ...], domain: Domain
+) -> CanonicalTransformation:
+    n = len(F.q)
+    for solved, narrowed in _expressed(F, start, domain):
+        for conditions in (domain.conditions, narrowed.conditions):
+            here = Domain(_carried(conditions, solved), domain.box)
+            if F.holds_on(solved, here).holds:
+                images = [solved[s] for s in target]
+                return CanonicalTransformation(start[:n], start[n:], images[:n], images[n:], F.t, here)
+    raise NoClosedInverseError(
+        f"the rules could not be solved for {target} in closed form; give conditions that choose a branch"
+    )
+
+
+def _carried(conditions: tuple[Boolean, ...], values: Mapping[Symbol, Expr]) -> tuple[Boolean, ...]:
+    carried = (cast("Boolean", c.xreplace(values)) for c in conditions)
+    return tuple(c for c in carried if c != sp.true)
+
+
+def _expressed(
+    F: GeneratingFunction, wanted: tuple[Symbol, ...], domain: Domain
+) -> Iterator[tuple[dict[Symbol, Expr], Domain]]:
+    """Yield all 4n variables in terms of 2n wanted ones, and the conditions on F's own variables."""
+    graph = _graph(F)
+    own = (*F.old, *F.new)
+    unknowns = [s for s in own if s not in wanted]
+    given = [s for s in wanted if s not in own]
+    meaning = {s: graph[s] for s in given}
+    symbols = set(own).union(F.F.atoms(Symbol))
+    domain = Domain(_carried(domain.conditions, graph), domain.box)
+    for witness in sorted(witnesses(symbols, meaning, domain, 12), key=far_from_principal)[:3]:
+        inversion = Inversion(witness)
+        found = solve_system([(graph[s], s) for s in given], unknowns, inversion)
+        if found is None:
+            continue
+        everything = {s: substitute(f, found) for s, f in graph.items()}
+        everything.update({s: s for s in wanted})
+        yield everything, Domain((*domain.conditions, *inversion.conditions), domain.box)

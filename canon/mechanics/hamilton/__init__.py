@@ -1,0 +1,5 @@
+"""Hamilton's formalism: Hamiltonians, Legendre's transformation, brackets, vector fields, symmetries."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,211 @@
+"""Eliminating velocities for momenta, or momenta for velocities, in f(x) ↦ Σ x y − f, y = ∂f/∂x."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, is_regular, solve
+from canon.mechanics.algebra.single_equation import low_degree_roots
+from canon.mechanics.algebra.substitution import entry, exchanged, size, substitute
+from canon.proof.kinks import vanishes_off_kinks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
+    from canon.proof.domain.domain import Domain
+
+__all__ = ["LegendreError", "eliminate_velocities", "legendre_residual"]
+
+
+class LegendreError(ValueError):
+    """Legendre's transformation does not exist, or not in closed form.
+
+    Parameters
+    ----------
+    message
+        What was wrong and what to do instead.
+    null_direction
+        The direction in the velocities along which the Hessian is singular, where that is the reason.
+    """
+
+    def __init__(self, message: str, null_direction: tuple[Expr, ...] | None = None) -> None:
+        super().__init__(message)
+        self.null_direction = null_direction
+
+
+def eliminate_velocities(
+    f: Expr, old: Sequence[Symbol], new: Sequence[Symbol], domain: Domain, name: str, what: str
+) -> Expr:
+    """Return Σ old·new − f as a function of ``new`` = ∂f/∂``old``.
+
+    Parameters
+    ----------
+    f
+        L with its velocities, or H with its momenta.
+    old, new
+        The variables to be eliminated and the ones that replace them.
+    domain
+        Where f is meant; it may decide between branches.
+    name, what
+        ``"L"`` and ``"velocities"``, or ``"H"`` and ``"momenta"``, for messages.
+
+    Raises
+    ------
+    LegendreError
+        Where the Hessian is singular, or the old variables have no closed form.
+    """
+    gradient = [f.diff(x) for x in old]
+    hessian = sp.Matrix([[g.diff(x) for x in old] for g in gradient])
+    quadratic = not hessian.has(*old)
+    try:
+        transformed = (
+            _of_quadratic(f, gradient, hessian, old, new, domain)
+            if quadratic
+            else _of_nonlinear(f, gradient, hessian, old, new, domain)
+        )
+    except SingularMatrixError as singular:
+        raise LegendreError(
+            f"the Hessian of {name} in its {what} ({', '.join(map(str, old))}) is singular along "
+            f"({', '.join(map(str, singular.null_direction))}), so these {what} cannot be eliminated. Remove "
+            "the redundant coordinate, or treat the relation among the momenta as a constraint (Dirac)",
+            singular.null_direction,
+        ) from singular
+    if transformed is None:
+        raise LegendreError(
+            f"the {what} ({', '.join(map(str, old))}) could not be found in closed form on this "
+            "domain; narrow it with conditions that choose the branch, or check a Hamiltonian you have with "
+            "is_hamiltonian_of"
+        )
+    return transformed
+
+
+def legendre_residual(lagrangian: Lagrangian, H: Expr, p: Sequence[Symbol]) -> Expr:
+    """Return H(q, ∂L/∂q̇, t) − (Σ p q̇ − L), which vanishes where H is the Hamiltonian of L."""
+    return substitute(H, dict(zip(p, lagrangian.momenta, strict=True))) - lagrangian.jacobi_energy
+
+
+def _of_quadratic(
+    f: Expr,
+    gradient: Sequence[Expr],
+    hessian: sp.Matrix,
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    domain: Domain,
+) -> Expr:
+    """Return ½ wᵀ M⁻¹ w − f(0), w = y − ∂f/∂x at x = 0: through M = L D Lᵀ a sum of squares Σ (L⁻¹w)²/2D."""
+    at_rest = dict.fromkeys(old, sp.S.Zero)
+    w = [y - exchanged(g, at_rest) for y, g in zip(new, gradient, strict=True)]
+    eliminated = eliminate(hessian, sp.Matrix(w), domain)
+    if eliminated.null_direction is not None:
+        raise SingularMatrixError("the Hessian is singular", eliminated.null_direction)
+    if eliminated.order == tuple(range(len(old))):
+        squares = [_factored(row[-1]) ** 2 / (2 * _factored(row[i])) for i, row in enumerate(eliminated.rows)]
+        return sp.Add(*squares, -exchanged(f, at_rest))
+    values = [row[0] for row in eliminated.back_substituted()]
+    return sp.Add(*(v * b / 2 for v, b in zip(values, w, strict=True)), -exchanged(f, at_rest))
+
+
+def _factored(f: Expr) -> Expr:
+    """Take common factors out where the expression is small enough for that to be quick."""
+    return sp.factor_terms(f) if size(f) < 1000 else f
+
+
+def _of_nonlinear(
+    f: Expr,
+    gradient: Sequence[Expr],
+    hessian: sp.Matrix,
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    domain: Domain,
+) -> Expr | None:
+    """Transform by a candidate x(y) with x(∂f/∂x) = x proved; None where there is none."""
+    if is_regular(hessian, domain).fails:
+        solve(hessian, sp.zeros(len(old), 1), domain)
+    there = dict(zip(new, gradient, strict=True))
+    for values, transformed in _candidates(f, gradient, old, new):
+        if all(
+            vanishes_off_kinks(substitute(value, there) - x, domain).holds
+            for value, x in zip(values, old, strict=True)
+        ):
+            return transformed
+    return None
+
+
+def _candidates(
+    f: Expr, gradient: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol]
+) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
+    """Yield x(y) that may solve y = ∂f/∂x, each with Σ x y − f in terms of y.
+
+    A common radical r(x) is treated as an unknown of its own: with r held fixed the equations are often
+    linear in x (relativistic momenta are m x / r), and the definition of r then is one equation for r².
+    """
+    radicals = {e for e in f.atoms(sp.Pow) if not _exponent(e).is_Integer and e.has(*old)}
+    if not radicals and len(old) == 1:
+        for root, _ in low_degree_roots(sp.numer(sp.together(gradient[0] - new[0])), old[0]):
+            yield (root,), sp.factor_terms(root * new[0] - substitute(f, {old[0]: root}))
+    bases = {e.as_base_exp()[0] for e in radicals}
+    if len(bases) != 1 or any((2 * _exponent(e)).is_Integer is not True for e in radicals):
+        return
+    (base,) = bases
+    r = sp.Dummy("r", positive=True)
+    frozen = [
+        exchanged(g, {e: r ** (2 * _exponent(e)) for e in g.atoms(sp.Pow) if e.as_base_exp()[0] == base})
+        for g in (*gradient, f)
+    ]
+    slopes = sp.Matrix([[g.diff(x) for x in old] for g in frozen[:-1]])
+    if slopes.has(*old):
+        return
+    at_rest = dict.fromkeys(old, sp.S.Zero)
+    right = sp.Matrix([y - exchanged(g, at_rest) for g, y in zip(frozen[:-1], new, strict=True)])
+    column = solve(slopes, right)
+    in_r = {x: entry(column, i, 0) for i, x in enumerate(old)}
+    total = sp.Add(
+        *(value * y for value, y in zip(in_r.values(), new, strict=True)), -exchanged(frozen[-1], in_r)
+    )
+    equation = sp.numer(sp.together(r**2 - exchanged(base, in_r)))
+    for square in _squares(equation, r):
+        numerator, denominator = sp.fraction(square)
+        root = sp.sqrt(numerator) / sp.sqrt(denominator)
+        yield (
+            tuple(exchanged(value, {r: root}) for value in in_r.values()),
+            _with_root(total, r, square, root),
+        )
+
+
+def _squares(equation: Expr, r: Symbol) -> list[Expr]:
+    """Return the values of r² that a polynomial equation, even in r, allows."""
+    if not equation.is_polynomial(r):
+        return []
+    square = sp.Dummy()
+    even = sp.Poly(equation, r)
+    if any(power % 2 for (power,) in even.monoms()):
+        return []
+    reduced = sp.Add(*(c * square ** (power // 2) for (power,), c in even.terms()))
+    return [sp.cancel(value) for value, _ in low_degree_roots(reduced, square)]
+
+
+def _with_root(f: Expr, r: Symbol, square: Expr, root: Expr) -> Expr:
+    """Put r in what is even plus what is odd in r, so that each holds the root at most once."""
+    mirrored = exchanged(f, {r: -r})
+    even, odd = sp.cancel((f + mirrored) / 2), sp.cancel((f - mirrored) * r / 2)
+    s = sp.Dummy()
+    even, odd = (sp.cancel(exchanged(_in_square(part, r, s), {s: square})) for part in (even, odd))
+    return sp.factor_terms(even) + sp.factor(odd) / root
+
+
+def _in_square(f: Expr, r: Symbol, s: Symbol) -> Expr:
+    """Write a rational function that is even in r through s = r²."""
+    numerator, denominator = (sp.Poly(part, r) for part in sp.fraction(sp.cancel(f)))
+    if any(power % 2 for part in (numerator, denominator) for (power,) in part.monoms()):
+        numerator, denominator = numerator * sp.Poly(r, r), denominator * sp.Poly(r, r)
+    return sp.Add(*(c * s ** (power // 2) for (power,), c in numerator.terms())) / sp.Add(
+        *(c * s ** (power // 2) for (power,), c in denominator.terms())
+    )
+
+
+def _exponent(power: sp.Pow) -> Expr:
+    return power.as_base_exp()[1]

@@ -1,0 +1,94 @@
+"""Vector fields as differential operators X = Σ aⁱ ∂ᵢ."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.expression.symbols.user_input import counted, given_symbols
+from canon.mechanics.algebra.substitution import as_tuple
+from canon.mechanics.hamilton.bracket import lie_bracket
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["VectorField", "hamiltonian_field"]
+
+
+@dataclass(frozen=True)
+class VectorField:
+    """The first-order operator X = Σ aⁱ ∂/∂xⁱ.
+
+    Parameters
+    ----------
+    components
+        The aⁱ(x).
+    x
+        The coordinates.
+
+    Examples
+    --------
+    The product of two operators is of second order, their commutator again of first:
+
+    >>> from sympy import Function, symbols
+    >>> x, y = symbols("x y")
+    >>> X, Y = VectorField((y, 0), (x, y)), VectorField((0, x), (x, y))
+    >>> f = Function("f")(x, y)
+    >>> (X(Y(f)) - Y(X(f)) - X.bracket(Y)(f)).expand()
+    0
+    """
+
+    components: tuple[Expr, ...]
+    x: tuple[Symbol, ...]
+
+    def __init__(self, components: Sequence[Expr], x: Sequence[Symbol]) -> None:
+        object.__setattr__(self, "components", as_tuple(components))
+        object.__setattr__(self, "x", given_symbols(x, "x"))
+        if len(self.components) != len(self.x):
+            raise ValueError(
+                f"{counted(len(self.components), 'component')} for "
+                f"{counted(len(self.x), 'coordinate')}; give one each"
+            )
+
+    def _repr_latex_(self) -> str:
+        terms = [
+            rf"\left({sp.latex(a)}\right) \partial_{{{sp.latex(x)}}}"
+            for a, x in zip(self.components, self.x, strict=True)
+        ]
+        return "$\\displaystyle " + " + ".join(terms) + "$"
+
+    def __call__(self, f: Expr) -> Expr:
+        """Return X f = Σ aⁱ ∂f/∂xⁱ."""
+        return sp.Add(*(a * f.diff(s) for a, s in zip(self.components, self.x, strict=True)))
+
+    def __add__(self, other: VectorField) -> VectorField:
+        """Return the sum of two fields on the same coordinates."""
+        self._same_coordinates(other)
+        return VectorField([a + b for a, b in zip(self.components, other.components, strict=True)], self.x)
+
+    def bracket(self, other: VectorField) -> VectorField:
+        """Return the commutator [X, Y] = XY − YX."""
+        self._same_coordinates(other)
+        return VectorField(lie_bracket(self.components, other.components, self.x), self.x)
+
+    def _same_coordinates(self, other: VectorField) -> None:
+        if other.x != self.x:
+            raise ValueError(f"the fields live on different coordinates, {self.x} and {other.x}")
+
+
+def hamiltonian_field(H: Expr, q: Sequence[Symbol], p: Sequence[Symbol]) -> VectorField:
+    """Return the field X_H = Σ (∂H/∂p ∂/∂q − ∂H/∂q ∂/∂p), so that X_H f = {f, H}.
+
+    Its commutators go against the brackets: [X_f, X_g] = −X_{f, g}.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> q, p = symbols("q p")
+    >>> hamiltonian_field(p**2/2, [q], [p]).components
+    (p, 0)
+    """
+    return VectorField([*(H.diff(s) for s in p), *(-H.diff(s) for s in q)], (*q, *p))

@@ -1,0 +1,147 @@
+"""The Gibbs–Appell equations ∂S/∂u̇ = U, with the acceleration energy S.
+
+S = Σ ½ m r̈² + ½ α·I α + α·(ω × I ω), α the rate of ω along the body's axes, up to terms without accelerations. The
+quasi-velocities u need not be the rates of any coordinates: q̇ = f(q, u, t). The generalized force of u is
+U = −Σ ∂V/∂q ∂q̇/∂u plus what has no potential (J. W. Gibbs 1879, P. Appell 1899; L. A. Pars, Analytical Dynamics,
+ch. XII).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.expression.symbols.symbol import time
+from canon.expression.symbols.user_input import counted, given_expression
+from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
+from canon.mechanics.lagrange.body import bodies_of
+from canon.mechanics.lagrange.quasi_velocity import Kinematics, solved_for
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.mechanics.lagrange.body import Body
+
+__all__ = ["GibbsAppell"]
+
+
+@dataclass(frozen=True)
+class GibbsAppell:
+    """A system of bodies in quasi-velocities.
+
+    Parameters
+    ----------
+    bodies
+        Particles and rigid bodies.
+    q
+        The coordinates.
+    V
+        The potential energy V(q, t).
+    u, q_dot
+        Quasi-velocities and q̇ as functions of q, u, t; the velocities themselves unless given.
+    forces
+        Generalized forces Q(q, q̇, t) without potential, one a coordinate.
+    t
+        The time.
+
+    Examples
+    --------
+    >>> from canon import coordinates, parameters
+    >>> from canon.mechanics.lagrange.body import Particle
+    >>> x, y = coordinates("x y")
+    >>> m, g = parameters("m g", positive=True)
+    >>> GibbsAppell([Particle(m, (x, y))], [x, y], m*g*y).equations
+    (m*x_ddot, g*m + m*y_ddot)
+    """
+
+    bodies: tuple[Body, ...]
+    kinematics: Kinematics
+    V: Expr
+    Q: tuple[Expr, ...]
+
+    def __init__(
+        self,
+        bodies: Sequence[Body],
+        q: Sequence[Symbol],
+        V: Expr = sp.S.Zero,
+        u: Sequence[Symbol] | None = None,
+        q_dot: Sequence[Expr] | None = None,
+        forces: Sequence[Expr] | None = None,
+        t: Symbol = time,
+    ) -> None:
+        object.__setattr__(self, "bodies", bodies_of(bodies))
+        object.__setattr__(self, "kinematics", Kinematics(q, u, q_dot, t))
+        object.__setattr__(self, "V", self.kinematics.plain(given_expression(V, "V")))
+        given = as_tuple(forces or (sp.S.Zero,) * len(q))
+        object.__setattr__(self, "Q", tuple(self.kinematics.plain(force) for force in given))
+        if len(self.Q) != len(self.q):
+            raise ValueError(
+                f"{counted(len(self.Q), 'generalized force')} for "
+                f"{counted(len(self.q), 'coordinate')}; give one each"
+            )
+
+    def _repr_latex_(self) -> str:
+        rows = [f"S &= {sp.latex(self.gibbs_function)}"]
+        for a, U in zip(self.u_dot, self.forces, strict=True):
+            rows.append(rf"\partial S/\partial {sp.latex(a)} &= {sp.latex(U)}")
+        return "$\\displaystyle \\begin{aligned}" + r" \\ ".join(rows) + "\\end{aligned}$"
+
+    @property
+    def q(self) -> tuple[Symbol, ...]:
+        """The coordinates."""
+        return self.kinematics.q
+
+    @property
+    def u_dot(self) -> tuple[Symbol, ...]:
+        """The rates of the quasi-velocities, named ``u_dot``; accelerations where u are velocities."""
+        return self.kinematics.u_dot
+
+    @cached_property
+    def gibbs_function(self) -> Expr:
+        """The acceleration energy S as a function of q, u, u̇, t, up to terms without accelerations."""
+        rate = self.kinematics.rate
+        terms: list[Expr] = []
+        for body in self.bodies:
+            terms += [body.m * rate(rate(place)) ** 2 / 2 for place in body.r]
+            omega = body.angular_velocity(self.kinematics)
+            alpha = [rate(w) for w in omega]
+            n = range(len(omega))
+            terms += [entry(body.inertia, i, j) * alpha[i] * alpha[j] / 2 for i in n for j in n]
+            if len(omega) == 3:
+                spin = [sp.Add(*(entry(body.inertia, i, j) * omega[j] for j in n)) for i in n]
+                terms += [a * b for a, b in zip(alpha, cross(omega, spin), strict=True)]
+        return sp.Add(*terms)
+
+    @cached_property
+    def forces(self) -> tuple[Expr, ...]:
+        """The generalized forces of the quasi-velocities, Σ (Q − ∂V/∂q) ∂q̇/∂u."""
+        B, through = self.kinematics.basis, self.kinematics.through
+        along_q = [exchanged(Q, through) - self.V.diff(s) for s, Q in zip(self.q, self.Q, strict=True)]
+        return tuple(
+            sp.Add(*(force * entry(B, i, j) for i, force in enumerate(along_q))) for j in range(B.cols)
+        )
+
+    @cached_property
+    def equations(self) -> tuple[Expr, ...]:
+        """The Gibbs–Appell equations, each = 0: ∂S/∂u̇ − U."""
+        return tuple(self.gibbs_function.diff(a) - U for a, U in zip(self.u_dot, self.forces, strict=True))
+
+    @cached_property
+    def quasi_accelerations(self) -> tuple[Expr, ...]:
+        """The rates u̇(q, u, t) that solve the equations.
+
+        Raises
+        ------
+        SingularMatrixError
+            Where S does not determine them.
+        """
+        return solved_for(self.u_dot, self.equations, "the matrix ∂²S/∂u̇²")
+
+
+def cross(a: Sequence[Expr], b: Sequence[Expr]) -> tuple[Expr, Expr, Expr]:
+    """Return a × b."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

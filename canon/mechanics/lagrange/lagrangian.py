@@ -1,0 +1,163 @@
+"""Lagrange's equations of the second kind, d/dt ∂L/∂q̇ − ∂L/∂q = Q."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.expression.symbols.symbol import acceleration, time, time_derivative, velocity
+from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain
+from canon.mechanics.algebra.linear import SingularMatrixError, solve
+from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+
+__all__ = ["Lagrangian"]
+
+
+@dataclass(frozen=True)
+class Lagrangian:
+    """A Lagrangian L(q, q̇, t) and the generalized forces that have no potential.
+
+    Velocities are symbols of their own (``theta.dot``). SymPy's ``dynamicsymbols`` and plain symbols named
+    ``theta_dot`` are accepted and rewritten at the door.
+
+    Parameters
+    ----------
+    L
+        The Lagrangian.
+    q
+        The generalized coordinates, independent of one another.
+    t
+        The time.
+    forces
+        The generalized forces Q(q, q̇, t), one a coordinate, or nothing.
+
+    Raises
+    ------
+    ValueError
+        Where the forces do not match the coordinates, or L holds accelerations.
+
+    Examples
+    --------
+    >>> from canon import coordinates, parameters
+    >>> from sympy import cos
+    >>> (theta,) = coordinates("theta")
+    >>> m, l, g = parameters("m l g", positive=True)
+    >>> pendulum = Lagrangian(m*l**2*theta.dot**2/2 + m*g*l*cos(theta), [theta])
+    >>> pendulum.equations
+    (g*l*m*sin(theta) + l**2*m*theta_ddot,)
+    >>> pendulum.accelerations
+    (-g*sin(theta)/l,)
+    """
+
+    L: Expr
+    q: tuple[Symbol, ...]
+    t: Symbol = time
+    forces: tuple[Expr, ...] = ()
+
+    def __init__(
+        self, L: Expr, q: Sequence[Expr] | Expr, t: Symbol = time, forces: Sequence[Expr] | None = None
+    ) -> None:
+        symbols = coordinate_symbols(q)
+        if not symbols:
+            raise ValueError("no coordinates given; a system moves in at least one")
+        if len({*symbols}) < len(symbols):
+            raise ValueError(f"the coordinates {symbols} are not all different; every one moves on its own")
+        expressions = [plain(e, symbols, t) for e in (L, *as_tuple(forces or ()))]
+        object.__setattr__(self, "L", expressions[0])
+        object.__setattr__(self, "q", symbols)
+        object.__setattr__(self, "t", t)
+        object.__setattr__(self, "forces", tuple(expressions[1:]))
+        if self.forces and len(self.forces) != len(symbols):
+            raise ValueError(
+                f"{counted(len(self.forces), 'generalized force')} for "
+                f"{counted(len(symbols), 'coordinate')}; give one each, "
+                "0 where there is none"
+            )
+        found = [str(acceleration(s)) for s in symbols if self.L.has(acceleration(s))]
+        if found:
+            raise ValueError(
+                f"L holds the accelerations {', '.join(found)}; a Lagrangian of canon depends on "
+                "q, q̇ and t only"
+            )
+
+    @cached_property
+    def velocities(self) -> tuple[Symbol, ...]:
+        """The symbols q̇."""
+        return tuple(velocity(s) for s in self.q)
+
+    @cached_property
+    def momenta(self) -> tuple[Expr, ...]:
+        """The generalized momenta p = ∂L/∂q̇ as functions of q, q̇, t."""
+        return tuple(self.L.diff(v) for v in self.velocities)
+
+    @cached_property
+    def mass_matrix(self) -> sp.ImmutableDenseMatrix:
+        """The velocity Hessian M = ∂²L/∂q̇², symmetric, of shape (n, n)."""
+        n = len(self.q)
+        upper = {(i, j): self.momenta[i].diff(self.velocities[j]) for i in range(n) for j in range(i, n)}
+        return sp.ImmutableDenseMatrix([[upper[min(i, j), max(i, j)] for j in range(n)] for i in range(n)])
+
+    @cached_property
+    def bias(self) -> tuple[Expr, ...]:
+        """The rest of Lagrange's equations: M q̈ + bias = 0, bias = Σ ∂p/∂q q̇ + ∂p/∂t − ∂L/∂q − Q."""
+        still = {acceleration(s): sp.S.Zero for s in self.q}
+        return tuple(
+            exchanged(time_derivative(p, self.q, self.t), still) - self.L.diff(s) - Q
+            for p, s, Q in zip(self.momenta, self.q, self._all_forces, strict=True)
+        )
+
+    @cached_property
+    def equations(self) -> tuple[Expr, ...]:
+        """Lagrange's equations, each expression = 0: d/dt ∂L/∂q̇ − ∂L/∂q − Q."""
+        accelerations = [acceleration(s) for s in self.q]
+        return tuple(
+            sp.Add(*(entry(self.mass_matrix, i, j) * a for j, a in enumerate(accelerations)), self.bias[i])
+            for i in range(len(self.q))
+        )
+
+    @cached_property
+    def accelerations(self) -> tuple[Expr, ...]:
+        """The accelerations q̈(q, q̇, t) that solve M q̈ = −bias.
+
+        Raises
+        ------
+        SingularMatrixError
+            Where M is singular: L does not determine the accelerations along the null direction.
+        """
+        try:
+            found = solve(self.mass_matrix, -sp.Matrix(self.bias), name="the mass matrix")
+        except SingularMatrixError as singular:
+            raise SingularMatrixError(
+                f"{singular} in the velocities ({', '.join(map(str, self.velocities))}); L does not "
+                "determine the accelerations along it. Use fewer coordinates, or treat them by constraints",
+                singular.null_direction,
+            ) from singular
+        return tuple(entry(found, i, 0) for i in range(len(self.q)))
+
+    @cached_property
+    def jacobi_energy(self) -> Expr:
+        """Jacobi's energy Σ q̇ ∂L/∂q̇ − L; on the motion its rate is −∂L/∂t + Σ Q q̇."""
+        return sp.Add(*(v * p for v, p in zip(self.velocities, self.momenta, strict=True)), -self.L)
+
+    def hamiltonian(self, p: Sequence[Symbol] | None = None) -> Hamiltonian:
+        """Return the Hamiltonian, velocities eliminated; see :func:`canon.mechanics.hamilton.hamiltonian.legendre`."""
+        from canon.mechanics.hamilton.hamiltonian import legendre
+
+        return legendre(self, p)
+
+    @property
+    def _all_forces(self) -> tuple[Expr, ...]:
+        return self.forces or (sp.S.Zero,) * len(self.q)
+
+    def _repr_latex_(self) -> str:
+        return f"$\\displaystyle L = {sp.latex(self.L)}$"

@@ -1,0 +1,2 @@
+from .routh import Routhian as Routhian
+from .routh import routhian as routhian

@@ -1,0 +1,1 @@
+"""Continuity and differentiability: jumps certified, angles told from steps."""

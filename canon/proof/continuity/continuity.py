@@ -1,0 +1,376 @@
+"""Continuity: proved, refuted by a certified jump, or not known.
+
+Derivatives do not show a jump: sign(q), atan(1/q) + atan(q) and q − atan(tan(πq))/π have the derivatives of a constant
+function wherever they have any. A jump is a fault where a continuous function with the same differential exists. The
+differential of an angle such as atan(q/p) is regular but for the place p = q = 0 around which the angle winds: no
+continuous function has it, and such an angle is taken as it is.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+
+from canon.proof.analytic import is_positive_between, is_uncut, proved_sign
+from canon.proof.continuity.jumps import continued, find_jump, shown
+from canon.proof.continuity.one_sided import (
+    Cut,
+    cuts_of,
+    off_the_kinks,
+    proportion,
+    with_moduli,
+    without_complex_logarithms,
+)
+from canon.proof.continuity.smooth import PIECED
+from canon.proof.continuity.winding_centre import common_zero
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.domain.domain import EVERYWHERE, Domain, conditions_hold, linear, parts_of
+from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
+from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.rungs.cases import certainly_real
+from canon.proof.trees.anatomy import anatomy
+from canon.proof.trees.sympy_types import arguments, free_symbols
+from canon.proof.vanish import vanishes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from flint import acb
+    from sympy import Expr, Symbol
+    from sympy.logic.boolalg import Boolean
+
+__all__ = ["continuity", "is_locally_constant"]
+
+CONTINUOUS = "is continuous"
+VALUES = 24
+"""Points at which a locally constant function is evaluated."""
+
+LARGE = 2000
+"""Size of an expression that is still multiplied out."""
+
+FEW = 4
+"""Terms of which every sum is looked at."""
+
+SHARE = 0.5
+"""Part of the time for one question about derivatives."""
+
+
+def continuity(
+    f: Expr,
+    variables: Iterable[Symbol],
+    domain: Domain = EVERYWHERE,
+    budget: float = 2.0,
+    name: str = "",
+    given: Iterable[Expr] = (),
+) -> Verdict:
+    """Tell whether a function is continuous wherever it has a value near both sides, poles left aside.
+
+    Parameters
+    ----------
+    f
+        The function.
+    variables
+        What it depends on; other symbols are parameters.
+    domain
+        Where it should be continuous.
+    budget
+        Seconds.
+    name
+        What a person would call it.
+    given
+        Functions that are given and may jump: where they do, so may this one.
+
+    Returns
+    -------
+    Verdict
+        FAILS with the place of a certified jump; UNDECIDED where the function may jump; HOLDS otherwise, with the
+        angles named in ``assumed`` that are taken as they are.
+
+    Examples
+    --------
+    >>> q, p = sp.symbols("q p", real=True)
+    >>> continuity(q - sp.atan(sp.tan(sp.pi * q)) / sp.pi, [q]).feedback
+    'q - atan(tan(pi*q))/pi jumps at q = 1/2 from -0.5 to 0.5, which its derivatives do not show'
+    >>> continuity(sp.atan(q / p), [q, p]).assumed
+    ('atan(q/p) is an angle that winds around p = 0, q = 0; where it jumps is a matter of choice',)
+    """
+    deadline, moving, name = time.monotonic() + budget, tuple(variables), name or str(f)
+    f = without_complex_logarithms(with_moduli(off_the_kinks(f)))
+    f = sp.expand_mul(f) if anatomy([f]).tree <= LARGE else f
+    terms = [t for t in sp.Add.make_args(f) if t.has(*moving)]
+    rough = [term for term in terms if _is_rough(term, moving, domain)]
+    excused = _excused(rough, given, moving, domain)
+    rough = [term for term in rough if term not in excused]
+    found = _of_cuts(sp.Add(*rough), moving, domain, deadline, name)
+    found = replace(found, assumed=(*found.assumed, *(text.format(name) for text in excused.values())))
+    if found.fails:
+        return found
+    for part in _parts(rough, moving):
+        step = _step(part, moving, domain, deadline)
+        if step is not None:
+            return _failed(name, step)
+    return found
+
+
+def is_locally_constant(
+    f: Expr, variables: Iterable[Symbol], domain: Domain = EVERYWHERE, budget: float = 1.0
+) -> bool:
+    """Tell whether all derivatives of a function are proved to vanish, so that it is a number on each piece.
+
+    Examples
+    --------
+    >>> q = sp.Symbol("q", real=True)
+    >>> is_locally_constant(sp.atan(1 / q) + sp.atan(q), [q]), is_locally_constant(sp.atan(q), [q])
+    (True, False)
+    """
+    moving = [s for s in variables if f.has(s)]
+    slopes = [off_the_kinks(f.diff(s)) for s in moving]
+    return not moving or vanishes_off_kinks(sp.Matrix(slopes), domain, budget).holds
+
+
+@dataclass(frozen=True)
+class _Fault:
+    """Where a function jumps, and between which values."""
+
+    point: Mapping[str, str]
+    before: str
+    after: str
+    said: str
+
+
+def _failed(name: str, fault: _Fault) -> Verdict:
+    return Verdict(
+        Status.FAILS,
+        f"{name} {CONTINUOUS}",
+        "ball",
+        counterexample=Counterexample(fault.point, fault.before, fault.after, 8),
+        feedback=f"{name} {fault.said}, which its derivatives do not show",
+    )
+
+
+def _is_rough(term: Expr, moving: Sequence[Symbol], domain: Domain) -> bool:
+    """Tell whether a term may jump, or is of more than one piece, as logarithms of what may be negative are."""
+    cuts = _open_cuts(term, moving, domain)
+    if any(not cut.bends for cut in cuts):
+        return True
+    if _is_divided(term, moving, domain) and (cuts or _touching_roots(term, moving, domain)):
+        return True
+    return any(_is_pieced(part, domain) for part in term.atoms(sp.Function, sp.Pow) if part.has(*moving))
+
+
+def _is_divided(term: Expr, moving: Sequence[Symbol], domain: Domain) -> bool:
+    """Tell whether a term has a denominator that may vanish."""
+    poles = [p.base for p in term.atoms(sp.Pow) if p.exp.is_negative and p.has(*moving)]
+    return not all(
+        proved_sign(base, domain) in ("+", "-") or is_positive_between(base, domain) for base in poles
+    )
+
+
+def _open_cuts(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Cut]:
+    """Return the cuts whose surface is not proved to lie outside the domain or to be touched only."""
+    found: dict[Expr, str] = {}
+    left: list[Cut] = []
+    for cut in cuts_of(f, moving):
+        sign = found.get(cut.gap)
+        if sign is None:
+            sign = found[cut.gap] = proved_sign(cut.gap, domain)
+        nowhere = cut.beyond is not None and proved_sign(cut.beyond, domain).endswith("+")
+        if not sign and not nowhere:
+            left.append(cut)
+    return left
+
+
+def _touching_roots(term: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Expr]:
+    """Return roots whose radicand may come down to zero on a surface and rise again, as 1 − sin² does."""
+    roots = [p for p in term.atoms(sp.Pow) if p.exp.is_integer is False and p.base.has(*moving)]
+    known = {cut.part for cut in cuts_of(term, moving)}
+    touching = [r for r in roots if r not in known and proved_sign(r.base, domain) == "0+"]
+    return [
+        r for r in touching if not (is_uncut(r.base, r.exp, domain) or is_positive_between(r.base, domain))
+    ]
+
+
+def _is_pieced(part: Expr, domain: Domain) -> bool:
+    """Tell whether a function is analytic on both sides of a place where it is infinite, and no further."""
+    match part:
+        case sp.log():
+            return proved_sign(arguments(part)[0], domain) != "+"
+        case sp.Pow():
+            if part.exp.is_integer is not False or part.base.is_positive:
+                return False
+            return not proved_sign(part.base, domain).endswith("+")
+        case sp.atan() | sp.acot() | sp.asinh():
+            return not certainly_real(arguments(part)[0])
+        case (
+            sp.acoth() | sp.atanh() | sp.acsch() | sp.asech() | sp.asec() | sp.acsc() | sp.acosh() | sp.arg()
+        ):
+            return True
+        case sp.asin() | sp.acos():
+            return bool(part.args[0].has(sp.I))
+        case _:
+            return False
+
+
+def _parts(terms: Sequence[Expr], moving: Sequence[Symbol]) -> Iterator[Expr]:
+    """Yield sums of terms that might be locally constant: whole groups, and a few terms without pieces of each."""
+    for group in _groups(terms, moving):
+        yield sp.Add(*group)
+        smooth = [term for term in group if not term.has(*PIECED)]
+        if len(smooth) <= FEW:
+            for size in range(2, min(len(smooth) + 1, len(group))):
+                yield from (sp.Add(*few) for few in combinations(smooth, size))
+
+
+def _groups(terms: Sequence[Expr], moving: Sequence[Symbol]) -> Iterator[list[Expr]]:
+    """Yield the terms that share variables, each with all that are connected by them."""
+    left = list(terms)
+    while left:
+        group = [left.pop(0)]
+        names = free_symbols(group[0]) & set(moving)
+        while found := [t for t in left if names & free_symbols(t)]:
+            group += found
+            left = [t for t in left if t not in found]
+            names |= {s for t in found for s in free_symbols(t) & set(moving)}
+        yield group
+
+
+def _step(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float) -> _Fault | None:
+    """Return two points of one piece of the domain between which a locally constant function changes."""
+    left = deadline - time.monotonic()
+    if left <= 0 or not is_locally_constant(f, moving, domain, SHARE * left):
+        return None
+    first: tuple[Mapping[Symbol, sp.Rational], acb] | None = None
+    cases = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ne)]
+    gaps: list[Expr] = [cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases]
+    around = Domain(tuple(c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne)))
+    if not around.is_connected(free_symbols(f)) or not all(map(linear, cases)):
+        return None
+    gaps += _nonzero(f, moving)
+    for point in domain.points(free_symbols(f), VALUES, deadline=deadline):
+        if first is not None:
+            point |= {s: number for s, number in first[0].items() if s not in moving}
+            same_side = all(_is_above(g, point) == _is_above(g, first[0]) for g in gaps)
+            if not same_side or not domain.contains(point):
+                continue
+        with precision(128):
+            try:
+                ball = value(f, point)
+            except (NotDecided, Undefined, Unmodelled):
+                continue
+            if first is None:
+                first = (point, ball)
+            elif not (ball - first[1]).contains(0):
+                return _between(first, (point, ball))
+    return None
+
+
+def _is_above(gap: Expr, point: Mapping[Symbol, sp.Rational]) -> bool:
+    return conditions_hold([cast("Boolean", sp.Gt(gap, 0, evaluate=False))], point)
+
+
+def _nonzero(f: Expr, moving: Sequence[Symbol]) -> list[Symbol]:
+    return [s for s in moving if f.has(s) and s.is_nonzero and not s.is_positive and not s.is_negative]
+
+
+def _between(
+    first: tuple[Mapping[Symbol, sp.Rational], acb], second: tuple[Mapping[Symbol, sp.Rational], acb]
+) -> _Fault:
+    texts = [shown(ball) for _, ball in (first, second)]
+    other = ", ".join(f"{s} = {number}" for s, number in second[0].items())
+    point = {s.name: str(number) for s, number in first[0].items()}
+    here = ", ".join(f"{s} = {number}" for s, number in point.items())
+    said = f"jumps: a part of it with all derivatives zero is {texts[0]} at {here} and {texts[1]} at {other}"
+    return _Fault(point, texts[0], texts[1], said)
+
+
+def _excused(
+    terms: Sequence[Expr], given: Iterable[Expr], moving: Sequence[Symbol], domain: Domain
+) -> dict[Expr, str]:
+    """Return the terms that may jump only where something jumps that is given, and what is assumed of them."""
+    plain = [without_complex_logarithms(g) for g in given]
+    gaps = [cut.gap for g in plain for cut in _open_cuts(g, moving, domain) if not cut.bends]
+    found: dict[Expr, str] = {}
+    for term in terms if gaps else ():
+        own = {cut.gap for cut in _open_cuts(term, moving, domain) if not cut.bends}
+        if own and all(any(proportion(gap, mine) is not None for gap in gaps) for mine in own):
+            where = " or ".join(f"{gap} = 0" for gap in sorted(own, key=str))
+            found[term] = f"{{}} may jump where {where}, as what is given does"
+    return found
+
+
+def _of_cuts(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float, name: str) -> Verdict:
+    cuts = _open_cuts(f, moving, domain)
+    centres = {cut.part: _centre(cut, moving, domain) for cut in cuts}
+    angles = {angle: centre for angle, centre in centres.items() if centre}
+    assumed = tuple(
+        f"{angle} is an angle that winds around {centre}; where it jumps is a matter of choice"
+        for angle, centre in angles.items()
+    )
+    at_angles = [cut for cut in cuts if cut.part in angles]
+    divided = [term for term in sp.Add.make_args(f) if _is_divided(term, moving, domain)]
+    open_ = [root for term in divided for root in _touching_roots(term, moving, domain)]
+    for cut in cuts:
+        if cut.part in angles:
+            continue
+        jump = find_jump(f, cut, moving, domain, deadline)
+        if jump is None:
+            if not _meets(f, cut, moving, domain, deadline):
+                open_.append(cut.part)
+        elif centres[cut.part] is None or any(
+            proportion(angle.gap, cut.gap) is not None for angle in at_angles
+        ):
+            open_.append(cut.part)
+        else:
+            where = ", ".join(f"{x} = {place}" for x, place in jump.point.items())
+            return _failed(
+                name,
+                _Fault(
+                    jump.point,
+                    jump.before,
+                    jump.after,
+                    f"jumps at {where} from {jump.before} to {jump.after}",
+                ),
+            )
+    if open_:
+        why = f"{name} may jump, which its derivatives do not show; narrow the domain to where it does not"
+        return Verdict(
+            Status.UNDECIDED, f"{name} {CONTINUOUS}", evidence=(Evidence("open", why),), feedback=why
+        )
+    return Verdict(Status.HOLDS, f"{name} {CONTINUOUS}", "structure", assumed=assumed)
+
+
+def _meets(f: Expr, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline: float) -> bool:
+    """Tell whether both continuations are proved equal where the gap vanishes."""
+    left = deadline - time.monotonic()
+    if left <= 0:
+        return False
+    change = continued(f, cut.gap, moving, up=True) - continued(f, cut.gap, moving, up=False)
+    if change == 0:
+        return True
+    plain: dict[Expr, Expr] = {s: sp.Dummy(s.name, real=True) for s in _nonzero(cut.gap, moving)}
+    kept = (c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne))
+    on_gap = (*kept, cast("Boolean", sp.Eq(cut.gap, 0, evaluate=False)))
+    there = Domain(tuple(cast("Boolean", c.xreplace(plain)) for c in on_gap))
+    return vanishes(cast("Expr", change.xreplace(plain)), there, min(1.0, left)).holds
+
+
+def _centre(cut: Cut, moving: Sequence[Symbol], domain: Domain) -> str | None:
+    """Return a place around which an angle winds, in words; "" where there is none, None where none was found.
+
+    Numerator and denominator vanish together there, as q and p do for atan(q/p), and their differentials are
+    independent. That the sum of their squares is positive excludes it, as for tan u = sin u/cos u.
+    """
+    if cut.around is None:
+        return ""
+    kinds = (sp.StrictLessThan, sp.LessThan, sp.StrictGreaterThan, sp.GreaterThan)
+    hull = Domain(tuple(c for c in parts_of(domain.conditions) if isinstance(c, kinds) and linear(c)))
+    present = [s for s in moving if any(side.has(s) for side in cut.around)]
+    squares = sp.Add(*(side**2 for side in cut.around))
+    apart = any(proved_sign(side, hull) in ("+", "-") for side in (*cut.around, squares))
+    if len(present) < 2 or apart:
+        return ""
+    return common_zero(cut.around, present, hull) or None

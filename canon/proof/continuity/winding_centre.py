@@ -1,0 +1,85 @@
+"""Places where two functions vanish together with independent differentials, so that their angle winds around."""
+
+from __future__ import annotations
+
+from itertools import combinations, permutations
+from typing import TYPE_CHECKING
+
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.trees.sympy_types import free_symbols, short
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import sympy as sp
+    from sympy import Expr, Symbol
+
+    from canon.proof.domain.domain import Domain
+
+__all__ = ["common_zero"]
+
+STARTS = 12
+STEPS = 24
+SMALL = 1e-9
+
+
+def common_zero(pair: tuple[Expr, Expr], variables: Sequence[Symbol], domain: Domain) -> str:
+    """Return a place of a convex domain, or of its boundary, where two functions vanish together; "" if none is found.
+
+    First one of them is solved for a variable in which it is linear, and the other, on that surface, for another; else
+    Newton's method is used in two variables from points of the domain.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> from canon.proof.domain.domain import Domain
+    >>> q, p = sp.symbols("q p", real=True)
+    >>> common_zero((q, p), [q, p], Domain()), common_zero((sp.sin(q + p), sp.cos(q + p)), [q, p], Domain())
+    ('p = 0, q = 0', '')
+    """
+    for first, second in (pair, pair[::-1]):
+        for s, r in permutations(variables, 2):
+            zero = _zero(first, s)
+            there = None if zero is None else _zero(second.subs(s, zero), r)
+            if zero is not None and there is not None and s not in free_symbols(there):
+                return ", ".join(f"{x} = {place}" for x, place in sorted(((s, zero), (r, there)), key=str))
+    for point in domain.points(free_symbols(pair[0]) | free_symbols(pair[1]), STARTS):
+        for two in combinations(variables, 2):
+            found = _newton(pair, two, point)
+            if found is not None and domain.contains(point | found):
+                return " and ".join(f"{f} = 0" for f in pair)
+    return ""
+
+
+def _zero(f: Expr, s: Symbol) -> Expr | None:
+    """Return the zero of what is linear in a symbol."""
+    slope = f.diff(s)
+    if slope.has(s) or slope.is_nonzero is not True:
+        return None
+    return -f.subs(s, 0) / slope
+
+
+def _newton(
+    pair: tuple[Expr, Expr], two: tuple[Symbol, Symbol], start: Mapping[Symbol, sp.Rational]
+) -> dict[Symbol, sp.Rational] | None:
+    """Return where Newton's method ends, if both functions vanish there and their differentials are independent."""
+    point = dict(start)
+    slopes = [f.diff(s) for f in pair for s in two]
+    size = 1.0
+    for _ in range(STEPS):
+        with precision(96):
+            try:
+                f, g, a, b, c, d = (float(value(e, point).real.mid()) for e in (*pair, *slopes))
+            except (NotDecided, Undefined, Unmodelled):
+                return None
+        det = a * d - b * c
+        scale = (a * a + b * b) ** 0.5 * (c * c + d * d) ** 0.5
+        if not scale < float("inf") or abs(det) <= 1e-6 * scale:
+            return None
+        size = abs(f) + abs(g)
+        if size < SMALL:
+            return {s: point[s] for s in two}
+        steps = ((d * f - b * g) / det, (a * g - c * f) / det)
+        for s, step in zip(two, steps, strict=True):
+            point[s] = short(float(point[s]) - step, 10**15)
+    return None

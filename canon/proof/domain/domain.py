@@ -1,0 +1,390 @@
+"""The domain a claim is about, and points of it.
+
+What a single symbol may be (positive, real, integer …) is said by the symbol's own SymPy assumptions; a
+:class:`Domain` adds conditions that tie symbols together and boxes from which points are usefully drawn.
+"""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, cast
+
+from sympy import Abs, And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
+from sympy.core.function import AppliedUndef
+from sympy.logic.boolalg import Boolean
+
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
+from canon.proof.domain.feasible_points import moved_inside
+from canon.proof.domain.rational_points import rational_solution
+from canon.proof.tower.polynomial import polynomial_factors
+from canon.proof.trees.sympy_types import free_symbols, rational
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from sympy import Basic, Expr
+    from sympy.core.relational import Relational
+
+__all__ = [
+    "EVERYWHERE",
+    "Domain",
+    "as_domain",
+    "conditions_hold",
+    "declared_complex",
+    "isolated",
+    "linear",
+    "parts_of",
+    "said_of",
+]
+
+
+def _declared(named: Basic) -> Mapping[str, bool]:
+    """Return what was declared of a symbol, or of a function (SymPy keeps that with the function's class)."""
+    return getattr(named.func, "_kwargs", {}) if isinstance(named, AppliedUndef) else named.assumptions0
+
+
+def declared_complex(symbol: Basic) -> bool:
+    """Tell whether a symbol or function was declared complex and not real; all others are read as real."""
+    said = _declared(symbol)
+    return said.get("real") is not True and ("complex" in said or "imaginary" in said)
+
+
+def said_of(named: Basic) -> dict[str, bool]:
+    """Return what was declared of a symbol or an applied function beyond what holds for every rational number.
+
+    Examples
+    --------
+    >>> said_of(Symbol("x", real=True)), said_of(Symbol("z", imaginary=True))["real"]
+    ({}, False)
+    """
+    return {
+        fact: so
+        for fact, so in _declared(named).items()
+        if not fact.startswith("extended_") and _OF_EVERY_RATIONAL.get(fact) is not so
+    }
+
+
+_OF_EVERY_RATIONAL: dict[str, bool] = {
+    **dict.fromkeys(("commutative", "complex", "real", "finite", "hermitian", "rational", "algebraic"), True),
+    **dict.fromkeys(("infinite", "imaginary", "irrational", "transcendental"), False),
+}
+
+
+def parts_of(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
+    """Yield conditions one by one, what And joins taken apart."""
+    for condition in conditions:
+        if isinstance(condition, And):
+            yield from parts_of(condition.args)
+        else:
+            yield condition
+
+
+def linear(condition: Relational) -> bool:
+    """Tell whether both sides of a relation differ by something linear in the symbols."""
+    gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
+    return not any(gap.diff(s).free_symbols for s in free_symbols(gap))
+
+
+def isolated(condition: Boolean) -> Boolean:
+    """Write a linear bound on one symbol with the symbol alone on the left, others as they are.
+
+    Examples
+    --------
+    >>> from sympy import pi, symbols
+    >>> x, y = symbols("x y", real=True)
+    >>> isolated(pi - 2*x >= 0), isolated(x - y > 0)
+    (x <= pi/2, x - y > 0)
+    """
+    if not isinstance(condition, Lt | Le | Gt | Ge):
+        return condition
+    gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
+    symbols = free_symbols(gap)
+    if len(symbols) != 1 or condition.lhs in symbols:
+        return condition
+    (symbol,) = symbols
+    slope = gap.diff(symbol)
+    if slope.free_symbols or not (slope.is_positive or slope.is_negative):
+        return condition
+    relation = type(condition) if slope.is_positive else _REVERSED[type(condition)]
+    return cast("Boolean", relation(symbol, -gap.subs(symbol, 0) / slope))
+
+
+_REVERSED = {Lt: Gt, Le: Ge, Gt: Lt, Ge: Le}
+
+
+def _unfolded(condition: Boolean) -> tuple[Boolean, ...]:
+    """Return |g| < c as g < c and −g < c, which bound a symbol where g is linear."""
+    if not isinstance(condition, Lt | Le | Gt | Ge) or any(map(declared_complex, free_symbols(condition))):
+        return (condition,)
+    less, greater = cast("Expr", condition.lts), cast("Expr", condition.gts)
+    if not isinstance(less, Abs):
+        return (condition,)
+    relation = Lt if isinstance(condition, Lt | Gt) else Le
+    inner = less.args[0]
+    return cast("tuple[Boolean, ...]", (relation(inner, greater), relation(-inner, greater)))
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Conditions that hold beside the symbols' own assumptions.
+
+    Parameters
+    ----------
+    conditions
+        SymPy relations and ``Ne`` that hold at every point of the domain.
+    box
+        Ranges from which sample points can usefully be drawn: a hint, not part of the claim.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x = symbols("x", real=True)
+    >>> Domain(conditions=(x < 1,)).conditions
+    (x < 1,)
+    """
+
+    conditions: tuple[Boolean, ...] = ()
+    box: Mapping[Symbol, tuple[Rational, Rational]] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __post_init__(self) -> None:
+        conditions: Any = self.conditions
+        box: Any = self.box
+        if isinstance(conditions, str) or not isinstance(conditions, Iterable):
+            raise TypeError(f"the conditions should be a tuple, as in Domain((x > 0,)), not {conditions!r}")
+        sorted_out = (sympify(c, strict=True) if isinstance(c, bool) else c for c in conditions)
+        object.__setattr__(self, "conditions", tuple(sorted_out))
+        for condition in cast("tuple[Any, ...]", self.conditions):
+            if not isinstance(condition, Boolean):
+                raise TypeError(
+                    f"a condition should be one of SymPy's, such as x > 0 or Ne(x, 0), not {condition!r}"
+                )
+        bounds = (isolated(bound) for condition in self.conditions for bound in _unfolded(condition))
+        object.__setattr__(self, "conditions", tuple(bounds))
+        for name, ends in box.items():
+            if not isinstance(name, Symbol):
+                raise TypeError(
+                    f"the box names symbols, not {name!r}; write {{x: (low, high)}} with the symbol x"
+                )
+            if not isinstance(ends, Sequence) or len(ends) != 2:
+                raise TypeError(f"the box should give {name} a pair (low, high), not {ends!r}")
+
+    def __repr__(self) -> str:
+        said = [str(condition) for condition in self.conditions]
+        said += [f"{name} in {low} … {high}" for name, (low, high) in self.box.items()]
+        return f"<Domain: {', '.join(said) or 'everywhere'}>"
+
+    def points(
+        self,
+        symbols: Iterable[Symbol],
+        count: int,
+        *,
+        seed: int = 0,
+        in_box: bool = True,
+        marks: Mapping[Symbol, Sequence[Rational]] = MappingProxyType({}),
+        deadline: float = float("inf"),
+        but_functions: bool = False,
+    ) -> Iterator[dict[Symbol, Rational]]:
+        """Draw exact points of the domain: short rationals at several scales.
+
+        Parameters
+        ----------
+        symbols
+            What needs a value.
+        count
+            How many points at most; fewer where the conditions leave little room.
+        seed
+            Equal seeds draw equal points.
+        in_box
+            Keep to the box, which is a hint and no part of the claim.
+        marks
+            Values at which one or two symbols at a time are put.
+        deadline
+            Value of :func:`time.monotonic` after which no more points are drawn.
+        but_functions
+            Leave :attr:`on_functions` to the caller, who chooses the functions.
+
+        Examples
+        --------
+        >>> from sympy import symbols
+        >>> x = symbols("x", positive=True)
+        >>> all(0 < point[x] < 1 for point in Domain(conditions=(x < 1,)).points([x], 5))
+        True
+        """
+        conditioned = {s for condition in self.conditions for s in free_symbols(condition)}
+        ordered = sorted({*symbols, *conditioned}, key=lambda s: s.name)
+        facts = {s: said_of(s) for s in ordered}
+        chance = random.Random(seed)
+        left_open = self.on_functions if but_functions else ()
+        settled = [c for c in self.conditions if c not in left_open]
+        steering = random.Random(seed)
+        found = moved = moves = unsolved = 0
+        for attempt in range(40 * count + 200):
+            if found + moved == count or time.monotonic() > deadline:
+                return
+            scale = rational(_SCALES[(attempt // 3) % len(_SCALES)])
+            point = {s: self._draw(s, scale, chance, in_box=in_box) for s in ordered}
+            marked = [s for s in ordered if marks.get(s)]
+            for s in chance.sample(marked, k=min(len(marked), 1 + attempt % 2)):
+                point[s] = chance.choice(marks[s])
+            solved = self._settle_equalities(point, steering)
+            unsolved += not solved
+            if unsolved > MOST_UNSOLVED and found + moved == 0:
+                return
+            allowed = solved and all(_allows(facts[s], number) for s, number in point.items())
+            if allowed and conditions_hold(settled, point):
+                found += 1
+                yield point
+            elif found == 0 and attempt >= PATIENCE and moves < MOST_MOVES:
+                moves += 1
+                inside = moved_inside(point, settled, steering, deadline)
+                within = inside and all(_allows(facts[s], n) for s, n in inside.items())
+                if inside and within and conditions_hold(settled, inside):
+                    moved += 1
+                    yield inside
+
+    def interval(self, symbol: Symbol) -> tuple[Expr, Expr, bool]:
+        """Return the bounds of one symbol, and whether both are certainly excluded.
+
+        Examples
+        --------
+        >>> from sympy import pi, symbols
+        >>> theta = symbols("theta", positive=True)
+        >>> Domain(conditions=(theta < pi,)).interval(theta)
+        (0, pi, True)
+        """
+        low: Expr = Integer(0) if symbol.is_nonnegative else -oo
+        high: Expr = Integer(0) if symbol.is_nonpositive else oo
+        open_low = bool(symbol.is_positive) or low is -oo
+        open_high = bool(symbol.is_negative) or high is oo
+        for condition in parts_of(self.conditions):
+            if not isinstance(condition, Lt | Le | Gt | Ge):
+                continue
+            less, greater = cast("Expr", condition.lts), cast("Expr", condition.gts)
+            strict = isinstance(condition, Lt | Gt)
+            if less == symbol and greater.is_number and (greater < high or (greater == high and strict)):
+                high, open_high = greater, strict
+            elif greater == symbol and less.is_number and (less > low or (less == low and strict)):
+                low, open_low = less, strict
+        return low, high, open_low and open_high
+
+    def is_connected(self, symbols: Iterable[Symbol]) -> bool:
+        """Tell whether the domain, points excluded by ≠ added, is certainly connected.
+
+        An intersection of half spaces is convex.
+        """
+        for s in symbols:
+            if s.is_integer or declared_complex(s):
+                return False
+        for condition in parts_of(self.conditions):
+            if isinstance(condition, Ne):
+                continue
+            if not isinstance(condition, Lt | Le | Gt | Ge):
+                return False
+            if not linear(condition):
+                return False
+        return True
+
+    def contains(self, point: Mapping[Symbol, Rational]) -> bool:
+        """Tell whether every condition certainly holds at an exact point."""
+        return conditions_hold(self.conditions, point)
+
+    def admits(self, point: Mapping[Symbol, Rational]) -> bool:
+        """Tell whether a point certainly belongs to the domain, what was declared of its symbols included.
+
+        Conditions on arbitrary functions are left to the caller, who chooses the functions.
+        """
+        settled = [c for c in self.conditions if c not in self.on_functions]
+        declared = all(_allows(said_of(s), number) for s, number in point.items())
+        return declared and conditions_hold(settled, point)
+
+    @cached_property
+    def on_functions(self) -> tuple[Boolean, ...]:
+        """The conditions on arbitrary functions, which hold or not as the functions are chosen."""
+        return tuple(c for c in self.conditions if c.has(AppliedUndef))
+
+    def _draw(self, symbol: Symbol, scale: Rational, chance: random.Random, *, in_box: bool) -> Rational:
+        if in_box and symbol in self.box:
+            low, high = (Rational(end) for end in self.box[symbol])
+            drawn = low + (high - low) * Rational(chance.randint(1, 63), 64)
+            return Integer(round(drawn)) if symbol.is_integer else rational(drawn)
+        if symbol.is_integer:
+            magnitude = Integer(chance.randint(1, max(3, int(8 * scale))))
+        else:
+            magnitude = scale * Rational(chance.randint(1, 23), chance.choice((4, 7, 8)))
+        sign = 1 if symbol.is_nonnegative else -1 if symbol.is_nonpositive else chance.choice((1, -1))
+        return rational(sign * magnitude)
+
+    def _settle_equalities(self, point: dict[Symbol, Rational], chance: random.Random) -> bool:
+        """Move a point to where the equalities hold; say whether rational numbers were found."""
+        gaps = [chance.choice(factors) for factors in self._gaps]
+        found = rational_solution(gaps, point, chance) if gaps else point
+        point.update(found or {})
+        return found is not None
+
+    @cached_property
+    def _gaps(self) -> tuple[tuple[Expr, ...], ...]:
+        """The factors of what vanishes on the domain, equality by equality."""
+        equal = (c for c in self.conditions if isinstance(c, Eq))
+        gaps = (cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in equal)
+        return tuple(tuple(f for f, _ in polynomial_factors(gap)) or (gap,) for gap in gaps)
+
+
+EVERYWHERE = Domain()
+"""No condition beside the symbols' own assumptions."""
+
+
+def as_domain(given: Any, otherwise: Domain = EVERYWHERE) -> Domain:
+    """Return a domain that may not have been given.
+
+    Raises
+    ------
+    TypeError
+        Where something else was given.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x = symbols("x", real=True)
+    >>> as_domain(x > 0)
+    Traceback (most recent call last):
+        ...
+    TypeError: a domain is needed, not x > 0; write Domain((x > 0,))
+    """
+    if given is None:
+        return otherwise
+    if not isinstance(given, Domain):
+        remedy = f"; write Domain(({given},))" if isinstance(given, Boolean) else ""
+        raise TypeError(f"a domain is needed, not {given}{remedy}")
+    return given
+
+
+_SCALES = tuple(Rational(p, q) for p, q in ((1, 2), (1, 1), (1, 8), (4, 1), (1, 1), (1, 500), (30, 1)))
+"""Sizes that points are drawn at, one after another."""
+
+
+PATIENCE = 40
+"""Attempts without a point after which points are moved to where the conditions hold."""
+
+MOST_MOVES = 40
+
+MOST_UNSOLVED = 12
+"""Attempts without rational numbers that satisfy the equalities after which none are looked for."""
+
+
+def conditions_hold(conditions: Iterable[Boolean], point: Mapping[Symbol, Rational]) -> bool:
+    """Tell whether conditions certainly hold at an exact point."""
+    try:
+        with precision(128):
+            return all(holds_at(condition, point) for condition in conditions)
+    except (NotDecided, Undefined, Unmodelled):
+        return False
+
+
+def _allows(facts: Mapping[str, bool], number: Rational) -> bool:
+    """Tell whether a number is all that a symbol was declared to be, by SymPy's own account of the number."""
+    return all(getattr(number, f"is_{fact}") is so for fact, so in facts.items())

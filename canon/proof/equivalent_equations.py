@@ -1,0 +1,352 @@
+"""Two systems of equations: have they the same solutions at generic points?"""
+
+from __future__ import annotations
+
+import random
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from flint import acb, acb_mat
+from sympy.core.function import AppliedUndef
+
+from canon.expression.symbols.user_input import given_expression, given_kind, given_seconds, given_symbols
+from canon.proof.analytic import is_analytic, proved_sign
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
+from canon.proof.domain.verdict import Evidence, Status, Verdict
+from canon.proof.kinks import off_kinks
+from canon.proof.refute.sample_functions import with_example_functions
+from canon.proof.trees.anatomy import anatomy
+from canon.proof.trees.replacement import defined_nowhere
+from canon.proof.trees.sympy_types import arguments
+from canon.proof.vanish import vanishes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from sympy import Expr, Symbol
+
+__all__ = ["equivalent_equations", "without_solution"]
+
+SAME_SOLUTIONS = "the two systems of equations have the same solutions"
+
+GENERIC = "generic point: the coefficients' largest minor is not zero"
+
+LONGEST_SAID = 80
+"""Characters of conditions that are spelt out."""
+
+WORKING_BITS = 256
+POINTS = 12
+
+
+@dataclass(frozen=True)
+class _System:
+    """An affine system as the rows of its augmented matrix (coefficients of the unknowns, then the rest)."""
+
+    rows: tuple[tuple[Expr, ...], ...]
+
+
+@dataclass(frozen=True)
+class _Pivots:
+    """Rows and columns of a minor that is certainly nonzero, as large as was found."""
+
+    rows: tuple[int, ...]
+    columns: tuple[int, ...]
+
+
+def equivalent_equations(
+    system_a: Sequence[Expr],
+    system_b: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    domain: Domain = EVERYWHERE,
+    budget: float = 10.0,
+) -> Verdict:
+    """Decide whether two systems, each expression meaning ``expr = 0``, have the same solutions.
+
+    Both must be affine in ``unknowns``; the remaining symbols are coefficients. The systems are
+    equivalent at generic points exactly when their augmented matrices span one row space over the
+    functions of those symbols: every row of either then has vanishing determinants when it borders a
+    largest nonvanishing minor of the other. Two systems that both have no solution are equivalent.
+
+    That needs coefficients without zero divisors. Where they have pieces (Abs, sign, Piecewise, integer
+    symbols, roots that may change branch) a system follows from another only if the minor is proved to
+    vanish nowhere on the domain, and is refuted only at a point where the minor is not zero.
+
+    Parameters
+    ----------
+    system_a, system_b
+        Expressions; the numbers of equations may differ.
+    unknowns
+        What is solved for, such as accelerations.
+    domain, budget
+        As for :func:`canon.proof.vanishes`.
+
+    Returns
+    -------
+    Verdict
+        FAILS names the equation of one system that does not follow from the other.
+
+    Raises
+    ------
+    ValueError
+        If an equation is not affine in the unknowns (UNDECIDED if that is not known).
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, y, u, v = symbols("x y u v")
+    >>> equivalent_equations([u + v - x, u - v], [2*u - x, u*y - v*y], [u, v]).status
+    <Status.HOLDS: 'holds'>
+    >>> print(equivalent_equations([u - x, v], [u - x], [u, v]).feedback)
+    equation 2 of the first system does not follow from the second: v = 0
+    """
+    unknowns, domain = given_symbols(unknowns, "unknowns"), as_domain(domain)
+    for name, system in (("system_a", system_a), ("system_b", system_b)):
+        given_kind(system, (list, tuple), name, "put a single equation into brackets")
+    start = time.monotonic()
+    deadline = start + given_seconds(budget)
+    given = [
+        [given_expression(e, f"equation {i} of the {which} system") for i, e in enumerate(system, start=1)]
+        for which, system in (("first", system_a), ("second", system_b))
+    ]
+    off = off_kinks([e for system in given for e in system], domain)
+    first, second = ([off.seen(e) for e in system] for system in given)
+    return replace(
+        off.ask(lambda there: _equivalent(first, second, unknowns, there, deadline)),
+        seconds=time.monotonic() - start,
+    )
+
+
+def _equivalent(
+    system_a: Sequence[Expr],
+    system_b: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    domain: Domain,
+    deadline: float,
+) -> Verdict:
+    a = _augmented(system_a, unknowns, domain, "first", deadline)
+    b = _augmented(system_b, unknowns, domain, "second", deadline)
+    unknown = [system for system in (a, b) if isinstance(system, str)]
+    if isinstance(a, str) or isinstance(b, str):
+        verdict = Verdict(Status.UNDECIDED, evidence=tuple(Evidence("affine", text) for text in unknown))
+        return replace(verdict, question=SAME_SOLUTIONS)
+    field = is_analytic([entry for system in (a, b) for row in system.rows for entry in row], domain)
+    extra = _rows_follow(b, a, system_b, ("second", "first"), domain, deadline, field=field)
+    if extra.fails:
+        return replace(extra, question=SAME_SOLUTIONS)
+    missing = _rows_follow(a, b, system_a, ("first", "second"), domain, deadline, field=field)
+    worst = missing if missing.fails or extra.holds else extra
+    assumed = tuple(dict.fromkeys((*extra.assumed, *missing.assumed))) if worst.holds else worst.assumed
+    return replace(worst, question=SAME_SOLUTIONS, assumed=assumed)
+
+
+def without_solution(system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain = EVERYWHERE) -> bool:
+    """Tell whether a system is certainly without solution at some point of the domain, and so at generic ones.
+
+    Parameters
+    ----------
+    system, unknowns, domain
+        As for :func:`equivalent_equations`.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, u, v = symbols("x u v")
+    >>> without_solution([u + v, u + v - x], [u, v]), without_solution([u + v - x], [u, v])
+    (True, False)
+    """
+    augmented = _augmented(system, unknowns, domain, "given", time.monotonic() + 1.0)
+    return not isinstance(augmented, str) and len(unknowns) in _largest_minor(augmented, domain).columns
+
+
+def _augmented(
+    system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain, which: str, deadline: float
+) -> _System | str:
+    """Return slopes and rest of each equation, whose sum Σ slope·u + rest is proved to be the equation.
+
+    A vanishing second derivative would not do: u·sign(u) and atan(tan u) have locally constant slopes.
+    """
+    at_rest: dict[sp.Basic, Expr] = dict.fromkeys(unknowns, sp.Integer(0))
+    rows: list[tuple[Expr, ...]] = []
+    for number, equation in enumerate(system, start=1):
+        expr = given_expression(equation, f"equation {number} of the {which} system")
+        row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
+        row.append(cast("Expr", expr.xreplace(at_rest)))
+        if not _is_affine(expr, set(unknowns)):
+            again = sp.Add(*(slope * u for slope, u in zip(row, unknowns, strict=False)), row[-1])
+            without_value = any(map(defined_nowhere, row))
+            rebuilt = None if without_value else vanishes(expr - again, domain, deadline - time.monotonic())
+            if rebuilt is None or rebuilt.fails:
+                raise ValueError(
+                    f"equation {number} of the {which} system is not affine in the unknowns: {expr} = 0; "
+                    "solve it for the unknowns or name others"
+                )
+            if not rebuilt.holds:
+                return f"equation {number} of the {which} system was not proved affine in the unknowns"
+        rows.append(tuple(row))
+    return _System(tuple(rows))
+
+
+def _is_affine(expr: sp.Basic, unknowns: set[Symbol]) -> bool:
+    """Tell whether the form of an expression shows that it is affine."""
+    if not expr.free_symbols & unknowns or expr in unknowns:
+        return True
+    if isinstance(expr, sp.Mul):
+        moving = [factor for factor in expr.args if factor.free_symbols & unknowns]
+        return len(moving) == 1 and _is_affine(moving[0], unknowns)
+    return isinstance(expr, sp.Add) and all(_is_affine(term, unknowns) for term in expr.args)
+
+
+def _rows_follow(
+    rows: _System,
+    basis: _System,
+    equations: Sequence[Expr],
+    names: tuple[str, str],
+    domain: Domain,
+    deadline: float,
+    *,
+    field: bool,
+) -> Verdict:
+    """Decide whether every row of one system lies in the row space of the other.
+
+    Everything follows from a basis without solutions, one whose largest minor needs the column of the rest.
+    """
+    pivots = _largest_minor(basis, domain)
+    minor = _determinant([[basis.rows[i][c] for c in pivots.columns] for i in pivots.rows])
+    sure = field or proved_sign(minor, domain) in ("+", "-") or is_analytic(_without_moduli(minor), domain)
+    undecided: list[Evidence] = []
+    if not sure:
+        undecided.append(
+            Evidence("rank", f"the minor {minor} of the {names[1]} system may vanish on a piece")
+        )
+    inconsistent = bool(basis.rows) and len(basis.rows[0]) - 1 in pivots.columns
+    for number, row in enumerate(() if inconsistent else rows.rows):
+        for bordered in _borders(row, basis, pivots):
+            determinant = _determinant(bordered)
+            verdict = vanishes(determinant, domain, max(0.1, deadline - time.monotonic()))
+            if verdict.fails and not sure:
+                verdict = vanishes(minor * determinant, domain, max(0.1, deadline - time.monotonic()))
+            if verdict.fails and _minor_is_largest(basis, pivots, domain, deadline):
+                equation = equations[number]
+                return replace(
+                    verdict,
+                    residual=equation,
+                    feedback=f"equation {number + 1} of the {names[0]} system does not follow from the "
+                    f"{names[1]}: {equation} = 0",
+                )
+            if verdict.fails:
+                undecided.append(Evidence("rank", f"the rank of the {names[1]} system is not known"))
+            elif not verdict.holds:
+                undecided.extend(verdict.evidence)
+            if not verdict.holds:
+                text = f"whether equation {number + 1} of the {names[0]} system follows"
+                undecided.append(Evidence("equation", text))
+    if undecided:
+        return Verdict(Status.UNDECIDED, evidence=tuple(dict.fromkeys(undecided)))
+    return Verdict(Status.HOLDS, certificate="exact", assumed=_generic(minor, domain) if field else ())
+
+
+def _without_moduli(minor: Expr) -> list[Expr]:
+    """Return the factors of a minor, |g| and sign(g) as g, which vanishes where they do and nowhere else."""
+    powers = [factor.as_base_exp() for factor in sp.Mul.make_args(minor)]
+    return [
+        (arguments(base)[0] if isinstance(base, sp.Abs | sp.sign) else base) ** exponent
+        for base, exponent in powers
+    ]
+
+
+def _generic(minor: Expr, domain: Domain) -> tuple[str, ...]:
+    """Say what a generic point is: one where the largest minor of the coefficients is not zero."""
+    factors = [f.base if isinstance(f, sp.Pow) else f for f in sp.Mul.make_args(minor)]
+    left = [f for f in factors if not f.is_nonzero and proved_sign(f, domain) not in ("+", "-")]
+    if not left:
+        return ()
+    said = ", ".join(f"{f} ≠ 0" for f in left)
+    return (f"generic point: {said}" if len(said) <= LONGEST_SAID else GENERIC,)
+
+
+def _borders(row: tuple[Expr, ...], basis: _System, pivots: _Pivots) -> Iterator[list[list[Expr]]]:
+    """Border the pivots' minor with a row and, in turn, each column outside it."""
+    for column in range(len(row)):
+        if column not in pivots.columns:
+            columns = (*pivots.columns, column)
+            yield [*([basis.rows[i][c] for c in columns] for i in pivots.rows), [row[c] for c in columns]]
+
+
+def _minor_is_largest(basis: _System, pivots: _Pivots, domain: Domain, deadline: float) -> bool:
+    """Tell whether every row of the basis is proved to depend on the pivots' rows.
+
+    Without that a row outside the pivots' span may still follow from the basis.
+    """
+    return all(
+        vanishes(_determinant(bordered), domain, max(0.1, deadline - time.monotonic())).holds
+        for number, row in enumerate(basis.rows)
+        if number not in pivots.rows
+        for bordered in _borders(row, basis, pivots)
+    )
+
+
+def _largest_minor(system: _System, domain: Domain) -> _Pivots:
+    """Find the largest minor that balls certify as nonzero at some point of the domain."""
+    best = _Pivots((), ())
+    if not system.rows:
+        return best
+    symbols = anatomy([entry for row in system.rows for entry in row]).symbols
+    system = _with_examples(system)
+    full = min(len(system.rows), len(system.rows[0]))
+    for point in domain.points(symbols, POINTS, seed=3, but_functions=True):
+        found = _pivots_at(system, point)
+        if len(found.rows) > len(best.rows):
+            best = found
+        if len(best.rows) == full:
+            break
+    return best
+
+
+def _with_examples(system: _System) -> _System:
+    """Put examples for the arbitrary functions: a minor that is nonzero for one choice is not zero."""
+    entries = [entry for row in system.rows for entry in row]
+    if any(entry.has(AppliedUndef) for entry in entries):
+        entries, _ = with_example_functions(entries, random.Random(3))
+    width = len(system.rows[0])
+    return _System(tuple(tuple(entries[i : i + width]) for i in range(0, len(entries), width)))
+
+
+def _pivots_at(system: _System, point: dict[Symbol, sp.Rational]) -> _Pivots:
+    with precision(WORKING_BITS):
+        memo: dict[sp.Basic, acb] = {}
+        try:
+            matrix = [[value(entry, point, memo) for entry in row] for row in system.rows]
+        except (Undefined, NotDecided, Unmodelled):
+            return _Pivots((), ())
+        rows: list[int] = []
+        columns: list[int] = []
+        for column in range(len(matrix[0])):
+            for i in range(len(matrix)):
+                if i in rows:
+                    continue
+                minor = acb_mat([[matrix[r][c] for c in (*columns, column)] for r in (*rows, i)])
+                if not minor.det().contains(0):
+                    rows.append(i)
+                    columns.append(column)
+                    break
+        return _Pivots(tuple(rows), tuple(columns))
+
+
+def _determinant(matrix: list[list[Expr]]) -> Expr:
+    """Return the determinant by Laplace's expansion along the rows, minors shared."""
+    size = len(matrix)
+    minors: dict[tuple[int, ...], Expr] = {(): sp.Integer(1)}
+    for depth in range(size):
+        row = matrix[size - 1 - depth]
+        larger: dict[tuple[int, ...], Expr] = {}
+        for columns, minor in minors.items():
+            for c in range(size):
+                if c not in columns and row[c] != 0 and minor != 0:
+                    chosen = tuple(sorted((*columns, c)))
+                    sign = (-1) ** chosen.index(c)
+                    larger[chosen] = larger.get(chosen, sp.Integer(0)) + sign * row[c] * minor
+        minors = larger
+    return minors.get(tuple(range(size)), sp.Integer(0))

@@ -1,0 +1,1 @@
+from .normal_form import NormalForm as NormalForm

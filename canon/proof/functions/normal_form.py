@@ -1,0 +1,377 @@
+"""From SymPy expressions to fractions over a tower of generators.
+
+Every rewriting is an identity of principal branches that holds wherever its left side is defined; the
+docstring of each rule says why. Whatever has no rule becomes an opaque kernel, known only by its name and
+the normal forms of its arguments, which is always sound: equal functions of equal arguments are equal.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import sympy as sp
+from flint import arb, fmpq
+from sympy.core.function import AppliedUndef, Derivative, Subs
+
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.domain.domain import declared_complex
+from canon.proof.domain.limits import THOROUGH, Limits
+from canon.proof.functions import angles, arcs, complex_parts, elliptic, gammas, large_powers, powers, waves
+from canon.proof.rungs.cases import certainly_real
+from canon.proof.tower.signs import Signs
+from canon.proof.tower.tower import Fraction, Tower
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable
+
+    from flint import fmpq_mpoly
+    from sympy import Expr
+
+    from canon.proof.domain.domain import Domain
+
+__all__ = ["NormalForm"]
+
+
+class NormalForm:
+    """Normal forms of expressions over one tower.
+
+    Parameters
+    ----------
+    domain
+        Conditions from which signs are taken.
+    parts
+        For each kernel the number of parts it is divided into; grows when :class:`~canon.proof.functions.angles.Refine`
+        is raised, after which the work starts again.
+    deadline
+        Value of :func:`time.monotonic` to stop at.
+    limits, capacity
+        See :class:`~canon.proof.tower.tower.Tower`.
+    """
+
+    def __init__(
+        self,
+        domain: Domain,
+        parts: dict[Hashable, Any],
+        deadline: float = float("inf"),
+        limits: Limits = THOROUGH,
+        capacity: int = 16,
+    ) -> None:
+        self.domain = domain
+        self.tower = Tower(deadline, limits, capacity)
+        self.signs = Signs(self.tower, self._sign_of_constant)
+        self.parts = parts
+        self.arguments: dict[Hashable, Fraction] = {}
+        self.atoms: dict[Hashable, Fraction] = {}
+        self.ranges: dict[Hashable, tuple[Expr, Expr, bool]] = {}
+        self.moduli: list[tuple[Fraction, tuple[Fraction, Fraction]]] = []
+        self.integrals: dict[Hashable, tuple[Fraction, Fraction]] = {}
+        self.known_roots: dict[Hashable, Fraction] = {}
+        self.independent: dict[Hashable, Fraction] = {}
+        self.gammas: list[tuple[Fraction, Fraction]] = []
+        self.polygammas: dict[int, list[tuple[Fraction, Fraction]]] = {}
+        self.number_logs: list[tuple[fmpq_mpoly, Fraction]] = []
+        self._numbers: dict[Hashable, int] = parts.setdefault("numbers", {})
+        self._meaning: dict[int, Callable[[], Expr]] = {}
+        self._expressions: dict[int, Expr] = {}
+        self._memo: dict[sp.Basic, Fraction] = {}
+        self.powers_of_zero: set[int] = set()
+        self.empty = False
+        self._gaps: list[tuple[fmpq_mpoly, bool]] = []
+        for condition in domain.conditions:
+            self._learn(condition)
+        if len(self._gaps) > 1:
+            self.empty = self.empty or any(self.signs.contradicts(p, strict=s) for p, s in self._gaps)
+
+    def _learn(self, condition: sp.Basic) -> None:
+        """Take p > 0 or p ≥ 0 from an inequality; notice when the facts before contradict it.
+
+        A fraction has the zeros of its numerator, unless its denominator is a power that may be infinite.
+        """
+        if condition == sp.false:
+            self.empty = True
+        elif isinstance(condition, sp.And):
+            for part in condition.args:
+                self._learn(part)
+        elif isinstance(condition, sp.Eq) and isinstance(condition.lhs, sp.Expr):
+            gap = self.form(condition.lhs - cast("Expr", condition.rhs))
+            if not self._may_be_infinite(gap):
+                powers.learn_zero(self, gap.num)
+        elif isinstance(condition, sp.Ne) and isinstance(condition.lhs, sp.Expr):
+            gap = self.form(condition.lhs - condition.rhs)
+            if gap.num.is_zero():
+                self.empty = True
+            elif not self._may_be_infinite(gap):
+                self.signs.learn_nonzero(gap.num)
+        elif isinstance(condition, sp.StrictLessThan | sp.LessThan | sp.StrictGreaterThan | sp.GreaterThan):
+            gap = self.form(cast("Expr", condition.gts) - cast("Expr", condition.lts))
+            strict = isinstance(condition, sp.StrictLessThan | sp.StrictGreaterThan)
+            if self._may_be_infinite(gap):
+                return
+            if gap.den:
+                below = self.signs.of(self.denominator(gap))
+                if below not in ("+", "-"):
+                    return
+                gap = gap if below == "+" else self.negative(gap)
+            known = self.signs.of(gap.num)
+            self.empty = self.empty or known == "-" or (strict and (known == "0-" or gap.num.is_zero()))
+            if not known.endswith("+"):
+                self._gaps.append((gap.num, strict))
+                self.signs.learn(gap.num, strict=strict)
+
+    def _may_be_infinite(self, f: Fraction) -> bool:
+        """Tell whether the denominator holds exp(y log u), which stands for 1/u^−y also at u = 0."""
+        return any(self.powers_of_zero.intersection(self.tower.used(self.tower.base(i))) for i, _ in f.den)
+
+    def _sign_of_constant(self, p: fmpq_mpoly) -> str:
+        if not all(self._is_constant(k) for k in self.tower.used(p)):
+            return waves.sign_of_polynomial(self, p)
+        expr = self.expression(p)
+        for bits in (64, 256, 1024):
+            with precision(bits):
+                try:
+                    ball = value(expr, {})
+                except (NotDecided, Undefined, Unmodelled):
+                    continue
+                if not ball.imag.contains(0):
+                    return ""
+                real: arb = ball.real
+                if real > 0:
+                    return "+"
+                if real < 0:
+                    return "-"
+        return ""
+
+    def _is_constant(self, generator: int) -> bool:
+        """Tell whether a generator is a number."""
+        kernel = self.tower.generators[generator]
+        if kernel[0] in ("pi", "I", "cyclotomic"):
+            return True
+        argument = self.arguments.get(kernel)
+        if argument is None or kernel[0] == "atan2":
+            return False
+        below = [k for i, _ in argument.den for k in self.tower.used(self.tower.base(i))]
+        return all(self._is_constant(k) for k in (*self.tower.used(argument.num), *below))
+
+    # -- recursion -------------------------------------------------------------------------------
+
+    def form(self, expr: sp.Basic) -> Fraction:
+        """Return the normal form of an expression."""
+        found = self._memo.get(expr)
+        if found is None:
+            self.tower.check_time()
+            found = self._memo[expr] = self._fresh(expr)
+        return found
+
+    def _fresh(self, expr: sp.Basic) -> Fraction:
+        t = self.tower
+        match expr:
+            case sp.Rational():
+                return t.number(fmpq(int(expr.p), int(expr.q)))
+            case sp.Symbol():
+                return self.atom(("symbol", expr), _declared_sign(expr), lambda: expr)
+            case sp.Add():
+                return t.sum(self.form(term) for term in expr.args)
+            case sp.Mul():
+                return t.times(*(self.form(factor) for factor in expr.args))
+            case sp.Pow():
+                return self._power(expr)
+            case sp.exp():
+                return powers.exponential(self, self.form(expr.args[0]))
+            case sp.log() if len(expr.args) == 1:
+                return powers.logarithm(self, self.form(expr.args[0]))
+            case sp.Abs():
+                return powers.modulus(self, self.form(expr.args[0]))
+            case sp.sign():
+                return complex_parts.sign_function(self, expr) or self._opaque(expr)
+            case _ if expr is sp.pi:
+                return self.pi
+            case _ if expr is sp.I:
+                return self.imaginary_unit
+            case _ if expr is sp.E:
+                return powers.exponential(self, t.number(1))
+            case _ if expr is sp.GoldenRatio:
+                return self.form((1 + sp.sqrt(5)) / 2)
+            case _:
+                pass
+        elementary = (
+            angles.elementary(self, expr)
+            or arcs.elementary(self, expr)
+            or complex_parts.elementary(self, expr)
+            or gammas.elementary(self, expr)
+            or elliptic.elementary(self, expr)
+        )
+        return self._opaque(expr) if elementary is None else elementary
+
+    def _power(self, expr: sp.Pow) -> Fraction:
+        """Return a power; b^e = exp(e log b) is its definition for b ≠ 0.
+
+        At b = 0 the functions x^e with e ≥ 0 are continuous from the right and the others are undefined,
+        so an identity of powers extends there.
+        """
+        base, exponent = expr.args
+        if isinstance(exponent, sp.Integer):
+            return large_powers.power(self, self.form(base), int(exponent))
+        if isinstance(exponent, sp.Rational):
+            return powers.root(self, self.form(base), fmpq(int(exponent.p), int(exponent.q)))
+        logarithm = powers.logarithm(self, self.form(base), whole_powers=bool(exponent.is_integer))
+        return powers.exponential(self, self.tower.times(self.form(exponent), logarithm))
+
+    def _opaque(self, expr: sp.Basic) -> Fraction:
+        """Return a kernel that is equal for equal functions of equal arguments."""
+        if isinstance(expr, Derivative | Subs) and expr.has(AppliedUndef):
+            key, real = _derivative_key(expr, self)
+            return self.atom(key, "real" if real else "", lambda: cast("Expr", expr))
+        if not isinstance(expr, sp.Function) or not expr.args:
+            known_real = cast("Expr", expr).is_real
+            return self.atom(("opaque", expr), "real" if known_real else "", lambda: cast("Expr", expr))
+        arguments = [self.tower.canonical(self.form(a)) for a in expr.args]
+        keys = tuple(self.fraction_key(a) for a in arguments)
+        real = all(self.is_real(a) for a in arguments)
+        if isinstance(expr, AppliedUndef):
+            sign = _declared_sign(expr) if real else ""
+        else:
+            sign = "real" if real and isinstance(expr, sp.sign | sp.Max | sp.Min | sp.acot) else ""
+        return self.atom((expr.func, keys), sign, lambda: cast("Expr", expr))
+
+    # -- atoms -----------------------------------------------------------------------------------
+
+    def atom(self, kernel: Hashable, sign: str, meaning: Callable[[], Expr]) -> Fraction:
+        """Return the generator for a kernel, of the given sign ("" where it may be complex)."""
+        index = self.tower.generator(kernel)
+        if index not in self._meaning:
+            self.signs.declare(index, sign)
+            self._meaning[index] = meaning
+        return Fraction(self.tower.monomial(index))
+
+    @property
+    def pi(self) -> Fraction:
+        """The number π."""
+        return self.atom(("pi",), "+", lambda: sp.pi)
+
+    @property
+    def imaginary_unit(self) -> Fraction:
+        """The number i, with i² = −1."""
+        fresh = not self.tower.knows(("I",))
+        unit = self.atom(("I",), "", lambda: sp.I)
+        if fresh:
+            self.tower.relate(self.tower.generator(("I",)), 2, self.tower.constant(-1))
+        return unit
+
+    def only_kernel(self, f: Fraction) -> tuple[Any, ...] | None:
+        """Return the kernel that ``f`` is, to the first power and without coefficient, if it is one."""
+        if f.den or len(f.num) != 1 or f.num.total_degree() != 1 or f.num.leading_coefficient() != 1:
+            return None
+        return self.tower.generators[self.tower.used(f.num)[0]]
+
+    # -- fractions -------------------------------------------------------------------------------
+
+    def negative(self, f: Fraction) -> Fraction:
+        """Return −f."""
+        return Fraction(-f.num, f.den)
+
+    def minus(self, f: Fraction, g: Fraction) -> Fraction:
+        """Return f − g."""
+        return self.tower.sum([f, self.negative(g)])
+
+    def over(self, f: Fraction, g: Fraction) -> Fraction:
+        """Return f/g."""
+        return self.tower.times(f, self.tower.reciprocal(g))
+
+    def scaled(self, number: Any, f: Fraction) -> Fraction:
+        """Return a rational multiple."""
+        return Fraction(f.num * self.tower.constant(number), f.den)
+
+    def denominator(self, f: Fraction) -> fmpq_mpoly:
+        """Return the denominator multiplied out."""
+        t = self.tower
+        total = t.constant(1)
+        for i, e in f.den:
+            total = t.product(total, t.polynomial_power(t.base(i), e))
+        return total
+
+    def fraction_key(self, f: Fraction) -> Hashable:
+        """Return a number that is the same for equal canonical fractions, also when work starts again."""
+        bases = frozenset((self.tower.key(self.tower.base(i)), e) for i, e in f.den)
+        return self._numbers.setdefault((self.tower.key(f.num), bases), len(self._numbers))
+
+    def is_real(self, f: Fraction) -> bool:
+        """Tell whether a fraction is proven real wherever it is defined."""
+        return self.signs.real(f.num) and all(self.signs.real(self.tower.base(i)) for i, _ in f.den)
+
+    def sign(self, f: Fraction) -> str:
+        """Return the proven sign of a fraction.
+
+        Every base of the denominator must be real, and have a sign where its power is odd. It is not zero
+        where the fraction is defined, except that 1/exp(y log u) may stand for u^−y = 0 at u = 0.
+        """
+        sign = self.signs.of(f.num)
+        for i, e in f.den:
+            base = self.tower.base(i)
+            below = self.signs.of(base) if e % 2 else "+" if self.signs.real(base) else ""
+            if not sign or not below:
+                return ""
+            if self.powers_of_zero.intersection(self.tower.used(base)):
+                sign = "0" + sign[-1]
+            sign = sign.translate(str.maketrans("+-", "-+")) if below.endswith("-") else sign
+        return sign
+
+    def expression(self, p: fmpq_mpoly) -> Expr:
+        """Return a polynomial over the tower as a SymPy expression."""
+        terms: list[Expr] = []
+        for monomial, coefficient in self.tower.terms(p):
+            factors: list[Expr] = [sp.Rational(int(coefficient.p), int(coefficient.q))]
+            factors.extend(self._kernel_expression(k) ** e for k, e in monomial)
+            terms.append(sp.Mul(*factors))
+        return sp.Add(*terms)
+
+    def _kernel_expression(self, generator: int) -> Expr:
+        found = self._expressions.get(generator)
+        if found is None:
+            found = self._expressions[generator] = self._meaning[generator]()
+        return found
+
+    def fraction_expression(self, f: Fraction) -> Expr:
+        """Return a fraction as a SymPy expression."""
+        return self.expression(f.num) / self.expression(self.denominator(f))
+
+
+def _declared_sign(symbol: sp.Expr) -> str:
+    """Return the sign that was declared of a symbol, or of a function of real arguments."""
+    if declared_complex(symbol):
+        return ""
+    if symbol.is_positive:
+        return "+"
+    if symbol.is_negative:
+        return "-"
+    if symbol.is_nonnegative:
+        return "0+"
+    if symbol.is_nonpositive:
+        return "0-"
+    return "real"
+
+
+def _derivative_key(expr: sp.Basic, forms: NormalForm) -> tuple[Hashable, bool]:
+    """Return one key for ∂f at given arguments, whether SymPy writes Derivative or Subs, and if it is real.
+
+    A derivative of a real function is real where the arguments are.
+    """
+    inner: sp.Basic = expr
+    places: dict[sp.Basic, Expr] = {}
+    if isinstance(expr, Subs):
+        inner = expr.expr
+        variables, point = cast("tuple[sp.Symbol, ...]", expr.variables), cast("tuple[Expr, ...]", expr.point)
+        places = dict(zip(variables, point, strict=True))
+    if isinstance(inner, Derivative) and isinstance(inner.expr, AppliedUndef):
+        arguments = inner.expr.args
+        taken = cast("tuple[tuple[sp.Basic, sp.Basic], ...]", inner.variable_count)
+        counts = {v: int(n) for v, n in taken if isinstance(n, sp.Integer)}
+        whole = len(counts) == len(taken)
+        plain = all(isinstance(a, sp.Symbol) or not (a.free_symbols & set(counts)) for a in arguments)
+        if whole and plain and all(sum(1 for a in arguments if a == v) == 1 for v in counts):
+            orders = tuple(counts.get(a, 0) for a in arguments)
+            there = [forms.tower.canonical(forms.form(a.xreplace(places))) for a in arguments]
+            real = not declared_complex(inner.expr) and all(map(forms.is_real, there))
+            keys = tuple(map(forms.fraction_key, there))
+            return ("derivative", inner.expr.func, orders, keys), real
+    real = isinstance(inner, Derivative) and certainly_real(cast("Expr", inner.expr))
+    return ("opaque", expr), real and all(map(certainly_real, places.values()))

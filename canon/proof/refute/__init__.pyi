@@ -1,0 +1,1 @@
+from .refute import look_for_counterexample as look_for_counterexample

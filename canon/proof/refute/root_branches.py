@@ -1,0 +1,110 @@
+"""Claims under equalities that rational numbers do not satisfy, such as a² = 2: refuted where a symbol is a root."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+
+from canon.proof.domain.domain import Domain
+from canon.proof.refute.refute import Search, look_for_counterexample
+from canon.proof.rungs.cases import certainly_real, eliminations, under_derivatives, without_symbol
+from canon.proof.trees.replacement import NoValue, replaced
+from canon.proof.trees.sympy_types import by_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from sympy import Expr, Symbol
+    from sympy.logic.boolalg import Boolean
+
+__all__ = ["search_branches"]
+
+MOST_BRANCHES = 4
+POINTS = 12
+HIGHEST = 256
+
+
+def search_branches(left: Expr, right: Expr, domain: Domain, deadline: float) -> Search:
+    """Look for a counterexample after equalities were solved for real symbols, roots included.
+
+    Examples
+    --------
+    >>> a = sp.Symbol("a", real=True)
+    >>> two = Domain((sp.Eq(a**2, 2), a > 0))
+    >>> print(search_branches(a, sp.Integer(1), two, time.monotonic() + 1).counterexample)
+    at a = sqrt(2): 1.41421356237310 against 1.00000000000000
+    """
+    search = Search()
+    equal = any(isinstance(c, sp.Eq) for c in domain.conditions)
+    for tried, (values, narrowed) in enumerate(_solved(left - right, domain, {}) if equal else ()):
+        if tried == MOST_BRANCHES or time.monotonic() > deadline:
+            break
+        try:
+            by = cast("Mapping[sp.Basic, Expr]", values)
+            sides = replaced(left, by), replaced(right, by)
+        except NoValue:
+            continue
+        symbols = {s for f in (*sides, *values.values()) for s in by_name(f)}
+        search = look_for_counterexample(
+            *sides,
+            narrowed.points(symbols, POINTS, deadline=deadline, but_functions=True),
+            highest=HIGHEST,
+            deadline=deadline,
+            search=search,
+            conditions=narrowed.on_functions,
+        )
+        if search.counterexample is not None:
+            point = {s.name: str(f) for s, f in values.items()}
+            found = replace(search.counterexample, point={**search.counterexample.point, **point})
+            return replace(search, counterexample=found)
+    return search
+
+
+def _solved(
+    expr: Expr, domain: Domain, values: Mapping[Symbol, Expr]
+) -> Iterator[tuple[dict[Symbol, Expr], Domain]]:
+    """Yield ways to satisfy all equalities: what some symbols are, and the domain of the others."""
+    if not any(isinstance(c, sp.Eq) for c in domain.conditions):
+        yield dict(values), domain
+        return
+    for s, solution, narrowed in _one_less(expr, domain):
+        known = {old: cast("Expr", f.xreplace({s: solution})) for old, f in values.items()} | {s: solution}
+        yield from _solved(expr, narrowed, known)
+
+
+def _one_less(expr: Expr, domain: Domain) -> Iterator[tuple[Symbol, Expr, Domain]]:
+    """Yield real values of one symbol: the one of a linear equality, or both roots of one of degree two."""
+    staying = under_derivatives(expr, domain)
+    for s, solution, narrowed in eliminations(domain, staying):
+        if s.is_real and not s.is_integer and certainly_real(solution):
+            yield s, solution, narrowed
+            return
+    for condition in domain.conditions:
+        if isinstance(condition, sp.Eq) and isinstance(condition.lhs, sp.Expr):
+            gap = condition.lhs - cast("Expr", condition.rhs)
+            for s in by_name(gap):
+                if s not in staying and s.is_real and not s.is_integer:
+                    yield from _roots(gap, s, domain, condition)
+
+
+def _roots(gap: Expr, s: Symbol, domain: Domain, condition: Boolean) -> Iterator[tuple[Symbol, Expr, Domain]]:
+    """Yield the real roots of an equality of degree two in one symbol, where its discriminant is not negative."""
+    try:
+        poly = sp.Poly(gap, s)
+    except sp.PolynomialError:
+        return
+    if poly.degree() != 2 or any(c.has(s) for c in poly.all_coeffs()):
+        return
+    a, b, c = poly.all_coeffs()
+    discriminant = sp.expand(b**2 - 4 * a * c)
+    if not (a.is_number and certainly_real(b) and certainly_real(discriminant)):
+        return
+    for sign in (1, -1):
+        solution = (-b + sign * sp.sqrt(discriminant)) / (2 * a)
+        narrowed = without_symbol(domain, condition, s, solution)
+        real = cast("Boolean", sp.Ge(discriminant, 0))
+        if narrowed is not None and real != sp.false:
+            yield s, solution, Domain((*narrowed.conditions, real), narrowed.box)

@@ -1,0 +1,1 @@
+from .ladder import prove_zero as prove_zero

@@ -1,0 +1,1 @@
+from .anatomy import Anatomy as Anatomy

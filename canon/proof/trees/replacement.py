@@ -1,0 +1,115 @@
+"""Substitutions in expressions that SymPy may have no value for, every distinct part being rebuilt once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar, cast
+
+import sympy as sp
+from sympy.concrete.expr_with_limits import ExprWithLimits
+from sympy.core.function import AppliedUndef
+from sympy.core.relational import Relational
+from sympy.functions.elementary.hyperbolic import HyperbolicFunction
+from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction, TrigonometricFunction
+
+from canon.proof.trees.anatomy import anatomy
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from sympy import Expr
+
+__all__ = ["KINKED", "NoValue", "defined_nowhere", "replaced"]
+
+KINKED = (sp.Max, sp.Min, sp.Abs, sp.sign, sp.Heaviside)
+"""Functions that have another formula on either side of a point."""
+
+LARGEST_WRITTEN = 1000
+"""Exponents and arguments of factorials and the like that SymPy may write out when a number is put in."""
+
+UNWRITTEN = (
+    TrigonometricFunction,
+    HyperbolicFunction,
+    InverseTrigonometricFunction,
+    AppliedUndef,
+    sp.exp,
+    sp.log,
+    sp.Piecewise,
+    *KINKED,
+)
+"""Functions that stay as they are at large numbers."""
+
+NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity)
+
+LAZY = (sp.Piecewise, ExprWithLimits, sp.Derivative, sp.Subs, sp.Max, sp.Min)
+"""Expressions that may have a value though one of their parts has none."""
+
+
+_B = TypeVar("_B", bound=sp.Basic)
+
+
+class NoValue(Exception):
+    """SymPy gives no value to an expression after a substitution, or one too long to write out."""
+
+
+def replaced(expr: _B, by: Mapping[sp.Basic, Expr]) -> _B:
+    """Return ``expr`` after a substitution, every distinct part being rebuilt once.
+
+    Raises
+    ------
+    NoValue
+        Where SymPy refuses a part (Max of an imaginary number, a derivative by an expression, …) or would
+        write out a number of very many digits.
+    """
+    done: dict[sp.Basic, sp.Basic] = {}
+    for part in anatomy([expr]).parts:  # what a part consists of comes before it
+        inner = tuple(done[a] for a in part.args)
+        if part in by:
+            done[part] = by[part]
+        elif all(new is old for new, old in zip(inner, part.args, strict=True)):
+            done[part] = part
+        elif _too_long(part, inner):
+            raise NoValue
+        else:
+            try:
+                done[part] = _rebuilt(part, inner)
+            except (ValueError, TypeError) as reason:
+                raise NoValue from reason
+    return cast("_B", done[expr])
+
+
+def _rebuilt(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> sp.Basic:
+    """Put a part together again; relations stay unevaluated, for SymPy may think about them without end.
+
+    SymPy makes acot(−x) to −acot x, which is wrong at x = 0.
+    """
+    if isinstance(part, Relational) and not all(isinstance(a, sp.Rational | sp.Symbol) for a in inner):
+        return part.func(*inner, evaluate=False)
+    if isinstance(part, sp.acot) and inner[0].free_symbols:
+        return part.func(*inner, evaluate=False)
+    return part.func(*inner)
+
+
+def _too_long(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> bool:
+    """Tell whether SymPy may write out a power, factorial or sum of very many digits or terms."""
+    if isinstance(part, sp.Pow):
+        base, exponent = inner
+        new = exponent is not part.exp or (base.is_number and base not in (0, 1, -1))
+        return isinstance(exponent, sp.Rational) and abs(exponent) > LARGEST_WRITTEN and new
+    if isinstance(part, sp.exp) and inner[0].has(sp.log):
+        return any(abs(r) > LARGEST_WRITTEN for r in inner[0].atoms(sp.Rational))
+    if isinstance(part, sp.Function) and not isinstance(part, UNWRITTEN):
+        return any(isinstance(a, sp.Rational) and abs(a) > LARGEST_WRITTEN for a in inner)
+    return False
+
+
+def defined_nowhere(expr: sp.Basic) -> bool:
+    """Tell whether a part that is not a finite number leaves the whole without a value.
+
+    A piece that does not apply, a bound of a sum or an argument of Max that loses need not have one.
+    """
+    poisoned: set[sp.Basic] = set()
+    for part in anatomy([expr]).parts:  # what a part consists of comes before it
+        itself = part in NOT_NUMBERS or isinstance(part, sp.AccumBounds)
+        if itself or not (isinstance(part, LAZY) or poisoned.isdisjoint(part.args)):
+            poisoned.add(part)
+    return expr in poisoned

@@ -1,0 +1,1 @@
+from .budget import prove_in_worker as prove_in_worker

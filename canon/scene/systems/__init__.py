@@ -1,0 +1,1 @@
+"""The ready systems as data, one module a subject."""

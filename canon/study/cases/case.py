@@ -1,0 +1,210 @@
+"""One case of a study: everything that determines a run, its key, and the system and state it starts from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+from canon.flow.method.method import FixedStep, TimeTransformed
+from canon.scene import find
+from canon.study.cases.method_text import method_from, method_to
+from canon.study.motion.hamiltonian_text import Formula, hamiltonian_of
+from canon.version import __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from canon.flow.method.method import Method
+    from canon.flow.propagate import HamiltonianSystem
+
+__all__ = ["Case", "key_of", "method_from", "method_to", "parts_of", "versions"]
+
+LIBRARIES = ("heyoka", "llvmlite", "numpy", "scipy", "sympy")
+"""Libraries whose version may change a last digit."""
+
+STEPS_A_PART = 2**20
+"""Steps of fixed size in a part of a run: a fraction of a second for small systems, minutes for huge ones."""
+
+SAMPLES_A_PART = 128
+"""Samples in a part of a run with an adaptive method."""
+
+MOST_PARTS = 128
+"""Parts of a run with an adaptive method: to begin one costs some milliseconds."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run of one system from one state with one method.
+
+    Parameters
+    ----------
+    system
+        Name of a scene, or a Hamiltonian as text.
+    method
+        The method.
+    span
+        Duration in units of time.
+    samples
+        Samples the energy error is judged by.
+    start
+        Name of a start of the system, or a state (q, p); the system's first start where None.
+    parameters
+        Values that replace the system's own.
+    step, tolerance, precision
+        As :func:`canon.flow.propagate.propagate` takes them.
+    parts
+        Parts the run is made of, None for the usual number (:func:`parts_of`). Each begins anew from the exact
+        state the last one ended with, be the run interrupted there or not.
+    observables
+        What is judged beside the energy: names of constants, and names with formulas
+        (:func:`canon.study.cases.case_observables.observables_from`).
+    """
+
+    system: str | Formula
+    method: Method
+    span: float
+    samples: int = 4096
+    start: str | tuple[float, ...] | None = None
+    parameters: tuple[tuple[str, float], ...] = ()
+    step: float | None = None
+    tolerance: float | None = None
+    precision: str | None = None
+    parts: int | None = None
+    observables: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def system_name(self) -> str:
+        """What the system is called."""
+        return self.system.name if isinstance(self.system, Formula) else self.system
+
+    @property
+    def hamiltonian(self) -> HamiltonianSystem:
+        """The Hamiltonian, made once in a process."""
+        return (
+            hamiltonian_of(self.system) if isinstance(self.system, Formula) else find(self.system).hamiltonian
+        )
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The value of every parameter by name."""
+        if isinstance(self.system, Formula):
+            return {**dict(self.system.parameters), **dict(self.parameters)}
+        return find(self.system).with_parameters(**dict(self.parameters)).values
+
+    @property
+    def period(self) -> float | None:
+        """The period of a typical motion, None where none is known."""
+        if isinstance(self.system, Formula):
+            return self.system.period
+        return find(self.system).with_parameters(**dict(self.parameters)).period
+
+    @property
+    def state(self) -> tuple[float, ...]:
+        """The state (q, p) at the start, of length 2n."""
+        if isinstance(self.start, tuple):
+            return self.start
+        if isinstance(self.system, Formula):
+            return _start_of(self.system, self.start)
+        return _scene_state(self.system, self.start, self.parameters)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what JSON can hold of this case; floats survive exactly."""
+        fields = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        fields.pop("observables")
+        observables = {"observables": dict(self.observables)} if self.observables else {}
+        system = self.system.to_dict() if isinstance(self.system, Formula) else self.system
+        return {
+            **fields,
+            "system": system,
+            "method": method_to(self.method),
+            "parameters": dict(self.parameters),
+            **observables,
+        }
+
+    def to_text(self) -> str:
+        """Return the case as JSON, with the present versions of what computes it."""
+        return json.dumps({**self.to_dict(), "versions": versions()}, ensure_ascii=False)
+
+    @staticmethod
+    def from_dict(fields: Mapping[str, Any]) -> Case:
+        """Return the case that :meth:`to_dict` wrote."""
+        given: dict[str, Any] = {name: value for name, value in fields.items() if name != "versions"}
+        start, system = given.pop("start"), given.pop("system")
+        return Case(
+            system=system if isinstance(system, str) else Formula.from_dict(system),
+            method=method_from(given.pop("method")),
+            parameters=tuple(given.pop("parameters").items()),
+            start=tuple(start) if isinstance(start, list) else start,
+            observables=tuple(given.pop("observables", {}).items()),
+            **given,
+        )
+
+
+@lru_cache(maxsize=1)
+def versions() -> dict[str, str]:
+    """Return the versions that a result depends on."""
+    return {"canon": __version__, **{name: version(name) for name in LIBRARIES}}
+
+
+def key_of(case: Case) -> str:
+    """Return the SHA-256 of everything that determines the result: inputs, the system's defaults, versions.
+
+    Examples
+    --------
+    >>> from canon import RK4
+    >>> case = Case("kepler", RK4(), span=10.0, step=0.01)
+    >>> key_of(case) == key_of(Case("kepler", RK4(), span=10.0, step=0.01))
+    True
+    >>> key_of(case) == key_of(Case("kepler", RK4(), span=10.0, step=0.02))
+    False
+    """
+    start = None
+    if isinstance(case.system, str) and not isinstance(case.start, tuple):
+        start = asdict(find(case.system).start(case.start))
+    whole = {"case": case.to_dict(), "values": case.values, "start": start, "versions": versions()}
+    return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()
+
+
+def parts_of(case: Case) -> int:
+    """Return the number of parts a case is run in; it follows from the case alone.
+
+    A part has at most a million steps of fixed size, or 128 samples of an adaptive method unless that made over 128
+    parts, each of which costs some milliseconds to begin. A time-transformed method's run is one part.
+
+    Examples
+    --------
+    >>> from canon import RK4, Taylor
+    >>> parts_of(Case("kepler", RK4(), span=1e6, step=0.01)), parts_of(Case("kepler", Taylor(), span=1e6))
+    (96, 32)
+    """
+    if isinstance(case.method, TimeTransformed):
+        return 1  # the size of its steps follows from the state at the start of the whole run
+    if case.parts is not None:
+        return case.parts
+    if isinstance(case.method, FixedStep) and case.step is not None:
+        return max(1, math.ceil(case.span / case.step / STEPS_A_PART))
+    return min(MOST_PARTS, max(1, case.samples // SAMPLES_A_PART))
+
+
+def _start_of(system: Formula, name: str | None) -> tuple[float, ...]:
+    """Return the state of that name, or the first one."""
+    for known, state in system.starts:
+        if name in (None, known):
+            return state
+    named = ", ".join(known for known, _ in system.starts)
+    what = "a start; it has none" if name is None else f"no start {name!r}; there are: {named or 'none'}"
+    raise ValueError(
+        f"{system.name} {'needs' if name is None else 'has'} {what}; a state (q, p) in numbers will do as well"
+    )
+
+
+@lru_cache(maxsize=4096)
+def _scene_state(
+    scene: str, start: str | None, parameters: tuple[tuple[str, float], ...]
+) -> tuple[float, ...]:
+    return tuple(find(scene).with_parameters(**dict(parameters)).state(start).tolist())

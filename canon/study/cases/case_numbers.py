@@ -1,0 +1,75 @@
+"""What is kept of a finished case: how its energy, and what else was followed, drifted."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.method.number_formats import unit_round_off
+from canon.study.drift.drift import drift
+from canon.study.drift.envelope import envelope_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from canon.study.drift.drift import Drift
+    from canon.study.motion.observables import Observable
+
+    Array = NDArray[np.float64]
+
+__all__ = ["judged_energy", "judged_observable"]
+
+CURVE = 64
+"""Points of the curve of |ΔE| that is kept of a run."""
+
+
+def judged_energy(t: Array, change: Array, energy: float, steps: int, precision: str) -> dict[str, Any]:
+    """Return the numbers of the energy error along a run, as JSON can hold them.
+
+    Parameters
+    ----------
+    t, change
+        Times and H − H(start).
+    energy
+        H(start).
+    steps, precision
+        Of the run: what round-off is expected of it.
+    """
+    relative = energy != 0.0
+    error = change / (abs(energy) if relative else 1.0)
+    unit = unit_round_off(precision)
+    roundoff = unit * math.sqrt(steps) if relative else None
+    found = drift(t, error, roundoff=roundoff, resolution=unit)
+    curve = envelope_of(t, error, CURVE)
+    return {
+        **_numbers(found),
+        "relative": relative,
+        "means": {"t": found.blocks.t.tolist(), "mean": found.blocks.mean.tolist()},
+        "curve": {} if curve is None else {name: x.tolist() for name, x in curve.items()},
+    }
+
+
+def judged_observable(t: Array, change: Sequence[float], of: Observable, precision: str) -> dict[str, Any]:
+    """Return the same for another observable, without curve and means."""
+    found = drift(t, np.array(change) / of.unit, resolution=unit_round_off(precision))
+    return {**_numbers(found), "relative": of.relative}
+
+
+def _numbers(found: Drift) -> dict[str, Any]:
+    return {
+        "verdict": found.verdict.value,
+        "reason": found.reason,
+        "bound": found.bound,
+        "slope": found.slope,
+        "slope_error": found.slope_error,
+        "amplitude_slope": found.amplitude_slope,
+        "amplitude_slope_error": found.amplitude_slope_error,
+        "exponent": found.exponent,
+        "exponent_interval": list(found.exponent_interval),
+        "detection_limit": found.detection_limit,
+        "walk": found.walk,
+    }

@@ -1,0 +1,85 @@
+"""What a case follows beside the energy: constants by name, and functions of (q, p, t) as text."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.scene import find
+from canon.study.errors import StudyError
+from canon.study.motion.hamiltonian_text import Formula
+from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, observables_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from sympy import Expr, Symbol
+
+    from canon.study.cases.case import Case
+
+__all__ = ["followed", "observables_from"]
+
+
+def observables_from(written: Any) -> tuple[tuple[str, str], ...]:
+    """Return names and formulas of observables from what a study says; the energy, always judged, is left out.
+
+    Parameters
+    ----------
+    written
+        A name, or a list of names (formula empty) and of tables ``{ name = "formula" }``.
+
+    Examples
+    --------
+    >>> observables_from(["energy", "momenta", {"area": "x*p_y - y*p_x"}])
+    (('momenta', ''), ('area', 'x*p_y - y*p_x'))
+    """
+    found: dict[str, str] = {}
+    for each in written if isinstance(written, list | tuple) else [written]:
+        table = {each: ""} if isinstance(each, str) else each
+        if not isinstance(table, dict) or not all(
+            isinstance(part, str) for part in (*table, *table.values())
+        ):
+            raise TypeError(f'an observable is a name or a table {{ name = "formula" }}, not {each!r}')
+        found.update(table)
+    if SYMPLECTICITY in found:
+        raise ValueError("studies do not follow the symplecticity; 'canon drift' does")
+    return tuple((name, text) for name, text in found.items() if name != ENERGY)
+
+
+@lru_cache(maxsize=64)
+def followed(case: Case) -> tuple[Observable, ...]:
+    """Return the observables of a case beside the energy.
+
+    Raises
+    ------
+    StudyError
+        Where there is no observable of a name, or a formula can't be read.
+    """
+    if not case.observables:
+        return ()
+    hamiltonian, y0 = case.hamiltonian, np.array(case.state)
+    values: Mapping[Symbol | str, float] = {**case.values}
+    named = [name for name, text in case.observables if not text]
+    written = {name: _read(case, name, text) for name, text in case.observables if text}
+    system = hamiltonian if isinstance(case.system, Formula) else find(case.system)
+    found = observables_of(system, hamiltonian, named, y0, values) if named else ()
+    own = observables_of(system, hamiltonian, written, y0, values) if written else ()
+    return (*found, *own)
+
+
+def _read(case: Case, name: str, text: str) -> Expr:
+    from canon.expression.parse import LanguageError, Scope, parse_expression
+    from canon.expression.symbols.symbol import parameters
+
+    constants: tuple[Symbol, ...]
+    if isinstance(case.system, Formula):
+        constants = tuple(parameters(constant)[0] for constant, _ in case.system.parameters)
+    else:
+        constants = tuple(find(case.system).values_by_symbol())
+    symbols = (*case.hamiltonian.q, *case.hamiltonian.p, *constants)
+    try:
+        return parse_expression(text, Scope({symbol.name: symbol for symbol in symbols}))
+    except LanguageError as error:
+        raise StudyError(f"the observable {name!r}: {error}") from error

@@ -1,0 +1,308 @@
+"""A run in parts: from one exact state to the next, so that it can stop anywhere and go on as if it had not.
+
+Every run of a study is made of parts, each of which begins anew with the exact state (high and low part) that the
+one before ended with. An uninterrupted run goes through the same parts; therefore a resumed one gives the same
+numbers bit for bit, with every method, heyoka's included. Where the clock stops a leg is of no consequence.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+import warnings
+from dataclasses import asdict, dataclass, field, replace
+from fractions import Fraction
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.method.method import FixedStep, TimeTransformed
+from canon.flow.propagate import propagate
+from canon.flow.run.observables_along import AccuracyWarning
+from canon.flow.run.sampling_plan import steps_over
+from canon.study.cases.case import parts_of
+from canon.study.cases.case_numbers import judged_energy, judged_observable
+from canon.study.cases.case_observables import followed
+from canon.study.drift.sample_times import is_resolved, scattered
+from canon.study.motion.extended_phase_space import driven
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from canon.flow.trajectory import Trajectory
+    from canon.study.cases.case import Case
+    from canon.study.motion.extended_phase_space import Driven
+    from canon.study.motion.observables import Observable
+
+__all__ = ["Checkpoint", "FailedRun", "Outcome", "advance", "started"]
+
+FEWEST_A_PERIOD = 8.0
+"""Samples in a period that are enough to see what happens in it, where the period is known."""
+
+INTERVALS, FINE = 16, 512
+"""Intervals between samples that are looked at where it is not, and looks in each."""
+
+
+class FailedRun(ArithmeticError):
+    """The run of a case can't be continued; the reason is a result, and so is the time it took.
+
+    Parameters
+    ----------
+    seconds
+        Processor time up to there.
+    """
+
+    def __init__(self, reason: str, seconds: float) -> None:
+        super().__init__(reason)
+        self.seconds = seconds
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """A run after some of its parts: all that is needed to go on.
+
+    Parameters
+    ----------
+    part
+        Parts done.
+    state, carried
+        The state is state + carried, each of length 2n; with time and work (:mod:`canon.study.motion.extended_phase_space`) where H
+        depends on the time.
+    energy
+        H at the start of the run.
+    t, change
+        The samples so far: times, and H − H(start), less the work done from outside.
+    steps, evaluations, seconds
+        Cost so far; the processor time is that of the steps and of keeping samples.
+    step, precision
+        As the run has them.
+    changes
+        The samples of what is followed beside the energy, by name.
+    even
+        Whether the samples stand at equal distances (:mod:`canon.study.drift.sample_times`).
+    """
+
+    part: int
+    state: tuple[float, ...]
+    carried: tuple[float, ...]
+    energy: float = math.nan
+    t: tuple[float, ...] = ()
+    change: tuple[float, ...] = ()
+    steps: int = 0
+    evaluations: int = 0
+    seconds: float = 0.0
+    step: float | None = None
+    precision: str = ""
+    changes: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
+    even: bool = True
+
+    def to_text(self) -> str:
+        """Return the checkpoint as JSON; floats survive exactly."""
+        return json.dumps(asdict(self))
+
+    @staticmethod
+    def from_text(text: str) -> Checkpoint:
+        """Return the checkpoint that :meth:`to_text` wrote."""
+        fields: dict[str, Any] = json.loads(text)
+        for name in ("state", "carried", "t", "change"):
+            fields[name] = tuple(fields[name])
+        fields["changes"] = {name: tuple(x) for name, x in fields["changes"].items()}
+        return Checkpoint(**fields)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What is kept of a finished run: its numbers, exactly; not its samples.
+
+    Parameters
+    ----------
+    numbers
+        What depends on the case alone, as JSON can hold it.
+    seconds
+        Processor time.
+    """
+
+    numbers: dict[str, Any]
+    seconds: float
+
+
+def started(case: Case) -> Checkpoint:
+    """Return the checkpoint at the start of a case."""
+    timed = _with_time(case)
+    state = case.state if timed is None else tuple(timed.state(np.array(case.state)).tolist())
+    return Checkpoint(0, state, (0.0,) * len(state))
+
+
+@lru_cache(maxsize=64)
+def _with_time(case: Case) -> Driven | None:
+    """Return the motion with its time as a coordinate where H depends on the time, None where it does not."""
+    hamiltonian = case.hamiltonian
+    return driven(hamiltonian) if hamiltonian.t in hamiltonian.H.free_symbols else None
+
+
+def advance(case: Case, reached: Checkpoint | None = None, seconds: float = math.inf) -> Checkpoint | Outcome:
+    """Run a case on from a checkpoint, for so many seconds or to its end.
+
+    Parameters
+    ----------
+    case
+        The case.
+    reached
+        Where to go on; the start if left out.
+    seconds
+        Time after which the next checkpoint is handed back; at least one part is run.
+
+    Raises
+    ------
+    FailedRun
+        The motion can't be continued, or its error can't be judged.
+
+    Examples
+    --------
+    >>> from canon import RK4
+    >>> from canon.study.cases.case import Case
+    >>> case = Case("henon-heiles", RK4(), span=400.0, step=0.1, samples=600, parts=3)
+    >>> first = advance(case, seconds=0.0)
+    >>> second = advance(case, Checkpoint.from_text(first.to_text()), seconds=0.0)
+    >>> advance(case, second).numbers == advance(case).numbers
+    True
+    """
+    now, end = time.monotonic(), parts_of(case)
+    spent = 0.0 if reached is None else reached.seconds
+    try:
+        point = started(case) if reached is None else reached
+        while point.part < end:
+            point = _next(case, point, end)
+            spent = point.seconds
+            if point.part < end and time.monotonic() - now >= seconds:
+                return point
+        return Outcome(_numbers(case, point), point.seconds)
+    except (ArithmeticError, ValueError, RuntimeError) as error:
+        raise FailedRun(str(error), spent) from error
+
+
+def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
+    """Return the checkpoint after one more part."""
+    if point.part == 0:
+        point = replace(point, even=_evenly(case))
+    found = _part(case, point, end)
+    before = point.change[-1] if point.change else 0.0
+    first = 0 if point.part == 0 else 1  # the first sample of a part is the last one of the part before
+    change = tuple((before + found.energy_change).tolist())
+    changes = {
+        name: (*(done := point.changes.get(name, ())), *((done[-1] if done else 0.0) + new[first:]).tolist())
+        for name, new in found.changes.items()
+    }
+    return replace(
+        point,
+        part=point.part + 1,
+        state=tuple(found.y[:, -1].tolist()),
+        carried=tuple(found.carried[:, -1].tolist()),
+        energy=float(found.energy[0]) if point.part == 0 else point.energy,
+        t=point.t + tuple(found.t[first:].tolist()),
+        change=point.change + change[first:],
+        changes=changes,
+        steps=point.steps + found.steps,
+        evaluations=point.evaluations + found.evaluations,
+        seconds=point.seconds + found.cpu_seconds,
+        step=found.step,
+        precision=found.precision,
+    )
+
+
+def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
+    """Run the part that follows a checkpoint."""
+    state = [Fraction(a) + Fraction(b) for a, b in zip(point.state, point.carried, strict=True)]
+    edges = np.linspace(0, case.samples, end + 1).round().astype(int)
+    samples = max(1, int(edges[point.part + 1] - edges[point.part]))
+    if isinstance(case.method, FixedStep):
+        span, step = _whole_steps(case, point.part, end)
+    else:
+        ends = np.linspace(0.0, case.span, end + 1)
+        span, step = (Fraction(ends[point.part]), Fraction(ends[point.part + 1])), case.step
+    times = None if point.even else _between(span, samples, seed=point.part)
+    along, timed = followed(case), _with_time(case)
+    if timed is not None:
+        along = tuple(map(timed.observable, along))
+    return _run(case, state, span, step, samples, times, along)
+
+
+def _run(
+    case: Case,
+    state: Sequence[Fraction | float],
+    span: tuple[Fraction, Fraction],
+    step: float | None,
+    samples: int,
+    times: Sequence[float] | None = None,
+    along: Sequence[Observable] = (),
+) -> Trajectory:
+    timed = _with_time(case)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
+        return propagate(
+            case.hamiltonian if timed is None else timed.hamiltonian,
+            np.array(state, dtype=object),
+            span,  # pyright: ignore[reportArgumentType] - times may be exact
+            method=case.method,
+            step=step,
+            tolerance=case.tolerance,
+            precision=case.precision,
+            parameters={**case.values},
+            samples=samples if times is None else None,
+            times=times,
+            observables={of.name: of.expression for of in along if of.expression is not None},
+        )
+
+
+def _evenly(case: Case) -> bool:
+    """Tell whether even samples do, from the period where it is known, else from a look at the first few intervals."""
+    interval = case.span / case.samples
+    if isinstance(case.method, TimeTransformed):
+        return True  # even in steps, which vary with the motion; landing at scattered times would cost more than they
+    if (period := case.period) is not None and interval * FEWEST_A_PERIOD <= period:
+        return True
+    every, step = FINE, case.step
+    if isinstance(case.method, FixedStep):
+        _, step = _whole_steps(case, 0, 1)
+        every = min(FINE, round(interval / step))
+    if every < 2:
+        return True
+    seen = min(INTERVALS, case.samples)
+    found = _run(case, started(case).state, (Fraction(0), Fraction(seen * interval)), step, seen * every)
+    return is_resolved(found.energy_change, every)
+
+
+def _between(span: tuple[Fraction, Fraction], samples: int, seed: int) -> list[float]:
+    """Return scattered times inside a span."""
+    first, last = span
+    return [t for t in scattered(float(first), float(last), samples, seed).tolist() if first < t < last]
+
+
+def _whole_steps(case: Case, part: int, end: int) -> tuple[tuple[Fraction, Fraction], float]:
+    """Return first and last time of a part and the step, so that all parts take steps of the same exact size."""
+    steps = steps_over(Fraction(0), Fraction(case.span), case.step, case.method)
+    if steps < end:
+        raise ValueError(f"{steps} steps can't be run in {end} parts: ask for fewer")
+    h = Fraction(case.span) / steps
+    first, last = (steps * k // end for k in (part, part + 1))
+    return (first * h, last * h), float(h)
+
+
+def _numbers(case: Case, point: Checkpoint) -> dict[str, Any]:
+    """Judge a run that reached its end."""
+    t, timed = np.array(point.t), _with_time(case)
+    energy = judged_energy(t, np.array(point.change), point.energy, point.steps, point.precision)
+    others = {
+        of.name: judged_observable(t, point.changes[of.name], of, point.precision) for of in followed(case)
+    }
+    return {
+        **energy,
+        "step": point.step,
+        "steps": point.steps,
+        "evaluations": point.evaluations,
+        "precision": point.precision,
+        "final": list(point.state) if timed is None else timed.original(np.array(point.state)).tolist(),
+        **({"observables": others} if others else {}),
+    }

@@ -1,0 +1,207 @@
+"""A study as a table for other programs: CSV, Parquet, and xarray datasets for NetCDF files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.study.cases.result import results_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    import xarray
+    from numpy.typing import NDArray
+
+    from canon.study.cases.result import Result
+    from canon.study.cases.store import Store
+
+__all__ = ["ExportError", "csv_of", "dataset_of", "rows_of", "write_netcdf", "write_parquet"]
+
+TEXTS = ("key", "state", "system", "start", "method", "precision", "verdict", "reason", "failure", "inputs")
+"""Columns of text."""
+
+
+INPUTS = ("key", "system", "start", "method", "step", "tolerance", "precision", "span", "samples")
+"""Columns that say which case it is: coordinates of a dataset, to choose and to group by."""
+
+
+OF_OBSERVABLES = ("verdict", "bound", "slope", "slope_error", "detection_limit", "exponent", "walk")
+"""What there is a column for of each observable beside the energy: ``NAME verdict`` and so on."""
+
+
+class ExportError(ImportError):
+    """A library that writes this format is not installed."""
+
+
+def rows_of(store: Store) -> list[dict[str, Any]]:
+    """Return one flat row a case, pending and failed ones included; None where there is no number.
+
+    Columns are the inputs (a column ``parameter NAME`` each changed parameter), the numbers of
+    :class:`canon.study.drift.drift.Drift`, the cost, ``final`` (the last state), ``failure``, and all inputs with the
+    versions as JSON in ``inputs``.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from canon import Study, run_study
+    >>> from canon.study.cases.store import Store
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     store = Store(f"{folder}/study.sqlite")
+    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=[0.1, 0.2], until=200.0), store)
+    ...     [(row["method"], row["steps"], row["verdict"]) for row in rows_of(store)]
+    [('RK4', 2000, 'secular'), ('RK4', 1000, 'secular')]
+    """
+    return [_row(result) for result in results_of(store)]
+
+
+def csv_of(store: Store) -> str:
+    """Return all cases of a store as CSV: one line a case, pending and failed ones included.
+
+    Floats are written so that they read back exactly; lists are JSON inside their cell.
+    """
+    rows = rows_of(store)
+    written = io.StringIO()
+    table = csv.DictWriter(written, _columns(rows), restval="", lineterminator="\n")
+    table.writeheader()
+    table.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+    return written.getvalue()
+
+
+def write_parquet(store: Store, path: Path) -> None:
+    """Write all cases of a store as a Parquet file, with the types of the columns and lists as lists.
+
+    Raises
+    ------
+    ExportError
+        Where pyarrow is not installed.
+    """
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError as missing:
+        raise ExportError("Parquet needs pyarrow: pip install canon-mechanics[export]") from missing
+    rows = rows_of(store)
+    table = pyarrow.table(
+        {
+            name: pyarrow.array([row.get(name) for row in rows], _arrow_type(name, pyarrow))
+            for name in _columns(rows)
+        }
+    )
+    pyarrow.parquet.write_table(table, path)
+
+
+def dataset_of(store: Store) -> xarray.Dataset:
+    """Return a study as an xarray dataset along ``case``, block means along ``block``, curves along ``point``.
+
+    Missing numbers are NaN, as NetCDF has it; ``state`` and ``failure`` say why they are missing.
+
+    Raises
+    ------
+    ExportError
+        Where xarray is not installed.
+    """
+    try:
+        import xarray
+    except ImportError as missing:
+        raise ExportError("NetCDF needs xarray: pip install canon-mechanics[export]") from missing
+    rows, results = rows_of(store), results_of(store)
+    variables: dict[str, Any] = {}
+    for name in _columns(rows):
+        values = [row.get(name) for row in rows]
+        if _is_text(name):
+            variables[_plain(name)] = ("case", [value or "" for value in values])
+        elif name != "final":
+            variables[_plain(name)] = (
+                "case",
+                [math.nan if v is None else float(v) for v in values],
+            )
+    finals = [row.get("final") or [] for row in rows]
+    variables["final"] = (("case", "component"), _table(finals))
+    for group, dimension in (("means", "block"), ("curve", "point")):
+        for name in ("t", "mean") if group == "means" else ("t", "largest", "median"):
+            series = [result.numbers.get(group, {}).get(name, []) for result in results]
+            variables[f"{group}_{name}"] = (("case", dimension), _table(series))
+    inputs = [name for name in variables if name in INPUTS or name.startswith("parameter_")]
+    return xarray.Dataset(variables).set_coords(inputs)
+
+
+def write_netcdf(store: Store, path: Path) -> None:
+    """Write a study as a NetCDF file of version 3, which every reader knows; see :func:`dataset_of`."""
+    dataset_of(store).to_netcdf(path, engine="scipy")
+
+
+def _row(result: Result) -> dict[str, Any]:
+    case, numbers = result.case, dict(result.numbers)
+    numbers.pop("means", None)
+    numbers.pop("curve", None)
+    low, high = numbers.pop("exponent_interval", (None, None))
+    others = numbers.pop("observables", {})
+    start = json.dumps(list(case.start)) if isinstance(case.start, tuple) else case.start
+    return {
+        "key": result.key,
+        "state": result.state.value,
+        "system": case.system_name,
+        "start": start or "",
+        **{f"parameter {name}": value for name, value in case.parameters},
+        "method": str(case.method),
+        "step": case.step,
+        "tolerance": case.tolerance,
+        "precision": case.precision or "",
+        "span": case.span,
+        "samples": case.samples,
+        **numbers,
+        "exponent_low": low,
+        "exponent_high": high,
+        **{f"{name} {part}": found[part] for name, found in others.items() for part in OF_OBSERVABLES},
+        "seconds": result.seconds,
+        "done": result.done,
+        "failure": result.failure,
+        "inputs": json.dumps({**case.to_dict(), "versions": dict(result.versions)}, ensure_ascii=False),
+    }
+
+
+def _plain(name: str) -> str:
+    """Return a name in the letters that NetCDF files of version 3 have."""
+    return re.sub(r"[^0-9A-Za-z_]+", "_", name)
+
+
+def _is_text(name: str) -> bool:
+    return name in TEXTS or name.endswith(" verdict")
+
+
+def _columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return every column that a row has, in the order of the fullest row."""
+    fullest = max(rows, key=len, default={})
+    return list(dict.fromkeys([*fullest, *(name for row in rows for name in row)]))
+
+
+def _cell(value: Any) -> Any:
+    if value is None:
+        return ""
+    return json.dumps(value) if isinstance(value, dict | list) else value
+
+
+def _arrow_type(name: str, pyarrow: Any) -> Any:
+    if _is_text(name):
+        return pyarrow.string()
+    if name == "final":
+        return pyarrow.list_(pyarrow.float64())
+    if name == "relative":
+        return pyarrow.bool_()
+    return pyarrow.int64() if name in ("samples", "steps", "evaluations") else pyarrow.float64()
+
+
+def _table(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
+    """Return rows of one length, the short ones filled up with NaN."""
+    found = np.full((len(rows), max(map(len, rows), default=0)), np.nan)
+    for k, row in enumerate(rows):
+        found[k, : len(row)] = row
+    return found

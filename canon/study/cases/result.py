@@ -1,0 +1,109 @@
+"""What a study's file says of each case: its inputs, its numbers or why there are none."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from canon.study.cases.case import Case, parts_of
+from canon.study.cases.store import Store
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["Result", "State", "results_of"]
+
+
+class State(Enum):
+    """What became of a case."""
+
+    FINISHED = "finished"
+    FAILED = "failed"
+    PENDING = "pending"
+
+
+@dataclass(frozen=True)
+class Result:
+    """One case of a study and what became of it.
+
+    Parameters
+    ----------
+    key
+        Its key.
+    case
+        Its inputs.
+    state
+        Whether it finished, failed, or is pending.
+    numbers
+        The outcome by name, empty unless it finished; :class:`canon.study.drift.drift.Drift` has the meanings.
+    failure
+        Why it failed, else empty.
+    seconds
+        Processor time; None while it is pending.
+    done
+        Fraction of the run that is done.
+    versions
+        Versions of canon and the libraries that computed it, or are to.
+    """
+
+    key: str
+    case: Case
+    state: State
+    numbers: Mapping[str, Any]
+    failure: str = ""
+    seconds: float | None = None
+    done: float = 1.0
+    versions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __repr__(self) -> str:
+        return f"<Result: {self.motion}; {self.setting}: {self.state.value}>"
+
+    @property
+    def motion(self) -> str:
+        """System, parameters and start in words: what all methods are compared on."""
+        start = self.case.start
+        shown = ", ".join(f"{x:g}" for x in start) if isinstance(start, tuple) else start
+        values = ", ".join(f"{name} = {value:g}" for name, value in self.case.parameters)
+        return "; ".join(part for part in (self.case.system_name, values, shown and f"from {shown}") if part)
+
+    @property
+    def setting(self) -> str:
+        """Method, step, tolerance and precision in words."""
+        case = self.case
+        step = f"h = {case.step:.4g}" if case.step is not None else ""
+        tolerance = f"ε = {case.tolerance:.0e}" if case.tolerance is not None else ""
+        return ", ".join(part for part in (str(case.method), step, tolerance, case.precision) if part)
+
+
+def results_of(store: Store | str | Path) -> list[Result]:
+    """Return every case of a file and what became of it, in the order they were added.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from canon import Study, run_study
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = f"{folder}/study.sqlite"
+    ...     _ = run_study(Study.of(system="henon-heiles", method="verlet", step=0.1, until=200.0), file)
+    ...     [(result.state.value, result.setting, result.numbers["verdict"]) for result in results_of(file)]
+    [('finished', 'verlet, h = 0.1', 'bounded')]
+    """
+    store = store if isinstance(store, Store) else Store(Path(store))
+    records, parts = store.records(), store.parts_done()
+    found: list[Result] = []
+    for key, inputs in store.cases().items():
+        written, record = json.loads(inputs), records.get(key)
+        case, by = Case.from_dict(written), MappingProxyType(written.get("versions", {}))
+        if record is None:
+            done = parts.get(key, 0) / parts_of(case)
+            found.append(Result(key, case, State.PENDING, {}, done=done, versions=by))
+        elif record.failure:
+            found.append(Result(key, case, State.FAILED, {}, record.failure, record.seconds, versions=by))
+        else:
+            numbers = json.loads(record.outcome)
+            found.append(Result(key, case, State.FINISHED, numbers, "", record.seconds, versions=by))
+    return found

@@ -1,0 +1,235 @@
+"""Running a study on any executor: what is finished is kept, what was interrupted goes on where it stopped."""
+
+from __future__ import annotations
+
+import json
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from canon.study.cases.case import Case, key_of, parts_of, versions
+from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance
+from canon.study.cases.store import Record, Store
+from canon.study.errors import StudyError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from canon.study.cases.study import Study
+
+__all__ = ["Status", "resume", "run_study", "status_of"]
+
+IN_FLIGHT = 256
+"""Cases handed to an executor at a time where it is not known how many it can run."""
+
+CHECKPOINT_SECONDS = 30.0
+"""How long a case runs before its state is kept: what a kill may cost at most, one part of the run aside."""
+
+
+@dataclass(frozen=True)
+class Status:
+    """How far a study is; ``begun`` of the pending cases have a checkpoint, ``partly`` cases' worth is done of them.
+
+    ``partly`` is known while a study runs, to whoever runs it.
+    """
+
+    finished: int
+    failed: int
+    pending: int
+    begun: int = 0
+    partly: float = 0.0
+
+    @property
+    def total(self) -> int:
+        """All cases."""
+        return self.finished + self.failed + self.pending
+
+    def __str__(self) -> str:
+        begun = f" ({self.begun} begun)" if self.begun else ""
+        return f"{self.total} cases: {self.finished} finished, {self.failed} failed, {self.pending} pending{begun}"
+
+
+def run_study(
+    study: Study,
+    store: Store | str | Path,
+    executor: Executor | None = None,
+    progress: Callable[[Status], None] | None = None,
+    checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    in_flight: int | None = None,
+) -> Status:
+    """Run the cases of a study that are not finished yet, and keep each one as soon as it is.
+
+    Parameters
+    ----------
+    study
+        The cases.
+    store
+        The file that keeps them.
+    executor
+        Where to run: a process pool, ``dask.distributed``'s ``Client.get_executor()``,
+        ``mpi4py.futures``; this process if left out. Only this process writes to the file.
+    progress
+        Called with the status after each case and checkpoint.
+    checkpoint_seconds
+        Time between checkpoints of a case. Results do not depend on it.
+    in_flight
+        How many cases are handed to the executor at a time. They take turns from checkpoint to checkpoint, so give
+        little more than it has workers; a pool of this machine tells, for others it is 256 if left out.
+
+    Returns
+    -------
+    Status
+        How many cases of the whole file finished, failed, and are pending.
+
+    Raises
+    ------
+    StudyError
+        Where workers of the executor died; what was finished is kept, run again to go on.
+    StoreError
+        Where the file can't be written.
+    """
+    kept = store if isinstance(store, Store) else Store(Path(store))
+    keyed = {key_of(case): case for case in study.cases}
+    kept.add_cases({key: case.to_text() for key, case in keyed.items()})
+    _run(keyed, kept, executor, progress, checkpoint_seconds, in_flight)
+    return status_of(kept)
+
+
+def resume(
+    store: Store | str | Path,
+    executor: Executor | None = None,
+    progress: Callable[[Status], None] | None = None,
+    checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    in_flight: int | None = None,
+) -> Status:
+    """Run the pending cases of a file; see :func:`run_study`."""
+    kept = store if isinstance(store, Store) else Store(Path(store))
+    cases = kept.cases()
+    written = {key: Case.from_dict(json.loads(cases[key])) for key in kept.pending()}
+    for key, case in written.items():
+        if key_of(case) != key:
+            then = json.loads(cases[key]).get("versions", {})
+            other = ", ".join(
+                f"{name} {number}" for name, number in then.items() if number != versions().get(name)
+            )
+            raise StudyError(
+                f"{kept.path} was begun with other versions ({other or 'not known'}); resume with those, "
+                "or run the study again to have all cases with the present ones"
+            )
+    _run(written, kept, executor, progress, checkpoint_seconds, in_flight)
+    return status_of(kept)
+
+
+def status_of(store: Store) -> Status:
+    """Return how many cases of a file finished, failed, and are pending."""
+    return Status(*store.counts())
+
+
+def leg_of(key: str, case: Case, reached: Checkpoint | None, seconds: float) -> Checkpoint | Record:
+    """Run a case on and return its next checkpoint or its record; this is what workers do."""
+    try:
+        found = advance(case, reached, seconds)
+    except FailedRun as failed:
+        return Record(key, "", str(failed), failed.seconds)
+    if isinstance(found, Outcome):
+        return Record(key, json.dumps(found.numbers), "", found.seconds)
+    return found
+
+
+def _run(
+    cases: Mapping[str, Case],
+    store: Store,
+    executor: Executor | None,
+    progress: Callable[[Status], None] | None,
+    seconds: float,
+    in_flight: int | None,
+) -> None:
+    if in_flight is not None and in_flight < 1:
+        raise StudyError(f"in_flight = {in_flight}: hand at least one case to the executor")
+    if not seconds >= 0.0:
+        raise StudyError(f"checkpoint_seconds = {seconds}: give a time, 0 or more")
+    pending = _not_finished(cases, store)
+    done: dict[str, float] = {}
+    if executor is None:
+        coming = _here(pending, seconds)
+    else:
+        coming = _on(executor, pending, seconds, in_flight or _room(executor))
+    for key, found in coming:
+        if isinstance(found, Record):
+            store.save(found)
+            done.pop(key, None)
+        else:
+            store.save_checkpoint(key, found.part, found.to_text())
+            done[key] = found.part / parts_of(cases[key])
+        if progress is not None:
+            progress(replace(status_of(store), partly=sum(done.values())))
+
+
+def _not_finished(cases: Mapping[str, Case], store: Store) -> Iterator[tuple[str, Case, Checkpoint | None]]:
+    """Yield each case with its checkpoint when its turn comes, unless another process finished it meanwhile."""
+    for key, case in cases.items():
+        if not store.is_finished(key):
+            point = store.checkpoint(key)
+            yield key, case, None if point is None else Checkpoint.from_text(point)
+
+
+def _here(
+    pending: Iterator[tuple[str, Case, Checkpoint | None]], seconds: float
+) -> Iterator[tuple[str, Checkpoint | Record]]:
+    for key, case, reached in pending:
+        found = leg_of(key, case, reached, seconds)
+        while isinstance(found, Checkpoint):
+            yield key, found
+            found = leg_of(key, case, found, seconds)
+        yield key, found
+
+
+def _room(executor: Executor) -> int:
+    """Return how many cases keep an executor busy: one more than the workers of a pool, if it tells their number."""
+    workers = getattr(executor, "_max_workers", None)
+    return workers + 1 if isinstance(workers, int) else IN_FLIGHT
+
+
+def _on(
+    executor: Executor,
+    pending: Iterator[tuple[str, Case, Checkpoint | None]],
+    seconds: float,
+    in_flight: int,
+) -> Iterator[tuple[str, Checkpoint | Record]]:
+    """Yield what comes back, sending cases on from their checkpoints; where workers die, first what others did."""
+    flying: dict[Future[Checkpoint | Record], tuple[str, Case]] = {}
+    lost: list[str] = []
+
+    def send(key: str, case: Case, reached: Checkpoint | None) -> None:
+        try:
+            flying[executor.submit(leg_of, key, case, reached, seconds)] = key, case
+        except RuntimeError as error:  # BrokenExecutor among them: it takes no more work
+            lost.append(f"{type(error).__name__}: {error}")
+
+    try:
+        while True:
+            while not lost and len(flying) < in_flight and (following := next(pending, None)) is not None:
+                send(*following)
+            if not flying:
+                break
+            done, _ = wait(flying, return_when=FIRST_COMPLETED)
+            for future in done:
+                key, case = flying.pop(future)
+                if future.cancelled():
+                    lost.append("the executor gave a case back")
+                    continue
+                if (error := future.exception()) is not None:
+                    lost.append(f"{type(error).__name__}: {error}")
+                    continue
+                found = future.result()
+                if isinstance(found, Checkpoint) and not lost:
+                    send(key, case, found)
+                yield key, found
+    finally:
+        for future in flying:
+            future.cancel()
+    if lost:
+        raise StudyError(
+            f"workers died while they ran cases ({lost[0]}); what was finished is kept, run again to go on"
+        )

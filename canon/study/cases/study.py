@@ -1,0 +1,261 @@
+"""What a study is made of: systems × starts × parameters × methods × steps, from Python or a TOML file."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from canon.expression.symbols.user_input import counted
+from canon.flow.method.method import Stepped, Taylor
+from canon.scene import Scene, SceneError, find
+from canon.study.cases.case import Case, key_of, method_from
+from canon.study.cases.case_observables import followed, observables_from
+from canon.study.drift.drift import FEWEST
+from canon.study.drift.drift_study import ADAPTIVE_ONLY, SAMPLES_PER_PERIOD
+from canon.study.errors import StudyError
+from canon.study.motion.hamiltonian_text import Formula, formula_from, formula_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from canon.flow.method.method import Method
+
+__all__ = ["Study", "read_study"]
+
+AXES = ("system", "start", "method", "step", "steps_per_period", "tolerance", "precision")
+
+FEWEST_USUAL, MOST_SAMPLES = 4096, 2**15
+"""Samples of a run unless asked for: about 16 a period, within these limits."""
+
+LENGTHS = ("periods", "until", "samples", "parts", "parameters", "observables")
+
+
+@dataclass(frozen=True)
+class Study:
+    """A list of cases.
+
+    Parameters
+    ----------
+    cases
+        The cases, each of them once.
+
+    Examples
+    --------
+    >>> from canon import RK4, Splitting
+    >>> methods = [Splitting("verlet"), RK4()]
+    >>> len(Study.of(system=["kepler", "henon-heiles"], method=methods, step=[0.01, 0.02], periods=100.0).cases)
+    8
+    """
+
+    cases: tuple[Case, ...]
+
+    def __repr__(self) -> str:
+        systems = dict.fromkeys(case.system_name for case in self.cases)
+        methods = dict.fromkeys(str(case.method) for case in self.cases)
+        return f"<Study: {counted(len(self.cases), 'case')}; {', '.join(systems)}; {', '.join(methods)}>"
+
+    @staticmethod
+    def of(**axes: Any) -> Study:
+        """Return the study of every combination.
+
+        Parameters
+        ----------
+        **axes
+            ``system`` (a scene or its name, a :class:`canon.study.motion.hamiltonian_text.Formula`, a Hamiltonian), ``start``,
+            ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
+            of values (a state is a list in that list; steps are for methods of fixed step, tolerances for
+            the others); ``parameters``: a value or a list of values each; ``periods`` or ``until``,
+            ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
+            ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these.
+
+        Raises
+        ------
+        StudyError
+            Where a key is unknown or missing, or a system, start or parameter does not exist.
+        """
+        return Study(tuple(dict.fromkeys(_cases(axes, "the study", {}))))
+
+    def share(self, number: int, of: int) -> Study:
+        """Return the cases number, number + of, number + 2 of, … (counted from 1): one job's share of several.
+
+        Examples
+        --------
+        >>> whole = Study.of(system="kepler", method="rk4", step=[0.01, 0.02, 0.03], until=10.0)
+        >>> [case.step for case in whole.share(1, 2).cases], [case.step for case in whole.share(2, 2).cases]
+        ([0.01, 0.03], [0.02])
+        """
+        if not 1 <= number <= of:
+            raise StudyError(f"there is no share {number} of {of}: shares are counted from 1")
+        return Study(self.cases[number - 1 :: of])
+
+
+def read_study(path: str | Path) -> Study:
+    """Return the study that a TOML file describes.
+
+    Every ``[[study]]`` table is a product of its lists; a study may have several. A ``[system.NAME]`` table
+    is a Hamiltonian of one's own, as :func:`canon.study.motion.hamiltonian_text.formula_from` reads it.
+
+    Raises
+    ------
+    StudyError
+        With the file and the table, where something is wrong.
+    """
+    file = Path(path)
+    try:
+        written = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise StudyError(f"{file}: {error}") from error
+    tables, systems = written.pop("study", None), written.pop("system", {})
+    if written or not isinstance(tables, list) or not tables or not _tables(systems):
+        raise StudyError(
+            f"{file}: a study file holds [[study]] tables, [system.NAME] tables and nothing else"
+        )
+    try:
+        own = {name: formula_from(name, table) for name, table in systems.items()}
+    except StudyError as error:
+        raise StudyError(f"{file}, {error}") from error
+    found = [case for n, table in enumerate(tables, 1) for case in _cases(table, f"{file}, study {n}", own)]
+    return Study(tuple(dict.fromkeys(found)))
+
+
+def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> Iterator[Case]:
+    unknown = sorted(set(table) - {*AXES, *LENGTHS})
+    if unknown:
+        raise StudyError(f"{where}: unknown key {unknown[0]!r}; there are {', '.join((*AXES, *LENGTHS))}")
+    for name in ("system", "method"):
+        if name not in table:
+            raise StudyError(
+                f"{where}: {name!r} is missing; a study has at least system, method and a duration"
+            )
+    if ("periods" in table) == ("until" in table):
+        raise StudyError(f"{where}: give the duration as periods or as until, and not as both")
+    if "step" in table and "steps_per_period" in table:
+        raise StudyError(f"{where}: give step or steps_per_period, and not both")
+    try:
+        systems = [_system(each, own, table.get("parameters", {})) for each in _listed(table["system"])]
+        others = [_listed(table.get(name)) for name in AXES[1:]]
+        for system, parameters in product(systems, _settings(table.get("parameters", {}))):
+            for rest in product(*others):
+                yield _case(system, parameters, dict(zip(AXES[1:], rest, strict=True)), table)
+    except (SceneError, ValueError, TypeError, KeyError) as error:
+        raise StudyError(f"{where}: {error}") from error
+
+
+def _system(given: Any, own: Mapping[str, Formula], parameters: Mapping[str, Any]) -> str | Formula:
+    """Return a scene's name or a formula, whatever a system is given as; a Hamiltonian's parameters get values."""
+    if isinstance(given, Formula):
+        return given
+    if isinstance(given, str):
+        return own[given] if given in own else find(given).name
+    if isinstance(given, Scene):
+        changed = {k: v for k, v in given.values.items() if v != find(given.name).values[k]}
+        if changed:
+            raise ValueError(
+                f"give changed values of {given.name} as parameters, not inside the scene: {changed}"
+            )
+        return given.name
+    used = {str(symbol) for symbol in given.H.free_symbols}
+    first = {name: float(_listed(value)[0]) for name, value in parameters.items() if name in used}
+    return formula_of(given, parameters=first)
+
+
+def _settings(parameters: Any) -> list[tuple[tuple[str, float], ...]]:
+    """Return every combination of the parameters' values."""
+    names = sorted(parameters)
+    values = [[float(x) for x in _listed(parameters[name])] for name in names]
+    return [tuple(zip(names, chosen, strict=True)) for chosen in product(*values)]
+
+
+def _case(
+    system: str | Formula,
+    parameters: tuple[tuple[str, float], ...],
+    chosen: Mapping[str, Any],
+    table: Mapping[str, Any],
+) -> Case:
+    method = method_from(chosen["method"]) if isinstance(chosen["method"], str | dict) else chosen["method"]
+    stepped = isinstance(method, Stepped)
+    period = _period(system, parameters)
+    step = chosen["step"]
+    if chosen["steps_per_period"] is not None:
+        step = _known(period, "steps_per_period") / float(chosen["steps_per_period"])
+    if stepped and step is None:
+        raise ValueError(f"{method} needs a size of steps: give step or steps_per_period")
+    until = table.get("until")
+    span = float(until) if until is not None else float(table["periods"]) * _known(period, "periods")
+    start = chosen["start"]
+    case = Case(
+        system=system,
+        method=method,
+        span=span,
+        samples=int(table["samples"]) if "samples" in table else _usual_samples(span, period),
+        start=tuple(map(float, start)) if isinstance(start, list | tuple) else start,
+        parameters=parameters,
+        step=float(step) if stepped else None,
+        tolerance=None if stepped else chosen["tolerance"],
+        precision=_precision(method, chosen["precision"]),
+        parts=int(table["parts"]) if "parts" in table else None,
+        observables=observables_from(table.get("observables", ())),
+    )
+    _check(case)
+    return case
+
+
+def _precision(method: Method, wanted: Any) -> Any:
+    """Return the arithmetic a method takes: of those meant for fixed steps, the others take none."""
+    if isinstance(method, Stepped):
+        return wanted
+    return wanted if isinstance(method, Taylor) and wanted in ADAPTIVE_ONLY else None
+
+
+def _period(system: str | Formula, parameters: tuple[tuple[str, float], ...]) -> float | None:
+    if isinstance(system, Formula):
+        missing = [name for name, _ in parameters if name not in dict(system.parameters)]
+        if missing:
+            raise ValueError(f"{system.name} has no parameter {missing[0]!r}")
+        return system.period
+    return find(system).with_parameters(**dict(parameters)).period
+
+
+def _usual_samples(span: float, period: float | None) -> int:
+    """Return enough samples to see the oscillation of an error of which the period is known."""
+    wanted = 0.0 if period is None else SAMPLES_PER_PERIOD * span / period
+    return int(min(MOST_SAMPLES, max(FEWEST_USUAL, wanted)))
+
+
+def _known(period: float | None, what: str) -> float:
+    if period is None:
+        raise ValueError(
+            f"{what} needs the system's period: write period = … in its table, or use until and step"
+        )
+    return period
+
+
+def _check(case: Case) -> None:
+    """Raise ValueError where a case makes no sense, before anything is run."""
+    if not 0.0 < case.span < float("inf"):
+        raise ValueError(f"a run over a time of {case.span} makes no sense: give a positive, finite duration")
+    if case.step is not None and not 0.0 < case.step < float("inf"):
+        raise ValueError(f"a step of {case.step} makes no sense: give a positive, finite one")
+    if case.samples < FEWEST:
+        raise ValueError(f"{case.samples} samples are too few to judge growth: keep at least {FEWEST}")
+    if case.parts is not None and case.parts < 1:
+        raise ValueError(f"parts = {case.parts}: give a whole number, 1 or more")
+    if isinstance(case.system, Formula):
+        case.system.check(case.state, "a start")
+    elif isinstance(case.start, tuple):
+        n = len(find(case.system).q)
+        if len(case.start) != 2 * n:
+            raise ValueError(f"{case.system}: a start needs {2 * n} numbers (q, p), not {list(case.start)}")
+    key_of(case)  # names of starts are looked up
+    followed(case)
+
+
+def _listed(value: Any) -> list[Any]:
+    return list(value) if isinstance(value, list | tuple) else [value]
+
+
+def _tables(systems: Any) -> bool:
+    return isinstance(systems, dict) and all(isinstance(table, dict) for table in systems.values())

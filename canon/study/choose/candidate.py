@@ -1,0 +1,235 @@
+"""What may be chosen: the methods that apply, and one of them with what is expected of it over the whole span."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from sympy import Pow
+
+from canon.flow.checked_request import system_of
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
+from canon.flow.method.solvable_splitting import SABA, WisdomHolman
+from canon.flow.propagate import NonFiniteStateError, is_separable
+from canon.kernel.schemes.splitting_schemes import SCHEMES
+from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
+from canon.study.choose.choice_question import Question, Setting
+from canon.study.choose.error_law import expected_error, order_of
+from canon.study.choose.pilot_run import Pilot, pilot, seconds_per_time
+
+if TYPE_CHECKING:
+    from canon.flow.method.method import Method
+    from canon.kernel.program.hamilton_equations import Equations
+
+__all__ = [
+    "HOPELESS",
+    "MARGIN",
+    "PILOTS",
+    "Candidate",
+    "Try",
+    "by_order",
+    "candidate_methods",
+    "candidate_of",
+    "nothing",
+    "tried_with",
+]
+
+MARGIN = 0.85
+"""Share of the accuracy that is aimed at; what is above this and below one is taken as it is."""
+
+PILOTS = 9
+"""Pilot runs a method gets at most."""
+
+HOPELESS = 4.0
+"""How many times dearer than the best so far a method may be expected to be before its search ends."""
+
+IN_FICTITIOUS_TIME = ("verlet", "blanes-moan-6", "kahan-li-8")
+"""Splittings that are considered with steps that vary along the orbit: Verlet's puts Kepler's motion on its ellipse."""
+
+DENSEST = 8
+"""How many times the operations of the force a drift by a matrix may take: about what its larger steps can gain."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A method at the step or tolerance it needs, or why it does not reach the accuracy.
+
+    Parameters
+    ----------
+    method, step, tolerance, precision
+        As :func:`canon.flow.propagate.propagate` takes them; a step or tolerance is None where the method
+        has the other.
+    predicted_error
+        Largest error expected over the span.
+    predicted_cost
+        Processor seconds expected of the steps.
+    evaluations
+        Evaluations of the force expected (Taylor: of the series).
+    keeps
+        Whether the accuracy is expected to be kept.
+    resonant
+        Whether a neighbouring step was resonant and had to be avoided.
+    note
+        What else there is to say.
+    """
+
+    method: Method
+    step: float | None
+    tolerance: float | None
+    precision: str
+    predicted_error: float
+    predicted_cost: float
+    evaluations: float
+    keeps: bool
+    resonant: bool = False
+    note: str = ""
+
+    def __repr__(self) -> str:
+        step = f", step {self.step:.4g}" if self.step is not None else ""
+        tolerance = f", tol {self.tolerance:.2g}" if self.tolerance is not None else ""
+        kept = "kept" if self.keeps else "not kept"
+        error = f"error {self.predicted_error:.1e}"
+        return f"<Candidate: {self.method}{step}{tolerance}, {self.precision}: {kept}, {error}>"
+
+    @property
+    def setting(self) -> Setting:
+        """The setting as pilots take it."""
+        return Setting(self.method, self.step, self.tolerance, self.precision)
+
+
+def candidate_methods(question: Question) -> tuple[Method, ...]:
+    """Return the methods that apply, those first that are usually the cheapest.
+
+    Splittings where H = T(p) + V(q), in a fictitious time too where V has a singularity, else Gauss's methods;
+    Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
+    for comparison.
+    """
+    others = *_of_disturbed(question), RK4(), DOP853()
+    if not is_separable(question.hamiltonian, question.values):
+        return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *others
+    names = sorted(SCHEMES, key=lambda name: -SCHEMES[name].order)
+    return Taylor(), *(Splitting(name) for name in names), *_of_close_encounters(question), *others
+
+
+def _of_disturbed(question: Question) -> tuple[Method, ...]:
+    """Return the splittings by solvable parts where H is a solvable part and something else.
+
+    Where nothing else is there, the motion is known and no method need be chosen; where the solvable part is T(p)
+    alone, they are ordinary splittings.
+    """
+    try:
+        part = solvable_part(system_of(question.hamiltonian, question.values))
+    except UnsolvableError:
+        return ()
+    if not isinstance(part, Planets) and all(force == part.rest.graph.zero for force in part.rest.force):
+        return ()
+    n = len(question.y0) // 2
+    if isinstance(part, Quadratic) and not any(any(row[:n]) for row in part.field):
+        return ()
+    if isinstance(part, Quadratic) and len(part.field) ** 2 > DENSEST * _operations(part.rest):
+        return ()
+    return WisdomHolman(), WisdomHolman(corrector=7), SABA(4), SABA("8-6-4"), SABA("10-6-4")
+
+
+def _operations(system: Equations) -> int:
+    """Return how many distinct quantities an evaluation of the force goes through."""
+    return len(system.graph.reachable(system.force))
+
+
+def _of_close_encounters(question: Question) -> tuple[Method, ...]:
+    """Return methods whose steps shrink near a singularity, where V < 0 has one and falls to it.
+
+    The sign is that at the start; where it changes on the way their pilots say so.
+    """
+    system = system_of(question.hamiltonian, question.values)
+    coordinates = set(system.q)
+    below = {power.base for power in question.hamiltonian.H.atoms(Pow) if power.exp.is_negative}
+    if not system.autonomous or not any(base.free_symbols & coordinates for base in below):
+        return ()
+    n = len(question.y0) // 2
+    at_rest = np.concatenate([question.y0[:n], np.zeros(n)])
+    point = dict(zip((*system.q, *system.p), map(float, at_rest), strict=True))
+    (potential,) = system.graph.evaluate([system.hamiltonian], point)
+    return tuple(TimeTransformed(Splitting(name)) for name in IN_FICTITIOUS_TIME) if potential < 0.0 else ()
+
+
+@dataclass(frozen=True)
+class Try:
+    """A pilot run and what is expected of its setting over the whole span."""
+
+    pilot: Pilot
+    error: float
+    cost: float
+
+    @property
+    def knob(self) -> float:
+        """The step, or the tolerance of an adaptive method."""
+        return self.pilot.setting.knob
+
+
+def tried_with(question: Question, setting: Setting, duration: float) -> Try:
+    """Return a setting after a pilot run of that duration."""
+    found = pilot(question, setting, duration)
+    if found.lost:
+        return Try(found, math.inf, question.span / duration * found.steps)
+    error = expected_error(found, question.span, question.observable)
+    try:
+        rate = seconds_per_time(question, found.setting, duration)
+    except NonFiniteStateError:  # with a step a little smaller, to divide another span
+        return Try(found, math.inf, math.inf)
+    return Try(found, error, rate * question.span)
+
+
+def by_order(question: Question, tried: Try, accuracy: float) -> Candidate:
+    """Return the candidate at the step that its order lets expect, which was not tried."""
+    if math.isinf(tried.error):
+        return nothing(tried.pilot.setting, tried.pilot.failure or "its error grows too fast")
+    knob = tried.knob * (MARGIN * accuracy / tried.error) ** (1.0 / order_of(tried.pilot))
+    setting = tried.pilot.setting
+    if setting.step is None and knob < 2.0**-52:
+        return candidate_of(question, tried, accuracy, note="its tolerance is as small as it can be")
+    share = tried.knob / knob if setting.step is not None else 1.0
+    found = candidate_of(question, tried, accuracy)
+    return replace(
+        found,
+        step=None if setting.step is None else knob,
+        tolerance=None if setting.tolerance is None else knob,
+        predicted_error=MARGIN * accuracy,
+        predicted_cost=found.predicted_cost * share,
+        evaluations=found.evaluations * share,
+        keeps=True,
+        note="by its order, not tried",
+    )
+
+
+def candidate_of(question: Question, tried: Try, accuracy: float, note: str = "") -> Candidate:
+    """Return a setting that was tried as a candidate."""
+    setting, found = tried.pilot.setting, tried.pilot
+    return Candidate(
+        method=setting.method,
+        step=setting.step,
+        tolerance=setting.tolerance,
+        precision=setting.precision,
+        predicted_error=tried.error,
+        predicted_cost=tried.cost,
+        evaluations=found.evaluations * question.span / found.span,
+        keeps=tried.error <= accuracy,
+        note=note,
+    )
+
+
+def nothing(setting: Setting, reason: str) -> Candidate:
+    """Return a setting that can't follow the motion, and why."""
+    return Candidate(
+        setting.method,
+        None,
+        None,
+        setting.precision,
+        predicted_error=math.inf,
+        predicted_cost=math.inf,
+        evaluations=math.inf,
+        keeps=False,
+        note=reason,
+    )

@@ -1,0 +1,292 @@
+"""The cheapest method, step and precision for a wanted accuracy over a wanted time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.display import preformatted
+from canon.flow.method.method import FixedStep, Stepped, Taylor
+from canon.flow.propagate import propagate
+from canon.scene.scene import Scene, near
+from canon.study.choose.candidate import Candidate, candidate_methods
+from canon.study.choose.choice_question import Question
+from canon.study.choose.confirm import confirmed, double_instead
+from canon.study.choose.pilot_run import natural_step
+from canon.study.choose.step_search import searched
+from canon.study.errors import StudyError
+from canon.study.motion.studied_motion import motion_hamiltonian
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike
+    from sympy import Expr, Symbol
+
+    from canon.flow.method.method import Method
+    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.trajectory import Trajectory
+
+__all__ = ["Candidate", "Choice", "choose"]
+
+PILOT_STEPS = 4000.0
+"""Length of a pilot run in steps of Taylor's method: some 100 periods."""
+
+RIVAL = 1.8
+"""How many times dearer than the cheapest a method may be to be tried in plain doubles too."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The cheapest setting that is expected to keep an accuracy, and the candidates it was chosen from.
+
+    Parameters
+    ----------
+    title
+        What is to be run.
+    span, accuracy, observable
+        What was asked for.
+    chosen
+        The choice; where nothing keeps the accuracy, the candidate with the least error.
+    candidates
+        All that were considered, those that keep the accuracy first, the cheapest first.
+    question
+        What was asked, the way pilots take it.
+    """
+
+    title: str
+    span: float
+    accuracy: float
+    observable: str
+    chosen: Candidate
+    candidates: tuple[Candidate, ...]
+    question: Question = field(repr=False, compare=False)
+
+    @property
+    def reached(self) -> bool:
+        """Whether the accuracy is expected to be kept."""
+        return self.chosen.keeps
+
+    @property
+    def method(self) -> Method:
+        """The method chosen."""
+        return self.chosen.method
+
+    @property
+    def step(self) -> float | None:
+        """Its step; None where it chooses its own."""
+        return self.chosen.step
+
+    @property
+    def tolerance(self) -> float | None:
+        """Its tolerance; None where it takes fixed steps."""
+        return self.chosen.tolerance
+
+    @property
+    def precision(self) -> str:
+        """The arithmetic."""
+        return self.chosen.precision
+
+    @property
+    def predicted_cost(self) -> float:
+        """Processor seconds expected of the steps."""
+        return self.chosen.predicted_cost
+
+    @property
+    def predicted_error(self) -> float:
+        """Largest error expected over the span."""
+        return self.chosen.predicted_error
+
+    def run(self, *, samples: int = 1000, progress: Callable[[float], None] | None = None) -> Trajectory:
+        """Return the motion over the whole span with the method chosen.
+
+        Raises
+        ------
+        StudyError
+            Where no method is expected to keep the accuracy.
+        """
+        if not self.reached:
+            raise StudyError(
+                f"nothing keeps {self.accuracy:.1g}; the least error is {self.predicted_error:.1g}"
+            )
+        asked = self.question
+        return propagate(
+            asked.hamiltonian,
+            asked.y0,
+            (0.0, self.span),
+            method=self.method,
+            step=self.step,
+            tolerance=self.tolerance,
+            precision=self.precision,
+            parameters=asked.values,
+            samples=samples,
+            progress=progress,
+        )
+
+    def __repr__(self) -> str:
+        from canon.study.choose.choice_table import answer
+
+        return f"<Choice: {answer(self)}>"
+
+    def _repr_html_(self) -> str:
+        return preformatted(str(self))
+
+    def __str__(self) -> str:
+        from canon.study.choose.choice_table import choice_table
+
+        return choice_table(self)
+
+
+def choose(
+    system: Scene | HamiltonianSystem,
+    y0: ArrayLike | str | None,
+    span: float,
+    accuracy: float,
+    observable: str = "energy",
+    *,
+    integral: Expr | None = None,
+    parameters: Mapping[Symbol | str, float] | None = None,
+    methods: Sequence[Method] | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> Choice:
+    """Return the cheapest method, step and precision expected to keep an accuracy over a span of time.
+
+    Every candidate runs a few times for a short while. Its error is extrapolated in time by its law (bounded
+    for symplectic methods, ∝ t for others, ∝ √t for round-off; positions: one half to one power more) and in
+    the step by its order; the cheapest one is looked at once more, for longer.
+
+    Parameters
+    ----------
+    system, y0
+        A scene and a start or state (q, p) (None for its default), or a Hamiltonian and a state.
+    span
+        Duration, in units of time.
+    accuracy
+        Largest error allowed at any time, relative to the value at the start (absolute where that is zero).
+    observable
+        ``"energy"``; ``"position"``, the distance of the coordinates from the true ones over the largest
+        length of the latter; or a constant of the scene by name.
+    integral
+        Another function of (q, p) that should stay constant, with ``observable`` its name.
+    parameters
+        Values of parameters; those of a scene are its own unless replaced.
+    methods
+        The methods to consider; all that apply if left out.
+    progress
+        Called with a method's name and the fraction of the candidates that is done.
+
+    Raises
+    ------
+    StudyError
+        Where the request makes no sense, or the motion can't be followed at all.
+
+    Examples
+    --------
+    >>> from canon.scene import find
+    >>> choice = choose(find("henon-heiles"), None, span=1e5, accuracy=1e-4)
+    >>> choice.reached, choice.predicted_error < 1e-4, choice.predicted_cost < 1.0
+    (True, True, True)
+    """
+    if not (math.isfinite(span) and span > 0.0):
+        raise StudyError(f"a span of {span} makes no sense: give a positive, finite duration")
+    if not 0.0 < accuracy < 0.1:
+        raise StudyError(
+            f"an accuracy of {accuracy} makes no sense: give a number between 0 and 0.1, such as 1e-8"
+        )
+    question, title = _question(system, y0, span, observable, integral, parameters)
+    if observable == "energy" and question.hamiltonian.t in question.hamiltonian.H.free_symbols:
+        raise StudyError("H depends on t, so its change is no error: choose by observable='position'")
+    considered = tuple(methods) if methods is not None else candidate_methods(question)
+    if not considered:
+        raise StudyError("no method to choose from: name at least one")
+    natural = natural_step(question)
+    duration = min(span, PILOT_STEPS * natural)
+    found: list[Candidate] = []
+    for number, method in enumerate(considered):
+        cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
+        precision = "compensated" if isinstance(method, Stepped) else "double"
+        found.append(searched(question, method, precision, duration, natural, accuracy, cheapest))
+        if progress is not None:
+            progress(str(method), (number + 1) / (len(considered) + 1))
+    if not any(each.keeps for each in found):
+        found.extend(_in_higher_precision(question, considered, duration, natural, accuracy))
+    found, chosen = _settled(question, found, duration, accuracy)
+    if progress is not None:
+        progress(str(chosen.method), 1.0)
+    ordered = sorted(found, key=lambda each: (not each.keeps, each.predicted_cost))
+    return Choice(title, span, accuracy, observable, chosen, tuple(ordered), question)
+
+
+def _settled(
+    question: Question, found: list[Candidate], duration: float, accuracy: float
+) -> tuple[list[Candidate], Candidate]:
+    """Look at the cheapest candidate once more, until the cheapest one has been looked at."""
+    cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
+    rivals = [each for each in found if each.keeps and each.predicted_cost < RIVAL * cheapest]
+    plain = [double_instead(question, each, duration, accuracy) for each in rivals]
+    waiting = [*found, *(each for each in plain if each is not None)]
+    looked: list[Candidate] = []
+    while able := [each for each in (*waiting, *looked) if each.keeps]:
+        best = min(able, key=lambda each: each.predicted_cost)
+        if best in looked:
+            return [*waiting, *looked], best
+        waiting.remove(best)
+        looked.append(confirmed(question, best, duration, accuracy))
+    return [*waiting, *looked], min((*waiting, *looked), key=lambda each: each.predicted_error)
+
+
+def _in_higher_precision(
+    question: Question, considered: Sequence[Method], duration: float, natural: float, accuracy: float
+) -> list[Candidate]:
+    """Return what more digits reach, where the usual ones do not suffice."""
+    found: list[Candidate] = []
+    for method in considered:
+        if isinstance(method, Taylor):
+            ladder = ("extended", "quad")
+        elif isinstance(method, FixedStep) and method.order >= 8:
+            ladder = ("extended", "double-double")
+        else:
+            continue
+        if question.observable == "position":  # beyond these no reference is better
+            ladder = ladder[:1]
+        for precision in ladder:
+            each = searched(question, method, precision, duration / 8.0, natural, accuracy, math.inf)
+            found.append(each)
+            if each.keeps:
+                break
+    return found
+
+
+def _question(
+    system: Scene | HamiltonianSystem,
+    y0: ArrayLike | str | None,
+    span: float,
+    observable: str,
+    integral: Expr | None,
+    parameters: Mapping[Symbol | str, float] | None,
+) -> tuple[Question, str]:
+    given = {str(name): value for name, value in (parameters or {}).items()}
+    if not isinstance(system, Scene):
+        if y0 is None or isinstance(y0, str):
+            raise StudyError(
+                "a Hamiltonian has no starts of its own: give the initial state (q, p) as numbers"
+            )
+        if integral is None and observable not in ("energy", "position"):
+            raise StudyError(f"observable={observable!r}: give the function of (q, p) as integral=")
+        state = np.asarray(y0, dtype=np.float64)
+        return Question(system, state, {**given}, span, observable, integral), "Hamiltonian"
+    scene = system.with_parameters(**given)
+    if integral is None and observable not in ("energy", "position"):
+        constants = scene.constants()
+        if observable not in constants:
+            raise StudyError(
+                f"{scene.name} has no constant {observable!r}{near(observable, ('energy', 'position', *constants))}"
+            )
+        integral = constants[observable]
+    state = scene.state(y0) if y0 is None or isinstance(y0, str) else np.asarray(y0, dtype=np.float64)
+    return Question(
+        motion_hamiltonian(scene), state, {**scene.values}, span, observable, integral
+    ), scene.title

@@ -1,0 +1,72 @@
+"""A last, longer look at the candidate that would be chosen, and whether plain doubles suffice."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from canon.study.choose.candidate import MARGIN, Candidate, candidate_of, tried_with
+from canon.study.choose.choice_question import Question, Setting
+from canon.study.choose.error_law import order_of
+from canon.study.choose.pilot_run import dop853_share
+from canon.study.choose.step_search import LONGEST_PILOT
+from canon.study.choose.tolerance_search import ADAPTIVE_MARGIN, last_rung, tolerance_at
+
+__all__ = ["confirmed", "double_instead"]
+
+CONFIRMING = 8.0
+"""How many times longer than the pilots the last look at the cheapest candidate is: a drift that hid in an oscillation
+is eight times larger then, and one look at one candidate costs less than the pilots of a dozen."""
+
+RESONANT = 3.0
+"""How many times larger than expected an error is that is put down to a resonance: √8 is what a walk grows by in a look
+eight times as long."""
+
+NEIGHBOUR = 0.97
+"""Ratio of neighbouring steps: small, so that leaving a resonance costs little."""
+
+SHORTEST_STRIDE = 0.3
+"""Ratio of one step to the next, at least: a large error tells little of its order."""
+
+LOOKS = 4
+"""How often the step is made shorter at most: a candidate that still fails then is one no more."""
+
+CHEAPER = 0.97
+"""Share of the cost that plain doubles must save to be worth their round-off: timings are no better."""
+
+
+def double_instead(
+    question: Question, chosen: Candidate, duration: float, accuracy: float
+) -> Candidate | None:
+    """Return the candidate in plain doubles where that is expected to keep the accuracy and to cost less."""
+    if chosen.precision != "compensated":
+        return None
+    tried = tried_with(question, Setting(chosen.method, chosen.step, precision="double"), duration)
+    found = candidate_of(question, tried, accuracy)
+    return found if found.keeps and found.predicted_cost < CHEAPER * chosen.predicted_cost else None
+
+
+def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: float) -> Candidate:
+    """Return the candidate after a longer look: at resonance, and at an error that grows late."""
+    if question.span <= duration:
+        return chosen
+    longer = min(question.span, CONFIRMING * duration * dop853_share(chosen.method))
+    if chosen.step is not None:
+        longer = min(longer, LONGEST_PILOT * chosen.step)
+    setting, resonant = chosen.setting, False
+    tried = tried_with(question, setting, longer)
+    share = 1.0 if setting.step is not None or longer >= question.span else ADAPTIVE_MARGIN
+    for _ in range(LOOKS):
+        if tried.error <= share * accuracy:
+            break
+        if setting.step is not None:
+            resonant = resonant or tried.error > RESONANT * chosen.predicted_error
+            order = order_of(tried.pilot)
+            factor = (MARGIN * accuracy / tried.error) ** (1.0 / order) if tried.error < math.inf else 0.5
+            setting = setting.turned(setting.knob * min(NEIGHBOUR, max(factor, SHORTEST_STRIDE)))
+        elif setting.knob > tolerance_at(last_rung(setting.precision)):
+            setting = setting.turned(setting.knob * math.exp(-2.0))  # one order of Taylor's method
+        else:
+            break
+        tried = tried_with(question, setting, longer)
+    return replace(candidate_of(question, tried, accuracy), resonant=resonant)

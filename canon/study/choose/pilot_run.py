@@ -1,0 +1,252 @@
+"""Short runs that show what a setting of a method costs and how its error grows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.method.method import DOP853, FixedStep, Gauss, Splitting, Stepped, Taylor, TimeTransformed
+from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.flow.propagate import NonFiniteStateError
+from canon.study.choose.choice_question import PLACES, Question, Setting
+from canon.study.errors import StudyError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from canon.flow.method.method import Method
+    from canon.flow.trajectory import Trajectory
+
+    Array = NDArray[np.float64]
+
+__all__ = ["Pilot", "dop853_share", "is_symplectic", "natural_step", "pilot", "seconds_per_time"]
+
+WINDOWS = 512
+"""Windows a pilot run is looked at in."""
+
+SEEN = 16
+"""Samples in each of the windows, at most, of a run whose errors are not seen inside its loop."""
+
+WATCHED = 200_000
+"""Steps of a pilot run at which the error is looked at, at most."""
+
+BEFORE_LOST = 0.1
+"""Relative energy error from which a run no longer shows the motion that was asked for."""
+
+TIMED_SECONDS = 0.004
+"""Processor time over which a step is timed."""
+
+TIMINGS = 4
+"""Timed runs, of which the least counts: other programs only add to it."""
+
+TIMED_STEPS = 50_000
+"""Steps of the longer of two runs from which the cost of a method in a fictitious time is told."""
+
+
+@dataclass(frozen=True)
+class Pilot:
+    """A short run of a setting.
+
+    Parameters
+    ----------
+    setting
+        What was run.
+    span
+        Its duration.
+    steps, evaluations
+        Steps taken, and evaluations of the force (Taylor: of the series).
+    t
+        Middles of the windows (positions: the times of the comparison), shape (windows,).
+    mean, largest
+        Mean error and largest size of the error in each window; relative where the start is not zero.
+    energy
+        Largest energy error met.
+    failure
+        Why the run failed; empty where it did not.
+    """
+
+    setting: Setting
+    span: float
+    steps: int = 0
+    evaluations: int = 0
+    t: Array = field(default_factory=lambda: np.empty(0))
+    mean: Array = field(default_factory=lambda: np.empty(0))
+    largest: Array = field(default_factory=lambda: np.empty(0))
+    energy: float = math.inf
+    failure: str = ""
+
+    @cached_property
+    def bound(self) -> float:
+        """The largest error met; infinity where the run failed or left the motion."""
+        return float(self.largest.max()) if not self.lost else math.inf
+
+    @property
+    def lost(self) -> bool:
+        """Whether the run failed, or its energy is so wrong that it shows another motion."""
+        return bool(self.failure) or not self.energy < BEFORE_LOST
+
+
+def is_symplectic(method: Method) -> bool:
+    """Tell whether a method keeps a modified energy, so that its energy error does not grow."""
+    return isinstance(method, Splitting | Gauss | SolvableSplitting | TimeTransformed)
+
+
+def is_seen_inside(method: Method) -> bool:
+    """Tell whether the errors of a method are those inside its loop: steps of one size, and no corrector."""
+    return isinstance(method, FixedStep) and not (isinstance(method, SolvableSplitting) and method.corrector)
+
+
+def pilot(question: Question, setting: Setting, duration: float, windows: int = WINDOWS) -> Pilot:
+    """Run a setting for a while and keep what its error did; a run that fails is a pilot with the reason."""
+    try:
+        if question.observable == "position":
+            return _against_reference(question, setting, duration)
+        if is_seen_inside(setting.method):
+            return _watched(question, setting, duration, windows)
+        return _sampled(question, setting, duration, windows)
+    except (ArithmeticError, ValueError) as failed:
+        return Pilot(setting, duration, failure=str(failed))
+
+
+def seconds_per_time(question: Question, setting: Setting, duration: float) -> float:
+    """Return the processor time of the steps per unit of time, the least of a few runs."""
+    if isinstance(setting.method, TimeTransformed):
+        return _seconds_with_landing(question, setting, duration)
+    trial = duration / 64.0
+    found = question.run(setting, trial, 1)
+    while found.cpu_seconds < TIMED_SECONDS and trial < duration:
+        trial = min(duration, 4.0 * trial)
+        found = question.run(setting, trial, 1)
+    again = (question.run(setting, trial, 1).cpu_seconds for _ in range(TIMINGS - 1))
+    return min(found.cpu_seconds, *again) / trial
+
+
+def _seconds_with_landing(question: Question, setting: Setting, duration: float) -> float:
+    """Return the same for a method in a fictitious time, whose stretches and landing take milliseconds of their own."""
+    steps = question.run(setting, duration, 1).steps
+    longest = min(question.span, duration * TIMED_STEPS / steps)
+    short, long = (
+        min(question.run(setting, trial, 1).cpu_seconds for _ in range(TIMINGS))
+        for trial in (longest / 4.0, longest)
+    )
+    rate = max(0.0, long - short) / (0.75 * longest)
+    return rate + max(0.0, long - rate * longest) / question.span
+
+
+def _watched(question: Question, setting: Setting, duration: float, windows: int) -> Pilot:
+    """Follow the error inside the loop: nothing is missed between samples."""
+    steps = math.ceil(duration / setting.knob)
+    cadence = max(1, steps // WATCHED)
+    windows = max(1, min(windows, steps // (2 * cadence)))
+    found = question.run(setting, duration, windows, cadence)
+    seen = found.statistics[question.observable]
+    unit = _unit(found, question)
+    worst = float(found.statistics["energy"].largest.max())
+    return Pilot(
+        setting=replace(setting, step=found.step),
+        span=duration,
+        steps=found.steps,
+        evaluations=found.evaluations,
+        t=(found.t[1:] + found.t[:-1]) / 2.0,
+        mean=seen.mean / unit,
+        largest=seen.largest / unit,
+        energy=_energy(found, worst),
+    )
+
+
+def _sampled(question: Question, setting: Setting, duration: float, windows: int) -> Pilot:
+    """Follow the error from sample to sample: of stepped methods in windows of many."""
+    stepped = isinstance(setting.method, Stepped)
+    samples = 2 * WINDOWS
+    if stepped:
+        samples = max(windows, min(SEEN * WINDOWS, math.ceil(duration / setting.knob)))
+    found = question.run(setting, duration, samples)
+    error = found.energy_change if question.integral is None else found.changes[question.observable]
+    error = error[1:] / _unit(found, question)
+    parts = min(windows, error.size) if stepped else error.size
+    rows = error[: error.size // parts * parts].reshape(parts, -1)
+    times = found.t[1:][: rows.size].reshape(parts, -1)
+    return Pilot(
+        setting=setting if setting.step is None else replace(setting, step=found.step),
+        span=duration,
+        steps=found.steps,
+        evaluations=found.evaluations,
+        t=times.mean(axis=1),
+        mean=rows.mean(axis=1),
+        largest=np.abs(rows).max(axis=1),
+        energy=_energy(found),
+    )
+
+
+def _against_reference(question: Question, setting: Setting, duration: float) -> Pilot:
+    """Compare coordinates with the reference; a step is adjusted to meet its times."""
+    times = None
+    if isinstance(setting.method, TimeTransformed):  # its samples are even in its own time
+        times = np.linspace(0.0, duration, PLACES + 1)[1:]
+    elif isinstance(setting.method, FixedStep):
+        steps = PLACES * max(1, round(duration / setting.knob / PLACES))
+        setting = replace(setting, step=duration / steps)
+    true, rest = question.positions(duration, setting.precision)
+    found = question.run(setting, duration, PLACES, times=times)
+    if found.t.size == PLACES:
+        true, rest = true[:, 1:], rest[:, 1:]
+    off = (found.q - true) + (found.carried[: len(found.q)] - rest)
+    size = float(np.linalg.norm(true, axis=0).max())
+    away = np.linalg.norm(off, axis=0)[-PLACES:] / size
+    return Pilot(
+        setting=setting,
+        span=duration,
+        steps=found.steps,
+        evaluations=found.evaluations,
+        t=found.t[-PLACES:],
+        mean=away,
+        largest=away,
+        energy=_energy(found),
+    )
+
+
+def _energy(found: Trajectory, largest: float | None = None) -> float:
+    """Return the largest energy error, relative where the energy is not zero; 0 where H depends on time."""
+    if not found.autonomous:
+        return 0.0
+    change = float(np.abs(found.energy_change).max()) if largest is None else largest
+    return change / (float(abs(found.energy[0])) if found.relative else 1.0)
+
+
+def _unit(found: Trajectory, question: Question) -> float:
+    """Return what errors are relative to: the quantity at the start, or one where it is zero."""
+    if question.integral is None:
+        return float(abs(found.energy[0])) or 1.0
+    return float(abs(found.observables[question.observable][0])) or 1.0
+
+
+def natural_step(question: Question, report: Callable[[float], None] = lambda _: None) -> float:
+    """Return the mean step of Taylor's method at the tolerance of round-off: the time scale of the motion.
+
+    Raises
+    ------
+    StudyError
+        Where the motion can't be followed at all.
+    """
+    duration = question.span * 2.0**-20
+    try:
+        while True:
+            found = question.run(Setting(Taylor(), precision="double"), duration, 1)
+            if found.steps >= 300 or duration >= question.span:
+                return duration / found.steps
+            factor = 8.0 if found.steps < 30 else 400.0 / found.steps
+            duration = min(question.span, factor * duration)
+            report(0.0)
+    except (NonFiniteStateError, ValueError) as failed:
+        raise StudyError(f"the motion can't be followed: {failed}") from failed
+
+
+def dop853_share(method: Method) -> float:
+    """Return the part of a pilot's usual duration that suffices where every step is taken in Python."""
+    return 1.0 / 16.0 if isinstance(method, DOP853) else 1.0

@@ -1,0 +1,202 @@
+"""The largest error that is still good enough: the step or tolerance a method needs, and what it costs then."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from canon.flow.method.method import Gauss, Stepped, TimeTransformed
+from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.study.choose.candidate import (
+    HOPELESS,
+    MARGIN,
+    PILOTS,
+    Candidate,
+    Try,
+    by_order,
+    candidate_of,
+    nothing,
+    tried_with,
+)
+from canon.study.choose.choice_question import Question, Setting
+from canon.study.choose.error_law import order_of
+from canon.study.choose.tolerance_search import searched_tolerance
+
+if TYPE_CHECKING:
+    from canon.flow.method.method import Method
+
+__all__ = ["LONGEST_PILOT", "searched", "widest_step"]
+
+LOWEST = 0.6
+"""Share of the accuracy below which a setting is dearer than it need be: by a fifth at order 2, by 5 % at order 8."""
+
+LONGEST_PILOT = 4_000_000
+"""Steps of a pilot run at most: a tenth of a second for small systems."""
+
+LARGER = (2.0, 1.5)
+"""Steps beyond the one found that are tried, in units of it: where error terms cancel, a larger step may err less. More
+tries would find more, and cost more than they save where runs are short."""
+
+SAME = 1.02
+"""Ratio of steps that are taken for one: their costs differ by less than timings do."""
+
+STRIDE = (0.1, 2.5)
+"""How far to go from one step to the next: beyond, the order that one error shows need not hold."""
+
+INSIDE = (0.1, 0.9)
+"""Where between a good step and a bad one the next may lie, logarithmically: at an end it would tell nothing."""
+
+FALLING = 0.25
+"""Share of its order with which an error still falls where round-off is not all that is left of it."""
+
+SHORTER = 0.25
+"""Share of a usual step that a time-transformed method begins with: starts are often where the motion is fast."""
+
+DISTURBED_ORDER = 8
+"""Order with which the first step of a splitting by solvable parts is guessed: that of the terms linear in the
+disturbance, 2n for SABA_n. It is only where the search begins."""
+
+STAGES_A_STEP, GAUSS_STAGES_A_STEP = 16.0, 6.0
+"""By how many stages the widest step grows by one of Taylor's, of explicit methods and of Gauss's: a rule of thumb, by
+which the search begins and steps in a fictitious time end."""
+
+
+def searched(
+    question: Question,
+    method: Method,
+    precision: str,
+    duration: float,
+    natural: float,
+    accuracy: float,
+    cheapest: float,
+) -> Candidate:
+    """Return a method at the largest step or tolerance that is expected to keep the accuracy.
+
+    Parameters
+    ----------
+    duration
+        Duration of a pilot run.
+    natural
+        Time scale of the motion.
+    accuracy
+        Error allowed.
+    cheapest
+        Cost of the best candidate so far: the search ends where a method can't come near it.
+    """
+    if not isinstance(method, Stepped):
+        return searched_tolerance(question, method, precision, duration, accuracy, cheapest)
+    # An integral may be kept exactly whatever the step: begin with a large one.
+    error = accuracy if question.integral is None else 1.0
+    first = _first_step(method, natural, error, duration)
+    setting = Setting(method, step=first, precision=precision)
+    good: Try | None = None
+    bad: Try | None = None
+    ceiling = math.inf
+    for _ in range(PILOTS):
+        tried = tried_with(question, setting, duration)
+        ceiling = min(ceiling, _ceiling(tried, natural))
+        if setting.knob > SAME * ceiling:
+            setting = setting.turned(ceiling)
+            continue
+        if tried.error <= accuracy:
+            good = tried
+            if tried.error >= LOWEST * accuracy:
+                break
+        elif good is None and _is_floor(bad, tried):
+            best = min((each for each in (bad, tried) if each is not None), key=lambda each: each.error)
+            return candidate_of(question, best, accuracy, note="its error falls no further")
+        else:
+            bad = tried
+        knob = min(ceiling, _next_knob(tried, good, bad, accuracy))
+        if good is not None:
+            largest = knob if bad is not None else min(ceiling, max(knob, _by_its_order(good, accuracy)))
+            if knob <= SAME * good.knob or _cost_at(good, largest) > HOPELESS * cheapest:
+                break
+        elif duration / knob > LONGEST_PILOT or _cost_at(tried, knob) > HOPELESS * cheapest:
+            return by_order(question, tried, accuracy)
+        setting = setting.turned(knob)
+    if good is not None:
+        if good.knob * LARGER[-1] <= ceiling:
+            good = _still_larger(question, good, duration, accuracy, cheapest)
+        dearer = good.error < LOWEST * accuracy and good.cost > HOPELESS * cheapest
+        return candidate_of(question, good, accuracy, note="dearer at any step" if dearer else "")
+    return by_order(question, bad, accuracy) if bad is not None else nothing(setting, "")
+
+
+def _ceiling(tried: Try, natural: float) -> float:
+    """Return the largest step that still shows the motion.
+
+    Steps of one size that are too large lose it; Verlet's in a fictitious time keep Kepler's energy whatever their
+    size, and so may be no longer on average than ordinary ones.
+    """
+    method = tried.pilot.setting.method
+    if not isinstance(method, TimeTransformed) or not tried.pilot.steps:
+        return math.inf
+    return tried.knob * widest_step(method, natural) * tried.pilot.steps / tried.pilot.span
+
+
+def _still_larger(question: Question, good: Try, duration: float, accuracy: float, cheapest: float) -> Try:
+    """Return a much larger step that keeps the accuracy too, where there is one: errors need not fall evenly."""
+    for factor in LARGER:
+        if good.cost / factor < cheapest:
+            tried = tried_with(question, good.pilot.setting.turned(good.knob * factor), duration)
+            if tried.error <= MARGIN * accuracy:
+                return tried
+    return good
+
+
+def _cost_at(tried: Try, step: float) -> float:
+    """Return what another step would cost."""
+    return tried.cost * tried.knob / step
+
+
+def _first_step(method: Stepped, natural: float, accuracy: float, duration: float) -> float:
+    """Return where to begin: as many steps in the natural one as an ordinary error constant asks for.
+
+    That of a splitting by solvable parts holds the size of the disturbance, so begin with a large step there.
+    """
+    if isinstance(method, SolvableSplitting):
+        widest, order = 2.0 * natural, DISTURBED_ORDER
+    else:
+        widest, order = widest_step(method, natural), method.order
+    if isinstance(method, TimeTransformed):
+        widest *= SHORTER
+    return max(duration / LONGEST_PILOT, widest * min(1.0, (1e3 * accuracy) ** (1.0 / order)))
+
+
+def widest_step(method: Stepped, natural: float) -> float:
+    """Return the step that a method of that many stages may take where accuracy does not matter, about."""
+    return natural * (
+        0.5 + method.stages / (GAUSS_STAGES_A_STEP if isinstance(method, Gauss) else STAGES_A_STEP)
+    )
+
+
+def _next_knob(tried: Try, good: Try | None, bad: Try | None, accuracy: float) -> float:
+    """Return the step whose error should be the one aimed at."""
+    aim = MARGIN * accuracy
+    if good is not None and bad is not None:
+        if math.isinf(bad.error) or good.error <= 0.0:
+            return math.sqrt(good.knob * bad.knob)
+        slope = math.log(bad.error / good.error) / math.log(bad.knob / good.knob)
+        wanted = good.knob * (aim / good.error) ** (1.0 / slope) if slope > 0.5 else 0.0
+        low, high = (good.knob * (bad.knob / good.knob) ** share for share in INSIDE)
+        return min(max(wanted, low), high)
+    if math.isinf(tried.error):
+        return tried.knob / 2.0
+    shortest, longest = (factor * tried.knob for factor in STRIDE)
+    return min(max(_by_its_order(tried, accuracy), shortest), longest)
+
+
+def _by_its_order(tried: Try, accuracy: float) -> float:
+    """Return the step whose error should be the one aimed at, if it followed the order of the method."""
+    if tried.error <= 0.0:
+        return math.inf
+    return tried.knob * (MARGIN * accuracy / tried.error) ** (1.0 / order_of(tried.pilot))
+
+
+def _is_floor(bad: Try | None, tried: Try) -> bool:
+    """Tell whether a smaller step no longer brings a smaller error: round-off is all that is left."""
+    if bad is None or math.isinf(bad.error) or tried.knob >= bad.knob:
+        return False
+    gained = math.log(bad.error / tried.error) if tried.error > 0.0 else math.inf
+    return gained < FALLING * order_of(tried.pilot) * math.log(bad.knob / tried.knob)

@@ -1,0 +1,273 @@
+"""Work against precision: what each digit of a motion costs with each method."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.display import preformatted
+from canon.expression.symbols.user_input import counted
+from canon.flow.method.method import Stepped, Taylor
+from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.study.choose.resonance import resonant_steps
+from canon.study.errors import StudyError
+from canon.study.motion.studied_motion import Subject, subject_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+    from sympy import Symbol
+
+    from canon.flow.method.method import Method
+    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.trajectory import Trajectory
+    from canon.scene.scene import Scene
+
+__all__ = ["WorkPrecision", "WorkRow", "work_precision"]
+
+REFERENCE = Taylor(1e-30)
+"""Method of the reference, run in quadruple precision."""
+
+SAMPLES = 1000
+"""Samples the largest energy error is taken over."""
+
+
+@dataclass(frozen=True)
+class WorkRow:
+    """One run: what it cost and how precise it was.
+
+    Parameters
+    ----------
+    method
+        The method.
+    step, tolerance
+        What its precision was set by; None for the other.
+    cpu_seconds
+        Processor time, the least of the repetitions; compilation and keeping samples left out.
+    evaluations
+        Evaluations of the force (Taylor: of the series).
+    energy_error
+        Largest abs(E(t) − E(0))/abs(E(0)).
+    position_error
+        Distance of the final coordinates from those of the reference, over the length of the latter.
+    resonant
+        Whether the step is in resonance with the motion: its energy error is over ten times larger than
+        the smaller and the larger step let expect.
+    failure
+        Why the run failed; empty where it did not.
+    precision
+        The arithmetic.
+    """
+
+    method: Method
+    step: float | None
+    tolerance: float | None
+    cpu_seconds: float = math.nan
+    evaluations: int = 0
+    energy_error: float = math.nan
+    position_error: float = math.nan
+    resonant: bool = False
+    failure: str = ""
+    precision: str = ""
+
+    def __repr__(self) -> str:
+        knob = f"step {self.step:.4g}" if self.step is not None else f"tol {self.tolerance:.2g}"
+        said = self.failure or f"energy to {self.energy_error:.1e}, position to {self.position_error:.1e}"
+        return f"<WorkRow: {self.method}, {knob}, {self.precision}: {said}>"
+
+
+@dataclass(frozen=True)
+class WorkPrecision:
+    """Rows of all methods on one motion, by method and rising precision.
+
+    Parameters
+    ----------
+    title
+        What was run.
+    span
+        Duration of the runs.
+    rows
+        The runs.
+    """
+
+    title: str
+    span: float
+    rows: tuple[WorkRow, ...]
+
+    def __repr__(self) -> str:
+        methods = dict.fromkeys(str(row.method) for row in self.rows)
+        return f"<WorkPrecision: {counted(len(self.rows), 'run')} by {', '.join(methods)}; {self.title}>"
+
+    def __str__(self) -> str:
+        from canon.study.choose.choice_table import work_table
+
+        return work_table(self)
+
+    def _repr_html_(self) -> str:
+        return preformatted(str(self))
+
+
+def work_precision(
+    system: Scene | HamiltonianSystem,
+    y0: ArrayLike | str | None,
+    span: float,
+    methods: Sequence[Method],
+    *,
+    steps: Iterable[float] = (),
+    tolerances: Iterable[float] = (),
+    precision: str | Sequence[str] | None = None,
+    parameters: Mapping[Symbol | str, float] | None = None,
+    repetitions: int = 3,
+    progress: Callable[[float], None] | None = None,
+) -> WorkPrecision:
+    """Measure cost and precision of methods for a range of steps and tolerances.
+
+    Parameters
+    ----------
+    system, y0
+        A scene and a start or state (q, p), or a Hamiltonian and a state.
+    span
+        Duration in units of time; short enough that the motion can be followed to its end.
+    methods
+        The methods.
+    steps, tolerances
+        Steps for the methods of fixed step, tolerances for the others.
+    precision
+        Arithmetic of the methods of fixed step, or several to compare, lowest first.
+    parameters
+        Values of parameters; those of a scene are its own unless replaced.
+    repetitions
+        Times that a run is timed; the least processor time counts.
+    progress
+        Called with the fraction of the runs that is done.
+
+    Returns
+    -------
+    WorkPrecision
+        One row a run; a run that fails is a row with the reason.
+
+    Raises
+    ------
+    StudyError
+        Where steps or tolerances are missing, or the reference fails.
+
+    Examples
+    --------
+    >>> from canon import RK4
+    >>> from canon.scene import find
+    >>> found = work_precision(find("henon-heiles"), None, 30.0, [RK4()], steps=[0.2, 0.1], repetitions=1)
+    >>> round(math.log2(found.rows[0].position_error / found.rows[1].position_error))
+    4
+    """
+    if repetitions < 1:
+        raise StudyError(f"repetitions = {repetitions}: run each method at least once")
+    several = (precision,) if precision is None or isinstance(precision, str) else tuple(precision)
+    trials = _trials(methods, several, tuple(steps), tuple(tolerances))
+    subject = subject_of(system, y0, parameters)
+    try:
+        reference = _run(subject, Trial(REFERENCE, precision="quad"), span, SAMPLES).q[:, -1]
+    except (NonFiniteStateError, ValueError) as error:
+        raise StudyError(f"the reference could not be run: {error}") from error
+    rows: list[WorkRow] = []
+    for number, trial in enumerate(trials, 1):
+        rows.append(_row(subject, trial, span, repetitions, reference))
+        if progress is not None:
+            progress(number / len(trials))
+    return WorkPrecision(subject.title, span, tuple(_marked(rows)))
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What is measured: a method with its step or tolerance and its arithmetic."""
+
+    method: Method
+    step: float | None = None
+    tolerance: float | None = None
+    precision: str | None = None
+
+
+def _trials(
+    methods: Sequence[Method],
+    precisions: Sequence[str | None],
+    steps: Sequence[float],
+    tolerances: Sequence[float],
+) -> list[Trial]:
+    """Return what is measured of all methods, of each the precision rising."""
+    found: list[Trial] = []
+    for method in methods:
+        if isinstance(method, Stepped):
+            if not steps:
+                raise StudyError(f"{method} takes steps of given sizes: give steps")
+            falling = sorted(steps, reverse=True)
+            found += [Trial(method, step, precision=each) for each in precisions for step in falling]
+        elif not tolerances:
+            raise StudyError(f"{method} chooses its steps by a tolerance: give tolerances")
+        else:
+            found += [Trial(method, tolerance=each) for each in sorted(tolerances, reverse=True)]
+    return found
+
+
+def _run(subject: Subject, trial: Trial, span: float, samples: int) -> Trajectory:
+    return propagate(
+        subject.hamiltonian,
+        subject.state,
+        (0.0, span),
+        method=trial.method,
+        step=trial.step,
+        tolerance=trial.tolerance,
+        precision=trial.precision,
+        parameters=subject.values,
+        samples=samples,
+    )
+
+
+def _row(
+    subject: Subject, trial: Trial, span: float, repetitions: int, reference: NDArray[np.float64]
+) -> WorkRow:
+    """Return what it costs and how far it is off; a run that fails with the reason."""
+    try:
+        found = _run(subject, trial, span, SAMPLES)
+        timed = [_run(subject, trial, span, samples=1) for _ in range(repetitions)]
+        return _measured(found, timed, trial.tolerance, reference)
+    except (NonFiniteStateError, ValueError) as error:
+        return WorkRow(
+            trial.method,
+            trial.step,
+            trial.tolerance,
+            failure=str(error),
+            precision=trial.precision or "",
+        )
+
+
+def _measured(
+    found: Trajectory, timed: Sequence[Trajectory], tolerance: float | None, reference: NDArray[np.float64]
+) -> WorkRow:
+    return WorkRow(
+        method=found.method,
+        step=found.step,
+        tolerance=tolerance,
+        cpu_seconds=min(each.cpu_seconds for each in timed),
+        evaluations=found.evaluations,
+        energy_error=float(np.abs(found.energy_error).max()),
+        position_error=float(np.linalg.norm(found.q[:, -1] - reference) / np.linalg.norm(reference)),
+        precision=found.precision,
+    )
+
+
+def _marked(rows: Sequence[WorkRow]) -> list[WorkRow]:
+    """Mark the steps that are in resonance with the motion."""
+    marked = list(rows)
+    steps: dict[tuple[str, str], list[tuple[int, float]]] = {}
+    for i, row in enumerate(rows):
+        if row.step is not None:
+            steps.setdefault((str(row.method), row.precision), []).append((i, row.step))
+    for of_method in steps.values():
+        errors = [rows[i].energy_error for i, _ in of_method]
+        resonant = resonant_steps([step for _, step in of_method], errors)
+        for (i, _), is_resonant in zip(of_method, resonant.tolist(), strict=True):
+            marked[i] = replace(rows[i], resonant=is_resonant)
+    return marked

@@ -1,0 +1,2 @@
+from .drift import Drift as Drift
+from .drift_study import DriftStudy as DriftStudy

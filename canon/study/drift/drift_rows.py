@@ -1,0 +1,238 @@
+"""One method's run of one motion, and how each quantity that should stay constant drifted along it."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.method.method import FixedStep
+from canon.flow.method.number_formats import unit_round_off
+from canon.flow.propagate import propagate
+from canon.flow.run.observables_along import AccuracyWarning
+from canon.study.drift.drift import Growth, drift
+from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, tangent_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+    from sympy import Symbol
+
+    from canon.flow.method.method import Method
+    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.trajectory import Trajectory
+    from canon.study.drift.drift import Drift
+
+    Array = NDArray[np.float64]
+
+__all__ = ["DriftRow", "Run", "drift_row", "drift_rows"]
+
+TIMED_STEPS = 20_000
+"""Steps that are timed without samples."""
+
+SEVERITY = (Growth.BOUNDED, Growth.ROUND_OFF, Growth.UNDECIDED, Growth.SECULAR, Growth.DIVERGED)
+
+
+@dataclass(frozen=True)
+class DriftRow:
+    """One method's run, and one observable along it.
+
+    Parameters
+    ----------
+    method
+        The method.
+    step
+        Its step, None where it chooses its own.
+    t, error
+        The sampled times, and the error of the observable: of the energy (E(t) − E(0))/abs(E(0)); empty where the
+        run failed. Of many orbits, the one with the largest error.
+    relative
+        Whether the error is relative; it is E(t) − E(0) where E(0) = 0.
+    drift
+        How the error grew, of many orbits the worst; None where the run failed.
+    failure
+        Why the run failed; empty where it did not.
+    steps, evaluations
+        Steps taken, and evaluations of the force (Taylor: of the series).
+    cpu_seconds, compile_seconds
+        Processor time of the steps (keeping samples left out), and the time that compiling their loop took.
+    precision
+        The arithmetic.
+    final
+        The state at the end, shape (2n,); empty where the run failed.
+    observable
+        What was followed.
+    orbits
+        How the error of each orbit grew, where there are several.
+    """
+
+    method: Method
+    step: float | None
+    t: Array
+    error: Array
+    relative: bool = True
+    drift: Drift | None = None
+    failure: str = ""
+    steps: int = 0
+    evaluations: int = 0
+    cpu_seconds: float = 0.0
+    compile_seconds: float = 0.0
+    precision: str = ""
+    final: Array = field(default_factory=lambda: np.empty(0))
+    observable: str = ENERGY
+    orbits: tuple[Drift, ...] = ()
+
+    def __repr__(self) -> str:
+        came = self.failure if self.drift is None else self.drift.verdict.value
+        return f"<DriftRow: {self.observable} by {self.method}, {came}>"
+
+
+@dataclass(frozen=True)
+class Run:
+    """A motion and how it is to be run, the way ``propagate`` takes it; y0 has shape (2n,) or (2n, orbits)."""
+
+    hamiltonian: HamiltonianSystem
+    y0: Array
+    span: float
+    method: Method
+    samples: int
+    step: float | None = None
+    tolerance: float | None = None
+    precision: str | None = None
+    parameters: Mapping[Symbol | str, float] | None = None
+    cadence: int | None = None
+
+    def __call__(
+        self,
+        duration: float,
+        samples: int,
+        observables: Sequence[Observable] = (),
+        cadence: int | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> Trajectory:
+        """Return a run of that duration."""
+        with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
+            warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
+            return propagate(
+                self.hamiltonian,
+                self.y0,
+                (0.0, duration),
+                method=self.method,
+                step=self.step,
+                tolerance=self.tolerance,
+                precision=self.precision,
+                parameters=self.parameters,
+                samples=samples,
+                cadence=cadence,
+                observables={
+                    each.name: each.expression for each in observables if each.expression is not None
+                },
+                progress=progress,
+            )
+
+
+def drift_row(
+    hamiltonian: HamiltonianSystem,
+    y0: Array,
+    span: float,
+    method: Method,
+    *,
+    samples: int,
+    step: float | None = None,
+    tolerance: float | None = None,
+    precision: str | None = None,
+    parameters: Mapping[Symbol | str, float] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> DriftRow:
+    """Run one method and judge its energy error; a run that fails is a row with the reason.
+
+    The parameters are those of :func:`drift_study` and :func:`canon.flow.propagate.propagate`.
+    """
+    run = Run(hamiltonian, y0, span, method, samples, step, tolerance, precision, parameters)
+    return drift_rows(run, (Observable(ENERGY),), progress)[0]
+
+
+def drift_rows(
+    run: Run, observables: Sequence[Observable], progress: Callable[[float], None] | None = None
+) -> list[DriftRow]:
+    """Run one method and judge every observable; a run that fails gives rows with the reason.
+
+    With a cadence the observables are followed inside the loop: their block means are judged, and the bound
+    is the largest error of all steps looked at.
+    """
+    along = [each for each in observables if each.name != SYMPLECTICITY]
+    rows: dict[str, DriftRow] = {}
+    try:
+        found = run(run.span, run.samples, along, run.cadence, progress)
+        seconds = _seconds_of_steps(found, run)
+        for each in along:
+            rows[each.name] = _judged(found, each, seconds)
+        if len(along) < len(observables):
+            rows[SYMPLECTICITY] = _symplecticity(run, found, seconds)
+    except (ArithmeticError, ValueError) as failed:
+        lost = DriftRow(run.method, run.step, np.empty(0), np.empty(0), failure=str(failed))
+        return [replace(lost, observable=each.name) for each in observables]
+    return [rows[each.name] for each in observables]
+
+
+def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftRow:
+    if observable.name == ENERGY:
+        relative, unit = found.relative, np.abs(found.energy[0]) if found.relative else 1.0
+        change = found.energy_change if found.autonomous else found.energy_error
+    else:
+        relative, unit, change = observable.relative, observable.unit, found.changes[observable.name]
+    t, error, largest = found.t, change / unit, np.abs(change / unit).max(axis=0)
+    if found.statistics:
+        seen = found.statistics[observable.name]
+        t, error, largest = (t[1:] + t[:-1]) / 2.0, seen.mean / unit, (seen.largest / unit).max(axis=0)
+    smallest = unit_round_off(found.precision)
+    roundoff = smallest * math.sqrt(found.steps) if observable.name == ENERGY and relative else None
+    judged = [
+        replace(drift(t, series, roundoff=roundoff, resolution=smallest), bound=float(bound))
+        for series, bound in zip(np.atleast_2d(error.T), np.atleast_1d(largest), strict=True)
+    ]
+    worst = max(range(len(judged)), key=lambda k: (SEVERITY.index(judged[k].verdict), judged[k].bound))
+    return DriftRow(
+        method=found.method,
+        step=found.step,
+        t=t,
+        error=np.atleast_2d(error.T)[worst],
+        relative=relative,
+        drift=judged[worst],
+        steps=found.steps,
+        evaluations=found.evaluations,
+        cpu_seconds=seconds,
+        compile_seconds=found.compile_seconds,
+        precision=found.precision,
+        final=found.final if found.final.ndim == 1 else found.final[:, worst],
+        observable=observable.name,
+        orbits=tuple(judged) if len(judged) > 1 else (),
+    )
+
+
+def _symplecticity(run: Run, found: Trajectory, seconds: float) -> DriftRow:
+    """Judge the change of the bilinear covariant of two variations that the method carries along."""
+    starts = run.y0 if run.y0.ndim == 2 else run.y0[:, None]
+    tangents = [tangent_of(run.hamiltonian, start) for start in starts.T]
+    y0 = np.stack([each.y0 for each in tangents], axis=1)
+    varied = replace(run, hamiltonian=tangents[0].hamiltonian, y0=y0 if run.y0.ndim == 2 else y0[:, 0])
+    seen = Observable(SYMPLECTICITY, tangents[0].covariant)
+    row = _judged(varied(run.span, run.samples, [seen], run.cadence), seen, seconds)
+    return replace(row, evaluations=found.evaluations, final=found.final)
+
+
+def _seconds_of_steps(found: Trajectory, run: Run) -> float:
+    """Return the processor time of the steps alone.
+
+    Keeping a sample costs a method of fixed step as much as a thousand cheap steps do; so a part of the run is
+    timed again without samples. Its steps all cost the same.
+    """
+    if found.step is None or not isinstance(run.method, FixedStep):
+        return found.cpu_seconds
+    part = min(found.steps, TIMED_STEPS)
+    again = min(run(part * found.step, 1).cpu_seconds for _ in range(2))
+    return min(found.cpu_seconds, again * found.steps / part)

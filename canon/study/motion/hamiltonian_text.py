@@ -1,0 +1,264 @@
+"""A Hamiltonian as text: a system of one's own that a file can hold, a key can be made of, a worker can be sent."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from canon.expression.symbols.user_input import counted
+from canon.study.errors import StudyError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from sympy import Expr
+
+    from canon.flow.propagate import HamiltonianSystem
+    from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+
+__all__ = ["Formula", "formula_from", "formula_of", "hamiltonian_of"]
+
+KEYS = ("H", "q", "p", "parameters", "starts", "period")
+"""What a table in a file may say of a system."""
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A Hamiltonian written in canon's expression language; nothing in it is executed.
+
+    Parameters
+    ----------
+    name
+        What it is called.
+    H
+        H(q, p, t) as text; the time is ``t``.
+    q, p
+        Names of the coordinates and of their momenta.
+    parameters
+        Names and values of the constants.
+    starts
+        Names and states (q, p); the first is the default.
+    period
+        Period of a typical motion, None where none is known.
+
+    Examples
+    --------
+    >>> quartic = Formula("quartic", "p**2/2 + k*q**4/4", ("q",), ("p",), (("k", 2.0),))
+    >>> hamiltonian_of(quartic).p_dot
+    (-k*q**3,)
+    """
+
+    name: str
+    H: str
+    q: tuple[str, ...]
+    p: tuple[str, ...]
+    parameters: tuple[tuple[str, float], ...] = ()
+    starts: tuple[tuple[str, tuple[float, ...]], ...] = ()
+    period: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.q or len(self.q) != len(self.p):
+            raise StudyError(
+                f"{self.name}: {counted(len(self.q), 'coordinate')} and "
+                f"{counted(len(self.p), 'momentum', 'momenta')}; each coordinate needs one"
+            )
+        names = (*self.q, *self.p, *(name for name, _ in self.parameters))
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise StudyError(f"{self.name}: {twice[0]!r} is declared twice")
+        for name, value in self.parameters:
+            if not math.isfinite(value):
+                raise StudyError(f"{self.name}: the parameter {name} = {value} is not a finite number")
+        for name, state in self.starts:
+            self.check(state, f"the start {name!r}")
+        if self.period is not None and not (math.isfinite(self.period) and self.period > 0.0):
+            raise StudyError(f"{self.name}: a period of {self.period} makes no sense: give a positive number")
+
+    def check(self, state: Sequence[float], what: str) -> None:
+        """Raise StudyError where a state has not 2n finite numbers."""
+        if len(state) != 2 * len(self.q) or not all(map(math.isfinite, state)):
+            raise StudyError(
+                f"{self.name}: {what} needs {2 * len(self.q)} finite numbers (q, p), not {list(state)}"
+            )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what JSON can hold of this system."""
+        return {
+            "name": self.name,
+            "H": self.H,
+            "q": list(self.q),
+            "p": list(self.p),
+            "parameters": dict(self.parameters),
+            "starts": {name: list(state) for name, state in self.starts},
+            "period": self.period,
+        }
+
+    @staticmethod
+    def from_dict(written: Mapping[str, Any]) -> Formula:
+        """Return the system that :meth:`to_dict` wrote."""
+        return Formula(
+            name=written["name"],
+            H=written["H"],
+            q=tuple(written["q"]),
+            p=tuple(written["p"]),
+            parameters=tuple(written["parameters"].items()),
+            starts=tuple((name, tuple(state)) for name, state in written["starts"].items()),
+            period=written["period"],
+        )
+
+
+def formula_from(name: str, table: Mapping[str, Any]) -> Formula:
+    """Return the system that a table of a study file describes.
+
+    Parameters
+    ----------
+    name
+        What it is called there.
+    table
+        ``H``; ``q`` and ``p`` as lists or with spaces between (``p`` may be left out: ``p_<coordinate>``);
+        ``parameters``, ``starts`` and ``period`` where there are any.
+
+    Raises
+    ------
+    StudyError
+        Where a key is missing, unknown or of the wrong kind, or H can't be read.
+
+    Examples
+    --------
+    >>> formula_from("pendulum", {"H": "p_a**2/2 - cos(a)", "q": "a", "starts": {"high": [3.0, 0.0]}})
+    Formula(name='pendulum', H='p_a**2/2 - cos(a)', q=('a',), p=('p_a',), ...
+    """
+    unknown = sorted(set(table) - set(KEYS))
+    if unknown:
+        raise StudyError(f"system {name}: unknown key {unknown[0]!r}; there are {', '.join(KEYS)}")
+    for key in ("H", "q"):
+        if key not in table:
+            raise StudyError(f"system {name}: {key!r} is missing")
+    try:
+        q = _names(table["q"])
+        period = table.get("period")
+        found = Formula(
+            name=name,
+            H=_text(table["H"]),
+            q=q,
+            p=_names(table["p"]) if "p" in table else tuple(f"p_{x}" for x in q),
+            parameters=tuple((key, _number(value)) for key, value in table.get("parameters", {}).items()),
+            starts=tuple((key, tuple(map(_number, state))) for key, state in table.get("starts", {}).items()),
+            period=None if period is None else _number(period),
+        )
+    except (TypeError, AttributeError) as error:
+        raise StudyError(f"system {name}: {error}") from error
+    hamiltonian_of(found)
+    return found
+
+
+def formula_of(
+    hamiltonian: HamiltonianSystem,
+    name: str = "Hamiltonian",
+    *,
+    parameters: Mapping[str, float] | None = None,
+    starts: Mapping[str, Sequence[float]] | None = None,
+    period: float | None = None,
+) -> Formula:
+    """Return a Hamiltonian as text that reads back as the same expression.
+
+    Parameters
+    ----------
+    hamiltonian
+        The Hamiltonian, such as :class:`canon.Hamiltonian`. Floats in it are taken for the numbers they are.
+    name, parameters, starts, period
+        As :class:`Formula` takes them.
+
+    Raises
+    ------
+    StudyError
+        Where the expression language has no words for it, or a parameter has no value.
+
+    Examples
+    --------
+    >>> from canon import Hamiltonian, coordinates, parameters
+    >>> (x,), (k,) = coordinates("x"), parameters("k", positive=True)
+    >>> formula_of(Hamiltonian(x.momentum**2/2 + k*x**4/4, [x], [x.momentum]), parameters={"k": 2.0}).H
+    'k*x**4/4 + p_x**2/2'
+    """
+    import sympy as sp
+
+    exact: dict[Any, Any] = {x: _exact(x) for x in hamiltonian.H.atoms(sp.Float)}
+    H: Any = hamiltonian.H.xreplace(exact)
+    if hamiltonian.t in H.free_symbols and str(hamiltonian.t) != "t":
+        raise StudyError(f"{name}: in a study the time is called t, not {hamiltonian.t}")
+    formula = Formula(
+        name=name,
+        H=str(H),
+        q=tuple(map(str, hamiltonian.q)),
+        p=tuple(map(str, hamiltonian.p)),
+        parameters=tuple((str(key), float(value)) for key, value in (parameters or {}).items()),
+        starts=tuple((key, tuple(map(float, state))) for key, state in (starts or {}).items()),
+        period=period,
+    )
+    read = hamiltonian_of(formula)
+    if _by_name(read.H) != _by_name(H):
+        raise StudyError(
+            f"{name}: the expression language has no words for {formula.H}; write H as text, as in a study file"
+        )
+    return formula
+
+
+@lru_cache(maxsize=64)
+def hamiltonian_of(formula: Formula) -> Hamiltonian:
+    """Return the Hamiltonian that the text spells.
+
+    Raises
+    ------
+    StudyError
+        With the place in the text and the remedy, where it can't be read.
+    """
+    from canon.expression.parse import LanguageError, Scope, parse_expression
+    from canon.expression.symbols.symbol import Coordinate, Momentum, parameters
+    from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+
+    try:
+        q = [Coordinate(name, real=True) for name in formula.q]
+        p = [Momentum(name, real=True) for name in formula.p]
+        constants = [parameters(name)[0] for name, _ in formula.parameters]
+        scope = Scope({symbol.name: symbol for symbol in (*q, *p, *constants)})
+        H = parse_expression(formula.H, scope)
+    except LanguageError as error:
+        raise StudyError(f"system {formula.name}, H: {error}") from error
+    return Hamiltonian(H, q, p)
+
+
+def _exact(x: Any) -> Expr:
+    """Return the number that a Float is."""
+    import sympy as sp
+
+    numerator, denominator = x.as_integer_ratio()
+    return sp.Rational(int(numerator), int(denominator))
+
+
+def _by_name(f: Any) -> Any:
+    """Return an expression in plain symbols, whatever is assumed of them."""
+    import sympy as sp
+
+    return f.xreplace({symbol: sp.Symbol(str(symbol), real=True) for symbol in f.free_symbols})
+
+
+def _names(written: Any) -> tuple[str, ...]:
+    names = written.replace(",", " ").split() if isinstance(written, str) else list(written)
+    if not all(isinstance(name, str) and name.isidentifier() for name in names):
+        raise TypeError(f"names are words, such as theta or x_1, not {written!r}")
+    return tuple(names)
+
+
+def _text(written: Any) -> str:
+    if not isinstance(written, str):
+        raise TypeError(f"H is text in quotation marks, not {written!r}")
+    return written
+
+
+def _number(written: Any) -> float:
+    if isinstance(written, bool) or not isinstance(written, int | float):
+        raise TypeError(f"{written!r} is no number")
+    return float(written)
