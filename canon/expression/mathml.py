@@ -28,7 +28,7 @@ from canon.expression.text.tokens import GREEK
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.expression.parse import Scope
+    from canon.expression.text.scope import Scope
 
 __all__ = ["formula", "mathml"]
 
@@ -61,7 +61,7 @@ def formula(text: str, scope: Scope) -> Element | None:
     Examples
     --------
     >>> from xml.etree.ElementTree import tostring
-    >>> from canon.expression.parse import Scope
+    >>> from canon.expression.text.scope import Scope
     >>> tostring(formula("theta_dot/2", Scope()), encoding="unicode")
     '<math><mfrac><mover accent="true"><mi>θ</mi><mo>˙</mo></mover><mn>2</mn></mfrac></math>'
     """

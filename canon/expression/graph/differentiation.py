@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from canon.expression.graph.elementary import SLOPES
+from canon.expression.graph.algebra import add, mul, negative, power, raised
+from canon.expression.graph.elementary import SLOPES, function
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
     from sympy import Symbol
 
-    from canon.expression.graph.graph import Graph
+    from canon.expression.graph.arena import Arena
 
 __all__ = ["derivative", "gradient"]
 
@@ -23,83 +24,84 @@ _FEW = 2
 """Up to so many factors that vary the products of the others are formed one by one."""
 
 
-def derivative(graph: Graph, node: int, symbol: Symbol, known: dict[int, int]) -> int:
+def derivative(arena: Arena, node: int, symbol: Symbol, known: dict[int, int]) -> int:
     """Return ∂node/∂symbol; ``known`` holds the derivatives by this symbol already found and takes up the new ones."""
-    wanted = graph.mask((symbol,))
-    if not graph.masks[node] & wanted:
-        return graph.zero
-    known[graph.symbol(symbol)] = graph.one
-    for each in _varying(graph, node, wanted, known):
-        known[each] = graph.add(
+    wanted = arena.mask((symbol,))
+    if not arena.masks[node] & wanted:
+        return arena.zero
+    known[arena.symbol(symbol)] = arena.one
+    for each in _varying(arena, node, wanted, known):
+        known[each] = add(
+            arena,
             [
-                slope if known[o] == graph.one else graph.mul((slope, known[o]))
-                for o, slope in _slopes(graph, each, wanted)
-            ]
+                slope if known[o] == arena.one else mul(arena, (slope, known[o]))
+                for o, slope in _slopes(arena, each, wanted)
+            ],
         )
     return known[node]
 
 
-def gradient(graph: Graph, node: int, symbols: Sequence[Symbol]) -> tuple[int, ...]:
+def gradient(arena: Arena, node: int, symbols: Sequence[Symbol]) -> tuple[int, ...]:
     """Return ∂node/∂symbol for many symbols at once."""
-    own = [graph.symbol(symbol) for symbol in symbols]
-    wanted = graph.mask(symbols)
-    contributions: dict[int, list[int]] = {node: [graph.one]}
-    for each in reversed(_varying(graph, node, wanted, ())):
-        if graph.nodes[each].operands:
-            adjoint = graph.add(contributions.pop(each))
-            for operand, slope in _slopes(graph, each, wanted):
-                product = slope if adjoint == graph.one else graph.mul((adjoint, slope))
+    own = [arena.symbol(symbol) for symbol in symbols]
+    wanted = arena.mask(symbols)
+    contributions: dict[int, list[int]] = {node: [arena.one]}
+    for each in reversed(_varying(arena, node, wanted, ())):
+        if arena.nodes[each].operands:
+            adjoint = add(arena, contributions.pop(each))
+            for operand, slope in _slopes(arena, each, wanted):
+                product = slope if adjoint == arena.one else mul(arena, (adjoint, slope))
                 contributions.setdefault(operand, []).append(product)
-    return tuple(graph.add(contributions.get(each, ())) for each in own)
+    return tuple(add(arena, contributions.get(each, ())) for each in own)
 
 
-def _varying(graph: Graph, node: int, wanted: int, known: Collection[int]) -> list[int]:
+def _varying(arena: Arena, node: int, wanted: int, known: Collection[int]) -> list[int]:
     """Return the nodes below one that depend on the wanted symbols and are not known, operands first."""
-    found, waiting, masks = set[int](), [node], graph.masks
+    found, waiting, masks = set[int](), [node], arena.masks
     while waiting:
         each = waiting.pop()
         if each not in found and each not in known and masks[each] & wanted:
             found.add(each)
-            waiting.extend(graph.nodes[each].operands)
+            waiting.extend(arena.nodes[each].operands)
     return sorted(found)
 
 
-def _slopes(graph: Graph, node: int, wanted: int) -> Iterator[tuple[int, int]]:
+def _slopes(arena: Arena, node: int, wanted: int) -> Iterator[tuple[int, int]]:
     """Yield the operands that vary and the partial derivative of the operation by each."""
-    kind, operands, _ = graph.nodes[node]
-    masks = graph.masks
+    kind, operands, _ = arena.nodes[node]
+    masks = arena.masks
     if kind == "add":
-        yield from ((o, graph.one) for o in operands if masks[o] & wanted)
+        yield from ((o, arena.one) for o in operands if masks[o] & wanted)
     elif kind == "mul":
-        yield from _of_product(graph, operands, wanted)
+        yield from _of_product(arena, operands, wanted)
     elif kind == "pow":
         base, exponent = operands
         if masks[base] & wanted:
-            yield base, graph.mul((exponent, graph.pow(base, graph.add((exponent, graph.number(-1))))))
+            yield base, mul(arena, (exponent, power(arena, base, add(arena, (exponent, arena.number(-1))))))
         if masks[exponent] & wanted:
-            yield exponent, graph.mul((node, graph.function("log", base)))
+            yield exponent, mul(arena, (node, function(arena, "log", base)))
     elif kind == "atan2":
         y, x = operands
-        inverse = graph.power(graph.add((graph.power(x, 2), graph.power(y, 2))), -1)
+        inverse = raised(arena, add(arena, (raised(arena, x, 2), raised(arena, y, 2))), -1)
         if masks[y] & wanted:
-            yield y, graph.mul((x, inverse))
+            yield y, mul(arena, (x, inverse))
         if masks[x] & wanted:
-            yield x, graph.negative(graph.mul((y, inverse)))
+            yield x, negative(arena, mul(arena, (y, inverse)))
     else:
-        yield operands[0], SLOPES[kind](graph, operands[0], node)
+        yield operands[0], SLOPES[kind](arena, operands[0], node)
 
 
-def _of_product(graph: Graph, factors: tuple[int, ...], wanted: int) -> Iterator[tuple[int, int]]:
-    varying = [k for k, factor in enumerate(factors) if graph.masks[factor] & wanted]
+def _of_product(arena: Arena, factors: tuple[int, ...], wanted: int) -> Iterator[tuple[int, int]]:
+    varying = [k for k, factor in enumerate(factors) if arena.masks[factor] & wanted]
     if len(varying) <= _FEW:
         for k in varying:
             others = factors[:k] + factors[k + 1 :]
-            yield factors[k], others[0] if len(others) == 1 else graph.mul(others)
+            yield factors[k], others[0] if len(others) == 1 else mul(arena, others)
         return
-    before, after = [graph.one], [graph.one]
+    before, after = [arena.one], [arena.one]
     for factor in factors[:-1]:
-        before.append(graph.mul((before[-1], factor)))
+        before.append(mul(arena, (before[-1], factor)))
     for factor in reversed(factors[1:]):
-        after.append(graph.mul((after[-1], factor)))
+        after.append(mul(arena, (after[-1], factor)))
     after.reverse()
-    yield from ((factors[k], graph.mul((before[k], after[k]))) for k in varying)
+    yield from ((factors[k], mul(arena, (before[k], after[k]))) for k in varying)

@@ -10,14 +10,14 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
-    from canon.expression.graph.graph import Graph
+    from canon.expression.graph.arena import Arena
     from canon.expression.graph.number_systems import Arithmetic
 
 __all__ = ["evaluate"]
 
 
 def evaluate(
-    graph: Graph, nodes: Sequence[int], values: Mapping[Symbol, Any], arithmetic: Arithmetic
+    graph: Arena, nodes: Sequence[int], values: Mapping[Symbol, Any], arithmetic: Arithmetic
 ) -> list[Any]:
     """Return the values of nodes; see :meth:`canon.expression.graph.graph.Graph.evaluate`."""
     done = dict[int, Any]()
@@ -33,7 +33,7 @@ def evaluate(
     return [done[node] for node in nodes]
 
 
-def _value(graph: Graph, node: int, x: list[Any], arithmetic: Arithmetic) -> Any:
+def _value(graph: Arena, node: int, x: list[Any], arithmetic: Arithmetic) -> Any:
     kind, operands, value = graph.nodes[node]
     if kind == "number":
         return arithmetic.number(value)

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.expression.graph.algebra import add, mul, power, raised
+from canon.expression.graph.elementary import function
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from sympy import Expr
 
-    from canon.expression.graph.graph import Graph
+    from canon.expression.graph.arena import Arena
 
 __all__ = ["NotModelledError", "from_sympy", "to_sympy"]
 
@@ -24,11 +27,11 @@ _FUNCTIONS: dict[type, str] = {
     )
 }  # fmt: skip
 
-_LOWERED: dict[type, Callable[[Graph, int], int]] = {
-    sp.cot: lambda g, x: g.mul([g.function("cos", x), g.power(g.function("sin", x), -1)]),
-    sp.sec: lambda g, x: g.power(g.function("cos", x), -1),
-    sp.csc: lambda g, x: g.power(g.function("sin", x), -1),
-    sp.acot: lambda g, x: g.function("atan", g.power(x, -1)),
+_LOWERED: dict[type, Callable[[Arena, int], int]] = {
+    sp.cot: lambda g, x: mul(g, [function(g, "cos", x), raised(g, function(g, "sin", x), -1)]),
+    sp.sec: lambda g, x: raised(g, function(g, "cos", x), -1),
+    sp.csc: lambda g, x: raised(g, function(g, "sin", x), -1),
+    sp.acot: lambda g, x: function(g, "atan", raised(g, x, -1)),
 }
 
 
@@ -36,7 +39,7 @@ class NotModelledError(ValueError):
     """An expression holds something the graph has no operation for."""
 
 
-def from_sympy(graph: Graph, expression: Expr) -> int:
+def from_sympy(arena: Arena, expression: Expr) -> int:
     """Return the node of a SymPy expression."""
     # The memo goes by identity: hashing a deep SymPy expression recurses.
     done: dict[int, int] = {}
@@ -51,31 +54,31 @@ def from_sympy(graph: Graph, expression: Expr) -> int:
             continue
         waiting.pop()
         if id(current) not in done:
-            done[id(current)] = _node(graph, current, [done[id(a)] for a in current.args])
+            done[id(current)] = _node(arena, current, [done[id(a)] for a in current.args])
     return done[id(expression)]
 
 
-def _node(graph: Graph, expression: Any, operands: list[int]) -> int:
+def _node(arena: Arena, expression: Any, operands: list[int]) -> int:
     if expression.is_Symbol:
-        return graph.symbol(expression)
+        return arena.symbol(expression)
     if expression.is_Rational:
-        return graph.number(Fraction(int(expression.p), int(expression.q)))
+        return arena.number(Fraction(int(expression.p), int(expression.q)))
     if expression.is_Float and expression.is_finite:
         above, below = sp.Rational(expression).as_numer_denom()
-        return graph.number(Fraction(int(above), int(below)))
+        return arena.number(Fraction(int(above), int(below)))
     if expression in (sp.pi, sp.E):
-        return graph.named(str(expression))
+        return arena.named(str(expression))
     if expression.is_Add:
-        return graph.add(operands)
+        return add(arena, operands)
     if expression.is_Mul:
-        return graph.mul(operands)
+        return mul(arena, operands)
     if expression.is_Pow:
-        return graph.pow(*operands)
+        return power(arena, *operands)
     kind = type(expression)
     if kind in _LOWERED:
-        return _LOWERED[kind](graph, *operands)
+        return _LOWERED[kind](arena, *operands)
     if kind in _FUNCTIONS:
-        return graph.function(_FUNCTIONS[kind], *operands)
+        return function(arena, _FUNCTIONS[kind], *operands)
     raise NotModelledError(_complaint(expression))
 
 
@@ -92,11 +95,11 @@ def _complaint(expression: Any) -> str:
     return f"{type(expression).__name__} in {shown} has no operation in the expression graph; {remedy}"
 
 
-def to_sympy(graph: Graph, nodes: Sequence[int]) -> list[Expr]:
+def to_sympy(arena: Arena, nodes: Sequence[int]) -> list[Expr]:
     """Return nodes as SymPy expressions."""
     done = dict[int, Any]()
-    for each in graph.reachable(nodes):
-        kind, operands, value = graph.nodes[each]
+    for each in arena.reachable(nodes):
+        kind, operands, value = arena.nodes[each]
         x = [done[o] for o in operands]
         if kind == "number":
             done[each] = sp.Rational(value.numerator, value.denominator)

@@ -10,7 +10,7 @@ from canon.expression.symbols.symbol import Coordinate
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Tuple
 
 if TYPE_CHECKING:
-    from canon.expression.parse import Scope
+    from canon.expression.text.scope import Scope
 
 __all__ = ["Derivatives", "derivative"]
 

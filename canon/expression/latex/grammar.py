@@ -44,7 +44,7 @@ from canon.expression.text.syntax import (
 if TYPE_CHECKING:
     from lark import ParseTree
 
-    from canon.expression.parse import Scope
+    from canon.expression.text.scope import Scope
 
 __all__ = ["parse_latex"]
 

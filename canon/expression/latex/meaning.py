@@ -32,7 +32,7 @@ from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Power, Product, Tuple
 
 if TYPE_CHECKING:
-    from canon.expression.parse import Scope
+    from canon.expression.text.scope import Scope
 
 __all__ = ["Meaning"]
 

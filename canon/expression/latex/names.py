@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NoReturn, TypeAlias
 from canon.expression.text.syntax import LanguageError, Name, Number
 
 if TYPE_CHECKING:
-    from canon.expression.parse import Scope
+    from canon.expression.text.scope import Scope
 
 __all__ = ["FUNCTIONS", "Applied", "Function", "Item", "Mark", "Names", "Pieces", "spellings", "stems"]
 

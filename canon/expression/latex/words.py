@@ -27,7 +27,7 @@ from canon.expression.text import syntax
 from canon.expression.text.syntax import LanguageError, Name, Number
 
 if TYPE_CHECKING:
-    from canon.expression.parse import Scope
+    from canon.expression.text.scope import Scope
 
 __all__ = ["Word", "Words", "words_of"]
 

@@ -16,9 +16,8 @@ from canon.expression.text.tokens import Token, tokens
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["parse_juxtaposed", "split"]
+__all__ = ["parse_juxtaposed"]
 
-_MAX_RUN = 40
 _PRODUCT_OR_VALUE = "write * for a product; a function is declared in functions"
 
 
@@ -46,30 +45,6 @@ def parse_juxtaposed(text: str, scope: Scope) -> Node:
         ^
     """
     return _Juxtaposed(text, tokens(text), scope).whole()
-
-
-def split(name: str, scope: Scope) -> str:
-    """Return the declared names that a run of letters is made of, one space between them; nothing if in no one way.
-
-    Examples
-    --------
-    >>> from canon import parameters
-    >>> from canon.expression.text.scope import Scope
-    >>> split("mgl", Scope({s.name: s for s in parameters("m g l")}))
-    'm g l'
-    """
-    if len(name) > _MAX_RUN:
-        return ""
-    ways: list[list[str]] = [[""]]
-    for end in range(1, len(name) + 1):
-        parts = ((ways[start], name[start:end]) for start in range(end))
-        found = [f"{way} {part}" for before, part in parts if _declared(part, scope) for way in before]
-        ways.append(found[:2])
-    return ways[-1][0].strip() if len(ways[-1]) == 1 else ""
-
-
-def _declared(name: str, scope: Scope) -> bool:
-    return name not in scope.functions and scope.symbol(name) is not None
 
 
 class _Juxtaposed(Parser):
@@ -125,14 +100,14 @@ class _Juxtaposed(Parser):
         return token.column > opening.column and token.kind == "name"
 
     def named(self, token: Token) -> Node:
-        if _declared(token.text, self.scope):
+        if self.scope.declares(token.text):
             return Name(token.text, token.primes, token.column)
         return super().named(token)
 
     def number(self, token: Token) -> Node:
         letter = token.text.lower().find("e")
         ending = token.text[letter:]
-        if letter > 0 and (_declared(ending, self.scope) or _declared(ending[0], self.scope)):
+        if letter > 0 and (self.scope.declares(ending) or self.scope.declares(ending[0])):
             raise LanguageError(
                 self.text,
                 token.column,

@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from canon.expression.symbols.symbol import Coordinate, acceleration, time, velocity
-from canon.expression.text.juxtaposition import split
 from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES
 
 if TYPE_CHECKING:
@@ -16,7 +15,10 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
-__all__ = ["Scope"]
+__all__ = ["Scope", "split"]
+
+_MAX_RUN = 40
+"""Letters of a name that is still taken apart."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,10 @@ class Scope:
                 return rate(base)
         return None
 
+    def declares(self, name: str) -> bool:
+        """Tell whether a name stands for a declared symbol or a rate."""
+        return name not in self.functions and self.symbol(name) is not None
+
     def near(self, name: str) -> str:
         """Return a remedy for an unknown name."""
         if name in OTHER_NAMES:
@@ -75,3 +81,23 @@ class Scope:
         known += [f"{n}_dot" for n, s in self.names.items() if isinstance(s, Coordinate)]
         close = difflib.get_close_matches(name[:60], known, n=1, cutoff=0.75)
         return f"is {close[0]} meant?" if close else "declare it in parameters or functions"
+
+
+def split(name: str, scope: Scope) -> str:
+    """Return the declared names that a run of letters is made of, one space between them; nothing if in no one way.
+
+    Examples
+    --------
+    >>> from canon import parameters
+    >>> from canon.expression.text.scope import Scope
+    >>> split("mgl", Scope({s.name: s for s in parameters("m g l")}))
+    'm g l'
+    """
+    if len(name) > _MAX_RUN:
+        return ""
+    ways: list[list[str]] = [[""]]
+    for end in range(1, len(name) + 1):
+        parts = ((ways[start], name[start:end]) for start in range(end))
+        found = [f"{way} {part}" for before, part in parts if scope.declares(part) for way in before]
+        ways.append(found[:2])
+    return ways[-1][0].strip() if len(ways[-1]) == 1 else ""
