@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from canon.flow.method.method import Splitting, Stepped, TimeTransformed
-from canon.flow.propagate import NonFiniteStateError
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.scene import find
 from canon.study.choose.candidate import candidate_methods
 from canon.study.choose.choice_question import Question, Setting

@@ -43,10 +43,10 @@ if TYPE_CHECKING:
     from canon.flow.method.solvable_splitting import SBAB as SBAB
     from canon.flow.method.solvable_splitting import WisdomHolman as WisdomHolman
     from canon.flow.propagate import Interrupted as Interrupted
-    from canon.flow.propagate import NonFiniteStateError as NonFiniteStateError
     from canon.flow.propagate import Trajectory as Trajectory
     from canon.flow.propagate import propagate as propagate
     from canon.flow.run.event import Event as Event
+    from canon.flow.run.non_finite_state import NonFiniteStateError as NonFiniteStateError
     from canon.flow.run.observables_along import AccuracyWarning as AccuracyWarning
     from canon.mechanics.canonical.find_generating_function import generating_function as generating_function
     from canon.mechanics.canonical.from_generating_function import (

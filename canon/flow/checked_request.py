@@ -6,7 +6,7 @@ import functools
 import math
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from sympy import Symbol
@@ -29,36 +29,13 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from sympy import Expr
 
-    from canon.flow.trajectory import Array
+    from canon.array import Array
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
-__all__ = ["HamiltonianSystem", "system_of", "task_of"]
+__all__ = ["system_of", "task_of"]
 
 _KEPT = 64
 """Systems kept for the next call."""
-
-
-class HamiltonianSystem(Protocol):
-    """What ``propagate`` needs of a Hamiltonian, such as :class:`canon.Hamiltonian`."""
-
-    @property
-    def H(self) -> Expr:
-        """H(q, p, t)."""
-        ...
-
-    @property
-    def q(self) -> tuple[Symbol, ...]:
-        """The coordinates."""
-        ...
-
-    @property
-    def p(self) -> tuple[Symbol, ...]:
-        """The momenta."""
-        ...
-
-    @property
-    def t(self) -> Symbol:
-        """The time."""
-        ...
 
 
 def task_of(

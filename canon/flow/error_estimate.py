@@ -18,10 +18,11 @@ import numpy as np
 
 from canon.display import preformatted
 from canon.expression.graph.number_systems import LONGDOUBLE
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.integrate import integrate
 from canon.flow.method.method import Gauss, Taylor
 from canon.flow.method.number_formats import FIXED
 from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.observables_along import jumped
 from canon.flow.run.sampling_plan import Plan
 from canon.kernel.llvm.number_types import EXTENDED
@@ -31,8 +32,9 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
+    from canon.array import Array
+    from canon.flow.run.samples import Samples
     from canon.flow.task import Task
-    from canon.flow.trajectory import Array, Samples, Trajectory
     from canon.kernel.program.hamilton_equations import Equations
 
 __all__ = ["ErrorEstimate", "error_estimate"]
@@ -144,9 +146,21 @@ class ErrorEstimate:
         return [*said, f"by {self.companion}"]
 
 
-def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> ErrorEstimate:
-    """Return the error of a motion by a companion run; see :meth:`canon.Trajectory.error_estimate`."""
-    task, samples = motion.origin
+def error_estimate(
+    task: Task, samples: Samples, energy_change: Array, orbits: Sequence[int] | None = None
+) -> ErrorEstimate:
+    """Return the error of a motion by a companion run; see :meth:`canon.Trajectory.error_estimate`.
+
+    Parameters
+    ----------
+    task, samples
+        What was to be done, and what came out in full.
+    energy_change
+        H − H(start) at the samples, shape (times,) or (times, orbits).
+    orbits
+        Which orbits of many to estimate.
+    """
+    single = task.single
     chosen = list(range(samples.y.shape[2])) if orbits is None else list(orbits)
     rows = task.system.rows
     own = samples.y[rows][:, :, chosen]
@@ -166,7 +180,7 @@ def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> E
         if told:
             break
     if task.system.autonomous and not any(met.after is not None for met in samples.crossings):
-        change = motion.energy_change.reshape(len(motion.t), -1)[:, chosen]
+        change = energy_change.reshape(len(samples.t), -1)[:, chosen]
         deluded = _deluded(
             task.system, replace(samples, y=samples.y[:, :, chosen]), change, away / scale, scale
         )
@@ -176,10 +190,10 @@ def error_estimate(motion: Trajectory, orbits: Sequence[int] | None = None) -> E
         away = (away + rates * np.spacing(abs(samples.t))[:, np.newaxis]).astype(np.float64)
     relative = (away / scale).max(axis=0)
     condition = _growth(apart / scale)
-    if motion.y.ndim == 2:
+    if single:
         away, relative, condition = away[:, :, 0], relative[:, 0], condition[:, 0]
     events = _event_errors(samples, found)
-    return ErrorEstimate(motion.t, away, relative, condition, events, words)
+    return ErrorEstimate(samples.t, away, relative, condition, events, words)
 
 
 def _deluded(
@@ -306,7 +320,7 @@ def _companions(better: _Better, samples: Samples, scale: Array) -> tuple[Sample
         if each is None:
             continue
         try:
-            return _known(each.samples(), samples)
+            return _known(integrate(each), samples)
         except NonFiniteStateError as lost:
             last = lost
     forward = task.plan.forward
@@ -314,7 +328,7 @@ def _companions(better: _Better, samples: Samples, scale: Array) -> tuple[Sample
     if before < 2:
         return None, 0
     try:
-        return _known(_first(task, before).samples(), samples)
+        return _known(integrate(_first(task, before)), samples)
     except NonFiniteStateError:
         return None, 0
 

@@ -13,9 +13,10 @@ from canon.flow.method.method import FixedStep, Taylor
 from canon.flow.method.number_formats import fixed_precision
 
 if TYPE_CHECKING:
+    from canon.array import Array
     from canon.flow.fixed_step.partial_step import PartialSteps
+    from canon.flow.run.samples import Samples
     from canon.flow.task import Task
-    from canon.flow.trajectory import Array, Samples
 
 __all__ = ["states_at"]
 

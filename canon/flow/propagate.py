@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.checked_request import HamiltonianSystem, system_of, task_of
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
-from canon.flow.trajectory import Interrupted, Trajectory
+from canon.flow.checked_request import system_of, task_of
+from canon.flow.run.hamiltonian_system import HamiltonianSystem
+from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.trajectory import Interrupted, Trajectory, carried_out
 from canon.progress import reporting
 
 if TYPE_CHECKING:
@@ -134,7 +135,7 @@ def propagate(
         events=events, dense=dense,
     )  # fmt: skip
     with reporting(progress) as report:
-        return task.trajectory(report)
+        return carried_out(task, report)
 
 
 def is_separable(hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, Any]) -> bool:

@@ -2,121 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from canon.expression.symbols.user_input import counted
+from canon.flow.error_estimate import ErrorEstimate, error_estimate
+from canon.flow.integrate import integrate, silently
+from canon.flow.interpolation import states_at
+from canon.flow.run.observables_along import measured, warn_of_jumps
+from canon.flow.run.samples import Samples, Statistics
+from canon.kernel.program.hamilton_equations import exact
+from canon.progress import reporting
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-    from canon.flow.error_estimate import ErrorEstimate
+    import numpy.typing as npt
+
+    from canon.array import Array
     from canon.flow.method.method import Method
     from canon.flow.run.event import Crossing
     from canon.flow.task import Task
 
-__all__ = ["Array", "Interrupted", "Samples", "Statistics", "Trajectory", "joined"]
-
-Array = npt.NDArray[np.float64]
-
-Dense = Callable[[Array], Array]
-"""States (2n, times) at times."""
-
-
-@dataclass(frozen=True)
-class Samples:
-    """What an integrator hands back: sampled states and what they cost.
-
-    Parameters
-    ----------
-    t
-        Sample times, shape (times,).
-    y
-        States, shape (2n, times, orbits).
-    carried
-        What the states are beyond doubles: the state is y + carried, shape (2n, times, orbits).
-    steps, evaluations
-        Steps taken, and evaluations of the force (Taylor: of the series).
-    step
-        The step size of a fixed-step method.
-    cpu_seconds, compile_seconds
-        Processor time of the integration, and the wall-clock time that compiling its loop took.
-    watched
-        Where observables were followed inside the loop: mean, least and greatest change of each between
-        samples, shape (observables, 3, times − 1, orbits).
-    beyond
-        What the method needs beyond the last state to go on with the same bits.
-    crossings
-        Events met.
-    dense
-        The motion of each orbit as a function of time, where it was asked for.
-    """
-
-    t: Array
-    y: Array
-    carried: Array
-    steps: int
-    evaluations: int
-    step: float | None
-    cpu_seconds: float
-    compile_seconds: float
-    watched: Array | None = None
-    beyond: Any = None
-    crossings: tuple[Crossing, ...] = ()
-    dense: tuple[Dense, ...] = ()
-
-
-def joined(before: Samples | None, after: Samples) -> Samples:
-    """Return a motion and its continuation, whose first sample is the last one before, as one motion."""
-    if before is None:
-        return after
-    watched = after.watched
-    if watched is not None and before.watched is not None:
-        watched = np.concatenate([before.watched, watched], axis=2)
-    return replace(
-        after,
-        t=np.concatenate([before.t, after.t[1:]]),
-        y=np.concatenate([before.y, after.y[:, 1:]], axis=1),
-        carried=np.concatenate([before.carried, after.carried[:, 1:]], axis=1),
-        steps=before.steps + after.steps,
-        evaluations=before.evaluations + after.evaluations,
-        cpu_seconds=before.cpu_seconds + after.cpu_seconds,
-        watched=watched,
-        crossings=before.crossings + after.crossings,
-        dense=before.dense + after.dense,
-    )
-
-
-@dataclass(frozen=True)
-class Statistics:
-    """Changes of a quantity since the start, gathered inside the loop between samples.
-
-    Parameters
-    ----------
-    mean, least, greatest
-        Over the steps watched in each block, from one sample to the next, shape (times − 1,) or
-        (times − 1, orbits).
-    """
-
-    mean: Array
-    least: Array
-    greatest: Array
-
-    @property
-    def largest(self) -> Array:
-        """The largest size of the change in each block."""
-        return np.maximum(abs(self.least), abs(self.greatest))
-
-    @property
-    def running(self) -> Array:
-        """The largest size of the change from the start to the end of each block."""
-        return np.maximum.accumulate(self.largest, axis=0)
+__all__ = ["Interrupted", "Trajectory", "carried_out"]
 
 
 @dataclass(frozen=True)
@@ -224,7 +136,8 @@ class Trajectory:
         """Return how far this motion is from the true one, by a companion run that is more exact.
 
         A method of fixed steps is repeated with half the step in wider numbers, which takes many times as long
-        as the motion did; others are compared with Taylor's method in wider numbers. See :mod:`canon.flow.error_estimate`.
+        as the motion did; others are compared with Taylor's method in wider numbers. See
+        :mod:`canon.flow.error_estimate`.
 
         Parameters
         ----------
@@ -247,9 +160,8 @@ class Trajectory:
         >>> bool(0.02 < estimate.relative[-1] < 0.1), estimate.meaningful_until, estimate.lyapunov_time
         (True, None, None)
         """
-        from canon.flow.error_estimate import error_estimate
-
-        return error_estimate(self, orbits)
+        task, samples = self.origin
+        return error_estimate(task, samples, self.energy_change, orbits)
 
     @property
     def stopped(self) -> bool:
@@ -269,8 +181,6 @@ class Trajectory:
         ValueError
             A time lies outside the span; or what is needed was not kept.
         """
-        from canon.flow.interpolation import states_at
-
         task, samples = self.origin
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
         found = states_at(task, samples, times)[task.system.rows]
@@ -319,9 +229,6 @@ class Trajectory:
         >>> bool((half.resume(20).y == whole.y).all())
         True
         """
-        from canon.kernel.program.hamilton_equations import exact
-        from canon.progress import reporting
-
         task, kept = self.origin
         if self.stopped:
             raise ValueError(f"the motion was ended by the event {self.events[-1].event}: it does not go on")
@@ -332,7 +239,7 @@ class Trajectory:
         elif task.arrived(kept):
             raise ValueError(f"the motion has arrived at t = {self.t[-1]:g}: say how far to go on, until=")
         with reporting(progress) as report:
-            return task.trajectory(report, kept)
+            return carried_out(task, report, kept)
 
     @property
     def origin(self) -> tuple[Task, Samples]:
@@ -356,3 +263,59 @@ class Interrupted(KeyboardInterrupt):
             f"interrupted at t = {motion.t[-1]:g}; the error's .motion has the motion so far, .motion.resume() goes on"
         )
         self.motion = motion
+
+
+def carried_out(
+    task: Task, progress: Callable[[float], None] = silently, so_far: Samples | None = None
+) -> Trajectory:
+    """Carry a task out, from the start or from what was done before.
+
+    Raises
+    ------
+    Interrupted
+        Ctrl-C; the error has the motion as far as it came.
+    NonFiniteStateError
+        The motion can't be continued.
+    """
+    found = integrate(task, progress, so_far)
+    made = _trajectory_of(task, found)
+    if not (task.arrived(found) or made.stopped):
+        raise Interrupted(made)
+    return made
+
+
+def _trajectory_of(task: Task, found: Samples) -> Trajectory:
+    """Return what samples say, with the energy and the observables along them."""
+    watched, kept = found.watched, found
+    if task.single:
+        watched = None if watched is None else watched[..., 0]
+        found = replace(found, y=found.y[:, :, 0], carried=found.carried[:, :, 0])
+    (energy, change), *rest = measured(task.system, task.nodes, found, task.precision_name)
+    rows, names = task.system.rows, ("energy", *task.names)
+    all_rows = len(rows) == len(found.y)
+    changed = any(met.after is not None for met in found.crossings)
+    if task.system.autonomous and not changed:
+        warn_of_jumps(task.system, kept, change.reshape(len(change), -1))
+    return Trajectory(
+        t=found.t,
+        y=found.y if all_rows else found.y[rows],
+        carried=found.carried if all_rows else found.carried[rows],
+        energy=energy,
+        energy_change=change,
+        method=task.method,
+        precision=task.precision_name,
+        step=found.step,
+        steps=found.steps,
+        evaluations=found.evaluations,
+        cpu_seconds=found.cpu_seconds,
+        compile_seconds=found.compile_seconds,
+        autonomous=task.system.autonomous,
+        observables=MappingProxyType(dict(zip(task.names, (value for value, _ in rest), strict=True))),
+        changes=MappingProxyType(dict(zip(task.names, (each for _, each in rest), strict=True))),
+        statistics=MappingProxyType(
+            {} if watched is None else {k: Statistics(*v) for k, v in zip(names, watched, strict=True)}
+        ),
+        events=found.crossings,
+        task=task.ended(found),
+        samples=kept,
+    )

@@ -16,14 +16,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
+    from canon.array import Array
     from canon.flow.trajectory import Trajectory
     from canon.study.cases.result import Result
     from canon.study.drift.drift import Drift
     from canon.study.drift.drift_study import DriftRow, DriftStudy
-
-    Array = NDArray[np.float64]
 
 __all__ = ["draw_guides", "plot_block_means", "plot_energy_error", "plot_errors"]
 

@@ -18,12 +18,10 @@ if TYPE_CHECKING:
 
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
+    from canon.array import Array
     from canon.scene.picture import Picture, Point
     from canon.scene.scene_motion import Motion
-
-    Array = NDArray[np.float64]
 
 __all__ = ["animate_scene", "plot_scene"]
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.scene.parts import Integral, SceneError, Solution
 from canon.scene.scene_motion import Motion, first_zero, run
 

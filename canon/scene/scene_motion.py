@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.graph.number_systems import LONGDOUBLE
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
 from canon.flow.geometry.vector_field_motion import COMPACT_FROM
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.heyoka_bridge import heyoka_expressions
 from canon.mechanics.at_scale.constrained import constrained, constrained_motion
 from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
@@ -22,10 +22,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from sympy import Expr
 
+    from canon.array import Array
     from canon.flow.geometry.vector_field_motion import Field
     from canon.scene.scene import Scene
-
-    Array = NDArray[np.float64]
 
 __all__ = ["Motion", "first_zero", "run", "start_state"]
 

@@ -8,11 +8,11 @@ import pytest
 import sympy as sp
 
 from canon.flow.checked_request import system_of
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
 from canon.flow.fixed_step.partial_step import PartialSteps, State
 from canon.flow.method.method import Gauss, Splitting, TimeTransformed
 from canon.flow.propagate import Interrupted, propagate
 from canon.flow.run.event import Event
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.transformed.extended_hamiltonian import extended, fictitious
 from canon.flow.transformed.land_at_time import Leg, landed
 from tests.flow.systems import KEPLER, PENDULUM, System, kepler_start

@@ -5,11 +5,11 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbols.symbol import coordinates, parameters
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
 from canon.flow.method.method import DOP853, RK4, Splitting, Taylor
 from canon.flow.propagate import propagate
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.observables_along import _many_digits, _wide_values
-from canon.flow.trajectory import Samples
+from canon.flow.run.samples import Samples
 from canon.kernel.program.hamilton_equations import equations
 from tests.flow.systems import (
     DRIVEN,

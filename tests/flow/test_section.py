@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
 from canon.flow.geometry.flow_jacobian import flow_jacobian, reversal_error
 from canon.flow.method.method import Gauss, Splitting, TimeTransformed
 from canon.flow.propagate import propagate
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from tests.flow.systems import DRIVEN, DRIVEN_START, KEPLER, System, kepler_start
 
 x, y = KEPLER.q

@@ -8,8 +8,9 @@ import pytest
 import sympy as sp
 
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
-from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.flow.propagate import propagate
 from canon.flow.run.event import Event
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.observables_along import AccuracyWarning
 from canon.kernel.schemes.gauss_tableau import gauss_tableau
 from tests.flow.systems import KEPLER, PENDULUM, System, kepler_start, x, y

@@ -6,13 +6,13 @@ import sympy as sp
 from sympy import Function, cos, sin, sqrt, symbols
 
 from canon.expression.symbols.symbol import time
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
 from canon.flow.geometry.numeric_evidence import (
     bilinear_covariant,
     brackets_at_points,
     integral_drift,
     symplectic_flow,
 )
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.hamilton.vector_field import VectorField

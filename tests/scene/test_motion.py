@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from canon import Gauss, propagate
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.mechanics.at_scale.constrained import constrained, constrained_motion
 from canon.mechanics.at_scale.numeric_functions import acceleration_function
 from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian

@@ -131,7 +131,7 @@ def inhabited(branches: Iterable[Branch]) -> list[Branch]:
     >>> inhabited(on_manifold([x**2 + y**2 + 1], Domain()))
     Traceback (most recent call last):
         ...
-    canon.exercise.question.constraint_manifold.EmptyDomainError: no point satisfies the constraints, assumptions and conditions
+    canon.exercise.question.constraint_manifold.EmptyDomainError: no point satisfies the constraints, ...
     """
     found = [b for b in branches if not _without_point(b.domain)]
     if not found:
@@ -149,7 +149,7 @@ def check_not_empty(constraints: Sequence[Expr], q: Sequence[Symbol], t: Symbol,
     >>> check_not_empty([x, x - 1], [x], sp.Symbol("t", real=True), Domain())
     Traceback (most recent call last):
         ...
-    canon.exercise.question.constraint_manifold.EmptyDomainError: no point satisfies the constraints, assumptions and conditions
+    canon.exercise.question.constraint_manifold.EmptyDomainError: no point satisfies the constraints, ...
     """
     rates = [velocity(x) for x in q]
     try:

@@ -40,7 +40,7 @@ def parse_juxtaposed(text: str, scope: Scope) -> Node:
     >>> parse_expression("g/l sin(theta)", scope)
     Traceback (most recent call last):
         ...
-    canon.expression.text.tokens.LanguageError: column 5: does the quotient end before this factor?; write a/(b*c) or a/b*c
+    canon.expression.text.tokens.LanguageError: column 5: does the quotient end before this factor?; write ...
     g/l sin(theta)
         ^
     """

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
-from canon.flow.trajectory import Array, Samples
+from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.samples import Samples
 from canon.kernel.llvm.loop import field_function
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from canon.array import Array
     from canon.flow.method.method import DOP853
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.program.hamilton_equations import Equations

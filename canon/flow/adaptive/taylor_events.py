@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
 from canon.flow.run.event import Crossing
+from canon.flow.run.non_finite_state import NonFiniteStateError, described
 from canon.flow.run.observables_along import values_in
 from canon.kernel.heyoka_bridge import heyoka_functions
 from canon.kernel.llvm.number_types import DOUBLE, DOUBLE_DOUBLE, EXTENDED
@@ -16,7 +16,7 @@ from canon.kernel.llvm.number_types import DOUBLE, DOUBLE_DOUBLE, EXTENDED
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from canon.flow.fixed_step.loop_buffers import Array
+    from canon.array import Array
     from canon.flow.run.event import Prepared
     from canon.kernel.program.hamilton_equations import Equations
 

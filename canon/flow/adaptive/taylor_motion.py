@@ -14,16 +14,16 @@ import numpy as np
 
 from canon.flow.adaptive.taylor_events import Meeting
 from canon.flow.adaptive.taylor_orbit import Orbit, Slice, ends_of, orbits_of
-from canon.flow.trajectory import Samples
+from canon.flow.run.samples import Samples
 from canon.kernel.heyoka_bridge import heyoka_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Sequence
 
+    from canon.array import Array
     from canon.flow.method.method import Taylor
     from canon.flow.run.event import Prepared
     from canon.flow.run.sampling_plan import Plan
-    from canon.flow.trajectory import Array
     from canon.kernel.program.hamilton_equations import Equations
 
 __all__ = ["Polynomials", "taylor_motion"]

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
+from canon.flow.run.non_finite_state import NonFiniteStateError, described
 from canon.kernel.heyoka_bridge import taylor_integrator
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from canon.array import Array
     from canon.flow.adaptive.taylor_events import Meeting
     from canon.flow.method.method import Taylor
     from canon.flow.run.event import Prepared
-    from canon.flow.trajectory import Array
     from canon.kernel.program.hamilton_equations import Equations
 
 __all__ = ["Orbit", "Slice", "ends_of", "orbits_of"]

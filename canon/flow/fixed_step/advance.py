@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.fixed_step.loop_buffers import Array, Job, Memory, Watch
+from canon.array import Array
+from canon.flow.fixed_step.loop_buffers import Job, Memory, Watch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

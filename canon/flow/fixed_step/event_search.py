@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
 from canon.flow.fixed_step.partial_step import PartialSteps, State
 from canon.flow.run.event import Crossing
+from canon.flow.run.non_finite_state import NonFiniteStateError, described
 from canon.flow.run.observables_along import values_in
 from canon.kernel.loops.statistics_loop import wide_number
 

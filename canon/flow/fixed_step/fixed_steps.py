@@ -17,12 +17,13 @@ from canon.flow.fixed_step.compiled_loop import steps_between
 from canon.flow.fixed_step.partial_step import State, coefficient_pairs
 from canon.flow.fixed_step.statistics import check_cadence, statistics
 from canon.flow.fixed_step.steps_with_events import run_with_events
+from canon.flow.run.samples import Samples
 from canon.flow.run.sampling_plan import Plan, Sampling, fixed_plan, steps_over
-from canon.flow.trajectory import Array, Samples
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from canon.array import Array
     from canon.flow.fixed_step.loop_buffers import Memory, Watch
     from canon.flow.method.method import FixedStep
     from canon.flow.run.event import Prepared

@@ -8,33 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from canon.flow.run.non_finite_state import NonFiniteStateError, described
 from canon.kernel.loops.statistics_loop import ENTRIES
 
 if TYPE_CHECKING:
+    from canon.array import Array
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
 
-__all__ = ["Job", "NonFiniteStateError", "Watch", "described"]
+__all__ = ["Job", "Memory", "Watch"]
 
-Array = npt.NDArray[np.float64]
 Memory = npt.NDArray[Any]
-
-
-class NonFiniteStateError(ArithmeticError):
-    """The motion left the finite numbers: a collision, a domain left, or a step too large.
-
-    Parameters
-    ----------
-    time
-        The time of the last finite state.
-    state
-        That state (q, p), shape (2n,).
-    """
-
-    def __init__(self, message: str, time: float, state: Array) -> None:
-        super().__init__(message)
-        self.time = time
-        self.state = state
 
 
 @dataclass(frozen=True)
@@ -215,9 +199,3 @@ def _complaint(t: float, step: int, state: Array, change: float, orbit: int | No
         why = "a collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()"
     which = "" if orbit is None else f" of orbit {orbit}"
     return NonFiniteStateError(f"{what}{which}, after {described(t, state)}: {why}", t, state)
-
-
-def described(t: float, state: Array) -> str:
-    """Return a time and a state in words."""
-    shown = ", ".join(f"{x:.6g}" for x in state[:8]) + (", …" if len(state) > 8 else "")
-    return f"t = {t:.9g} where (q, p) = ({shown})"

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from fractions import Fraction
 
-    from canon.flow.fixed_step.loop_buffers import Array, Memory
+    from canon.array import Array
+    from canon.flow.fixed_step.loop_buffers import Memory
     from canon.kernel.llvm.loop import Loop
 
 __all__ = ["PartialSteps", "State", "coefficient_pairs"]

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
+    from canon.array import Array
     from canon.flow.fixed_step.advance import Run
-    from canon.flow.trajectory import Array
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
     from canon.kernel.program.hamilton_equations import Equations

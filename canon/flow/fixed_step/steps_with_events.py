@@ -18,7 +18,8 @@ from canon.kernel.loops.event_loop import sentry_function
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from canon.flow.fixed_step.loop_buffers import Array, Memory
+    from canon.array import Array
+    from canon.flow.fixed_step.loop_buffers import Memory
     from canon.flow.run.event import Crossing, Prepared
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode

@@ -16,6 +16,7 @@ from canon.flow.method.method import DOP853, Taylor, TimeTransformed
 from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.flow.propagate import propagate
 from canon.flow.run.sampling_plan import Plan, fixed_plan
+from canon.flow.trajectory import carried_out
 from canon.kernel.program.variational import variational
 
 if TYPE_CHECKING:
@@ -24,9 +25,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from sympy import Symbol
 
+    from canon.array import Array
     from canon.flow.method.method import Method
-    from canon.flow.propagate import HamiltonianSystem
-    from canon.flow.trajectory import Array
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
 __all__ = ["FlowJacobian", "flow_jacobian", "reversal_error", "symplecticity_defect"]
 
@@ -144,7 +145,7 @@ def flow_jacobian(
         states=(_varied(task.states[0], orbits, columns), _varied(task.states[1], orbits, columns, unit=0.0)),
         single=False,
     )
-    found = made.trajectory(lambda _: None)
+    found = carried_out(made)
     y, M = _parted(found.y, size, columns)
     _, low = _parted(found.carried, size, columns)
     return FlowJacobian(found.t, y, M, low)
@@ -254,9 +255,7 @@ def reversal_error(
         back = Plan(Fraction(float(plan.instants[-1])), plan.instants[::-1].copy(), ends=plan.ends)
     else:
         back = fixed_plan(plan.last(-1), -plan.h, plan.stops)
-    returned = replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back).trajectory(
-        lambda _: None
-    )
+    returned = carried_out(replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back))
     _, end = returned.origin
     missed = ((end.y[:, -1] - high) + (end.carried[:, -1] - low))[task.system.rows]
     return missed[:, 0] if task.single else missed

@@ -1,8 +1,9 @@
 """Kepler's flow and its derivative by the starting state, for many states at once.
 
-The flow is that of :mod:`canon.kernel.solvable.kepler_flow`: with β = 2µ/r₀ − u², η = x·u, ζ = µ − βr₀ and G_k(X) = Xᵏ c_k(βX²), c_k
-Stumpff's functions, X solves r₀X + ηG₂ + ζG₃ = t, whose slope is r; then f = 1 − µG₂/r₀, g = t − µG₃, and so on. The
-derivative follows from ∂G_k/∂X = G_{k−1}, ∂G_k/∂β = ½(k G_{k+2} − X G_{k+1}).
+The flow is that of :mod:`canon.kernel.solvable.kepler_flow`: with β = 2µ/r₀ − u², η = x·u, ζ = µ − βr₀ and
+G_k(X) = Xᵏ c_k(βX²), c_k Stumpff's functions, X solves r₀X + ηG₂ + ζG₃ = t, whose slope is r; then
+f = 1 − µG₂/r₀, g = t − µG₃, and so on. The derivative follows from
+∂G_k/∂X = G_{k−1}, ∂G_k/∂β = ½(k G_{k+2} − X G_{k+1}).
 
 Sources: H. Rein, D. Tamayo, Second-order variational equations for N-body simulations, Mon. Not. R. Astron. Soc. 459
 (2016) 2275–2285, doi:10.1093/mnras/stw644; B. A. Conway, An improved algorithm due to Laguerre for the solution of
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from canon.flow.trajectory import Array
+    from canon.array import Array
 
 __all__ = ["kepler_derivative"]
 

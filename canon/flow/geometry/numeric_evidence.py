@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-    from canon.flow.propagate import HamiltonianSystem
-    from canon.flow.trajectory import Array
+    from canon.array import Array
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.canonical.transformation import CanonicalTransformation
     from canon.mechanics.hamilton.vector_field import VectorField
 

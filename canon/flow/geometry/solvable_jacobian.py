@@ -17,6 +17,7 @@ import sympy as sp
 
 from canon.expression.graph.number_systems import FLOAT64
 from canon.flow.geometry.kepler_derivative import kepler_derivative
+from canon.flow.integrate import integrate
 from canon.flow.method.method import Splitting
 from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.flow.run.sampling_plan import fixed_plan
@@ -30,8 +31,8 @@ from canon.kernel.solvable.solvable_parts import Planets, Quadratic, named_part,
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from canon.array import Array
     from canon.flow.task import Task
-    from canon.flow.trajectory import Array
     from canon.kernel.program.hamilton_equations import Equations
     from canon.kernel.solvable.solvable_parts import Centres, Part
 
@@ -66,13 +67,15 @@ def solvable_jacobian(task: Task) -> tuple[Array, Array, Array]:
     assert task.plan.h is not None
     part = solvable_part(task.system) if method.parts is None else named_part(task.system, *method.parts)
     step = _step(task.system, part, method, task.plan.h)
-    found, stops = task.samples(), set(task.plan.stops)
+    found, stops = integrate(task), set(task.plan.stops)
     states, total, kept = task.states, np.eye(len(found.y)), [np.eye(len(found.y))]
     for begin in range(0, task.plan.stops[-1], _BLOCK):
         count = min(_BLOCK, task.plan.stops[-1] - begin)
-        made = replace(
-            task, states=states, plan=fixed_plan(task.plan.start, task.plan.h, tuple(range(count + 1)))
-        ).samples()
+        made = integrate(
+            replace(
+                task, states=states, plan=fixed_plan(task.plan.start, task.plan.h, tuple(range(count + 1)))
+            )
+        )
         for number, factor in enumerate(step.derivative(made.y[:, :-1, 0]), begin + 1):
             total = factor @ total
             if number in stops:

@@ -20,10 +20,10 @@ import sympy as sp
 
 from canon.flow.checked_request import system_of
 from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
 from canon.flow.fixed_step.partial_step import State
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.number_formats import fixed_precision
+from canon.flow.run.non_finite_state import NonFiniteStateError, described
 from canon.flow.run.sampling_plan import fixed_plan
 from canon.flow.transformed.extended_hamiltonian import extended
 from canon.flow.transformed.transformed_orbit import Footing, Walk
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
-    from canon.flow.checked_request import HamiltonianSystem
+    from canon.array import Array
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.task import Task
-    from canon.flow.trajectory import Array
     from canon.flow.transformed.extended_hamiltonian import Fictitious
     from canon.flow.transformed.land_at_time import Landed
 

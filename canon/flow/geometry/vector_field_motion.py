@@ -13,8 +13,8 @@ import sympy as sp
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError
 from canon.flow.geometry.certified_derivatives import Miss, Value, definite_node, values_at
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.heyoka_bridge import heyoka_expressions
 from canon.kernel.program.hamilton_equations import exact, exact_numbers
 from canon.mechanics.hamilton.vector_field import VectorField
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-    from canon.flow.propagate import HamiltonianSystem
-    from canon.flow.trajectory import Array
+    from canon.array import Array
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
 __all__ = ["COMPACT_FROM", "Field", "Look", "carried", "field_of", "look_at", "step_error"]
 

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-import numpy.typing as npt
 import sympy as sp
 
 if TYPE_CHECKING:
@@ -15,11 +13,11 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
+    from canon.array import Array
     from canon.kernel.program.hamilton_equations import Equations
 
 __all__ = ["Crossing", "Event", "Prepared", "prepared"]
 
-Array = npt.NDArray[np.float64]
 Action = Literal["record", "stop", "bounce"]
 
 

@@ -14,13 +14,12 @@ from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE, multiprec
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.flow.trajectory import Samples
+    from canon.array import Array
+    from canon.flow.run.samples import Samples
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import Equations
 
 __all__ = ["AccuracyWarning", "jumped", "measured", "values_in", "warn_of_jumps"]
-
-Array = npt.NDArray[np.float64]
 
 _IMPLAUSIBLE = 0.5
 """An energy that changes by more than this part of the size of H's terms at the start is no small error."""

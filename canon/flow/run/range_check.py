@@ -13,8 +13,8 @@ from canon.flow.method.method import Taylor
 from canon.kernel.llvm.double_double_functions import LARGEST_ANGLE
 
 if TYPE_CHECKING:
+    from canon.array import Array
     from canon.flow.method.method import Method
-    from canon.flow.trajectory import Array
     from canon.kernel.program.hamilton_equations import Equations
 
 __all__ = ["check_magnitudes", "is_narrow"]

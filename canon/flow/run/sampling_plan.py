@@ -13,7 +13,7 @@ import numpy as np
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from canon.flow.trajectory import Array
+    from canon.array import Array
 
 __all__ = ["Plan", "Sampling", "adaptive_plan", "fictitious_plan", "fixed_plan", "sampling", "steps_over"]
 

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-    from canon.flow.checked_request import HamiltonianSystem
     from canon.flow.method.method import TimeTransformed
     from canon.flow.run.event import Event
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.kernel.program.hamilton_equations import Equations
 
 __all__ = ["Extended", "Fictitious", "extended", "fictitious"]

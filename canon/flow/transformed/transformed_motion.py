@@ -10,21 +10,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
-from canon.flow.fixed_step.loop_buffers import NonFiniteStateError, described
 from canon.flow.fixed_step.partial_step import State
-from canon.flow.method.method import TimeTransformed
 from canon.flow.method.number_formats import fixed_precision
+from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.samples import Samples
 from canon.flow.run.sampling_plan import fixed_plan
-from canon.flow.trajectory import Samples
 from canon.flow.transformed.transformed_orbit import Footing, Walk
 from canon.kernel.llvm.number_types import DOUBLE, double_pair
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from canon.flow.run.event import Crossing
-    from canon.flow.task import Task
-    from canon.flow.trajectory import Array
+    from canon.array import Array
+    from canon.flow.method.method import TimeTransformed
+    from canon.flow.run.event import Crossing, Event
+    from canon.flow.run.sampling_plan import Plan
     from canon.flow.transformed.extended_hamiltonian import Fictitious
 
 __all__ = ["Standing", "transformed_motion"]
@@ -55,14 +55,27 @@ class Standing:
     arrived: bool = False
 
 
-def transformed_motion(task: Task, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
+def transformed_motion(
+    frame: Fictitious,
+    method: TimeTransformed,
+    precision: str | int | None,
+    states: tuple[Array, Array],
+    plan: Plan,
+    events: Sequence[Event],
+    progress: Callable[[float], None],
+    so_far: Samples | None,
+) -> Samples:
     """Integrate in the fictitious time until the time has come, and land there with a part of a step.
 
     Parameters
     ----------
-    task
-        What to do. Its plan's instants are landed at, one part of a step aside from the motion each; where it has
-        ``wanted`` states, they are kept after evenly many steps, up to twice as many.
+    frame
+        The motion in the fictitious time.
+    method, precision, states, events
+        As :class:`canon.flow.task.Task` has them.
+    plan
+        Its instants are landed at, one part of a step aside from the motion each; where it has ``wanted`` states,
+        they are kept after evenly many steps, up to twice as many.
     progress
         Called now and then with the fraction of the time span that is done.
     so_far
@@ -82,11 +95,10 @@ def transformed_motion(task: Task, progress: Callable[[float], None], so_far: Sa
     NonFiniteStateError
         The motion can't be continued.
     """
-    frame = task.fictitious
-    assert frame is not None
-    course, started = _Course(task, frame, progress, so_far), time.thread_time()
+    course = _Course(frame, method, precision, states, plan, events, progress, so_far)
+    started = time.thread_time()
     try:
-        if task.plan.wanted:
+        if plan.wanted:
             course.in_steps()
         else:
             course.at_instants()
@@ -101,21 +113,29 @@ class _Course:
     """A motion on its way: its orbits, and what of it is kept."""
 
     def __init__(
-        self, task: Task, frame: Fictitious, progress: Callable[[float], None], so_far: Samples | None
+        self,
+        frame: Fictitious,
+        method: TimeTransformed,
+        precision: str | int | None,
+        states: tuple[Array, Array],
+        plan: Plan,
+        events: Sequence[Event],
+        progress: Callable[[float], None],
+        so_far: Samples | None,
     ) -> None:
-        assert isinstance(task.method, TimeTransformed)
-        self.task, self.frame, self.so_far, self.progress = task, frame, so_far, progress
-        self.start, self.end = task.plan.start, Fraction(float(task.plan.instants[-1]))
-        self.method, kind = task.method.method, fixed_precision(task.precision)
+        self.frame, self.states, self.plan, self.events = frame, states, plan, events
+        self.so_far, self.progress = so_far, progress
+        self.start, self.end = plan.start, Fraction(float(plan.instants[-1]))
+        self.method, kind = method.method, fixed_precision(precision)
         self.bits = min(kind.number.mantissa, DOUBLE.mantissa)
         self.loop = compiled_loop(frame.system, self.method, kind)
-        self.orbits, self.busy = task.states[0].shape[1], 0
+        self.orbits, self.busy = states[0].shape[1], 0
         self.walks = [self._walk(k) for k in range(self.orbits)]
         # In one attribute, so that an interruption finds rows and standing of the same moment.
         self.kept = self._kept_before()
 
     def _walk(self, k: int) -> Walk:
-        (high, low), frame, plan = self.task.states, self.frame, self.task.plan
+        (high, low), frame, plan = self.states, self.frame, self.plan
         pairs = zip(high[:, k].tolist(), low[:, k].tolist(), strict=True)
         state, h = frame.start([Fraction(a) + Fraction(b) for a, b in pairs], self.start)
         if self.so_far is None:
@@ -124,15 +144,15 @@ class _Course:
         else:
             footing = self.so_far.beyond.footings[k]
         steps = steps_between(self.loop, self.method, fixed_plan(Fraction(0), plan.forward * h, (0,)))
-        return Walk(frame, steps, footing, frame.events(self.task.events), self.bits, self._report)
+        return Walk(frame, steps, footing, frame.events(self.events), self.bits, self._report)
 
     def _kept_before(self) -> tuple[list[Row], Standing]:
         """Return the times and states that are kept already, and where the motion stands."""
         if self.so_far is None:
             footings = tuple(walk.footing for walk in self.walks)
-            return [(float(self.start), *self.task.states)], Standing(footings, rows=1)
+            return [(float(self.start), *self.states)], Standing(footings, rows=1)
         standing: Standing = self.so_far.beyond
-        count = standing.rows - bool(standing.arrived and self.task.plan.wanted)
+        count = standing.rows - bool(standing.arrived and self.plan.wanted)
         parts = (np.moveaxis(part, 1, 0) for part in (self.so_far.y, self.so_far.carried))
         rows = list(zip(self.so_far.t.tolist(), *parts, strict=True))[:count]
         return rows, replace(standing, rows=count, arrived=False)
@@ -151,7 +171,7 @@ class _Course:
 
     def at_instants(self) -> None:
         """Land at every instant, each time with all orbits."""
-        instants, first, (rows, standing) = self.task.plan.instants.tolist(), self.walks[0], self.kept
+        instants, first, (rows, standing) = self.plan.instants.tolist(), self.walks[0], self.kept
         for k in range(standing.rows, len(instants)):
             goal, states = Fraction(instants[k]), list[State]()
             for orbit, walk in enumerate(self.walks):
@@ -172,7 +192,7 @@ class _Course:
     def in_steps(self) -> None:
         """Keep every so manieth state, twice as far apart whenever there are twice as many as wanted."""
         (walk,), end, (rows, standing) = self.walks, self.end, self.kept
-        stride, most = standing.stride, 2 * self.task.plan.wanted
+        stride, most = standing.stride, 2 * self.plan.wanted
         while True:
             more = self._leap(walk, stride, most + 1 - len(rows))
             if not more:
@@ -226,7 +246,7 @@ class _Course:
 
     def _crossings(self, last: float) -> tuple[Crossing, ...]:
         """Return the events met up to the last state that is kept."""
-        (walk, *_), forward = self.walks, self.task.plan.forward
+        (walk, *_), forward = self.walks, self.plan.forward
         earlier = () if self.so_far is None else self.so_far.crossings[: self.so_far.beyond.footings[0].met]
         found = [*earlier, *(_crossing(self.frame, met) for met in walk.guard.met)]
         return tuple(met for met in found if (met.t - last) * forward <= 0)

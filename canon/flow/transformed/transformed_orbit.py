@@ -16,8 +16,9 @@ import numpy as np
 
 from canon.flow.fixed_step.advance import Run, run
 from canon.flow.fixed_step.event_search import Guard
-from canon.flow.fixed_step.loop_buffers import Job, NonFiniteStateError
+from canon.flow.fixed_step.loop_buffers import Job
 from canon.flow.fixed_step.partial_step import PartialSteps, State, coefficient_pairs
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.transformed.land_at_time import Leg, iterations, landed, time_of
 from canon.kernel.loops.event_loop import sentry_function
 

@@ -12,7 +12,7 @@ import dataclasses
 import functools
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from mpmath import MPContext
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from canon.kernel.llvm.number_types import MachineType
-    from canon.kernel.llvm.writer import Writer
 
 __all__ = ["LARGEST_ANGLE", "PAIR_FUNCTIONS", "call_pair_function"]
 
@@ -46,10 +45,33 @@ def _parts(name: str) -> tuple[Fraction, ...]:
     return tuple(parts)
 
 
+class PairWriter(Protocol):
+    """The operations of a :class:`canon.kernel.llvm.writer.Writer` that these functions are written with."""
+
+    number: MachineType
+    reserved: list[str]
+    lines: list[str]
+    declarations: set[str]
+
+    def in_numbers(self, number: MachineType) -> Self: ...
+    def let(self, text: str) -> str: ...
+    def paired(self, high: str, low: str) -> str: ...
+    def constant(self, value: Fraction) -> str: ...
+    def nan(self) -> str: ...
+    def algebra(self, operation: str, a: str, b: str) -> str: ...
+    def negative(self, a: str) -> str: ...
+    def operation(self, operation: str, x: list[str]) -> str: ...
+    def intrinsic(self, name: str, *operands: str) -> str: ...
+    def library(self, name: str, *operands: str) -> str: ...
+    def less(self, a: str, b: str) -> str: ...
+    def equal(self, a: str, b: str) -> str: ...
+    def select(self, flag: str, where_true: str, where_false: str) -> str: ...
+
+
 class _Base:
     """The doubles (or lanes of them) that pairs are made of, in the same function."""
 
-    def __init__(self, w: Writer) -> None:
+    def __init__(self, w: PairWriter) -> None:
         self.w = w
         self.b = w.in_numbers(dataclasses.replace(w.number, pair=False))
 
@@ -72,7 +94,7 @@ class _Base:
         return w.paired(*parts)
 
 
-def _reduced(w: Writer, x: str, name: str) -> tuple[str, str]:
+def _reduced(w: PairWriter, x: str, name: str) -> tuple[str, str]:
     """Return the whole number k of periods nearest to x, a double, and x − k·period, a pair."""
     base, parts = _Base(w), _parts(name)
     inverse = base.b.constant(1 / parts[0])
@@ -83,7 +105,7 @@ def _reduced(w: Writer, x: str, name: str) -> tuple[str, str]:
     return k, x
 
 
-def _series(w: Writer, square: str, first: int, terms: int) -> str:
+def _series(w: PairWriter, square: str, first: int, terms: int) -> str:
     """Return Σ (−1)^k square^k / (2k + first)! over so many terms, by Horner's rule."""
     total = w.constant(Fraction((-1) ** (terms - 1), math.factorial(2 * (terms - 1) + first)))
     for k in range(terms - 2, -1, -1):
@@ -92,7 +114,7 @@ def _series(w: Writer, square: str, first: int, terms: int) -> str:
     return total
 
 
-def _circular(w: Writer, x: str, turned: int) -> str:
+def _circular(w: PairWriter, x: str, turned: int) -> str:
     """Return sin(x + turned π/2)."""
     base = _Base(w)
     b = base.b
@@ -111,7 +133,7 @@ def _circular(w: Writer, x: str, turned: int) -> str:
     return base.choose(known, found, base.pair(b.nan()))
 
 
-def _exponential(w: Writer, x: str) -> str:
+def _exponential(w: PairWriter, x: str) -> str:
     base = _Base(w)
     b = base.b
     k, r = _reduced(w, x, "ln 2")
@@ -131,7 +153,7 @@ def _exponential(w: Writer, x: str) -> str:
     return found
 
 
-def _power_of_two(b: Writer, k: str) -> str:
+def _power_of_two(b: PairWriter, k: str) -> str:
     """Return 2^k for whole doubles −1022 … 1023, made of its bits."""
     lanes, base = b.number.lanes, b.number.base
     integer = "i64" if lanes == 1 else f"<{lanes} x i64>"
@@ -143,7 +165,7 @@ def _power_of_two(b: Writer, k: str) -> str:
     return b.let(f"bitcast {integer} {b.let(f'shl {integer} {biased}, {each(52)}')} to {base}")
 
 
-def _logarithm(w: Writer, x: str) -> str:
+def _logarithm(w: PairWriter, x: str) -> str:
     base = _Base(w)
     near = base.pair(base.b.library("log", base.high(x)))
     e = w.operation("exp", [near])
@@ -151,7 +173,7 @@ def _logarithm(w: Writer, x: str) -> str:
     return w.algebra("add", near, w.algebra("add", ratio, ratio))
 
 
-def _angle(w: Writer, y: str, x: str) -> str:
+def _angle(w: PairWriter, y: str, x: str) -> str:
     base = _Base(w)
     near = base.pair(base.b.library("atan2", base.high(y), base.high(x)))
     s, c = w.operation("sin", [near]), w.operation("cos", [near])
@@ -160,13 +182,13 @@ def _angle(w: Writer, y: str, x: str) -> str:
     return w.algebra("add", near, w.algebra("div", across, along))
 
 
-def _complement(w: Writer, x: str) -> str:
+def _complement(w: PairWriter, x: str) -> str:
     """Return √(1 − x²) = √((1 − x)(1 + x))."""
     one = w.constant(Fraction(1))
     return w.operation("sqrt", [w.algebra("mul", w.algebra("sub", one, x), w.algebra("add", one, x))])
 
 
-def _hyperbolic(w: Writer, x: str, sign: str) -> str:
+def _hyperbolic(w: PairWriter, x: str, sign: str) -> str:
     e = w.operation("exp", [x])
     both = w.algebra(sign, e, w.algebra("div", w.constant(Fraction(1)), e))
     return w.algebra("mul", both, w.constant(Fraction(1, 2)))
@@ -176,13 +198,13 @@ def _quotient(above: str, below: str) -> Callable[..., str]:
     return lambda w, x: w.algebra("div", w.operation(above, [x]), w.operation(below, [x]))
 
 
-def _size(w: Writer, x: str) -> str:
+def _size(w: PairWriter, x: str) -> str:
     base = _Base(w)
     negative = base.b.less(base.high(x), base.b.constant(Fraction(0)))
     return base.choose(negative, w.negative(x), x)
 
 
-def _sign(w: Writer, x: str) -> str:
+def _sign(w: PairWriter, x: str) -> str:
     base = _Base(w)
     high, zero = base.high(x), base.b.constant(Fraction(0))
     unit = base.b.intrinsic("copysign", base.b.constant(Fraction(1)), high)
@@ -209,7 +231,7 @@ PAIR_FUNCTIONS: dict[str, Callable[..., str]] = {
 """What double-double has beyond sums, products, quotients and square roots."""
 
 
-def call_pair_function(w: Writer, name: str, operands: list[str]) -> str:
+def call_pair_function(w: PairWriter, name: str, operands: list[str]) -> str:
     """Write a call of a double-double function and, among the declarations, the function itself."""
     kind = w.number.name
     text, declarations = _definition(type(w), w.number, name, len(operands))
@@ -224,7 +246,7 @@ def call_pair_function(w: Writer, name: str, operands: list[str]) -> str:
 def _definition(
     writer: Callable[[MachineType], Any], number: MachineType, name: str, count: int
 ) -> tuple[str, frozenset[str]]:
-    f: Writer = writer(number)
+    f: PairWriter = writer(number)
     arguments = [f"%x{k}" for k in range(count)]
     result = PAIR_FUNCTIONS[name](f, *arguments)
     kind = number.name

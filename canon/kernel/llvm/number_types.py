@@ -7,14 +7,15 @@ import platform
 import struct
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["DOUBLE", "DOUBLE_DOUBLE", "EXTENDED", "SINGLE", "MachineType", "double_pair"]
+if TYPE_CHECKING:
+    from canon.array import Array
 
-Array = npt.NDArray[np.float64]
+__all__ = ["DOUBLE", "DOUBLE_DOUBLE", "EXTENDED", "SINGLE", "MachineType", "double_pair"]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import copy
 import dataclasses
 import itertools
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from canon.kernel.llvm.double_double import pair_functions
 from canon.kernel.llvm.double_double_functions import PAIR_FUNCTIONS, call_pair_function
@@ -61,11 +61,11 @@ class Writer:
         self.line(f"{name} = {text}")
         return name
 
-    def side_by_side(self, lanes: int) -> Writer:
+    def side_by_side(self, lanes: int) -> Self:
         """Return a writer of the same function that computes in so many SIMD lanes."""
         return self.in_numbers(dataclasses.replace(self.number, lanes=lanes))
 
-    def in_numbers(self, number: MachineType) -> Writer:
+    def in_numbers(self, number: MachineType) -> Self:
         """Return a writer of the same function that computes in other numbers."""
         other = copy.copy(self)
         other.number = number

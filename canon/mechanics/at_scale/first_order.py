@@ -120,7 +120,9 @@ def canonical_derivation(
     forces: Sequence[Expr] | None = None,
     t: Symbol = time,
 ) -> CanonicalEquations:
-    """Return Hamilton's equations of bodies; the parameters are those of :func:`canon.mechanics.at_scale.second_order.derivation`.
+    """Return Hamilton's equations of bodies.
+
+    The parameters are those of :func:`canon.mechanics.at_scale.second_order.derivation`.
 
     Examples
     --------

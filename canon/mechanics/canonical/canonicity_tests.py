@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import sympy as sp
 from sympy import Expr
@@ -16,12 +16,74 @@ from canon.proof.domain.verdict import Evidence, Status, Verdict
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from canon.mechanics.canonical.transformation import CanonicalTransformation, Test
+    from sympy import Symbol
 
-__all__ = ["disagreement", "residuals"]
+    from canon.proof.domain.domain import Domain
+
+__all__ = ["TESTS", "PhaseSpaceMap", "Test", "disagreement", "residuals"]
+
+Test = Literal["poisson", "lagrange", "symplectic", "bilinear", "contact"]
+TESTS: tuple[Test, ...] = ("poisson", "lagrange", "symplectic", "bilinear", "contact")
 
 
-def residuals(T: CanonicalTransformation, by: Test, c: Expr) -> Iterator[tuple[str, Expr]]:
+class PhaseSpaceMap(Protocol):
+    """What the tests and repairs need of a map (q, p) → (Q, P)."""
+
+    @property
+    def q(self) -> tuple[Symbol, ...]:
+        """The old coordinates."""
+        ...
+
+    @property
+    def variables(self) -> tuple[Symbol, ...]:
+        """(q, p)."""
+        ...
+
+    @property
+    def t(self) -> Symbol:
+        """The time."""
+        ...
+
+    @property
+    def domain(self) -> Domain:
+        """Where the map is meant."""
+        ...
+
+    @property
+    def Q(self) -> tuple[Expr, ...]:
+        """The new coordinates."""
+        ...
+
+    @property
+    def P(self) -> tuple[Expr, ...]:
+        """The new momenta."""
+        ...
+
+    @property
+    def images(self) -> tuple[Expr, ...]:
+        """(Q, P)."""
+        ...
+
+    @property
+    def jacobian(self) -> sp.ImmutableDenseMatrix:
+        """M = ∂(Q, P)/∂(q, p)."""
+        ...
+
+    @property
+    def lagrange_brackets(self) -> sp.ImmutableDenseMatrix:
+        """The Lagrange brackets of the old variables."""
+        ...
+
+    def poisson_bracket_of(self, i: int, j: int) -> Expr:
+        """Return the Poisson bracket of two of (Q, P)."""
+        ...
+
+    def contact_form(self, valence: Expr) -> tuple[Expr, ...]:
+        """Return the coefficients of valence · p dq − P dQ."""
+        ...
+
+
+def residuals(T: PhaseSpaceMap, by: Test, c: Expr) -> Iterator[tuple[str, Expr]]:
     """Yield what is asked, in the words of the test, and the expression that must vanish."""
     match by:
         case "poisson":
@@ -79,7 +141,7 @@ def _brackets(
             yield f"{written.format(names[i], names[j])} = {due}", bracket(i, j) - due
 
 
-def _coefficients(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]]:
+def _coefficients(T: PhaseSpaceMap, c: Expr) -> Iterator[tuple[str, Expr]]:
     """Yield the coefficients of δa db in Σ(δP dQ − dP δQ) − c Σ(δp dq − dp δq)."""
     d, delta = displacements(T.variables)
     n = len(T.q)
@@ -93,7 +155,7 @@ def _coefficients(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Ex
             )
 
 
-def _exactness(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]]:
+def _exactness(T: PhaseSpaceMap, c: Expr) -> Iterator[tuple[str, Expr]]:
     rotation = curl(T.contact_form(c), T.variables)
     z = T.variables
     for i in range(len(z)):
@@ -104,6 +166,6 @@ def _exactness(T: CanonicalTransformation, c: Expr) -> Iterator[tuple[str, Expr]
             )
 
 
-def _names(T: CanonicalTransformation, letters: str) -> list[str]:
+def _names(T: PhaseSpaceMap, letters: str) -> list[str]:
     n = len(T.q)
     return [f"{letter}{'' if n == 1 else i + 1}" for letter in letters for i in range(n)]

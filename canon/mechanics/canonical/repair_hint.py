@@ -17,7 +17,7 @@ from canon.proof.kinks import vanishes_off_kinks
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.mechanics.canonical.transformation import CanonicalTransformation
+    from canon.mechanics.canonical.canonicity_tests import PhaseSpaceMap
     from canon.proof.domain.domain import Domain
 
 __all__ = ["constant_value", "mending"]
@@ -65,7 +65,7 @@ def _arbitrary(f: Expr, moving: set[Symbol]) -> list[Expr]:
     return [cast("Expr", u) for u in found if u.free_symbols & moving]
 
 
-def mending(T: CanonicalTransformation, c: Expr, seconds: float = 10.0) -> str:
+def mending(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> str:
     """Return one sentence that says how to mend the map, or nothing where that is not simple or takes too long."""
     if is_large(T.images):
         return ""

@@ -29,7 +29,7 @@ from canon.mechanics.algebra.jacobian import jacobian
 from canon.mechanics.algebra.linear import solve
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.substitution import as_tuple, entry, substitute
-from canon.mechanics.canonical.canonicity_tests import disagreement, residuals
+from canon.mechanics.canonical.canonicity_tests import TESTS, Test, disagreement, residuals
 from canon.mechanics.canonical.repair_hint import constant_value, mending
 from canon.mechanics.hamilton.bracket import antisymmetric, lagrange_matrix
 from canon.proof.domain.domain import Domain, as_domain
@@ -38,10 +38,7 @@ from canon.proof.domain.verdict import Evidence, Status, Verdict
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["CanonicalTransformation", "Test", "point_transformation"]
-
-Test = Literal["poisson", "lagrange", "symplectic", "bilinear", "contact"]
-_TESTS: tuple[Test, ...] = ("poisson", "lagrange", "symplectic", "bilinear", "contact")
+__all__ = ["CanonicalTransformation", "point_transformation"]
 
 
 @dataclass(frozen=True)
@@ -193,7 +190,7 @@ class CanonicalTransformation:
             FAILS says in its feedback what would mend the map, where that is simple.
         """
         if by == "all":
-            return disagreement({test: self.is_canonical(test, valence, budget) for test in _TESTS})
+            return disagreement({test: self.is_canonical(test, valence, budget) for test in TESTS})
         c = self.valence if valence is None else _as_valence(valence, (*self.variables, self.t))
         if c is None:
             return self._without_valence(budget)

@@ -263,6 +263,11 @@ def is_hamiltonian_of(
         yield has_hamiltonian(lagrangian, domain)
         momenta = coordinate_symbols(p)
         energy = plain(H, (*lagrangian.q, *momenta), lagrangian.t)
-        yield vanishes_off_kinks(legendre_residual(lagrangian, energy, momenta), domain)
+        yield vanishes_off_kinks(
+            legendre_residual(
+                energy, dict(zip(momenta, lagrangian.momenta, strict=True)), lagrangian.jacobi_energy
+            ),
+            domain,
+        )
 
     return all_hold(verdicts(), question)

@@ -13,9 +13,8 @@ from canon.mechanics.algebra.substitution import entry, exchanged, size, substit
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from canon.mechanics.lagrange.lagrangian import Lagrangian
     from canon.proof.domain.domain import Domain
 
 __all__ = ["LegendreError", "eliminate_velocities", "legendre_residual"]
@@ -83,9 +82,19 @@ def eliminate_velocities(
     return transformed
 
 
-def legendre_residual(lagrangian: Lagrangian, H: Expr, p: Sequence[Symbol]) -> Expr:
-    """Return H(q, ∂L/∂q̇, t) − (Σ p q̇ − L), which vanishes where H is the Hamiltonian of L."""
-    return substitute(H, dict(zip(p, lagrangian.momenta, strict=True))) - lagrangian.jacobi_energy
+def legendre_residual(H: Expr, momenta: Mapping[Symbol, Expr], energy: Expr) -> Expr:
+    """Return H(q, ∂L/∂q̇, t) − (Σ p q̇ − L), which vanishes where H is the Hamiltonian of L.
+
+    Parameters
+    ----------
+    H
+        A function of q, p and t.
+    momenta
+        ∂L/∂q̇ of each momentum.
+    energy
+        Σ p q̇ − L as a function of velocities.
+    """
+    return substitute(H, momenta) - energy
 
 
 def _of_quadratic(

@@ -15,13 +15,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from types import SimpleNamespace
 
-    import numpy as np
-    from numpy.typing import NDArray
     from sympy import Expr
 
+    from canon.array import Array
     from canon.mechanics.lagrange.body import Body
-
-    Array = NDArray[np.float64]
 
 __all__ = ["SCENES"]
 

@@ -14,11 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from types import SimpleNamespace
 
-    import numpy as np
-    from numpy.typing import NDArray
     from sympy import Expr
 
-    Array = NDArray[np.float64]
+    from canon.array import Array
 
 __all__ = ["SCENES"]
 

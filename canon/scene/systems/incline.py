@@ -14,11 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from types import SimpleNamespace
 
-    import numpy as np
-    from numpy.typing import NDArray
     from sympy import Expr
 
-    Array = NDArray[np.float64]
 
 __all__ = ["SCENES"]
 

@@ -26,14 +26,11 @@ from canon.scene.systems.slider_crank import (
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    import numpy as np
-    from numpy.typing import NDArray
     from sympy import Expr
 
+    from canon.array import Array
     from canon.mechanics.lagrange.body import Body
     from canon.scene.picture import Picture
-
-    Array = NDArray[np.float64]
 
 __all__ = ["SCENES"]
 

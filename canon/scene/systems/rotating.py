@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from sympy import Expr
 
-    Array = NDArray[np.float64]
+    from canon.array import Array
 
 __all__ = ["SCENES"]
 

@@ -18,11 +18,8 @@ from canon.scene.scene import Parameter, Solution
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
     from sympy import Expr
 
-    Array = NDArray[np.float64]
 
 __all__ = [
     "PARAMETERS", "REACHED", "SPEED", "TURNS", "VALUES", "drawn", "inertia", "quarter_turn", "ratios", "rod_cosine",

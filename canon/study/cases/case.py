@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from canon.flow.method.method import Method
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
 __all__ = ["Case", "key_of", "method_from", "method_to", "parts_of", "versions"]
 

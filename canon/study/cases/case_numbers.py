@@ -14,12 +14,9 @@ from canon.study.drift.envelope import envelope_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from canon.array import Array
     from canon.study.drift.drift import Drift
     from canon.study.motion.observables import Observable
-
-    Array = NDArray[np.float64]
 
 __all__ = ["judged_energy", "judged_observable"]
 

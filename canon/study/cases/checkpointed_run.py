@@ -68,8 +68,8 @@ class Checkpoint:
     part
         Parts done.
     state, carried
-        The state is state + carried, each of length 2n; with time and work (:mod:`canon.study.motion.extended_phase_space`) where H
-        depends on the time.
+        The state is state + carried, each of length 2n; with time and work where H depends on the
+        time (:mod:`canon.study.motion.extended_phase_space`).
     energy
         H at the start of the run.
     t, change

@@ -64,8 +64,8 @@ class Study:
         Parameters
         ----------
         **axes
-            ``system`` (a scene or its name, a :class:`canon.study.motion.hamiltonian_text.Formula`, a Hamiltonian), ``start``,
-            ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
+            ``system`` (a scene or its name, a :class:`canon.study.motion.hamiltonian_text.Formula`, a Hamiltonian),
+            ``start``, ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
             of values (a state is a list in that list; steps are for methods of fixed step, tolerances for
             the others); ``parameters``: a value or a list of values each; ``periods`` or ``until``,
             ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:

@@ -12,7 +12,8 @@ from sympy import Pow
 from canon.flow.checked_request import system_of
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
-from canon.flow.propagate import NonFiniteStateError, is_separable
+from canon.flow.propagate import is_separable
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
 from canon.study.choose.choice_question import Question, Setting

@@ -16,14 +16,12 @@ from canon.kernel.llvm.number_types import EXTENDED
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
     from sympy import Expr, Symbol
 
+    from canon.array import Array
     from canon.flow.method.method import Method
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
-
-    Array = NDArray[np.float64]
 
 __all__ = ["PLACES", "Question", "Setting"]
 

@@ -1,25 +1,64 @@
-"""Accuracy and its cost as text: a choice with the candidates it was chosen from, runs of given steps."""
+"""A choice as text, with the candidates it was chosen from."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from canon.study.drift.drift_table import aligned
 
 if TYPE_CHECKING:
-    from canon.study.choose.candidate import Candidate
-    from canon.study.choose.choose import Choice
-    from canon.study.choose.work_precision import WorkPrecision, WorkRow
+    from collections.abc import Sequence
 
-__all__ = ["answer", "choice_table", "duration_in_words", "work_table"]
+    from canon.study.choose.candidate import Candidate
+
+__all__ = ["answer", "choice_table", "duration_in_words"]
 
 
 MEANINGLESS = 0.1
 """Relative position error from which the position is lost."""
 
 
-def choice_table(choice: Choice) -> str:
+class ChosenAmong(Protocol):
+    """What a table needs of a choice, such as :class:`canon.study.choose.choose.Choice`."""
+
+    @property
+    def title(self) -> str:
+        """What was asked about."""
+        ...
+
+    @property
+    def observable(self) -> str:
+        """What is to keep the accuracy."""
+        ...
+
+    @property
+    def accuracy(self) -> float:
+        """The accuracy asked for."""
+        ...
+
+    @property
+    def span(self) -> float:
+        """For how long."""
+        ...
+
+    @property
+    def reached(self) -> bool:
+        """Whether some candidate is expected to keep the accuracy."""
+        ...
+
+    @property
+    def chosen(self) -> Candidate:
+        """The best candidate."""
+        ...
+
+    @property
+    def candidates(self) -> Sequence[Candidate]:
+        """All of them, the chosen one first."""
+        ...
+
+
+def choice_table(choice: ChosenAmong) -> str:
     """Return a choice as an answer in words, and the table of the candidates.
 
     Examples
@@ -36,40 +75,7 @@ def choice_table(choice: Choice) -> str:
     return "\n".join([choice.title, f"{asked}: {answer(choice)}", "", lines[0], rule, *lines[1:], rule])
 
 
-def work_table(work: WorkPrecision) -> str:
-    """Return what each run cost and how precise it was, as a table with a title.
-
-    Examples
-    --------
-    >>> from canon import RK4, work_precision
-    >>> from canon.scene import find
-    >>> print(work_table(work_precision(find("henon-heiles"), None, 5.0, [RK4()], steps=[0.1])).splitlines()[1])
-    t = 0 … 5
-    """
-    head = ("method", "step", "precision", "energy error", "position error", "evaluations", "CPU", "")
-    lines = aligned([head, *map(_work_cells, work.rows)], right={1, 3, 4, 5, 6})
-    rule = "─" * max(map(len, lines))
-    return "\n".join([work.title, f"t = 0 … {work.span:.6g}", "", lines[0], rule, *lines[1:], rule])
-
-
-def _work_cells(row: WorkRow) -> tuple[str, ...]:
-    knob = f"{row.step:.4g}" if row.step is not None else f"tol {row.tolerance:.1e}"
-    name = str(row.method).partition("(")[0] if row.step is None else str(row.method)
-    if row.failure:
-        return (name, knob, row.precision, "", "", "", "", f"failed: {row.failure}")
-    return (
-        name,
-        knob,
-        row.precision,
-        f"{row.energy_error:.1e}",
-        f"{row.position_error:.1e}",
-        f"{row.evaluations:,}",
-        duration_in_words(row.cpu_seconds),
-        "resonant step" if row.resonant else "",
-    )
-
-
-def answer(choice: Choice) -> str:
+def answer(choice: ChosenAmong) -> str:
     """Return the choice in one line of words."""
     best = choice.chosen
     cost = duration_in_words(best.predicted_cost)

@@ -14,6 +14,7 @@ from canon.flow.propagate import propagate
 from canon.scene.scene import Scene, near
 from canon.study.choose.candidate import Candidate, candidate_methods
 from canon.study.choose.choice_question import Question
+from canon.study.choose.choice_table import answer, choice_table
 from canon.study.choose.confirm import confirmed, double_instead
 from canon.study.choose.pilot_run import natural_step
 from canon.study.choose.step_search import searched
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.flow.method.method import Method
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
 
 __all__ = ["Candidate", "Choice", "choose"]
@@ -127,16 +128,12 @@ class Choice:
         )
 
     def __repr__(self) -> str:
-        from canon.study.choose.choice_table import answer
-
         return f"<Choice: {answer(self)}>"
 
     def _repr_html_(self) -> str:
         return preformatted(str(self))
 
     def __str__(self) -> str:
-        from canon.study.choose.choice_table import choice_table
-
         return choice_table(self)
 
 

@@ -11,19 +11,16 @@ import numpy as np
 
 from canon.flow.method.method import DOP853, FixedStep, Gauss, Splitting, Stepped, Taylor, TimeTransformed
 from canon.flow.method.solvable_splitting import SolvableSplitting
-from canon.flow.propagate import NonFiniteStateError
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.study.choose.choice_question import PLACES, Question, Setting
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from canon.array import Array
     from canon.flow.method.method import Method
     from canon.flow.trajectory import Trajectory
-
-    Array = NDArray[np.float64]
 
 __all__ = ["Pilot", "dop853_share", "is_symplectic", "natural_step", "pilot", "seconds_per_time"]
 

@@ -11,8 +11,11 @@ import numpy as np
 from canon.display import preformatted
 from canon.expression.symbols.user_input import counted
 from canon.flow.method.method import Stepped, Taylor
-from canon.flow.propagate import NonFiniteStateError, propagate
+from canon.flow.propagate import propagate
+from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.study.choose.choice_table import duration_in_words
 from canon.study.choose.resonance import resonant_steps
+from canon.study.drift.drift_table import aligned
 from canon.study.errors import StudyError
 from canon.study.motion.studied_motion import Subject, subject_of
 
@@ -23,7 +26,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.flow.method.method import Method
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
     from canon.scene.scene import Scene
 
@@ -103,8 +106,6 @@ class WorkPrecision:
         return f"<WorkPrecision: {counted(len(self.rows), 'run')} by {', '.join(methods)}; {self.title}>"
 
     def __str__(self) -> str:
-        from canon.study.choose.choice_table import work_table
-
         return work_table(self)
 
     def _repr_html_(self) -> str:
@@ -271,3 +272,36 @@ def _marked(rows: Sequence[WorkRow]) -> list[WorkRow]:
         for (i, _), is_resonant in zip(of_method, resonant.tolist(), strict=True):
             marked[i] = replace(rows[i], resonant=is_resonant)
     return marked
+
+
+def work_table(work: WorkPrecision) -> str:
+    """Return what each run cost and how precise it was, as a table with a title.
+
+    Examples
+    --------
+    >>> from canon import RK4, work_precision
+    >>> from canon.scene import find
+    >>> print(work_table(work_precision(find("henon-heiles"), None, 5.0, [RK4()], steps=[0.1])).splitlines()[1])
+    t = 0 … 5
+    """
+    head = ("method", "step", "precision", "energy error", "position error", "evaluations", "CPU", "")
+    lines = aligned([head, *map(_work_cells, work.rows)], right={1, 3, 4, 5, 6})
+    rule = "─" * max(map(len, lines))
+    return "\n".join([work.title, f"t = 0 … {work.span:.6g}", "", lines[0], rule, *lines[1:], rule])
+
+
+def _work_cells(row: WorkRow) -> tuple[str, ...]:
+    knob = f"{row.step:.4g}" if row.step is not None else f"tol {row.tolerance:.1e}"
+    name = str(row.method).partition("(")[0] if row.step is None else str(row.method)
+    if row.failure:
+        return (name, knob, row.precision, "", "", "", "", f"failed: {row.failure}")
+    return (
+        name,
+        knob,
+        row.precision,
+        f"{row.energy_error:.1e}",
+        f"{row.position_error:.1e}",
+        f"{row.evaluations:,}",
+        duration_in_words(row.cpu_seconds),
+        "resonant step" if row.resonant else "",
+    )

@@ -21,7 +21,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Array = NDArray[np.float64]
+    from canon.array import Array
 
 __all__ = ["PLACES", "WIDTH", "Blocks", "block_means", "bump", "window_starts"]
 

@@ -19,15 +19,13 @@ from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, ta
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from numpy.typing import NDArray
     from sympy import Symbol
 
+    from canon.array import Array
     from canon.flow.method.method import Method
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
     from canon.study.drift.drift import Drift
-
-    Array = NDArray[np.float64]
 
 __all__ = ["DriftRow", "Run", "drift_row", "drift_rows"]
 

@@ -15,6 +15,7 @@ from canon.flow.method.method import RK4, FixedStep, Gauss, Splitting, Stepped, 
 from canon.flow.propagate import is_separable
 from canon.study.drift.drift import FEWEST
 from canon.study.drift.drift_rows import DriftRow, Run, drift_row, drift_rows
+from canon.study.drift.drift_table import drift_table
 from canon.study.errors import StudyError
 from canon.study.motion.extended_phase_space import driven
 from canon.study.motion.observables import ENERGY, observables_of
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.flow.method.method import Method
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.scene.scene import Scene
     from canon.study.motion.extended_phase_space import Driven
 
@@ -88,8 +89,6 @@ class DriftStudy:
         return f"<DriftStudy: {counted(len(self.rows), 'row')}; {self.title}>"
 
     def __str__(self) -> str:
-        from canon.study.drift.drift_table import drift_table
-
         return drift_table(self)
 
     def _repr_html_(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from canon.flow.method.method import Taylor
 from canon.study.drift.drift import Growth
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from canon.study.drift.drift import Drift
-    from canon.study.drift.drift_study import DriftRow, DriftStudy
+    from canon.study.drift.drift_rows import DriftRow
 
 __all__ = ["aligned", "drift_table", "error_name"]
 
@@ -35,7 +35,41 @@ MEANING = {
 }
 
 
-def drift_table(study: DriftStudy) -> str:
+class StudiedRows(Protocol):
+    """What a table needs of a drift study, such as :class:`canon.study.drift.drift_study.DriftStudy`."""
+
+    @property
+    def title(self) -> str:
+        """What was run."""
+        ...
+
+    @property
+    def span(self) -> float:
+        """Duration of the runs."""
+        ...
+
+    @property
+    def period(self) -> float | None:
+        """Period that rates are given by."""
+        ...
+
+    @property
+    def time_unit(self) -> str:
+        """Unit of time."""
+        ...
+
+    @property
+    def rows(self) -> tuple[DriftRow, ...]:
+        """One a method and observable."""
+        ...
+
+    @property
+    def observables(self) -> tuple[str, ...]:
+        """What was followed."""
+        ...
+
+
+def drift_table(study: StudiedRows) -> str:
     """Return a drift study as a table with a title, and below it what its words mean.
 
     Rates are per period where the study knows one. The drift is followed by its standard error, the growth
@@ -71,13 +105,13 @@ def drift_table(study: DriftStudy) -> str:
     return "\n".join([study.title, _run(study), "", lines[0], rule, *lines[1:], rule, *notes])
 
 
-def error_name(study: DriftStudy) -> str:
+def error_name(study: StudiedRows) -> str:
     """Return ΔE/E, or ΔE where the energy at the start is zero; ΔI where other quantities are followed."""
     letter = "E" if study.observables == (ENERGY,) else "I"
     return f"Δ{letter}/{letter}" if all(row.relative for row in study.rows) else f"Δ{letter}"
 
 
-def _run(study: DriftStudy) -> str:
+def _run(study: StudiedRows) -> str:
     unit = f" {study.time_unit}" if study.time_unit else ""
     lasting = f"t = 0 … {study.span:.6g}{unit}"
     if study.period is None:
@@ -85,7 +119,7 @@ def _run(study: DriftStudy) -> str:
     return f"{lasting}, {study.span / study.period:.6g} periods of {study.period:.4g}{unit}"
 
 
-def _cells(study: DriftStudy, row: DriftRow) -> tuple[str, ...]:
+def _cells(study: StudiedRows, row: DriftRow) -> tuple[str, ...]:
     step = "adaptive" if row.step is None else f"{row.step:.4g}"
     found = row.drift
     if found is None:

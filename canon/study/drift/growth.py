@@ -22,9 +22,7 @@ from canon.study.drift.block_means import PLACES, WIDTH, bump, window_starts
 from canon.study.drift.noise_models import Family, Fit, fit, fractional, local_level, returning, wandering
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from canon.array import Array
 
 __all__ = [
     "Exponent",

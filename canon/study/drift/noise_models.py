@@ -21,9 +21,7 @@ from canon.study.drift.block_means import PLACES, WIDTH, bump, window_starts
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from canon.array import Array
 
 __all__ = [
     "Family",

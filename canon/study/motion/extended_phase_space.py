@@ -13,14 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
     from sympy import Expr
 
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.array import Array
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
     from canon.study.motion.observables import Observable
-
-    Array = NDArray[np.float64]
 
 __all__ = ["Driven", "driven"]
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
 __all__ = ["Formula", "formula_from", "formula_of", "hamiltonian_of"]

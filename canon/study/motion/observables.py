@@ -15,13 +15,11 @@ from canon.study.errors import StudyError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
     from sympy import Expr, Symbol
 
-    from canon.flow.propagate import HamiltonianSystem
+    from canon.array import Array
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-
-    Array = NDArray[np.float64]
 
 __all__ = ["ENERGY", "SYMPLECTICITY", "Observable", "Tangent", "observables_of", "tangent_of"]
 

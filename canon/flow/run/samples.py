@@ -1,0 +1,109 @@
+"""Sampled states: what an integrator hands back, joined to what came before, and statistics between samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.array import Array
+
+if TYPE_CHECKING:
+    from canon.flow.run.event import Crossing
+
+__all__ = ["Dense", "Samples", "Statistics", "joined"]
+
+Dense = Callable[[Array], Array]
+"""States (2n, times) at times."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What an integrator hands back: sampled states and what they cost.
+
+    Parameters
+    ----------
+    t
+        Sample times, shape (times,).
+    y
+        States, shape (2n, times, orbits).
+    carried
+        What the states are beyond doubles: the state is y + carried, shape (2n, times, orbits).
+    steps, evaluations
+        Steps taken, and evaluations of the force (Taylor: of the series).
+    step
+        The step size of a fixed-step method.
+    cpu_seconds, compile_seconds
+        Processor time of the integration, and the wall-clock time that compiling its loop took.
+    watched
+        Where observables were followed inside the loop: mean, least and greatest change of each between
+        samples, shape (observables, 3, times − 1, orbits).
+    beyond
+        What the method needs beyond the last state to go on with the same bits.
+    crossings
+        Events met.
+    dense
+        The motion of each orbit as a function of time, where it was asked for.
+    """
+
+    t: Array
+    y: Array
+    carried: Array
+    steps: int
+    evaluations: int
+    step: float | None
+    cpu_seconds: float
+    compile_seconds: float
+    watched: Array | None = None
+    beyond: Any = None
+    crossings: tuple[Crossing, ...] = ()
+    dense: tuple[Dense, ...] = ()
+
+
+def joined(before: Samples | None, after: Samples) -> Samples:
+    """Return a motion and its continuation, whose first sample is the last one before, as one motion."""
+    if before is None:
+        return after
+    watched = after.watched
+    if watched is not None and before.watched is not None:
+        watched = np.concatenate([before.watched, watched], axis=2)
+    return replace(
+        after,
+        t=np.concatenate([before.t, after.t[1:]]),
+        y=np.concatenate([before.y, after.y[:, 1:]], axis=1),
+        carried=np.concatenate([before.carried, after.carried[:, 1:]], axis=1),
+        steps=before.steps + after.steps,
+        evaluations=before.evaluations + after.evaluations,
+        cpu_seconds=before.cpu_seconds + after.cpu_seconds,
+        watched=watched,
+        crossings=before.crossings + after.crossings,
+        dense=before.dense + after.dense,
+    )
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Changes of a quantity since the start, gathered inside the loop between samples.
+
+    Parameters
+    ----------
+    mean, least, greatest
+        Over the steps watched in each block, from one sample to the next, shape (times − 1,) or
+        (times − 1, orbits).
+    """
+
+    mean: Array
+    least: Array
+    greatest: Array
+
+    @property
+    def largest(self) -> Array:
+        """The largest size of the change in each block."""
+        return np.maximum(abs(self.least), abs(self.greatest))
+
+    @property
+    def running(self) -> Array:
+        """The largest size of the change from the start to the end of each block."""
+        return np.maximum.accumulate(self.largest, axis=0)
