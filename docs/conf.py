@@ -23,8 +23,22 @@ sys.path[:0] = [str(HERE.parent), str(HERE)]
 
 from fetch_inventories import mapping  # noqa: E402
 
-from canon import _ROOMS, __version__  # noqa: E402  (the checkout's canon, found through the line above)
+from canon import __version__  # noqa: E402  (the checkout's canon, found through the line above)
 from canon.cli import COMMANDS, main  # noqa: E402
+
+
+def homes(package: str) -> dict[str, str]:
+    """Return the module of each public name of a package, as its stub says it."""
+    stub = importlib.import_module(package).__file__ or ""
+    lines = Path(stub).with_suffix(".pyi").read_text(encoding="utf-8").splitlines()
+    found = (re.fullmatch(r"from \.([\w.]+) import (\w+) as \w+", line) for line in lines)
+    return {line[2]: f"{package}.{line[1]}" for line in found if line and line[2] != "__version__"}
+
+
+FRONT_DOOR = homes("canon")
+DOORS = ("mechanics", "flow", "study", "exercise", "expression", "proof")
+"""Rooms with public names beyond the front door's."""
+ROOM_DOORS = {name: module for room in DOORS for name, module in homes(f"canon.{room}").items()}
 
 os.environ["COLUMNS"] = "100"  # what argparse wraps help to
 
@@ -52,7 +66,7 @@ nb_merge_streams = True
 
 autosummary_generate = True
 templates_path = ["_templates"]  # a page a name: how it is imported, all its members
-autosummary_context = {"at_the_front_door": {name for names in _ROOMS.values() for name in names}}
+autosummary_context = {"at_the_front_door": {*FRONT_DOOR}, "at_a_room": {*ROOM_DOORS}}
 autodoc_typehints = "none"  # the numpydoc sections say it in words, the signatures in types
 autodoc_member_order = "bysource"
 napoleon_numpy_docstring = True
@@ -79,7 +93,6 @@ SUBJECTS = {
     "exercise": "Judging answers",
     "plot": "Pictures",
 }
-
 
 RETURNED = {
     "expression": (
@@ -141,8 +154,8 @@ RETURNED = {
 def public_names() -> str:
     """Return the page that lists every name of the front door, of scenes and of pictures, each with its own page."""
     by_room: dict[str, list[str]] = {}
-    for module, names in _ROOMS.items():
-        by_room.setdefault(module.split(".")[1], []).extend(f"{module}.{name}" for name in names)
+    for name, module in {**ROOM_DOORS, **FRONT_DOOR}.items():
+        by_room.setdefault(module.split(".")[1], []).append(f"{module}.{name}")
     for room, named in (
         ("scene", ("find", "names", "Scene")),
         ("plot", importlib.import_module("canon.plot").__all__),

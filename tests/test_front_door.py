@@ -13,21 +13,30 @@ def test_every_public_name_resolves():
         assert getattr(canon, name) is not None
 
 
-def test_the_typed_names_are_the_lazy_ones():
-    """The imports for type checkers and the lazy table say the same."""
-    import ast
-    import pathlib
+ROOMS = ("mechanics", "flow", "study", "exercise", "expression", "proof")
 
-    tree = ast.parse(pathlib.Path(canon.__file__).read_text(encoding="utf-8"))
-    block = next(n for n in tree.body if isinstance(n, ast.If))
-    typed = {
-        (node.module, alias.name)
-        for node in block.body
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-    }
-    lazy = {(room, name) for room, names in canon._ROOMS.items() for name in names}
-    assert typed == lazy
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_every_name_of_a_room_resolves(room):
+    door = getattr(canon, room)
+    assert door.__all__
+    for name in door.__all__:
+        assert getattr(door, name) is not None
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_front_door_and_the_rooms_have_the_same_things(room):
+    """A public name of the front door that a room has too is the same thing there."""
+    door = getattr(canon, room)
+    for name in {*door.__all__} & {*canon.__all__}:
+        assert getattr(door, name) is getattr(canon, name)
+
+
+def test_the_time_symbol_is_there_but_does_not_shadow_the_standard_library():
+    code = "import time\nfrom canon import *\nprint(time.__name__)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["time"]
+    assert canon.time.name == "t"
 
 
 def test_an_unknown_name_is_an_attribute_error():

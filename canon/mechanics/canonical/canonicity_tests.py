@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal, Protocol
 
 import sympy as sp
@@ -64,12 +65,12 @@ class PhaseSpaceMap(Protocol):
         """(Q, P)."""
         ...
 
-    @property
+    @cached_property
     def jacobian(self) -> sp.ImmutableDenseMatrix:
         """M = ∂(Q, P)/∂(q, p)."""
         ...
 
-    @property
+    @cached_property
     def lagrange_brackets(self) -> sp.ImmutableDenseMatrix:
         """The Lagrange brackets of the old variables."""
         ...

@@ -1,0 +1,9 @@
+from .report.report import Judgement as Judgement
+from .report.report import Report as Report
+from .sheet.reading import InvalidClaim as InvalidClaim
+from .sheet.sheet import Claim as Claim
+from .sheet.sheet import ClaimError as ClaimError
+from .sheet.sheet import Sheet as Sheet
+from .sheet.sheet import SheetError as SheetError
+from .sheet.sheet import bundled_sheet as bundled_sheet
+from .sheet.sheet import read_sheet as read_sheet

@@ -1,0 +1,17 @@
+from .graph.graph import Graph as Graph
+from .graph.sympy_conversion import NotModelledError as NotModelledError
+from .parse import parse_condition as parse_condition
+from .parse import parse_equation as parse_equation
+from .parse import parse_expression as parse_expression
+from .symbols.symbol import Coordinate as Coordinate
+from .symbols.symbol import Momentum as Momentum
+from .symbols.symbol import Rate as Rate
+from .symbols.symbol import acceleration as acceleration
+from .symbols.symbol import coordinates as coordinates
+from .symbols.symbol import momentum as momentum
+from .symbols.symbol import parameters as parameters
+from .symbols.symbol import time as time
+from .symbols.symbol import time_derivative as time_derivative
+from .symbols.symbol import velocity as velocity
+from .text.scope import Scope as Scope
+from .text.tokens import LanguageError as LanguageError

@@ -1,0 +1,9 @@
+from .domain.domain import Domain as Domain
+from .domain.verdict import Counterexample as Counterexample
+from .domain.verdict import Evidence as Evidence
+from .domain.verdict import Status as Status
+from .domain.verdict import Undecided as Undecided
+from .domain.verdict import Verdict as Verdict
+from .domain.verdict import all_hold as all_hold
+from .vanish import equal as equal
+from .vanish import vanishes as vanishes
