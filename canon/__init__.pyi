@@ -3,7 +3,7 @@ import sympy as sp
 from .exercise.check import check as check
 from .exercise.expect import expect as expect
 from .exercise.judge import judge as judge
-from .exercise.report.report import Judgement as Judgement
+from .exercise.report.judgement import Judgement as Judgement
 from .exercise.report.report import Report as Report
 from .exercise.sheet.reading import InvalidClaim as InvalidClaim
 from .exercise.sheet.sheet import Claim as Claim

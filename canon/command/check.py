@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
 
-    from canon.exercise.report.report import Judgement, Report
+    from canon.exercise.report.judgement import Judgement
+    from canon.exercise.report.report import Report
     from canon.exercise.sheet.sheet import Claim, Sheet, SheetError
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
@@ -128,7 +129,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _sheets(names: Sequence[str]) -> list[Sheet]:
     """Read the sheets and tell of those that can't be read; no sheet where the only one can't be."""
-    from canon.exercise.report.report import printable
+    from canon.exercise.report.judgement import printable
     from canon.exercise.sheet.sheet import SheetError
 
     sheets: list[Sheet] = []
@@ -147,7 +148,7 @@ def _judged(
 ) -> list[Judgement]:
     """Judge the claims of each sheet in turn, and show each judgement when it is there."""
     from canon.exercise.check import judged
-    from canon.exercise.report.report import printable
+    from canon.exercise.report.judgement import printable
 
     judgements: list[Judgement] = []
     coming = judged(claims, arguments.jobs)
@@ -176,7 +177,7 @@ def _files_written(report: Report, arguments: argparse.Namespace) -> bool:
 
 
 def _status(report: Report, judgements: list[Judgement], *, expected: bool) -> int:
-    from canon.exercise.report.report import printable
+    from canon.exercise.report.judgement import printable
 
     if not expected:
         return report.exit_status

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import argparse
 
-    from canon.exercise.report.report import Judgement
+    from canon.exercise.report.judgement import Judgement
     from canon.study.drift.drift_study import DriftStudy
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]

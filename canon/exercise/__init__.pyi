@@ -1,4 +1,4 @@
-from .report.report import Judgement as Judgement
+from .report.judgement import Judgement as Judgement
 from .report.report import Report as Report
 from .sheet.reading import InvalidClaim as InvalidClaim
 from .sheet.sheet import Claim as Claim

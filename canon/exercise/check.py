@@ -18,7 +18,7 @@ from canon.expression.symbols.input_in_words import given_kind
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from canon.exercise.report.report import Judgement
+    from canon.exercise.report.judgement import Judgement
     from canon.exercise.sheet.sheet import Claim
 
 __all__ = ["check", "judged"]

@@ -15,7 +15,7 @@ from canon.expression.symbols.input_in_words import of_sympy
 from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
-    from canon.exercise.report.report import Judgement
+    from canon.exercise.report.judgement import Judgement
 
 __all__ = ["expect"]
 

@@ -10,7 +10,7 @@ import sympy as sp
 from canon.exercise.diagnose.feedback import corrected, feedback
 from canon.exercise.judge import InvalidClaim, examine
 from canon.exercise.report.derivation_steps import steps
-from canon.exercise.report.report import MAX_SHOWN, Judgement, invalid
+from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid
 from canon.expression.symbols.magnitude import written
 from canon.proof.rungs.ladder import REFUSALS, refusal
 

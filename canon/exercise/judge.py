@@ -25,7 +25,8 @@ from canon.exercise.judges import solution as judge_solution
 from canon.exercise.judges import variation as judge_variation
 from canon.exercise.question.answer import other_variables
 from canon.exercise.question.constraint_manifold import EmptyDomainError
-from canon.exercise.question.question import Deadline, Determines, Question, Stated, Tells, decide
+from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
 from canon.exercise.sheet.key_shapes import faults
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim, ClaimError
@@ -77,7 +78,7 @@ JUDGES: Mapping[str, Judge] = MappingProxyType(
         "invariance": judge_invariance.invariance,
         "jacobi-identity": judge_invariance.jacobi_identity,
         "positive-real": judge_passive.positive_real,
-        "parameters": judge_parameters.parameters,
+        "parameters": lambda reading: judge_parameters.parameters(questions, reading),
         "variation": judge_variation.variation,
         "differential": judge_variation.differential,
     }

@@ -16,7 +16,7 @@ from decimal import Decimal
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.report.report import Judgement, invalid
+from canon.exercise.report.judgement import Judgement, invalid
 from canon.exercise.sheet.sheet import Claim
 from canon.process import Child, Ended, Late, serve
 

@@ -346,8 +346,9 @@ def test_numbers_too_large_to_be_computed_with_are_named(worker):
 
 
 def test_a_page_of_attacks_is_written_in_no_time():
+    from canon.exercise.report.judgement import Judgement
     from canon.exercise.report.page import page
-    from canon.exercise.report.report import Judgement, Report
+    from canon.exercise.report.report import Report
 
     claims = tuple(attack(name, 1.0) for name in ATTACKS)
     report = Report("attacks", tuple(Judgement(c.id, c.kind, "invalid", known="no") for c in claims), claims)

@@ -7,8 +7,8 @@ import sympy as sp
 
 from canon.exercise.check import judged
 from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.parameter_system import covers, families
-from canon.exercise.question.question import Deadline
 from canon.exercise.sheet.kinds import KINDS, OF_PARAMETERS, kind_of
 from canon.exercise.sheet.sheet import Claim, claim_from
 from canon.proof.domain.domain import Domain

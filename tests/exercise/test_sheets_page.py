@@ -9,7 +9,7 @@ import pytest
 
 import canon
 from canon.exercise.check import check
-from canon.exercise.report.report import Judgement
+from canon.exercise.report.judgement import Judgement
 from canon.exercise.sheet.kinds import COMMON, KINDS
 from canon.exercise.sheet.sheet import Sheet, sheet_from
 
@@ -56,9 +56,9 @@ def test_every_kind_has_an_example_and_its_keys_are_named(judged):
 
 def test_common_keys_statuses_and_options_are_named():
     from canon.command.check import add_arguments
-    from canon.exercise.report.report import _MARKS
+    from canon.exercise.report.judgement import MARKS
 
-    for word in (*COMMON, *_MARKS, *Judgement.__dataclass_fields__):
+    for word in (*COMMON, *MARKS, *Judgement.__dataclass_fields__):
         assert f"`{word}`" in PAGE, word
     import argparse
 

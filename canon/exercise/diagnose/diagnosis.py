@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from canon.exercise.question.question import Deadline, Determines, decide
+from canon.exercise.judge import questions
+from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.question import Determines, decide
 from canon.proof.domain.verdict import Undecided
 from canon.proof.rungs.ladder import REFUSALS
 
@@ -58,8 +60,6 @@ def judged_to_hold(reading: Reading, seconds: float, held: int = 0, but: int | N
     but
         The number of a question that was answered otherwise.
     """
-    from canon.exercise.judge import questions
-
     deadline = Deadline.after(seconds)
     try:
         asked = (question for i, question in islice(enumerate(questions(reading)), held, None) if i != but)

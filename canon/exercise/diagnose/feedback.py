@@ -8,7 +8,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
@@ -47,6 +47,7 @@ MOST_SENTENCES = 3
 MOST_TRIALS = 4
 """Proved repairs of one component that are tried in the whole claim."""
 WHOLE_SECONDS = 1.0
+ANSWER_SECONDS = 0.5
 """Time for the judgement on a repaired claim."""
 _DERIVED = (
     "gibbs-appell",
@@ -168,6 +169,10 @@ def corrected(finding: Finding) -> str:
         return ""
     if answer is None:
         return ""
+    if isinstance(question, Same) and question.answers:
+        repaired = finding.reading.with_instead(question.answers, cast("Expr", answer))
+        if not judged_to_hold(repaired, ANSWER_SECONDS):
+            return ""
     ending = " = 0" if isinstance(question, SameEquations) else ""
     return "; ".join(f"{shown(e)}{ending}" for e in (answer if isinstance(answer, tuple) else (answer,)))
 

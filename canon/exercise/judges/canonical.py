@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.question.generating_answer import generating_function_of
 from canon.exercise.question.answer import open_brackets
 from canon.exercise.question.constraint_manifold import on_manifold, transported
 from canon.exercise.question.continuous_answer import is_continuous
@@ -188,7 +189,7 @@ def generating(reading: Reading) -> Iterator[Question]:
     rules = rules_of(reading, kind, F)
     on_the_map = substitute(F, there)
     independent = [z for key in ("q", "p", "new_q", "new_p") for z in reading.symbols(key)]
-    yield Same(rules.on(there), domain, lambda: generating_function_of(reading, kind))
+    yield Same(rules.on(there), domain, lambda: generating_function_of(reading, kind), answers="F")
     yield Regular(
         rules.mixed_hessian.applyfunc(lambda entry: substitute(entry, there)),
         "the mixed Hessian",

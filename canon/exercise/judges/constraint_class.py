@@ -15,7 +15,8 @@ from sympy import Expr
 
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.constraint_system import ConstraintSystem
-from canon.exercise.question.question import Deadline, Determines, Question, Stated, fails, opposite
+from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.question import Determines, Question, Stated, fails, opposite
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.expression.symbols.user_input import counted
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.question.constraint_manifold import EmptyDomainError
+from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.parameter_system import Family, covers, families
 from canon.exercise.question.question import (
-    Deadline,
     Determines,
     Differ,
     Part,
@@ -31,7 +31,7 @@ from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
 __all__ = ["parameters"]
 
@@ -42,20 +42,26 @@ ANSWER_SECONDS = 1.4
 _OWN = ("of", "find", "values", "in", "complete")
 
 
-def parameters(reading: Reading) -> Iterator[Question]:
-    """The inner claim holds at each of the claimed values, and at no others."""
+Ask: TypeAlias = "Callable[[Reading], Iterator[Question]]"
+"""What a claim of any kind comes down to."""
+
+
+def parameters(ask: Ask, reading: Reading) -> Iterator[Question]:
+    """The inner claim, which ``ask`` takes apart, holds at each of the claimed values and at no others."""
     inner, wanted = _inner(reading), _wanted(reading)
     claimed = [_assigned(reading, i, table, wanted) for i, table in enumerate(reading.claim.keys["values"])]
     budget = reading.claim.budget
     found: list[list[Family]] = []
 
     def all_of_them() -> tuple[str, ...] | None:
-        known = found or _found(reading, inner, wanted, Deadline.after(min(SHARE * budget, ANSWER_SECONDS)))
+        known = found or _found(
+            ask, reading, inner, wanted, Deadline.after(min(SHARE * budget, ANSWER_SECONDS))
+        )
         return _told(known[0]) if known else None
 
     held: list[Verdict] = []
     for family in claimed:
-        verdict = _holds_with(inner, family, Deadline.after(SHARE * budget / len(claimed)))
+        verdict = _holds_with(ask, inner, family, Deadline.after(SHARE * budget / len(claimed)))
         if verdict.fails:
             why = verdict.feedback or (f"{verdict.question} comes out wrong" if verdict.question else "")
             wrong = replace(verdict, feedback=f"{_written(family)} is no solution{': ' if why else ''}{why}")
@@ -63,7 +69,7 @@ def parameters(reading: Reading) -> Iterator[Question]:
             return
         held.append(verdict)
     whole = all_hold(held) if held else Verdict(Status.HOLDS, certificate="exact")
-    found += _found(reading, inner, wanted, Deadline.after(SHARE * budget))
+    found += _found(ask, reading, inner, wanted, Deadline.after(SHARE * budget))
     if not found:
         open_ = "the values that are claimed are right, as far as was decided; whether there are more was not decided"
         yield Stated(all_hold([whole, Verdict(Status.UNDECIDED, evidence=(Evidence("open", open_),))]))
@@ -142,14 +148,14 @@ def _assigned(reading: Reading, i: int, table: Mapping[str, object], wanted: Seq
     return family
 
 
-def _holds_with(inner: Reading, family: Family, deadline: Deadline) -> Verdict:
+def _holds_with(ask: Ask, inner: Reading, family: Family, deadline: Deadline) -> Verdict:
     """Judge the inner claim with values put in."""
     outside = _outside(family)
     if outside:
         return Verdict(Status.FAILS, certificate="exact", feedback=outside)
     try:
         verdicts: list[Verdict] = []
-        for question in _questions(_with(inner, family)):
+        for question in _questions(ask, _with(inner, family)):
             if isinstance(question, Same) and any(
                 p.residual.has(sp.zoo, sp.nan, sp.oo) for p in question.parts
             ):
@@ -166,10 +172,8 @@ def _holds_with(inner: Reading, family: Family, deadline: Deadline) -> Verdict:
     return all_hold(verdicts) if verdicts else Verdict(Status.UNDECIDED)
 
 
-def _questions(reading: Reading) -> Iterator[Question]:
-    from canon.exercise.judge import questions  # only here: it imports this module
-
-    return (question for question in questions(reading) if not isinstance(question, Determines))
+def _questions(ask: Ask, reading: Reading) -> Iterator[Question]:
+    return (question for question in ask(reading) if not isinstance(question, Determines))
 
 
 def _with(inner: Reading, family: Family) -> Reading:
@@ -203,12 +207,12 @@ def _outside(family: Family) -> str:
 
 
 def _found(
-    reading: Reading, inner: Reading, wanted: Sequence[Symbol], deadline: Deadline
+    ask: Ask, reading: Reading, inner: Reading, wanted: Sequence[Symbol], deadline: Deadline
 ) -> list[list[Family]]:
     """Return all values for which the inner claim holds, in a list; an empty one where they were not found."""
     asked: list[Question] = []
     try:
-        asked += _questions(inner)
+        asked += _questions(ask, inner)
     except (Undecided, SingularMatrixError, EmptyDomainError):
         return []
     residuals: list[Expr] = []
@@ -223,7 +227,7 @@ def _found(
             return []
     try:
         candidates = families(residuals, wanted, _given(reading, wanted), domain, deadline)
-        verdicts = [_holds_with(inner, family, deadline) for family in candidates]
+        verdicts = [_holds_with(ask, inner, family, deadline) for family in candidates]
     except (Undecided, InvalidClaim):
         return []
     if any(verdict.undecided for verdict in verdicts):

@@ -24,18 +24,9 @@ from canon.exercise.question.constraint_manifold import (
     inhabited,
     on_manifold,
 )
+from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.implicit_point import refuted_at_a_point
-from canon.exercise.question.question import (
-    TELLING,
-    Deadline,
-    Determines,
-    Part,
-    Question,
-    Same,
-    Stated,
-    decide,
-    fails,
-)
+from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
 from canon.exercise.question.solve_for_symbol import named
 from canon.exercise.sheet.sympy_trees import replaced, symbols_of
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity

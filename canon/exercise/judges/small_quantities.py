@@ -14,8 +14,8 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.question.constraint_manifold import transported
+from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import (
-    Deadline,
     Determines,
     Part,
     Question,

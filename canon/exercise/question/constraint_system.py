@@ -17,7 +17,7 @@ from canon.exercise.question.constraint_manifold import (
     inhabited,
     on_manifold,
 )
-from canon.exercise.question.question import Deadline, Part, Same, decide
+from canon.exercise.question.question import Part, Same, decide
 from canon.expression.symbols.symbol import time_derivative, velocity
 from canon.mechanics.algebra.linear import eliminate
 from canon.mechanics.algebra.substitution import exchanged, substitute
@@ -28,6 +28,8 @@ from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+
+    from canon.exercise.question.deadline import Deadline
 
 __all__ = ["ConstraintSystem"]
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-    from canon.exercise.question.question import Deadline
+    from canon.exercise.question.deadline import Deadline
     from canon.proof.domain.domain import Domain
 
 __all__ = ["in_our_words", "same_equations"]

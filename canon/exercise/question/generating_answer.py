@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from canon.exercise.diagnose.diagnosis import judged_to_hold
 from canon.mechanics.canonical.find_generating_function import generating_function
 from canon.mechanics.canonical.generating_function import GeneratingFunction
 from canon.mechanics.canonical.transformation import CanonicalTransformation
@@ -22,7 +21,7 @@ _OF_INVERSE = {1: 1, 2: 3, 3: 2, 4: 4}
 
 
 def generating_function_of(reading: Reading, kind: int) -> Expr | None:
-    """Return F of a type for the claimed map, once the claim is judged to hold with it.
+    """Return F of a type for the claimed map; whoever tells it proves it first.
 
     Raises
     ------
@@ -40,5 +39,4 @@ def generating_function_of(reading: Reading, kind: int) -> Expr | None:
         found, sign = generating_function(map_, _OF_INVERSE[kind], q, p, budget=SECONDS), -1
     if not isinstance(found, GeneratingFunction):
         return None
-    F = sign * found.F
-    return F if judged_to_hold(reading.with_instead("F", F), SECONDS) else None
+    return sign * found.F

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
-    from canon.exercise.question.question import Deadline
+    from canon.exercise.question.deadline import Deadline
 
 __all__ = ["Family", "families"]
 
@@ -90,7 +90,7 @@ def families(
 
     Examples
     --------
-    >>> from canon.exercise.question.question import Deadline
+    >>> from canon.exercise.question.deadline import Deadline
     >>> q = sp.Symbol("q", positive=True)
     >>> a, b = sp.symbols("a b", real=True)
     >>> families([a * b * q ** (2 * a - 1) - 1], [a, b], [], Domain(), Deadline.after(5.0))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
@@ -21,13 +20,13 @@ from canon.proof.vanish import equal, vanishes
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from canon.exercise.question.deadline import Deadline
     from canon.proof.domain.domain import Domain
 
 __all__ = [
     "COMPLETE",
     "TELLING",
     "Answer",
-    "Deadline",
     "Determines",
     "Differ",
     "Part",
@@ -107,6 +106,8 @@ class Same:
         A sentence on a component that was refuted, where no better diagnosis is found.
     pointwise
         Whether values are compared as they are written, so that sign(x²) = 1 is wrong at x = 0.
+    answers
+        The key that the answer stands under, where it is told only once the claim is judged to hold with it.
     """
 
     parts: tuple[Part, ...]
@@ -114,6 +115,7 @@ class Same:
     answer: Answer | None = None
     said: Callable[[Part], str] | None = None
     pointwise: bool = False
+    answers: str = ""
 
 
 @dataclass(frozen=True)
@@ -207,23 +209,6 @@ class Determines:
 
 
 Question: TypeAlias = Same | SameEquations | Regular | Stated | Differ | Tells | Determines | Verdict
-
-
-@dataclass(frozen=True)
-class Deadline:
-    """A point in time that a judgement should not pass."""
-
-    at: float
-
-    @classmethod
-    def after(cls, seconds: float) -> Deadline:
-        """Return the deadline so many seconds from now."""
-        return cls(time.monotonic() + seconds)
-
-    @property
-    def left(self) -> float:
-        """Seconds that are left, at least a few hundredths, so that every question is at least looked at."""
-        return max(0.05, self.at - time.monotonic())
 
 
 def wrong_variables(f: Expr, foreign: Sequence[Symbol], name: str, variables: str) -> Iterator[Verdict]:

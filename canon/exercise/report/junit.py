@@ -7,17 +7,17 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from canon.exercise.report.report import printable
+from canon.exercise.report.judgement import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.exercise.report.report import Judgement, Report
+    from canon.exercise.report.judgement import Judged, Judgement
 
 __all__ = ["junit"]
 
 
-def junit(report: Report) -> str:
+def junit(report: Judged) -> str:
     """Return a report as JUnit XML.
 
     A claim that FAILS is a failure, an invalid one an error, an undecided one is skipped. Where a claim says what
@@ -25,7 +25,8 @@ def junit(report: Report) -> str:
 
     Examples
     --------
-    >>> from canon.exercise.report.report import Judgement, Report
+    >>> from canon.exercise.report.judgement import Judgement
+    >>> from canon.exercise.report.report import Report
     >>> print(junit(Report("s", (Judgement("a", "equality-only", "fails", 0.5, feedback="sign"),))))
     <?xml version='1.0' encoding='utf-8'?>
     <testsuites tests="1" failures="1" errors="0" skipped="0" time="0.500">

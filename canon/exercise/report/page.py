@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
+from canon.exercise.report.judgement import printable
 from canon.exercise.report.page_style import PAGE_STYLE, STYLE
-from canon.exercise.report.report import printable
 from canon.exercise.sheet.kinds import COMMON, KINDS, Shape, kind_of
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.expression.mathml import formula
@@ -19,7 +19,7 @@ from canon.expression.parse import Scope
 from canon.expression.symbols.user_input import counted
 
 if TYPE_CHECKING:
-    from canon.exercise.report.report import Judgement, Report
+    from canon.exercise.report.judgement import Judged, Judgement
     from canon.exercise.sheet.sheet import Claim
 
 __all__ = ["fragment", "page"]
@@ -45,12 +45,13 @@ _POLICY = "default-src 'none'; style-src 'unsafe-inline'"
 _VERDICTS = {"holds": "holds", "fails": "fails", "undecided": "undecided", "invalid": "can't be read"}
 
 
-def page(report: Report) -> str:
+def page(report: Judged) -> str:
     """Return a whole HTML page.
 
     Examples
     --------
-    >>> from canon.exercise.report.report import Judgement, Report
+    >>> from canon.exercise.report.judgement import Judgement
+    >>> from canon.exercise.report.report import Report
     >>> text = page(Report("<b>", (Judgement("a", "equality-only", "holds"),)))
     >>> "&lt;b&gt;" in text, "<b>" in text, "<script" in text
     (True, False, False)
@@ -66,7 +67,7 @@ def page(report: Report) -> str:
     return f"<!DOCTYPE html>\n{_written(root)}\n"
 
 
-def fragment(report: Report) -> str:
+def fragment(report: Judged) -> str:
     """Return the report for a notebook: the same without the frame of a page."""
     root = Element("div")
     SubElement(root, "style").text = STYLE
@@ -88,18 +89,20 @@ def _put(parent: Element, tag: str, text: str = "", kind: str = "") -> Element:
     return _text(element, text) if text else element
 
 
-def _body(report: Report) -> Element:
+def _body(report: Judged) -> Element:
     main = Element("main", {"class": "canon"})
     _put(main, "h1", report.title or "Judged claims")
     counts = _put(main, "p", kind="counts")
-    _put(counts, "span", f"{counted(len(report), 'claim')}")
+    _put(counts, "span", f"{counted(len(report.judgements), 'claim')}")
     for status, number in report.counts.items():
         _put(counts, "span", f"{number} {_VERDICTS[status]}", status)
-    seconds = sum(judgement.seconds for judgement in report)
+    seconds = sum(judgement.seconds for judgement in report.judgements)
     _put(counts, "span", f"{seconds:.1f} s")
-    many = len({judgement.file for judgement in report}) > 1
-    claims = report.claims if len(report.claims) == len(report) else (None,) * len(report)
-    for judgement, claim in zip(report, claims, strict=True):
+    many = len({judgement.file for judgement in report.judgements}) > 1
+    claims = (
+        report.claims if len(report.claims) == len(report.judgements) else (None,) * len(report.judgements)
+    )
+    for judgement, claim in zip(report.judgements, claims, strict=True):
         card = _card(judgement, claim)
         if many and judgement.file:
             _put(card[1], "span", judgement.file)

@@ -3,144 +3,18 @@
 from __future__ import annotations
 
 import json
-import re
-from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from canon.display import preformatted
+from canon.exercise.report.judgement import MARKS, Judgement, printable
 from canon.expression.symbols.input_in_words import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from canon.exercise.sheet.sheet import Claim
 
-__all__ = ["Judgement", "Report", "invalid", "printable"]
-
-_MARKS = {"holds": "✓", "fails": "✗", "undecided": "?", "invalid": "!"}
-MAX_SHOWN = 2_000
-"""Characters of an expression that are shown; the rest is cut."""
-_UNPRINTABLE = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
-)
-"""What would command a terminal, turn the direction of text, or stand for no character at all."""
-
-
-def printable(text: str) -> str:
-    r"""Return a stranger's text without what would command a terminal instead of being read.
-
-    Examples
-    --------
-    >>> printable("\x1b[2Jgone")
-    '�[2Jgone'
-    """
-    return _UNPRINTABLE.sub("�", text)
-
-
-@dataclass(frozen=True)
-class Judgement:
-    """The verdict on one claim, in text only: what a report says of it.
-
-    Parameters
-    ----------
-    id, kind, title, expect, file
-        As the claim says, and where it stands.
-    status
-        ``holds``, ``fails``, ``undecided`` or ``invalid``.
-    seconds
-        Time the judgement took.
-    certificate
-        How it was decided.
-    question
-        The part of the claim on which the verdict turned.
-    counterexample
-        ``{"point": {name: value}, "left": …, "right": …}`` where it fails, else None.
-    residual
-        What should have vanished.
-    feedback
-        One sentence for a person.
-    corrected
-        The right answer, where canon has it.
-    known
-        What is known of an undecided claim, or what is wrong with an invalid one.
-    steps
-        How it was judged: pairs of a sentence and a formula, either of which may be empty.
-    warnings
-        What was passed over in reading the claim, such as units, and what a claim that holds leaves open.
-    """
-
-    id: str
-    kind: str
-    status: str
-    seconds: float = 0.0
-    certificate: str = ""
-    question: str = ""
-    counterexample: Mapping[str, Any] | None = None
-    residual: str = ""
-    feedback: str = ""
-    corrected: str = ""
-    known: str = ""
-    title: str = ""
-    expect: str = ""
-    file: str = ""
-    steps: tuple[tuple[str, str], ...] = ()
-    warnings: tuple[str, ...] = ()
-
-    def __repr__(self) -> str:
-        return f"<Judgement {self.id!r}: {self.kind}, {self.status}>"
-
-    def _repr_html_(self) -> str:
-        return preformatted("\n".join(self.lines()))
-
-    @property
-    def as_expected(self) -> bool:
-        """Whether the verdict is the one the author expects, or none is expected."""
-        return self.expect in ("", self.status)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return what one JSON line says."""
-        return {**asdict(self), "seconds": round(self.seconds, 4)}
-
-    @classmethod
-    def from_dict(cls, found: Mapping[str, Any]) -> Judgement:
-        """Return the judgement that a JSON line says."""
-        said = {field.name: found[field.name] for field in fields(cls) if field.name in found}
-        said["steps"] = tuple((str(text), str(formula)) for text, formula in said.get("steps", ()))
-        said["warnings"] = tuple(map(str, said.get("warnings", ())))
-        return cls(**said)
-
-    @property
-    def json_line(self) -> str:
-        """One line of JSON; in ASCII where the claim holds characters that a terminal should not see."""
-        said = json.dumps(self.to_dict(), ensure_ascii=False)
-        return json.dumps(self.to_dict()) if _UNPRINTABLE.search(said) else said
-
-    def lines(self, width: int = 100) -> list[str]:
-        """Return this judgement as lines of a table."""
-        unexpected = "" if self.as_expected else f"   (expected: {self.expect})"
-        name = self.title or self.kind
-        head = " ".join(f"{_MARKS[self.status]} {self.status:<9} {self.id:<12} {name}".split("\n"))
-        shown = [f"{head[: width - 10]:<{width - 10}} {self.seconds:6.2f} s{unexpected}"]
-        shown += [f"    {line}" for line in (*self.reasons, *self.warnings)]
-        return [printable(line) for line in shown]
-
-    @property
-    def reasons(self) -> list[str]:
-        """What a person is told besides the verdict, line by line."""
-        reasons: list[str] = []
-        if self.status == "fails":
-            reasons.append(self.feedback or f"{self.question or 'the claim'} is wrong")
-            example = self.counterexample
-            if example is not None:
-                point = ", ".join(f"{name} = {value}" for name, value in example["point"].items())
-                reasons.append(f"at {point or 'every point'}: {example['left']} against {example['right']}")
-            if self.corrected:
-                reasons.append(f"right would be: {self.corrected}")
-        elif self.status != "holds":
-            reasons += self.known.splitlines()
-            if self.status == "invalid" and self.file:
-                reasons[0] = f"{self.file}: {reasons[0]}"
-        return reasons
+__all__ = ["Report"]
 
 
 @dataclass(frozen=True)
@@ -176,7 +50,7 @@ class Report:
     @property
     def counts(self) -> dict[str, int]:
         """How many judgements have each status; a status that none has is left out."""
-        return {status: self.count(status) for status in _MARKS if self.count(status)}
+        return {status: self.count(status) for status in MARKS if self.count(status)}
 
     def count(self, status: str) -> int:
         """Return how many judgements have a status."""
@@ -237,15 +111,3 @@ class Report:
         lines = [printable(self.title)] if self.title else []
         lines += [line for judgement in self.judgements for line in judgement.lines()]
         return "\n".join([*lines, self.summary])
-
-
-def invalid(claim: Claim, reason: str) -> Judgement:
-    """Return the judgement on a claim that does not say something that could be judged."""
-    return Judgement(
-        claim.id,
-        claim.kind,
-        "invalid",
-        known=reason,
-        title=str(claim.keys.get("title", "")),
-        expect=claim.expect,
-    )
