@@ -15,9 +15,9 @@ from sympy.polys.polyerrors import PolynomialError
 
 from canon.proof.domain.domain import Domain, linear, parts_of
 from canon.proof.domain.limits import QUICK, Full, OutOfTime, TooLarge
+from canon.proof.domain.reality import certainly_real
 from canon.proof.functions.angles import Refine
 from canon.proof.functions.normal_form import NormalForm
-from canon.proof.rungs.cases import certainly_real
 from canon.proof.rungs.ladder import MOST_STARTS, REFUSALS
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.sympy_types import arguments

@@ -18,10 +18,10 @@ from sympy.core.relational import Relational
 from canon.proof.analytic import is_analytic
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.limits import QUICK
+from canon.proof.domain.reality import certainly_real
 from canon.proof.domain.verdict import Evidence, Status, Verdict
 from canon.proof.refute.refute import look_for_counterexample
 from canon.proof.refute.sample_functions import evaluated
-from canon.proof.rungs.cases import certainly_real
 from canon.proof.rungs.ladder import REFUSALS, is_empty, prove_zero
 from canon.proof.trees.anatomy import Anatomy, anatomy
 from canon.proof.trees.replacement import KINKED, NoValue, replaced

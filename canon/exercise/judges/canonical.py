@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.generating_answer import generating_function_of
 from canon.exercise.question.answer import open_brackets
 from canon.exercise.question.constraint_manifold import on_manifold, transported
 from canon.exercise.question.continuous_answer import is_continuous

@@ -15,7 +15,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.sheet.sympy_trees import arguments, replaced, symbols_of
-from canon.proof.rungs.cases import certainly_real
+from canon.proof.domain.reality import certainly_real
 from canon.proof.tower.polynomial import polynomial_factors
 
 if TYPE_CHECKING:

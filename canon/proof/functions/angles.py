@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
 
 __all__ = [
     "combination",
@@ -42,7 +42,7 @@ BY_RADICALS = frozenset({1, 2, 3, 4, 5, 6, 10, 12})
 """Denominators q for which cos(πp/q) is written in square roots; others go through cyclotomic fields."""
 
 
-def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
+def elementary(n: Forms, expr: sp.Basic) -> Fraction | None:
     """Return a trigonometric or hyperbolic function through sin, cos and exp, by definition."""
     t = n.tower
     match expr:
@@ -80,16 +80,14 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return t.reciprocal(sinh)
 
 
-def cosh_sinh(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
+def cosh_sinh(n: Forms, f: Fraction) -> tuple[Fraction, Fraction]:
     """Return (cosh f, sinh f) = (e^f ± e^−f)/2."""
-    from canon.proof.functions.powers import exponential
-
-    e = exponential(n, f)
+    e = n.exponential(f)
     inverse = n.tower.reciprocal(e)
     return n.scaled(fmpq(1, 2), n.tower.sum([e, inverse])), n.scaled(fmpq(1, 2), n.minus(e, inverse))
 
 
-def combination(n: NormalForm, f: Fraction) -> list[tuple[Fraction, fmpq]]:
+def combination(n: Forms, f: Fraction) -> list[tuple[Fraction, fmpq]]:
     """Write f as Σ rᵢ·atomᵢ with rational rᵢ; the atoms are monomials and independent monomials over denominators."""
     f = n.tower.canonical(f)
     if not f.den:
@@ -99,7 +97,7 @@ def combination(n: NormalForm, f: Fraction) -> list[tuple[Fraction, fmpq]]:
     return [(atom, r) for atom, r in found.values() if r != 0]
 
 
-def _monomials(n: NormalForm, f: Fraction) -> Iterator[tuple[Fraction, fmpq]]:
+def _monomials(n: Forms, f: Fraction) -> Iterator[tuple[Fraction, fmpq]]:
     """Yield the monomials of the numerator over the denominator, with their coefficients."""
     t = n.tower
     for monomial, coefficient in t.terms(f.num):
@@ -109,7 +107,7 @@ def _monomials(n: NormalForm, f: Fraction) -> Iterator[tuple[Fraction, fmpq]]:
         yield Fraction(p, f.den), coefficient
 
 
-def _combine(n: NormalForm, f: Fraction, factor: fmpq, found: dict[Hashable, tuple[Fraction, fmpq]]) -> None:
+def _combine(n: Forms, f: Fraction, factor: fmpq, found: dict[Hashable, tuple[Fraction, fmpq]]) -> None:
     """Add the terms of a multiple of ``f`` to those found."""
     for term, coefficient in _monomials(n, f):
         atom, r = n.tower.canonical(term), factor * coefficient
@@ -129,7 +127,7 @@ def _add(
     found[key] = (atom, coefficient if before is None else before[1] + coefficient)
 
 
-def divided(n: NormalForm, kind: str, key: Hashable, coefficient: fmpq) -> int:
+def divided(n: Forms, kind: str, key: Hashable, coefficient: fmpq) -> int:
     """Return the number of parts that make ``coefficient`` a whole multiple, or ask to refine."""
     have = n.parts.get((kind, key), 1)
     need = lcm(have, int(coefficient.q))
@@ -141,7 +139,7 @@ def divided(n: NormalForm, kind: str, key: Hashable, coefficient: fmpq) -> int:
     return need
 
 
-def imaginary_split(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
+def imaginary_split(n: Forms, f: Fraction) -> tuple[Fraction, Fraction]:
     """Write f = a + i·b, where i in a denominator stays there as part of the atoms."""
     t = n.tower
     if not t.knows(("I",)):
@@ -150,7 +148,7 @@ def imaginary_split(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
     return Fraction(parts[0], f.den), Fraction(parts[1] if len(parts) > 1 else t.constant(0), f.den)
 
 
-def cos_sin(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
+def cos_sin(n: Forms, f: Fraction) -> tuple[Fraction, Fraction]:
     """Return (cos f, sin f) by the addition theorems, which hold for complex arguments as well.
 
     cos(ib) = cosh b and sin(ib) = i sinh b.
@@ -174,7 +172,7 @@ def cos_sin(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def turned(
-    n: NormalForm, first: tuple[Fraction, Fraction], second: tuple[Fraction, Fraction]
+    n: Forms, first: tuple[Fraction, Fraction], second: tuple[Fraction, Fraction]
 ) -> tuple[Fraction, Fraction]:
     """Return cos and sin of a sum of two angles given by theirs."""
     t = n.tower
@@ -182,7 +180,7 @@ def turned(
     return n.minus(t.times(c1, c2), t.times(s1, s2)), t.sum([t.times(s1, c2), t.times(c1, s2)])
 
 
-def multiple(n: NormalForm, pair: tuple[Fraction, Fraction], times: int) -> tuple[Fraction, Fraction]:
+def multiple(n: Forms, pair: tuple[Fraction, Fraction], times: int) -> tuple[Fraction, Fraction]:
     """Return cos and sin of a whole multiple of an angle."""
     result = (n.tower.number(1), n.tower.number(0))
     k = abs(times)
@@ -195,21 +193,19 @@ def multiple(n: NormalForm, pair: tuple[Fraction, Fraction], times: int) -> tupl
     return (result[0], n.negative(result[1])) if times < 0 else result
 
 
-def _special_angle(n: NormalForm, atom: Fraction, r: fmpq) -> tuple[Fraction, Fraction] | None:
+def _special_angle(n: Forms, atom: Fraction, r: fmpq) -> tuple[Fraction, Fraction] | None:
     """Return cos and sin of r·atom for multiples of π and of arcs, which need no base angle."""
-    from canon.proof.functions.arcs import cos_sin_of_arc
-
     kernel = n.only_kernel(atom)
     if kernel == ("pi",):
         return phase_of_pi(n, r)
-    if kernel is not None and (known := cos_sin_of_arc(n, kernel, r)) is not None:
+    if kernel is not None and (known := n.cos_sin_of_arc(kernel, r)) is not None:
         return known
     if r.q == 1 and _whole_multiple_of_pi(n, atom):
         return _alternating(n, n.fraction_key(atom), atom, int(r.p))
     return None
 
 
-def _in_base_angles(n: NormalForm, terms: list[tuple[Fraction, fmpq]]) -> list[tuple[Angle, int]]:
+def _in_base_angles(n: Forms, terms: list[tuple[Fraction, fmpq]]) -> list[tuple[Angle, int]]:
     """Write an argument as whole multiples of base angles, a basis of the lattice of all arguments met.
 
     An argument outside the lattice widens it, and the work starts again.
@@ -235,7 +231,7 @@ def _in_base_angles(n: NormalForm, terms: list[tuple[Fraction, fmpq]]) -> list[t
     return found
 
 
-def _whole_multiple_of_pi(n: NormalForm, atom: Fraction) -> bool:
+def _whole_multiple_of_pi(n: Forms, atom: Fraction) -> bool:
     kernels = [(n.tower.generators[k], e) for m, _ in n.tower.terms(atom.num) for k, e in m]
     return (
         not atom.den
@@ -246,7 +242,7 @@ def _whole_multiple_of_pi(n: NormalForm, atom: Fraction) -> bool:
     )
 
 
-def _alternating(n: NormalForm, key: Hashable, atom: Fraction, k: int) -> tuple[Fraction, Fraction]:
+def _alternating(n: Forms, key: Hashable, atom: Fraction, k: int) -> tuple[Fraction, Fraction]:
     """Return cos(kπN) and sin(kπN) for an integer N: a sign ε with ε² = 1, and 0."""
     t = n.tower
     kernel = ("alternating", key)
@@ -257,7 +253,7 @@ def _alternating(n: NormalForm, key: Hashable, atom: Fraction, k: int) -> tuple[
     return t.power(c, k % 2), t.number(0)
 
 
-def _base_angle(n: NormalForm, angle: Angle) -> tuple[Fraction, Fraction]:
+def _base_angle(n: Forms, angle: Angle) -> tuple[Fraction, Fraction]:
     """Return cos and sin of a base angle as two generators with s² = 1 − c².
 
     Their signs follow from the range of the angle on the domain.
@@ -286,7 +282,7 @@ def _base_angle(n: NormalForm, angle: Angle) -> tuple[Fraction, Fraction]:
     return c, s
 
 
-def _range(n: NormalForm, angle: Angle) -> tuple[Expr, Expr, bool]:
+def _range(n: Forms, angle: Angle) -> tuple[Expr, Expr, bool]:
     """Return the bounds of a base angle that is a multiple of one symbol, and whether both are excluded."""
     if len(angle) == 1:
         ((key, p, q),) = angle
@@ -298,7 +294,7 @@ def _range(n: NormalForm, angle: Angle) -> tuple[Expr, Expr, bool]:
     return -sp.oo, sp.oo, True
 
 
-def _quadrant(n: NormalForm, angle: Angle) -> tuple[str, str]:
+def _quadrant(n: Forms, angle: Angle) -> tuple[str, str]:
     """Return the signs of cos and sin on the range of a base angle."""
     return sign_of_wave(n, angle, 1, 0) or "real", sign_of_wave(n, angle, 0, 1) or "real"
 
@@ -306,7 +302,7 @@ def _quadrant(n: NormalForm, angle: Angle) -> tuple[str, str]:
 # -- rational multiples of π ---------------------------------------------------------------------------
 
 
-def phase_of_pi(n: NormalForm, r: fmpq) -> tuple[Fraction, Fraction]:
+def phase_of_pi(n: Forms, r: fmpq) -> tuple[Fraction, Fraction]:
     """Return cos(rπ) and sin(rπ) exactly: by square roots, or in the real field of 2 cos(π/2N).
 
     sin(rπ) = cos((1/2 − r)π), so one generator serves both.
@@ -320,7 +316,7 @@ def phase_of_pi(n: NormalForm, r: fmpq) -> tuple[Fraction, Fraction]:
     return _cosine_in_field(n, int(first), order), _cosine_in_field(n, abs(int(second)), order)
 
 
-def _cosine_in_field(n: NormalForm, k: int, order: int) -> Fraction:
+def _cosine_in_field(n: Forms, k: int, order: int) -> Fraction:
     """Return cos(kπ/order) as a polynomial in C = 2cos(π/order), reduced by C's minimal polynomial."""
     t = n.tower
     kernel = ("cyclotomic", order)

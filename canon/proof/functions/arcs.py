@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
 
 __all__ = ["ARCS", "arc_of_point", "cos_sin_of_arc", "elementary"]
 
@@ -28,7 +28,7 @@ SIMPLE_MULTIPLES = tuple(
 """Multiples of a logarithm that are tried as values of Lambert's W."""
 
 
-def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
+def elementary(n: Forms, expr: sp.Basic) -> Fraction | None:
     """Return an inverse function through asin, atan, atan2 and log by identities of principal branches.
 
     acos z = π/2 − asin z; asinh z = log(z + √(z²+1)); acosh z = log(z + √(z+1)√(z−1));
@@ -64,7 +64,7 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return None
 
 
-def _odd(n: NormalForm, name: str, z: Fraction) -> Fraction:
+def _odd(n: Forms, name: str, z: Fraction) -> Fraction:
     """Return asin or atan of z; both are odd, so the argument's leading sign is made positive."""
     t = n.tower
     z = t.canonical(z)
@@ -82,17 +82,17 @@ def _odd(n: NormalForm, name: str, z: Fraction) -> Fraction:
     return n.negative(arc) if negative else arc
 
 
-def _arc_sign(n: NormalForm, z: Fraction, *, real: bool) -> str:
+def _arc_sign(n: Forms, z: Fraction, *, real: bool) -> str:
     return (n.sign(z) or "real") if real else ""
 
 
-def _at_most_one(n: NormalForm, z: Fraction) -> bool:
+def _at_most_one(n: Forms, z: Fraction) -> bool:
     """Tell whether |z| ≤ 1 is proven."""
     one = n.tower.number(1)
     return n.sign(n.minus(one, n.tower.times(z, z))).endswith("+")
 
 
-def arc_of_point(n: NormalForm, y: Fraction, x: Fraction) -> Fraction:
+def arc_of_point(n: Forms, y: Fraction, x: Fraction) -> Fraction:
     """Return atan2(y, x) through atan where a half plane is proven; atan2(ky, kx) = atan2(y, x) for k > 0."""
     t = n.tower
     half_pi = n.scaled(fmpq(1, 2), n.pi)
@@ -115,9 +115,7 @@ def arc_of_point(n: NormalForm, y: Fraction, x: Fraction) -> Fraction:
     )
 
 
-def _area(n: NormalForm, expr: sp.Basic, z: Fraction) -> Fraction:
-    from canon.proof.functions.powers import logarithm, root
-
+def _area(n: Forms, expr: sp.Basic, z: Fraction) -> Fraction:
     t = n.tower
     one, half = t.number(1), fmpq(1, 2)
     match expr:
@@ -128,31 +126,27 @@ def _area(n: NormalForm, expr: sp.Basic, z: Fraction) -> Fraction:
         case _:
             pass
     if isinstance(expr, sp.asinh | sp.acsch):
-        return logarithm(n, t.sum([z, root(n, t.sum([t.times(z, z), one]), half)]))
-    roots = t.times(root(n, t.sum([z, one]), half), root(n, n.minus(z, one), half))
-    return logarithm(n, t.sum([z, roots]))
+        return n.logarithm(t.sum([z, n.root(t.sum([t.times(z, z), one]), half)]))
+    roots = t.times(n.root(t.sum([z, one]), half), n.root(n.minus(z, one), half))
+    return n.logarithm(t.sum([z, roots]))
 
 
-def _atanh(n: NormalForm, z: Fraction) -> Fraction:
-    from canon.proof.functions.powers import logarithm
-
+def _atanh(n: Forms, z: Fraction) -> Fraction:
     one = n.tower.number(1)
     above, below = n.tower.sum([one, z]), n.minus(one, z)
-    return n.scaled(fmpq(1, 2), n.minus(logarithm(n, above), logarithm(n, below)))
+    return n.scaled(fmpq(1, 2), n.minus(n.logarithm(above), n.logarithm(below)))
 
 
-def _lambert_w(n: NormalForm, expr: sp.Basic, z: Fraction) -> Fraction:
+def _lambert_w(n: Forms, expr: sp.Basic, z: Fraction) -> Fraction:
     """Return W₀(z) or W₋₁(z): g where z = g exp g with g ≥ −1, or g ≤ −1; otherwise a kernel.
 
     W₀(z) ≥ 0 for z ≥ 0 and W₋₁(z) < 0 for −1/e ≤ z < 0.
     """
-    from canon.proof.functions.powers import exponential
-
     t = n.tower
     one, upper = t.number(1), len(expr.args) == 1
     for g in _inverse_candidates(n, z):
         gap = t.sum([g, one]) if upper else n.negative(t.sum([g, one]))
-        if n.sign(gap).endswith("+") and t.is_zero(n.minus(z, t.times(g, exponential(n, g)))):
+        if n.sign(gap).endswith("+") and t.is_zero(n.minus(z, t.times(g, n.exponential(g)))):
             return g
     kernel = (sp.LambertW, (n.fraction_key(t.canonical(z)), *map(str, expr.args[1:])))
     n.arguments[kernel] = z
@@ -165,7 +159,7 @@ def _lambert_w(n: NormalForm, expr: sp.Basic, z: Fraction) -> Fraction:
     return n.atom(kernel, known, lambda: cast("Expr", expr))
 
 
-def _inverse_candidates(n: NormalForm, z: Fraction) -> Iterator[Fraction]:
+def _inverse_candidates(n: Forms, z: Fraction) -> Iterator[Fraction]:
     """Yield what may be W(z): the arguments of exponentials in z, and logarithms in z with simple multiples."""
     for k in n.tower.used(z.num):
         candidate = n.tower.generators[k]
@@ -176,7 +170,7 @@ def _inverse_candidates(n: NormalForm, z: Fraction) -> Iterator[Fraction]:
                 yield n.scaled(multiple, Fraction(n.tower.monomial(k)))
 
 
-def cos_sin_of_arc(n: NormalForm, kernel: tuple[object, ...], r: fmpq) -> tuple[Fraction, Fraction] | None:
+def cos_sin_of_arc(n: Forms, kernel: tuple[object, ...], r: fmpq) -> tuple[Fraction, Fraction] | None:
     """Return cos and sin of r·arc where r is whole or half.
 
     cos asin z = √(1 − z²) for every z; e^{i atan z} = (1 + iz)/√(1 + z²) for real z, and its square
@@ -203,23 +197,19 @@ def cos_sin_of_arc(n: NormalForm, kernel: tuple[object, ...], r: fmpq) -> tuple[
     return multiple(n, pair, int(r.p))
 
 
-def _pair(n: NormalForm, kernel: tuple[object, ...]) -> tuple[Fraction, Fraction]:
-    from canon.proof.functions.powers import root
-
+def _pair(n: Forms, kernel: tuple[object, ...]) -> tuple[Fraction, Fraction]:
     t = n.tower
     half = fmpq(1, 2)
     z = n.arguments[kernel]
     one = t.number(1)
     if kernel[0] == "asin":
-        return root(n, n.minus(one, t.times(z, z)), half), z
+        return n.root(n.minus(one, t.times(z, z)), half), z
     x = one if kernel[0] == "atan" else n.arguments[(*kernel, "x")]
-    length = root(n, t.sum([t.times(x, x), t.times(z, z)]), half)
+    length = n.root(t.sum([t.times(x, x), t.times(z, z)]), half)
     return n.over(x, length), n.over(z, length)
 
 
-def _halved(n: NormalForm, pair: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
-    from canon.proof.functions.powers import root
-
+def _halved(n: Forms, pair: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
     t = n.tower
-    c = root(n, n.scaled(fmpq(1, 2), t.sum([t.number(1), pair[0]])), fmpq(1, 2))
+    c = n.root(n.scaled(fmpq(1, 2), t.sum([t.number(1), pair[0]])), fmpq(1, 2))
     return c, n.over(pair[1], n.scaled(2, c))

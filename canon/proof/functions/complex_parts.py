@@ -7,18 +7,17 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.proof.functions.angles import imaginary_split
+from canon.proof.functions.arcs import arc_of_point
 from canon.proof.tower.tower import Fraction
 
 if TYPE_CHECKING:
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
 
 __all__ = ["cartesian", "elementary", "sign_function"]
 
 
-def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
+def elementary(n: Forms, expr: sp.Basic) -> Fraction | None:
     """Return re, im, conjugate or arg of z = a + ib with a, b proven real; arg z = atan2(b, a), both undefined at 0."""
-    from canon.proof.functions.arcs import arc_of_point
-
     if not isinstance(expr, sp.re | sp.im | sp.conjugate | sp.arg):
         return None
     parts = cartesian(n, n.form(expr.args[0]))
@@ -36,7 +35,7 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return arc_of_point(n, b, a)
 
 
-def cartesian(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction] | None:
+def cartesian(n: Forms, f: Fraction) -> tuple[Fraction, Fraction] | None:
     """Return (a, b) with f = a + ib, both proven real.
 
     1/(c + id) = (c − id)/(c² + d²) for real c and d, where both sides have the same one point without a value.
@@ -58,13 +57,11 @@ def cartesian(n: NormalForm, f: Fraction) -> tuple[Fraction, Fraction] | None:
     return n.over(a, below), n.over(b, below)
 
 
-def sign_function(n: NormalForm, expr: sp.Basic) -> Fraction | None:
+def sign_function(n: Forms, expr: sp.Basic) -> Fraction | None:
     """Return sign z: ±1 where z has a proven sign, z/|z| where z is proven not to vanish, 0 where it does.
 
     Elsewhere it is a kernel s with s·|z| = z, also at z = 0.
     """
-    from canon.proof.functions.powers import modulus
-
     t = n.tower
     z = n.form(expr.args[0])
     known = n.sign(z)
@@ -74,7 +71,7 @@ def sign_function(n: NormalForm, expr: sp.Basic) -> Fraction | None:
         return t.number(0)
     if n.is_real(z):
         return None
-    size = modulus(n, z)
+    size = n.modulus(z)
     parts = cartesian(n, z)
     if parts is not None and n.sign(t.sum([t.times(part, part) for part in parts])) == "+":
         return n.over(z, size)

@@ -15,13 +15,13 @@ from flint import fmpq
 from canon.proof.functions.powers import root
 
 if TYPE_CHECKING:
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
     from canon.proof.tower.tower import Fraction
 
 __all__ = ["elementary"]
 
 
-def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
+def elementary(n: Forms, expr: sp.Basic) -> Fraction | None:
     """Return K(m) or E(m) through kernels of parameters met before, where a transformation applies."""
     if not isinstance(expr, sp.elliptic_k | sp.elliptic_e) or len(expr.args) != 1:
         return None
@@ -34,7 +34,7 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
     return first if isinstance(expr, sp.elliptic_k) else second
 
 
-def _integrals(n: NormalForm, m: Fraction) -> tuple[Fraction, Fraction]:
+def _integrals(n: Forms, m: Fraction) -> tuple[Fraction, Fraction]:
     """Return K(m) and E(m)."""
     t = n.tower
     key = n.fraction_key(m)
@@ -52,11 +52,11 @@ def _integrals(n: NormalForm, m: Fraction) -> tuple[Fraction, Fraction]:
     return pair
 
 
-def _complementary(n: NormalForm, m: Fraction) -> Fraction:
+def _complementary(n: Forms, m: Fraction) -> Fraction:
     return root(n, n.minus(n.tower.number(1), m), fmpq(1, 2))
 
 
-def _by_landen(n: NormalForm, m: Fraction) -> tuple[Fraction, Fraction] | None:
+def _by_landen(n: Forms, m: Fraction) -> tuple[Fraction, Fraction] | None:
     """With k₁ = (1 − k′)/(1 + k′): K(k) = (1 + k₁)K(k₁), E(k) = (1 + k′)E(k₁) − k′K(k)."""
     t = n.tower
     one = t.number(1)
@@ -75,7 +75,7 @@ def _by_landen(n: NormalForm, m: Fraction) -> tuple[Fraction, Fraction] | None:
     return None
 
 
-def _kernels(n: NormalForm, m: Fraction) -> tuple[Fraction, Fraction]:
+def _kernels(n: Forms, m: Fraction) -> tuple[Fraction, Fraction]:
     """Return K(m), E(m) as generators; note Legendre's relation EK′ + E′K − KK′ = π/2 where 1 − m occurs too."""
     t = n.tower
     key = n.fraction_key(m)

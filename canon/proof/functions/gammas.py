@@ -15,10 +15,11 @@ import sympy as sp
 from flint import fmpq
 
 from canon.proof.functions.angles import cos_sin
+from canon.proof.functions.powers import logarithm
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
     from canon.proof.tower.tower import Fraction
 
 __all__ = ["elementary"]
@@ -27,7 +28,7 @@ LARGEST_SHIFT = 60
 """Differences of arguments that are still written out."""
 
 
-def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
+def elementary(n: Forms, expr: sp.Basic) -> Fraction | None:
     """Return a function of the gamma family through kernels of arguments met before."""
     match expr:
         case sp.gamma():
@@ -57,7 +58,7 @@ def elementary(n: NormalForm, expr: sp.Basic) -> Fraction | None:
             return None
 
 
-def _shifted(n: NormalForm, z: Fraction, k: int) -> Fraction:
+def _shifted(n: Forms, z: Fraction, k: int) -> Fraction:
     return n.tower.sum([z, n.tower.number(k)])
 
 
@@ -69,12 +70,12 @@ def _whole(f: Fraction) -> int | None:
     return int(number.p) if number.q == 1 and abs(number) <= LARGEST_SHIFT else None
 
 
-def _rising(n: NormalForm, z: Fraction, k: int) -> Fraction:
+def _rising(n: Forms, z: Fraction, k: int) -> Fraction:
     """Return z(z + 1)…(z + k − 1)."""
     return n.tower.times(*(_shifted(n, z, j) for j in range(k)))
 
 
-def _gamma(n: NormalForm, z: Fraction) -> Fraction:
+def _gamma(n: Forms, z: Fraction) -> Fraction:
     """Return Γ(z) = z₀(z₀ + 1)…(z − 1)Γ(z₀) for an earlier z₀ = z − k, by reflection for one with z₀ + z = k."""
     t = n.tower
     z = t.canonical(z)
@@ -99,7 +100,7 @@ def _gamma(n: NormalForm, z: Fraction) -> Fraction:
     return found
 
 
-def _reflected(n: NormalForm, z: Fraction, k: int, base: Fraction, value: Fraction) -> Fraction | None:
+def _reflected(n: Forms, z: Fraction, k: int, base: Fraction, value: Fraction) -> Fraction | None:
     """Return Γ(z) = Γ(k − z₀) through Γ(1 − z₀) = π/(sin πz₀ Γ(z₀)), where sin πz₀ ≠ 0.
 
     Where Γ(z₀) and Γ(k − z₀) both have a value and k ≤ 1, z₀ is not whole; for k > 1 that sine has to be proved
@@ -115,11 +116,11 @@ def _reflected(n: NormalForm, z: Fraction, k: int, base: Fraction, value: Fracti
     return t.times(opposite, _rising(n, n.minus(t.number(1), base), k - 1))
 
 
-def _positive(n: NormalForm, *fractions: Fraction) -> bool:
+def _positive(n: Forms, *fractions: Fraction) -> bool:
     return all(n.sign(f) == "+" for f in fractions)
 
 
-def _binomial(n: NormalForm, a: Fraction, b: Fraction) -> Fraction | None:
+def _binomial(n: Forms, a: Fraction, b: Fraction) -> Fraction | None:
     """Return a(a − 1)…(a − b + 1)/b! for a whole b, Γ(a + 1)/(Γ(b + 1)Γ(a − b + 1)) where all three are positive."""
     t = n.tower
     whole = _whole(b)
@@ -132,7 +133,7 @@ def _binomial(n: NormalForm, a: Fraction, b: Fraction) -> Fraction | None:
     return n.over(_gamma(n, above), t.times(*(_gamma(n, z) for z in below)))
 
 
-def _ratio(n: NormalForm, above: Fraction, below: Fraction) -> Fraction | None:
+def _ratio(n: Forms, above: Fraction, below: Fraction) -> Fraction | None:
     """Return Γ(a)/Γ(b) for positive a and b."""
     if not _positive(n, above, below):
         return None
@@ -148,7 +149,7 @@ def _binet(expr: sp.Basic) -> sp.Expr:
     return (phi**k - (-phi) ** (-k)) / sp.sqrt(5)
 
 
-def _beta(n: NormalForm, a: Fraction, b: Fraction) -> Fraction | None:
+def _beta(n: Forms, a: Fraction, b: Fraction) -> Fraction | None:
     """Return B(a, b) = Γ(a)Γ(b)/Γ(a + b) for positive a and b."""
     if not _positive(n, a, b):
         return None
@@ -156,14 +157,12 @@ def _beta(n: NormalForm, a: Fraction, b: Fraction) -> Fraction | None:
     return n.over(t.times(_gamma(n, a), _gamma(n, b)), _gamma(n, t.sum([a, b])))
 
 
-def _log_gamma(n: NormalForm, z: Fraction) -> Fraction | None:
+def _log_gamma(n: Forms, z: Fraction) -> Fraction | None:
     """Return log Γ(z) for z > 0, where it is the real logarithm."""
-    from canon.proof.functions.powers import logarithm
-
     return logarithm(n, _gamma(n, z)) if _positive(n, z) else None
 
 
-def _polygamma(n: NormalForm, order: int, z: Fraction) -> Fraction:
+def _polygamma(n: Forms, order: int, z: Fraction) -> Fraction:
     """Return ψ⁽ᵐ⁾(z) = ψ⁽ᵐ⁾(z₀) + (−1)ᵐm! Σ 1/(z₀ + j)ᵐ⁺¹ for an earlier z₀ = z − k."""
     t = n.tower
     z = t.canonical(z)

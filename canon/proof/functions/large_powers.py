@@ -15,7 +15,7 @@ from canon.proof.tower.tower import Fraction
 if TYPE_CHECKING:
     from flint import fmpq_mpoly
 
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
 
 __all__ = ["power"]
 
@@ -31,7 +31,7 @@ LARGEST_MONOMIAL = 2000
 LARGEST_EXPONENT = 10**9
 
 
-def power(n: NormalForm, f: Fraction, exponent: int) -> Fraction:
+def power(n: Forms, f: Fraction, exponent: int) -> Fraction:
     """Return f^exponent, multiplied out for a small whole exponent, else as Π pᵢ^(eᵢ·exponent) over the factors."""
     t = n.tower
     if abs(exponent) <= WRITTEN_OUT:
@@ -55,12 +55,12 @@ def power(n: NormalForm, f: Fraction, exponent: int) -> Fraction:
     return total
 
 
-def _signed(n: NormalForm, p: fmpq_mpoly, exponent: int) -> Fraction:
+def _signed(n: Forms, p: fmpq_mpoly, exponent: int) -> Fraction:
     found = _of_factor(n, p, abs(exponent))
     return found if exponent >= 0 else n.tower.reciprocal(found)
 
 
-def _of_factor(n: NormalForm, p: fmpq_mpoly, exponent: int) -> Fraction:
+def _of_factor(n: Forms, p: fmpq_mpoly, exponent: int) -> Fraction:
     """Return p^exponent; of a root or a sine the powers that its relation covers are those of the radicand."""
     t = n.tower
     if len(p) == 1 and p.total_degree() == 1:
@@ -81,7 +81,7 @@ def _is_written_out(p: fmpq_mpoly, exponent: int) -> bool:
     return exponent <= (LARGEST_MONOMIAL if len(p) == 1 else SHORT_WRITTEN_OUT if len(p) == 2 else 0)
 
 
-def _by_kernel(n: NormalForm, p: fmpq_mpoly, exponent: int) -> Fraction:
+def _by_kernel(n: Forms, p: fmpq_mpoly, exponent: int) -> Fraction:
     """Return p^exponent = (p^M)^a·p^b with one M for all powers of p, found as in Euclid's algorithm."""
     t = n.tower
     key = ("large power", t.key(p))

@@ -14,11 +14,12 @@ from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precisio
 from canon.proof.functions.angles import imaginary_split
 from canon.proof.functions.complex_parts import cartesian
 from canon.proof.tower.algebraic_numbers import field_of, norm
+from canon.proof.tower.factors import primes
 
 if TYPE_CHECKING:
     from flint import acb, fmpq_mpoly
 
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
     from canon.proof.tower.tower import Fraction
 
 __all__ = ["is_number", "log_by_relations", "primes_below", "turns_of_number"]
@@ -34,12 +35,12 @@ POWERS_OF_TURNS = (2, 3, 4, 5, 6, 8, 10, 12)
 """Whole powers among which one is looked for that makes a complex number real."""
 
 
-def is_number(n: NormalForm, f: Fraction) -> bool:
+def is_number(n: Forms, f: Fraction) -> bool:
     """Tell whether a fraction is an algebraic number written without anything below, and not a rational."""
     return not f.den and not f.num.is_constant() and field_of(n.tower, f.num) is not None
 
 
-def log_by_relations(n: NormalForm, g: fmpq_mpoly, log_of_prime: dict[int, Fraction]) -> Fraction | None:
+def log_by_relations(n: Forms, g: fmpq_mpoly, log_of_prime: dict[int, Fraction]) -> Fraction | None:
     """Return log g = −(1/k) Σ kᵢ log gᵢ for a number g > 0 with gᵏ·Π gᵢ^kᵢ = 1 and positive numbers gᵢ met before.
 
     The relation is verified by multiplying out; all numbers being positive, their real logarithms add up to zero.
@@ -58,10 +59,8 @@ def log_by_relations(n: NormalForm, g: fmpq_mpoly, log_of_prime: dict[int, Fract
     return t.sum(terms)
 
 
-def primes_below(n: NormalForm, g: fmpq_mpoly) -> list[int]:
+def primes_below(n: Forms, g: fmpq_mpoly) -> list[int]:
     """Return the primes that divide the norm of a number, and those of the numbers met before."""
-    from canon.proof.tower.factors import primes
-
     found: set[int] = set()
     for p in (g, *(p for p, _ in n.number_logs)):
         size = norm(n.tower, p)
@@ -70,7 +69,7 @@ def primes_below(n: NormalForm, g: fmpq_mpoly) -> list[int]:
     return sorted(found)
 
 
-def _relation(n: NormalForm, numbers: list[fmpq_mpoly]) -> list[int] | None:
+def _relation(n: Forms, numbers: list[fmpq_mpoly]) -> list[int] | None:
     """Return small whole kᵢ, the last not 0, with Π numberᵢ^kᵢ = 1."""
     logarithms: list[int] = []
     with precision(BITS):
@@ -90,7 +89,7 @@ def _relation(n: NormalForm, numbers: list[fmpq_mpoly]) -> list[int] | None:
     return None
 
 
-def _holds(n: NormalForm, numbers: list[fmpq_mpoly], powers: list[int]) -> bool:
+def _holds(n: Forms, numbers: list[fmpq_mpoly], powers: list[int]) -> bool:
     t = n.tower
     sides = [t.constant(1), t.constant(1)]
     for p, k in zip(numbers, powers, strict=True):
@@ -98,7 +97,7 @@ def _holds(n: NormalForm, numbers: list[fmpq_mpoly], powers: list[int]) -> bool:
     return t.reduce(sides[0] - sides[1]).is_zero()
 
 
-def turns_of_number(n: NormalForm, z: Fraction) -> fmpq | None:
+def turns_of_number(n: Forms, z: Fraction) -> fmpq | None:
     """Return arg z/π for an algebraic number z with a real power zᵐ: m·arg z/π is whole, and a ball tells which."""
     t = n.tower
     if not is_number(n, z) or cartesian(n, z) is None:
@@ -116,7 +115,7 @@ def turns_of_number(n: NormalForm, z: Fraction) -> fmpq | None:
     return None
 
 
-def _ball(n: NormalForm, p: fmpq_mpoly) -> acb | None:
+def _ball(n: Forms, p: fmpq_mpoly) -> acb | None:
     try:
         return value(n.expression(p), {})
     except (NotDecided, Undefined, Unmodelled):

@@ -19,7 +19,7 @@ from canon.proof.tower.tower import Fraction
 if TYPE_CHECKING:
     from flint import fmpq_mpoly
 
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
 
 __all__ = ["exponential", "learn_zero", "logarithm", "modulus", "root"]
 
@@ -30,7 +30,7 @@ MOST_ROOTS_KNOWN = 7
 # -- exponentials --------------------------------------------------------------------------------------
 
 
-def exponential(n: NormalForm, f: Fraction) -> Fraction:
+def exponential(n: Forms, f: Fraction) -> Fraction:
     """Return exp(f).
 
     exp is entire: exp(Σ rᵢ aᵢ) = Π exp(aᵢ/d)^(d rᵢ) and exp(ib) = cos b + i sin b hold everywhere.
@@ -47,7 +47,7 @@ def exponential(n: NormalForm, f: Fraction) -> Fraction:
     return t.times(*factors)
 
 
-def _exponential_part(n: NormalForm, atom: Fraction, r: fmpq) -> Fraction:
+def _exponential_part(n: Forms, atom: Fraction, r: fmpq) -> Fraction:
     t = n.tower
     kernel = n.only_kernel(atom)
     if kernel is not None and kernel[0] == "log":
@@ -78,13 +78,13 @@ def _exponential_part(n: NormalForm, atom: Fraction, r: fmpq) -> Fraction:
     return t.power(generator, int((r * parts).p))
 
 
-def _logarithms_defined(n: NormalForm, f: Fraction) -> bool:
+def _logarithms_defined(n: Forms, f: Fraction) -> bool:
     """Tell whether the argument of every logarithm in ``f`` is proven not to vanish."""
     kernels = {n.tower.generators[k] for p in (f.num, n.denominator(f)) for k in n.tower.used(p)}
     return all(n.sign(n.arguments[k]) in ("+", "-") for k in kernels if k[0] == "log")
 
 
-def _of_lambert_w(n: NormalForm, w: Fraction, kernel: tuple[object, ...]) -> Fraction | None:
+def _of_lambert_w(n: Forms, w: Fraction, kernel: tuple[object, ...]) -> Fraction | None:
     """Return exp(W(z)) = z/W(z) for z ≠ 0 (W(z) exp W(z) = z on every branch; but for W₀ none has a value at 0)."""
     z = n.arguments.get(kernel)
     principal = len(cast("tuple[object, ...]", kernel[1])) == 1
@@ -96,7 +96,7 @@ def _of_lambert_w(n: NormalForm, w: Fraction, kernel: tuple[object, ...]) -> Fra
 # -- roots ---------------------------------------------------------------------------------------------
 
 
-def root(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
+def root(n: Forms, f: Fraction, r: fmpq) -> Fraction:
     """Return the principal power f^r for rational r.
 
     (R^(1/n))^k = R^(k/n) holds for every R ≠ 0 and whole k, since |arg R|/n < π; (−1)^r = exp(iπr).
@@ -119,7 +119,7 @@ def root(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
     return t.times(*factors)
 
 
-def learn_zero(n: NormalForm, p: fmpq_mpoly) -> None:
+def learn_zero(n: Forms, p: fmpq_mpoly) -> None:
     """Take p = 0; where that is s² = R with a real symbol s and R in earlier ones, s² is replaced, and √R = |s|."""
     t = n.tower
     t.learn_zero(p)
@@ -139,7 +139,7 @@ def learn_zero(n: NormalForm, p: fmpq_mpoly) -> None:
         n.known_roots[n.fraction_key(Fraction(other))] = modulus(n, Fraction(t.monomial(last)))
 
 
-def _root_of_nonnegative(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
+def _root_of_nonnegative(n: Forms, f: Fraction, r: fmpq) -> Fraction:
     """Return f^r for f ≥ 0; powers of exponentials and of roots have those of their arguments."""
     t = n.tower
     if r.q == 1:
@@ -152,7 +152,7 @@ def _root_of_nonnegative(n: NormalForm, f: Fraction, r: fmpq) -> Fraction:
     return _root_kernel(n, f, r, n.signs.of(f.num) or "0+")
 
 
-def _root_kernel(n: NormalForm, radicand: Fraction, r: fmpq, sign: str) -> Fraction:
+def _root_kernel(n: Forms, radicand: Fraction, r: fmpq, sign: str) -> Fraction:
     """Return radicand^r through ρ = radicand^(1/m), ρᵐ = radicand; whole powers come out."""
     t = n.tower
     whole = int(r.p) // int(r.q)
@@ -178,7 +178,7 @@ def _root_kernel(n: NormalForm, radicand: Fraction, r: fmpq, sign: str) -> Fract
     return t.times(outside, t.power(rho, int((part * m).p)))
 
 
-def _root_of_fraction(n: NormalForm, radicand: Fraction, m: int, k: int) -> Fraction:
+def _root_of_fraction(n: Forms, radicand: Fraction, m: int, k: int) -> Fraction:
     """Return (N/D)^(k/m) = σᵏ/Dᵏ with the kernel σ = D·(N/D)^(1/m), for which σᵐ = N·Dᵐ⁻¹."""
     t = n.tower
     below = n.denominator(radicand)
@@ -193,7 +193,7 @@ def _root_of_fraction(n: NormalForm, radicand: Fraction, m: int, k: int) -> Frac
     return t.times(t.power(sigma, k), t.power(t.reciprocal(Fraction(below)), k))
 
 
-def _root_of_number(n: NormalForm, radicand: Fraction, m: int) -> Fraction | None:
+def _root_of_number(n: Forms, radicand: Fraction, m: int) -> Fraction | None:
     """Return ᵐ√p for a positive number p of a quadratic field where the root lies in that field: ³√(2 + √5) = φ."""
     if not is_number(n, radicand):
         return None
@@ -206,12 +206,12 @@ def _root_of_number(n: NormalForm, radicand: Fraction, m: int) -> Fraction | Non
     return Fraction(alpha) if alpha is not None and n.signs.of(alpha) == "+" else None
 
 
-def _denested(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
+def _denested(n: Forms, p: fmpq_mpoly) -> Fraction | None:
     """Return √p, p ≥ 0, through square roots that are there already, or through simpler ones."""
     return _by_products(n, p) or _by_conjugate(n, p)
 
 
-def _by_products(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
+def _by_products(n: Forms, p: fmpq_mpoly) -> Fraction | None:
     """Return √p = |S|·Πρⱼ/ΠRⱼ where p·ΠRⱼ = S² for known roots ρⱼ = √Rⱼ with Rⱼ > 0 proven."""
     t = n.tower
     roots = [
@@ -237,7 +237,7 @@ def _by_products(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
     return None
 
 
-def _square_root(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
+def _square_root(n: Forms, p: fmpq_mpoly) -> Fraction | None:
     """Return √p = |S| for p = S², also with 1 − c² = s², or of a positive rational p."""
     if p.is_constant() and p.leading_coefficient() > 0:
         return root(n, Fraction(p), fmpq(1, 2))
@@ -254,7 +254,7 @@ def _square_root(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
     return n.tower.times(Fraction(outside), *parts)
 
 
-def _by_conjugate(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
+def _by_conjugate(n: Forms, p: fmpq_mpoly) -> Fraction | None:
     """Return √(A + Bρ) = √((A+D)/2) ± √((A−D)/2), the sign that of B, where A² − B²R = D², D ≥ 0.
 
     With p ≥ 0 and p·(A − Bρ) = D² ≥ 0 (and p > 0) also A − Bρ ≥ 0, so A ≥ 0 and A ± D ≥ 0 because
@@ -286,7 +286,7 @@ def _by_conjugate(n: NormalForm, p: fmpq_mpoly) -> Fraction | None:
 # -- logarithms ----------------------------------------------------------------------------------------
 
 
-def logarithm(n: NormalForm, f: Fraction, *, whole_powers: bool = False) -> Fraction:
+def logarithm(n: Forms, f: Fraction, *, whole_powers: bool = False) -> Fraction:
     """Return log f: factors proven positive come out, log exp a = a for real a, log(−1) = iπ, log i = iπ/2.
 
     With ``whole_powers`` only exp(k log f) with whole k is wanted; then every factor may come out, because
@@ -308,7 +308,7 @@ def logarithm(n: NormalForm, f: Fraction, *, whole_powers: bool = False) -> Frac
     return t.sum(terms)
 
 
-def _log_of_complex_number(n: NormalForm, z: Fraction) -> Fraction | None:
+def _log_of_complex_number(n: Forms, z: Fraction) -> Fraction | None:
     """Return log z = log(z z̄)/2 + iπr for a number whose argument is a rational multiple of π."""
     turns = turns_of_number(n, z)
     if turns is None:
@@ -320,7 +320,7 @@ def _log_of_complex_number(n: NormalForm, z: Fraction) -> Fraction | None:
     return t.sum([n.scaled(fmpq(1, 2), logarithm(n, size)), phase])
 
 
-def _log_of_number(n: NormalForm, g: fmpq_mpoly) -> Fraction:
+def _log_of_number(n: Forms, g: fmpq_mpoly) -> Fraction:
     """Return log g for an algebraic number g > 0, through logarithms met before where powers of them make g."""
     logs = {p: _log_kernel(n, n.tower.number(p), "+") for p in primes_below(n, g)}
     found = log_by_relations(n, g, logs)
@@ -331,7 +331,7 @@ def _log_of_number(n: NormalForm, g: fmpq_mpoly) -> Fraction:
     return found
 
 
-def _log_of_factor(n: NormalForm, f: Fraction) -> Fraction:
+def _log_of_factor(n: Forms, f: Fraction) -> Fraction:
     """Return log f, real only where f ≥ 0 is proven (at f = 0 neither side is defined).
 
     log exp a = a holds for real a, and up to a multiple of 2πi for others, which is all that whole powers
@@ -352,7 +352,7 @@ def _log_of_factor(n: NormalForm, f: Fraction) -> Fraction:
     return _log_kernel(n, f, n.sign(n.minus(f, n.tower.number(1))) or "real")
 
 
-def _log_kernel(n: NormalForm, f: Fraction, sign: str) -> Fraction:
+def _log_kernel(n: Forms, f: Fraction, sign: str) -> Fraction:
     kernel = ("log", n.fraction_key(f))
     n.arguments[kernel] = f
     return n.atom(kernel, sign, lambda: sp.log(n.fraction_expression(f)))
@@ -361,7 +361,7 @@ def _log_kernel(n: NormalForm, f: Fraction, sign: str) -> Fraction:
 # -- moduli --------------------------------------------------------------------------------------------
 
 
-def modulus(n: NormalForm, f: Fraction) -> Fraction:
+def modulus(n: Forms, f: Fraction) -> Fraction:
     """Return |f|: |ab| = |a||b|; |p|² = p² for real p; |a + ib| = √(a² + b²)."""
     t = n.tower
     f = t.canonical(f)
@@ -376,7 +376,7 @@ def modulus(n: NormalForm, f: Fraction) -> Fraction:
     return result
 
 
-def _complex_modulus(n: NormalForm, f: Fraction) -> Fraction:
+def _complex_modulus(n: Forms, f: Fraction) -> Fraction:
     t = n.tower
     a, b = imaginary_split(n, f)
     if n.is_real(a) and n.is_real(b):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from flint import fmpq_mpoly
     from sympy import Expr
 
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
     from canon.proof.tower.lattice import Angle
 
 __all__ = ["sign_of_polynomial", "sign_of_wave"]
@@ -23,7 +23,7 @@ HIGHEST = 64
 """Degree of a polynomial in cosine and sine that is still written in multiples of the angle."""
 
 
-def sign_of_polynomial(n: NormalForm, p: fmpq_mpoly) -> str:
+def sign_of_polynomial(n: Forms, p: fmpq_mpoly) -> str:
     """Return the sign of a polynomial in cos φ and sin φ that is m + a cos kφ + b sin kφ, if it has one.
 
     With m² ≥ a² + b² it has that of m; with m = 0 that of one wave on the range of φ.
@@ -47,7 +47,7 @@ def sign_of_polynomial(n: NormalForm, p: fmpq_mpoly) -> str:
     return "" if gap < 0 else ("0" if gap == 0 else "") + ("+" if mean > 0 else "-")
 
 
-def _multiples(n: NormalForm, p: fmpq_mpoly) -> tuple[dict[int, fmpq], dict[int, fmpq]]:
+def _multiples(n: Forms, p: fmpq_mpoly) -> tuple[dict[int, fmpq], dict[int, fmpq]]:
     """Return the coefficients of cos kφ and sin kφ: 2ᵐ cosᵐφ = Σ C(m, j) cos (m − 2j)φ, s² = 1 − c² being used up."""
     cosines: dict[int, fmpq] = {}
     sines: dict[int, fmpq] = {}
@@ -66,7 +66,7 @@ def _multiples(n: NormalForm, p: fmpq_mpoly) -> tuple[dict[int, fmpq], dict[int,
     return cosines, sines
 
 
-def sign_of_wave(n: NormalForm, angle: Angle, a: Any, b: Any, times: int = 1) -> str:
+def sign_of_wave(n: Forms, angle: Angle, a: Any, b: Any, times: int = 1) -> str:
     """Return the sign of a cos kφ + b sin kφ = R cos(kφ − δ), R > 0, on the range of φ, if it has one."""
     low, high, strict = n.ranges.get(angle, (-sp.oo, sp.oo, True))
     if not (low.is_finite and high.is_finite):

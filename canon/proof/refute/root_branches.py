@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.proof.domain.domain import Domain
+from canon.proof.domain.reality import certainly_real
 from canon.proof.refute.refute import Search, look_for_counterexample
-from canon.proof.rungs.cases import certainly_real, eliminations, under_derivatives, without_symbol
+from canon.proof.rungs.cases import eliminations, under_derivatives, without_symbol
 from canon.proof.trees.replacement import NoValue, replaced
 from canon.proof.trees.sympy_types import by_name
 

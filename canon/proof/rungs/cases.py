@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
-from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
 from canon.proof.domain.domain import Domain, declared_complex
+from canon.proof.domain.reality import certainly_real
 from canon.proof.rungs.periods import period_of
 from canon.proof.tower.polynomial import is_left_out, polynomial_factors
 from canon.proof.trees.anatomy import anatomy
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 __all__ = [
     "Case",
     "cases",
-    "certainly_real",
     "eliminations",
     "settle_equalities",
     "under_derivatives",
@@ -37,23 +36,6 @@ MOST_VALUES = 24
 
 MONOTONIC = (sp.exp, sp.sinh, sp.tanh, sp.atan, sp.asinh)
 """Functions that grow on the whole real line."""
-
-REAL_ON_REALS = (
-    sp.sin
-    | sp.cos
-    | sp.tan
-    | sp.exp
-    | sp.sinh
-    | sp.cosh
-    | sp.tanh
-    | sp.atan
-    | sp.asinh
-    | sp.Abs
-    | sp.sign
-    | sp.Max
-    | sp.Min
-)
-"""Functions that take real values at real arguments."""
 
 
 @dataclass(frozen=True)
@@ -136,21 +118,6 @@ def _by_kind(expr: Expr, domain: Domain, function: sp.Basic) -> list[Case] | Non
     if is_left_out(u, domain.conditions):
         return off_zero
     return [*off_zero, _case(expr, {function: at_zero}, domain, sp.Eq(u, 0))]
-
-
-def certainly_real(u: Expr) -> bool:
-    """Tell whether u is real wherever it is defined, so that u > 0, u < 0 and u = 0 are all there is."""
-    if declared_complex(u) and not u.is_number:
-        return False
-    if isinstance(u, sp.Symbol):
-        return True
-    if isinstance(u, sp.Pow) and not u.exp.is_integer:
-        return u.base.is_nonnegative is True and certainly_real(u.exp)
-    if isinstance(u, sp.log):
-        return arguments(u)[0].is_positive is True
-    if isinstance(u, sp.Add | sp.Mul | sp.Pow | AppliedUndef | REAL_ON_REALS):
-        return all(certainly_real(a) for a in arguments(u))
-    return u.is_number and u.is_real is True
 
 
 def _extreme(expr: Expr, domain: Domain, function: sp.Max | sp.Min, i: int) -> Case:
@@ -331,7 +298,7 @@ def _vanishing(product: Expr) -> list[Expr]:
     """Return the factors that may vanish, without their powers."""
     factors = sp.Mul.make_args(sp.factor_terms(product))
     bases = [f.base if isinstance(f, sp.Pow) else f for f in factors]
-    return [cast("Expr", base) for base in bases if base.is_zero is not False]
+    return [base for base in bases if base.is_zero is not False]
 
 
 def _by_slope(expr: Expr, domain: Domain) -> list[Case] | None:

@@ -7,16 +7,30 @@ or arbitrary functions of it are recognised as equal.
 from __future__ import annotations
 
 from math import isqrt, prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 from flint import arb, fmpq, fmpq_mat, fmpz
 
 if TYPE_CHECKING:
     from flint import fmpq_mpoly
 
-    from canon.proof.tower.tower import Tower
 
 __all__ = ["field_of", "norm", "reciprocal", "root_in_field"]
+
+
+class Radicals(Protocol):
+    """What is needed of a tower: its polynomials, and the relations of its radicals."""
+
+    def used(self, p: fmpq_mpoly) -> list[int]: ...
+    def constant(self, number: Any) -> fmpq_mpoly: ...
+    def monomial(self, generator: int, power: int = 1) -> fmpq_mpoly: ...
+    def coefficients(self, p: fmpq_mpoly, generator: int) -> list[fmpq_mpoly]: ...
+    def terms(self, p: fmpq_mpoly) -> list[tuple[tuple[tuple[int, int], ...], fmpq]]: ...
+    def relation(self, generator: int) -> tuple[int, fmpq_mpoly] | None: ...
+    def product(self, a: fmpq_mpoly, b: fmpq_mpoly) -> fmpq_mpoly: ...
+    def reduce(self, p: fmpq_mpoly) -> fmpq_mpoly: ...
+    def polynomial_power(self, p: fmpq_mpoly, n: int) -> fmpq_mpoly: ...
+
 
 LARGEST_DEGREE = 16
 """Degree of a number field in which is still divided."""
@@ -29,7 +43,7 @@ LARGEST_INTEGER = 10**30
 """Norms up to this are tried as powers."""
 
 
-def reciprocal(t: Tower, p: fmpq_mpoly) -> fmpq_mpoly | None:
+def reciprocal(t: Radicals, p: fmpq_mpoly) -> fmpq_mpoly | None:
     """Return q with pq = 1 by the relations of the tower, so that p vanishes nowhere.
 
     1/(A + Bρ) = (A − Bρ)/(A² − B²R) with ρ² = R, where A² − B²R has such a reciprocal (a number that is not zero
@@ -60,7 +74,7 @@ def reciprocal(t: Tower, p: fmpq_mpoly) -> fmpq_mpoly | None:
     return None if below is None else t.product(a - b * t.monomial(k), below)
 
 
-def field_of(t: Tower, p: fmpq_mpoly) -> list[tuple[int, int]] | None:
+def field_of(t: Radicals, p: fmpq_mpoly) -> list[tuple[int, int]] | None:
     """Return the generators that a number is made of, with the degrees of their relations; None for no number."""
     found: dict[int, int] = {}
     open_ = t.used(p)
@@ -75,7 +89,7 @@ def field_of(t: Tower, p: fmpq_mpoly) -> list[tuple[int, int]] | None:
     return sorted(found.items())
 
 
-def _multiplication(t: Tower, p: fmpq_mpoly) -> fmpq_mat | None:
+def _multiplication(t: Radicals, p: fmpq_mpoly) -> fmpq_mat | None:
     """Return the matrix of the multiplication by p in the products of powers of the generators."""
     field = field_of(t, p)
     if field is None or prod(degree for _, degree in field) > LARGEST_DEGREE:
@@ -94,7 +108,7 @@ def _multiplication(t: Tower, p: fmpq_mpoly) -> fmpq_mat | None:
     return matrix
 
 
-def _solved(t: Tower, p: fmpq_mpoly) -> fmpq_mpoly | None:
+def _solved(t: Radicals, p: fmpq_mpoly) -> fmpq_mpoly | None:
     matrix = _multiplication(t, p)
     if matrix is None:
         return None
@@ -116,13 +130,13 @@ def _solved(t: Tower, p: fmpq_mpoly) -> fmpq_mpoly | None:
     return total
 
 
-def norm(t: Tower, p: fmpq_mpoly) -> fmpq | None:
+def norm(t: Radicals, p: fmpq_mpoly) -> fmpq | None:
     """Return the norm of an algebraic number, a rational whose primes are all that divide the number."""
     matrix = _multiplication(t, p)
     return None if matrix is None else matrix.det()
 
 
-def root_in_field(t: Tower, p: fmpq_mpoly, m: int, size: arb) -> fmpq_mpoly | None:
+def root_in_field(t: Radicals, p: fmpq_mpoly, m: int, size: arb) -> fmpq_mpoly | None:
     """Return α > 0 with αᵐ = p for p = A + Bρ > 0 over one square root ρ = √D of a rational, if there is one.
 
     α = a + bρ has the norm ν = α(a − bρ) with νᵐ = A² − B²D, so that 2a = α + ν/α is rational.

@@ -11,7 +11,7 @@ from canon.proof.tower.tower import Fraction
 if TYPE_CHECKING:
     from flint import fmpq, fmpq_mpoly
 
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
 
 __all__ = ["apart", "factors_of", "modulus_of_polynomial", "primes", "split_signs"]
 
@@ -19,7 +19,7 @@ LARGEST_FACTORED_INTEGER = 10**15
 """Integers up to this are split into primes under roots and logarithms."""
 
 
-def split_signs(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
+def split_signs(n: Forms, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
     """Write f = content · Π positiveᵢ^eᵢ · rest with content > 0 and positiveᵢ ≥ 0 proven.
 
     (ab)^r = a^r b^r and log ab = log a + log b hold when a ≥ 0, so every proven factor may be taken
@@ -54,7 +54,7 @@ def split_signs(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, 
     return abs(content), outside, t.canonical(n.scaled(sign, rest))
 
 
-def factors_of(n: NormalForm, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
+def factors_of(n: Forms, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
     """Factor p, also as a form in the cosine and sine of an angle: 1 − c² = s², 1 − 2sc = (c − s)²."""
     t = n.tower
     for k in t.used(p):
@@ -69,7 +69,7 @@ def factors_of(n: NormalForm, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpol
     return t.factors(p)
 
 
-def _homogeneous(n: NormalForm, p: fmpq_mpoly, c: int, s: int) -> fmpq_mpoly | None:
+def _homogeneous(n: Forms, p: fmpq_mpoly, c: int, s: int) -> fmpq_mpoly | None:
     """Multiply terms by c² + s² = 1 until all have one degree in c and s, if their degrees allow it."""
     t = n.tower
     by_degree: dict[int, fmpq_mpoly] = {}
@@ -100,7 +100,7 @@ def primes(number: fmpq) -> list[tuple[int, int]]:
     return found
 
 
-def apart(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
+def apart(n: Forms, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]], Fraction]:
     """Write f = content · Π pᵢ^eᵢ · (±1) with polynomials pᵢ, not negative where their sign is proven."""
     t = n.tower
     f = t.canonical(f)
@@ -114,7 +114,7 @@ def apart(n: NormalForm, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]],
     return abs(content), powers, t.number(sign)
 
 
-def modulus_of_polynomial(n: NormalForm, p: fmpq_mpoly) -> Fraction:
+def modulus_of_polynomial(n: Forms, p: fmpq_mpoly) -> Fraction:
     """Return |p| for a real polynomial: ±p where its sign is proven, else a kernel whose square is p²."""
     known = n.signs.of(p)
     if known:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from flint import fmpq_mpoly
 
-    from canon.proof.functions.normal_form import NormalForm
+    from canon.proof.tower.forms import Forms
 
 __all__ = ["in_earlier_fractions"]
 
@@ -29,7 +29,7 @@ LONGEST = 60
 """Terms of a denominator or numerator that is still compared."""
 
 
-def in_earlier_fractions(n: NormalForm, a: Fraction) -> tuple[list[tuple[Fraction, fmpq]], fmpq_mpoly] | None:
+def in_earlier_fractions(n: Forms, a: Fraction) -> tuple[list[tuple[Fraction, fmpq]], fmpq_mpoly] | None:
     """Return (aₖ, cₖ) and a polynomial q with a = Σ cₖaₖ + q, where the aₖ are fractions that were met before.
 
     Over the common denominator D, a = N/D and aₖ = Nₖ/D: where the remainders of N and Σ cₖNₖ by D are equal, q is the
@@ -49,7 +49,7 @@ def in_earlier_fractions(n: NormalForm, a: Fraction) -> tuple[list[tuple[Fractio
     return found
 
 
-def _as_polynomial(n: NormalForm, a: Fraction) -> fmpq_mpoly | None:
+def _as_polynomial(n: Forms, a: Fraction) -> fmpq_mpoly | None:
     """Return q with N = qB for a = N/B, B = b + cσ and σ² a polynomial: c²/(1 − s) is 1 + s where s² = 1 − c².
 
     It is found as N(b − cσ)/(b² − c²σ²), and N = qB is verified, so that it holds also where b − cσ = 0.
@@ -86,7 +86,7 @@ def _sharing_factors(known: list[Fraction], a: Fraction) -> list[Fraction]:
 
 
 def _dependence(
-    n: NormalForm, known: list[Fraction], a: Fraction
+    n: Forms, known: list[Fraction], a: Fraction
 ) -> tuple[list[tuple[Fraction, fmpq]], fmpq_mpoly] | None:
     t = n.tower
     common: dict[int, int] = {}

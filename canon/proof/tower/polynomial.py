@@ -27,7 +27,7 @@ def polynomial_factors(expression: Expr) -> list[tuple[Expr, int]]:
     >>> polynomial_factors((x**2 - y**2) * sp.sin(x) ** 2 / 2)
     [(x - y, 1), (x + y, 1), (sin(x), 2)]
     """
-    numerator = cast("Expr", sp.numer(sp.together(expression)))
+    numerator = sp.numer(sp.together(expression))
     counts = Counter[Expr]()
     for part in sp.Mul.make_args(numerator):
         base, power = part.as_base_exp()
