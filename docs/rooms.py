@@ -1,6 +1,11 @@
-"""Write the map of the rooms into docs/architecture.md: every module with the first line of its docstring."""
+"""Write the map of the rooms into docs/architecture.md.
+
+First a picture of each room's inside, drawn from the import contracts in pyproject.toml, which lint-imports holds; then
+every module with the first line of its docstring.
+"""
 
 import ast
+import tomllib
 from pathlib import Path
 
 DOCS = Path(__file__).parent
@@ -19,15 +24,43 @@ def first_line(module: Path) -> str:
     return text.splitlines()[0].rstrip(".").replace("``", "`").replace("|", r"\|")
 
 
+def floors(room: str) -> list[list[str]]:
+    """The places of a room, those that may import the others first."""
+    project = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))
+    contracts = project["tool"]["importlinter"]["contracts"]
+    (layers,) = (c["layers"] for c in contracts if c["name"].startswith(f"Inside {room}:"))
+    return [[place.strip().rpartition(".")[2] for place in floor.split("|")] for floor in layers]
+
+
+def picture() -> str:
+    """Each room as a chain: what stands on the left is imported by what stands to its right."""
+    width = max(map(len, ORDER))
+    chains = (" ← ".join(" · ".join(floor) for floor in reversed(floors(room))) for room in ORDER)
+    return "\n".join(f"{room:{width}}  {chain}" for room, chain in zip(ORDER, chains, strict=True))
+
+
+def table(folder: Path) -> list[str]:
+    modules = sorted(path for path in folder.glob("*.py") if path.name != "__init__.py")
+    if not modules:
+        return []
+    rows = [f"| `{path.name}` | {first_line(path)} |" for path in modules]
+    return ["| module | subject |", "|---|---|", *rows, ""]
+
+
 def rooms() -> str:
-    lines: list[str] = []
+    lines = ["```", picture(), "```", ""]
     for room in ORDER:
         folder = PACKAGE / room
         lines += [f"### {room}", "", f"{first_line(folder / '__init__.py')}.".replace("?.", "?"), ""]
-        lines += ["| module | subject |", "|---|---|"]
-        modules = sorted(path for path in folder.glob("*.py") if path.name != "__init__.py")
-        lines += [f"| `{path.name}` | {first_line(path)} |" for path in modules]
-        lines.append("")
+        lines += table(folder)
+        for place in sorted(path.parent for path in folder.glob("*/__init__.py")):
+            lines += [
+                f"#### {room}/{place.name}",
+                "",
+                f"{first_line(place / '__init__.py')}.",
+                "",
+                *table(place),
+            ]
     return "\n".join(lines)
 
 

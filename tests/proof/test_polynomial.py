@@ -4,7 +4,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.proof.tower.polynomial import polynomial_factors
+from canon.proof.trees.polynomial import polynomial_factors
 
 x, y, z = sp.symbols("x y z")
 IRREDUCIBLE = [x, y, x + y, x**2 + 1, x * y - 2, x + z**2, sp.sin(x) + y, sp.cos(z) - 3]

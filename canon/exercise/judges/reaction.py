@@ -36,7 +36,7 @@ from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 from canon.proof.kinks import vanishes_off_kinks
-from canon.proof.tower.polynomial import polynomial_factors
+from canon.proof.trees.polynomial import polynomial_factors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -24,7 +24,7 @@ from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.rungs.ladder import is_empty
-from canon.proof.tower.polynomial import polynomial_factors
+from canon.proof.trees.polynomial import polynomial_factors
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

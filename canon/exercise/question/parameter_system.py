@@ -23,7 +23,7 @@ from canon.proof.analytic import proved_sign
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
-from canon.proof.tower.polynomial import polynomial_factors
+from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import rational
 from canon.proof.vanish import vanishes
 

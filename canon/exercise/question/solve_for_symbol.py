@@ -16,7 +16,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.sheet.sympy_trees import arguments, replaced, symbols_of
 from canon.proof.domain.reality import certainly_real
-from canon.proof.tower.polynomial import polynomial_factors
+from canon.proof.trees.polynomial import polynomial_factors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

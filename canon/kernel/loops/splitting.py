@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, finished, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
+from canon.kernel.llvm.pair_loops import write_pair_forces
 from canon.kernel.llvm.rolled import is_worth_rolling, write_rolled
 from canon.kernel.llvm.writer import Writer
-from canon.kernel.program.pairwise import pair_forces, write_pair_forces
+from canon.kernel.program.pairwise import pair_forces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -15,7 +15,7 @@ from canon.mechanics.algebra.all_vanish import differ
 from canon.mechanics.algebra.linear import eliminate
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.kinks import vanishes_off_kinks
-from canon.proof.tower.polynomial import polynomial_factors
+from canon.proof.trees.polynomial import polynomial_factors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

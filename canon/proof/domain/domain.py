@@ -21,7 +21,7 @@ from sympy.logic.boolalg import Boolean
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
 from canon.proof.domain.feasible_points import moved_inside
 from canon.proof.domain.rational_points import rational_solution
-from canon.proof.tower.polynomial import polynomial_factors
+from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import free_symbols, rational
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from sympy.logic.boolalg import Boolean
 from canon.proof.domain.domain import Domain, declared_complex
 from canon.proof.domain.reality import certainly_real
 from canon.proof.rungs.periods import period_of
-from canon.proof.tower.polynomial import is_left_out, polynomial_factors
 from canon.proof.trees.anatomy import anatomy
+from canon.proof.trees.polynomial import is_left_out, polynomial_factors
 from canon.proof.trees.replacement import KINKED, NoValue, defined_nowhere, replaced
 from canon.proof.trees.sympy_types import arguments, by_name, free_symbols
 
