@@ -9,11 +9,10 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-import lazy_loader
-
+from canon.doors import door
 from canon.version import __version__ as __version__
 
-_found, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_found, __dir__, __all__ = door(__name__, __file__)
 
 _SUBJECTS = ("exercise", "expression", "flow", "kernel", "mechanics", "plot", "proof", "scene", "study")
 

@@ -67,7 +67,7 @@ from .proof.domain.verdict import Evidence as Evidence
 from .proof.domain.verdict import Status as Status
 from .proof.domain.verdict import Undecided as Undecided
 from .proof.domain.verdict import Verdict as Verdict
-from .proof.equivalent_equations import equivalent_equations as equivalent_equations
+from .proof.equivalence import equivalent_equations as equivalent_equations
 from .proof.vanish import equal as equal
 from .proof.vanish import vanishes as vanishes
 from .study.cases.result import results_of as results_of

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Child", "Ended", "Late", "folders", "safe_path", "serve"]
 
-RESTS_ON = ("sympy", "mpmath", "numpy", "flint", "lark", "lazy_loader")
+RESTS_ON = ("sympy", "mpmath", "numpy", "flint", "lark")
 """What proofs and judgements import beside the standard library."""
 
 HOME = Path(__file__).absolute().parents[1]

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import sysconfig
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -178,6 +179,16 @@ def test_it_works_from_a_folder_whose_name_would_divide_a_path(tmp_path):
     code = f"import sys; sys.path.insert(0, {str(copied(folder))!r}){JUDGE}print(canon.__file__)"
     done = run(["-P", "-c", code], tmp_path, PYTHONPATH="")
     assert str(folder) in done.stdout, done.stderr
+    assert "holds" in done.stdout
+
+
+def test_it_works_from_an_archive(tmp_path):
+    archive = tmp_path / "canon.zip"
+    with zipfile.ZipFile(archive, "w") as packed:
+        for path in sorted((ROOT / "canon").rglob("*.py*")):
+            packed.write(path, path.relative_to(ROOT))
+    done = run(["-P", "-c", f"{JUDGE}{PROVE}print(canon.__file__)"], tmp_path, PYTHONPATH=str(archive))
+    assert done.stdout.split("\n")[1:3] == ["True", f"{archive / 'canon' / '__init__.py'}"], done.stderr
     assert "holds" in done.stdout
 
 

@@ -1,5 +1,5 @@
 """Motion: methods, propagation, trajectories."""
 
-import lazy_loader
+from canon.doors import door
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = door(__name__, __file__)

@@ -5,5 +5,6 @@ from .domain.verdict import Status as Status
 from .domain.verdict import Undecided as Undecided
 from .domain.verdict import Verdict as Verdict
 from .domain.verdict import all_hold as all_hold
+from .equivalence import equivalent_equations as equivalent_equations
 from .vanish import equal as equal
 from .vanish import vanishes as vanishes

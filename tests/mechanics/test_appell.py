@@ -10,7 +10,7 @@ from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.force import gravity, lagrangian_of
 from canon.mechanics.lagrange.quasi_velocity import maggi_accelerations
 from canon.proof.domain.domain import Domain
-from canon.proof.equivalent_equations import equivalent_equations
+from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, l, a, R, J, I1, I3, m1, m2, l1, l2, c = parameters("m g l a R J I1 I3 m1 m2 l1 l2 c", positive=True)

@@ -28,7 +28,7 @@ from canon.mechanics.lagrange.force import (
 )
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.eliminate_constraints import embedded
-from canon.proof.equivalent_equations import equivalent_equations
+from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, M, g, l, R, I, I1, I3, k, d, w, a, b, c, e = parameters("m M g l R I I1 I3 k d w a b c e", positive=True)

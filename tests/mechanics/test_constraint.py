@@ -12,7 +12,7 @@ from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
 from canon.mechanics.reduction.contact import multiplier_along, multiplier_in_contact
 from canon.mechanics.reduction.eliminate_constraints import eliminated, embedded, satisfies
-from canon.proof.equivalent_equations import equivalent_equations
+from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, l, R, I, J, I1, I2, a, b, k, w = parameters("m g l R I J I1 I2 a b k w", positive=True)

@@ -17,7 +17,7 @@ from canon.mechanics.reduction.ignorable import (
 )
 from canon.mechanics.reduction.routh import routhian
 from canon.proof.domain.domain import Domain
-from canon.proof.equivalent_equations import equivalent_equations
+from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, l, a, b, d, c, k, I1, I3, M = parameters("m g l a b d c k I1 I3 M", positive=True)

@@ -11,7 +11,7 @@ from canon.mechanics.lagrange.force import do_no_work, generalized_forces, lagra
 from canon.mechanics.lagrange.frobenius import integrals, is_integrable
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian
-from canon.proof.equivalent_equations import equivalent_equations
+from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, R, J, K, La, Ra, k, a, b, c, r1, r2 = parameters("m g R J K L_a R_a k a b c r1 r2", positive=True)

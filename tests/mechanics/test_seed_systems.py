@@ -11,7 +11,7 @@ from canon.mechanics.lagrange.force import generalized_forces, generalized_torqu
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.eliminate_constraints import embedded
 from canon.proof.domain.domain import Domain
-from canon.proof.equivalent_equations import equivalent_equations
+from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, a, R, I, m1, m2, m3, l1, l2, J0, J1, J2, b, c, n = parameters(

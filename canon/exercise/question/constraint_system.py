@@ -52,6 +52,7 @@ class ConstraintSystem:
     Examples
     --------
     >>> from canon import Domain, coordinates
+    >>> from canon.exercise.question.deadline import Deadline
     >>> x, y, theta = q = coordinates("x y theta")
     >>> blade = x.dot * sp.sin(theta) - y.dot * sp.cos(theta)
     >>> t = sp.Symbol("t", real=True)

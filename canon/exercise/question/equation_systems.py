@@ -10,7 +10,7 @@ import sympy as sp
 
 from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.proof.domain.verdict import Status, Undecided, Verdict
-from canon.proof.equivalent_equations import equivalent_equations, without_solution
+from canon.proof.equivalence import equivalent_equations, without_solution
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:

@@ -1,5 +1,5 @@
 """Machine code through LLVM: number types, formulas, double-double arithmetic, loops."""
 
-import lazy_loader
+from canon.doors import door
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = door(__name__, __file__)

@@ -26,7 +26,7 @@ from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Verdict, all_hold
-from canon.proof.equivalent_equations import equivalent_equations
+from canon.proof.equivalence import equivalent_equations
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

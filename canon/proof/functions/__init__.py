@@ -1,5 +1,5 @@
 """Elementary and special functions in the normal form: angles, arcs, powers, logarithms, gamma functions."""
 
-import lazy_loader
+from canon.doors import door
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = door(__name__, __file__)
