@@ -1,7 +1,7 @@
 """Doors of packages: public names that stand once, in a stub, and are imported when first used.
 
-As scientific Python's SPEC 1 has it; its ``lazy_loader`` would be a package from outside that ``import canon`` loads, and
-a file of its name in a folder of strangers' answers would run.
+As scientific Python's SPEC 1 has it; its ``lazy_loader`` would be a package from outside that ``import canon`` loads,
+and a file of its name in a folder of strangers' answers would run.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ LINE = re.compile(r"^from \.([\w.]+) import (\w+) as \2$", re.MULTILINE)
 
 
 def door(package: str, path: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """Return ``__getattr__``, ``__dir__`` and ``__all__`` of a package whose stub lists what each name is imported from.
+    """Return ``__getattr__``, ``__dir__`` and ``__all__`` of a package whose stub says where its names are.
 
     Parameters
     ----------
     package, path
-        Its ``__name__`` and ``__file__``; the stub stands beside the file, a line ``from .module import name as name`` a
-        name.
+        Its ``__name__`` and ``__file__``. The stub stands beside the file; each of its lines is
+        ``from .module import name as name``.
 
     Examples
     --------
