@@ -37,7 +37,10 @@ from .flow.run.event import Event as Event
 from .flow.run.non_finite_state import NonFiniteStateError as NonFiniteStateError
 from .flow.run.observables_along import AccuracyWarning as AccuracyWarning
 from .mechanics.canonical.find_generating_function import generating_function as generating_function
+from .mechanics.canonical.from_generating_function import generated_transformation as generated_transformation
 from .mechanics.canonical.generating_function import GeneratingFunction as GeneratingFunction
+from .mechanics.canonical.implicit_transformation import ImplicitTransformation as ImplicitTransformation
+from .mechanics.canonical.inverse_transformation import inverse_transformation as inverse_transformation
 from .mechanics.canonical.new_hamiltonian import new_hamiltonian as new_hamiltonian
 from .mechanics.canonical.transformation import CanonicalTransformation as CanonicalTransformation
 from .mechanics.canonical.transformation import point_transformation as point_transformation

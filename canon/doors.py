@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["door"]
 
-LINE = re.compile(r"^from \.([\w.]+) import (\w+) as \2$", re.MULTILINE)
+LINE = re.compile(r"^from \.([\w.]+) import \(?\s*(\w+) as \2\b", re.MULTILINE)
 
 
 def door(package: str, path: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:

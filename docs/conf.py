@@ -25,14 +25,14 @@ from fetch_inventories import mapping  # noqa: E402
 
 from canon import __version__  # noqa: E402  (the checkout's canon, found through the line above)
 from canon.cli import COMMANDS, main  # noqa: E402
+from canon.doors import LINE  # noqa: E402
 
 
 def homes(package: str) -> dict[str, str]:
     """Return the module of each public name of a package, as its stub says it."""
     stub = importlib.import_module(package).__file__ or ""
-    lines = Path(stub).with_suffix(".pyi").read_text(encoding="utf-8").splitlines()
-    found = (re.fullmatch(r"from \.([\w.]+) import (\w+) as \w+", line) for line in lines)
-    return {line[2]: f"{package}.{line[1]}" for line in found if line and line[2] != "__version__"}
+    text = Path(stub).with_suffix(".pyi").read_text(encoding="utf-8")
+    return {name: f"{package}.{module}" for module, name in LINE.findall(text) if name != "__version__"}
 
 
 FRONT_DOOR = homes("canon")

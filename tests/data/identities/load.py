@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from canon.expression.language import Scope, exact, parse_condition, parse_expression
 from sympy import Expr, Rational, Symbol
+
+from canon.expression.parse import Scope, exact, parse_condition, parse_expression
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
