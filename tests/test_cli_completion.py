@@ -7,10 +7,12 @@ import subprocess
 import pytest
 
 from canon.cli import COMMANDS, main
-from canon.command.completion import places
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.scene import names
 
-SHELLS = ("bash", "zsh", "fish")
+SHELLS = ("bash", "zsh", "fish", "tcsh", "powershell")
+ACTIONS = ("run", "resume", "status", "export", "report", "merge")
+PLACES = [(), *((name,) for name in COMMANDS), *(("study", action) for action in ACTIONS)]
 
 
 @pytest.fixture
@@ -23,9 +25,13 @@ def script(capsys):
 
 
 def offered(script, *words, cwd=None):
-    """What bash offers for the last of the words."""
+    """What bash offers for the last of the words, by the function that the script registers for canon."""
     line = " ".join(shlex.quote(word) for word in words)
-    asked = f'COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; _canon; printf "%s\\n" "${{COMPREPLY[@]}}"'
+    asked = (
+        f"COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}\n"
+        '[[ $(complete -p canon) =~ -F\\ ([^ ]+) ]]; "${BASH_REMATCH[1]}" canon\n'
+        'printf "%s\\n" "${COMPREPLY[@]}"'
+    )
     done = subprocess.run(
         ["bash", "--norc", "-c", f"{script}\n{asked}"], capture_output=True, text=True, check=True, cwd=cwd
     )
@@ -42,6 +48,8 @@ def test_bash_offers_what_can_follow(script):
     assert offered(bash, "canon", "drift", "kepler", "--method", "kahan-li-") == {"kahan-li-6", "kahan-li-8"}
     assert offered(bash, "canon", "drift", "kepler", "--precision", "d") == {"double", "double-double"}
     assert offered(bash, "canon", "drift", "kepler", "--step", "") == set()
+    assert offered(bash, "canon", "drift", "kepler", "--json", "--method", "gauss-8") == {"gauss-8"}
+    assert offered(bash, "canon", "study", "") == set(ACTIONS)
     assert offered(bash, "canon", "study", "r") == {"run", "resume", "report"}
     assert offered(bash, "canon", "study", "resume", "--s") == set()
     assert offered(bash, "canon", "study", "run", "--s") == {"--store", "--share"}
@@ -51,36 +59,68 @@ def test_bash_offers_what_can_follow(script):
 def test_bash_offers_files_where_files_are_read_or_written(script, tmp_path):
     (tmp_path / "my answers.toml").touch()
     bash = script("bash")
-    for words in (["check"], ["check", "--html"], ["drift", "kepler", "--plot"], ["study", "run", "--store"]):
+    for words in (
+        ["check"],
+        ["check", "--html"],
+        ["drift", "kepler", "--plot"],
+        ["study", "run", "--store"],
+        ["study", "export", "some.sqlite"],
+    ):
         assert offered(bash, "canon", *words, "my", cwd=tmp_path) == {"my answers.toml"}
-    assert offered(bash, "canon", "choose", "my", cwd=tmp_path) == set()
+    for words in (["choose"], ["drift", "kepler", "--step"], ["study", "run", "--jobs"]):
+        assert offered(bash, "canon", *words, "my", cwd=tmp_path) == set()
 
 
-def test_every_option_of_the_help_is_offered_in_every_shell(script, capsys):
-    scripts = {shell: script(shell) for shell in SHELLS}
-    for place in places():
-        with pytest.raises(SystemExit):
-            main([*place.words[1:], "--help"])
-        shown = set(re.findall(r"^  (?:-h, )?(--[\w-]+)", capsys.readouterr().out, re.MULTILINE))
-        assert shown == {flag for flag in place.flags if flag.startswith("--")}
-        for name in shown:
-            assert name in scripts["bash"]
-            assert f"{name}:" in scripts["zsh"]
-            assert f" -l {name[2:]}" in scripts["fish"]
-    for text in scripts.values():
-        assert all(name in text for name in names())
+def options_in_the_help(capsys, words):
+    with pytest.raises(SystemExit):
+        main([*words, "--help"])
+    return set(re.findall(r"^  (?:-h, )?(--[\w-]+)", capsys.readouterr().out, re.MULTILINE))
+
+
+def options_offered(script, words):
+    """The options that each script offers after some words; tcsh has one list for all places."""
+    place = "_".join(("_shtab_canon", *words))
+    (zsh,) = re.findall(rf"^{place}_options=\(\n(.*?)\n\)$", script("zsh"), re.MULTILINE | re.DOTALL)
+    (powershell,) = re.findall(rf"^    '{place}' = @\('-h', (.*)\)$", script("powershell"), re.MULTILINE)
+    fish = re.escape(" ".join(("_shtab_canon_using", *words)))
+    return {
+        "bash": offered(script("bash"), "canon", *words, "--"),
+        "zsh": set(re.findall(r'[",*)](--[\w-]+)[\[}]', zsh)),
+        "powershell": set(re.findall(r"'(--[\w-]+)'", powershell)),
+        "fish": {
+            f"--{name}"
+            for name in re.findall(
+                rf"^complete -c canon -n '?{fish}'? (?:-s \w )?-l ([\w-]+)", script("fish"), re.MULTILINE
+            )
+        },
+    }
+
+
+@pytest.mark.parametrize("words", PLACES, ids=" ".join)
+def test_every_option_of_the_help_is_offered_in_every_shell(words, script, capsys):
+    shown = options_in_the_help(capsys, words)
+    assert "--help" in shown
+    assert options_offered(script, words) == dict.fromkeys(("bash", "zsh", "powershell", "fish"), shown)
+    (tcsh,) = re.findall(r"'c/--/\((.*?)\)/'", script("tcsh"))
+    assert shown <= {f"--{name}" for name in tcsh.split()}
+
+
+def test_every_scene_and_method_is_offered_in_every_shell(script):
+    for text in map(script, SHELLS):
+        assert all(re.search(rf"(?<![\w-]){name}(?![\w-])", text) for name in (*names(), *SCHEMES))
 
 
 def test_quotes_in_the_help_stay_quotes(script):
-    """The help says one's; each word of zsh and of fish is closed again."""
-    assert "show one'\"'\"'s equations" in script("zsh")
-    assert "show one\\'s equations" in script("fish")
+    """The help says one's; bash reads its script to the end, and each word of the others is closed again."""
     assert subprocess.run(["bash", "-n", "-c", script("bash")], check=False).returncode == 0
+    assert "show one'\"'\"'s equations" in script("zsh")
+    assert "show one'\"'\"'s equations" in script("fish")
+    assert "show one''s equations" in script("powershell")
 
 
 def test_another_shell_is_refused(capsys):
     with pytest.raises(SystemExit):
-        main(["completion", "tcsh"])
+        main(["completion", "nushell"])
     told = capsys.readouterr().err
-    assert "'tcsh'" in told
+    assert "'nushell'" in told
     assert all(shell in told for shell in SHELLS)

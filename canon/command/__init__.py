@@ -3,7 +3,7 @@
 COMMANDS = {
     "check": "judge sheets of claims about mechanics: right or wrong, and where",
     "choose": "find the cheapest method, step and precision for a wanted accuracy",
-    "completion": "print a script that completes commands and scenes in bash, zsh or fish",
+    "completion": "print a script that completes commands and scenes on the tab key, in five shells",
     "drift": "run long and measure how the errors of a method grow",
     "scene": "list ready systems; show one's equations, run it, draw it",
     "study": "run, resume, export and report studies of many cases, on one machine or many",

@@ -4,25 +4,24 @@ from __future__ import annotations
 
 import argparse
 import importlib
-from typing import TYPE_CHECKING
+
+import shtab
 
 from canon.command import COMMANDS
-from canon.command.shells import SHELLS, Option, Place
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "places", "run"]
+__all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run", "whole_parser"]
 
 DESCRIPTION = """\
-Print a script that completes commands, options, scenes, methods and files on the tab key. It is written from the
-commands themselves and runs without starting Python; print it anew after an upgrade.
+Print a script that completes commands, options, scenes, methods and files on the tab key. shtab writes it from the
+commands themselves; it runs without starting Python. Print it anew after an upgrade.
 """
 EXAMPLES = """\
 examples:
   canon completion bash > ~/.local/share/bash-completion/completions/canon
   canon completion zsh > ~/.zfunc/_canon            with  fpath+=~/.zfunc  before compinit in ~/.zshrc
   canon completion fish > ~/.config/fish/completions/canon.fish
+  canon completion tcsh > ~/.canon.csh              with  source ~/.canon.csh  in ~/.tcshrc
+  canon completion powershell >> $PROFILE
   source <(canon completion bash)                   in this shell only
 """
 FILES = {"FILE", "IMAGE", "OTHER", "OUTPUT", "SHEET", "STUDY.toml"}
@@ -31,82 +30,54 @@ FILES = {"FILE", "IMAGE", "OTHER", "OUTPUT", "SHEET", "STUDY.toml"}
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what the command reads."""
-    parser.add_argument("shell", choices=list(SHELLS), help="the shell that the script is for")
+    parser.add_argument("shell", choices=shtab.SUPPORTED_SHELLS, help="the shell that the script is for")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the script."""
-    print(SHELLS[arguments.shell](list(places())), end="")
+    print(shtab.complete(whole_parser(), arguments.shell))
     return 0
 
 
-def places() -> Iterator[Place]:
-    """Yield every place in a command line where something can be completed: ``canon``, ``canon study``, …
+def whole_parser() -> argparse.ArgumentParser:
+    """Return a parser of every command, which knows the scenes, the methods, and where files are meant.
 
     Examples
     --------
-    >>> {place.words: place.following for place in places()}["canon", "study"]
-    {'run': 'run the cases of a study file that are not finished', ...}
+    >>> whole_parser().parse_args(["drift", "kepler", "--method", "verlet"]).method
+    ['verlet']
     """
-    yield Place(
-        ("canon",),
-        COMMANDS,
-        (
-            Option(("-h", "--help"), "show this help message and exit"),
-            Option(("--version",), "show the version"),
-        ),
-    )
-    for name in COMMANDS:
-        parser = _Parser()
-        importlib.import_module(f"canon.command.{name}").add_arguments(parser)
-        yield from _places_of(parser, ("canon", name))
+    parser = _Parser(prog="canon")
+    parser.add_argument("--version", action="version", help="show the version")
+    commands = parser.add_subparsers(metavar="command")
+    for name, line in COMMANDS.items():
+        command = commands.add_parser(name, help=line)
+        importlib.import_module(f"canon.command.{name}").add_arguments(command)
+        command.tell_values()
+    return parser
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that tells what it has been told to read."""
+    """A parser whose arguments are told which values they can have."""
 
-    @property
-    def arguments(self) -> list[argparse.Action]:
-        return list(self._actions)
-
-
-def _places_of(parser: _Parser, words: tuple[str, ...]) -> Iterator[Place]:
-    following: dict[str, str] = {}
-    options: list[Option] = []
-    files = False
-    for argument in parser.arguments:
-        if argument.option_strings:
-            options.append(_option(argument))
-        elif argument.dest == "action":
-            actions: dict[str, _Parser] = dict(argument.choices or {})
-            following |= {name: sub.description or "" for name, sub in actions.items()}
-            for name, sub in actions.items():
-                yield from _places_of(sub, (*words, name))
-        else:
-            following |= dict.fromkeys(_words_of(argument), "")
-            files |= argument.metavar in FILES
-    yield Place(words, following, tuple(options), files)
+    def tell_values(self) -> None:
+        for argument in self._actions:
+            if argument.dest == "action":
+                for action in dict[str, _Parser](argument.choices or {}).values():
+                    action.tell_values()
+            elif argument.metavar in FILES:
+                vars(argument)["complete"] = shtab.FILE
+            elif argument.dest in {"scene", "method"}:
+                argument.choices = _scenes() if argument.dest == "scene" else _methods()
 
 
-def _option(argument: argparse.Action) -> Option:
-    return Option(
-        tuple(argument.option_strings),
-        argument.help or "",
-        takes_value=argument.nargs != 0,
-        values=tuple(_words_of(argument)),
-        files=argument.metavar in FILES,
-    )
-
-
-def _words_of(argument: argparse.Action) -> list[str]:
-    """Return the words that a value can be, where they are known."""
-    from canon.kernel.schemes.splitting_schemes import SCHEMES
+def _scenes() -> list[str]:
     from canon.scene import names
 
-    if argument.choices:
-        return list(argument.choices)
-    if argument.dest == "scene":
-        return [*names(), "list"]
-    if argument.dest == "method":
-        return [*SCHEMES, *(f"gauss-{stages}" for stages in range(1, 9)), "rk4", "taylor", "dop853"]
-    return []
+    return [*names(), "list"]
+
+
+def _methods() -> list[str]:
+    from canon.kernel.schemes.splitting_schemes import SCHEMES
+
+    return [*SCHEMES, *(f"gauss-{stages}" for stages in range(1, 9)), "rk4", "taylor", "dop853"]
