@@ -30,7 +30,8 @@ from canon.exercise.question.question import Determines, Question, Stated, Tells
 from canon.exercise.sheet.key_shapes import faults
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim, ClaimError
-from canon.expression.symbols.user_input import given_kind
+from canon.exercise.values import without_value
+from canon.expression.symbols.user_input import NotFiniteError, given_kind
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
@@ -173,7 +174,9 @@ def examine(claim: Claim) -> Finding:
     turned: Question | None = None
     named, held = "", 0
     try:
-        for number, question in enumerate(questions(reading)):
+        answered += without_value(reading, deadline)
+        asks = () if any(verdict.fails for verdict in answered) else questions(reading)
+        for number, question in enumerate(asks):
             if isinstance(question, Determines) and not question.wanted:
                 beside.append(question)
                 continue
@@ -188,7 +191,7 @@ def examine(claim: Claim) -> Finding:
             if verdict.fails:
                 turned, held = question, number
                 break
-    except Undecided as reason:
+    except (Undecided, NotFiniteError) as reason:
         answered.append(Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),)))
     except (SingularMatrixError, EmptyDomainError) as error:
         raise InvalidClaim(ClaimError(claim.id, "", str(error), file=claim.file)) from error

@@ -23,7 +23,7 @@ from canon.expression.text.units import without_units
 from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, MAX_CHOICES, RELATIONS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from decimal import Decimal
 
     from sympy.logic.boolalg import Boolean
@@ -63,7 +63,7 @@ def parse_expression(text: str, scope: Scope) -> Expr:
     x.__class__
      ^
     """
-    return _Builder(text, scope).expression(syntax_of(text, scope))
+    return Builder(text, scope).expression(syntax_of(text, scope))
 
 
 def parse_condition(text: str, scope: Scope) -> Boolean:
@@ -78,7 +78,7 @@ def parse_condition(text: str, scope: Scope) -> Boolean:
     if isinstance(node, syntax.Comparison) and "=" in node.relations:
         relations = tuple("==" if relation == "=" else relation for relation in node.relations)
         node = syntax.Comparison(node.operands, relations, node.column)
-    return _Builder(text, scope).condition(node)
+    return Builder(text, scope).condition(node)
 
 
 def parse_equation(text: str, scope: Scope) -> Expr:
@@ -89,7 +89,7 @@ def parse_equation(text: str, scope: Scope) -> Expr:
     LanguageError
         With the column, the reason and a remedy.
     """
-    builder = _Builder(text, scope)
+    builder = Builder(text, scope)
     node = syntax_of(text, scope)
     if not isinstance(node, syntax.Comparison):
         return builder.expression(node)
@@ -126,7 +126,7 @@ def _in_place(text: str, blanked: str, parse: Callable[[str], syntax.Node]) -> s
         raise LanguageError(text, error.column, error.reason, error.remedy) from None
 
 
-class _Builder:
+class Builder:
     """Gives a syntax tree its meaning; every costly evaluation is bounded before SymPy is asked."""
 
     def __init__(self, text: str, scope: Scope) -> None:
@@ -273,6 +273,10 @@ class _Builder:
                     piece, "a piece is (expression, condition)", "write Piecewise((x, x > 0), (0, True))"
                 )
             pieces.append((self.expression(piece.items[0]), self.condition(piece.items[1])))
+        return self.joined(pieces)
+
+    def joined(self, pieces: Sequence[tuple[Expr, Boolean]]) -> Expr:
+        """Return pieces as one function."""
         return sp.Piecewise(*pieces)
 
     def condition(self, node: syntax.Node) -> Boolean:

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
 from canon.expression.symbols.user_input import given_expression, given_seconds
+from canon.proof.definedness import lack_beside, lack_of_value, may_lack
 from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.domain.limits import QUICK
 from canon.proof.domain.verdict import Evidence, Status, Verdict
@@ -30,9 +31,11 @@ from canon.proof.trees.anatomy import anatomy
 from canon.proof.worker.budget import prove_in_worker
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from sympy import Expr
 
-__all__ = ["equal", "vanishes"]
+__all__ = ["equal", "vanishes", "vanishes_where_defined"]
 
 QUICK_SECONDS = 0.5
 """Time for the proving rungs in the user's own process."""
@@ -46,6 +49,11 @@ SEARCH_SHARE = 0.3
 CORNER_SHARE = 0.1
 """Part of the time left that the search near ends of the domain, kinks, poles and branch points may use."""
 
+ALONE = ("the expression",)
+SIDES = ("the first expression", "the second expression")
+"""What is called what where one of two has no value."""
+
+
 EMPTY = "no point satisfies the conditions, so that anything holds there"
 
 
@@ -53,7 +61,7 @@ def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: fl
     """Decide whether an expression, or every entry of a matrix, is zero on a domain.
 
     Symbols are real unless declared complex. The claim is about every point of the domain where the
-    expression is defined.
+    expression has a value; one that has a value nowhere does not vanish.
 
     Parameters
     ----------
@@ -79,14 +87,32 @@ def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: fl
     start, domain, budget = time.monotonic(), as_domain(domain), given_seconds(budget)
     if isinstance(expr, sp.MatrixBase):
         return _matrix_vanishes(expr, domain, start, budget).about("the matrix is zero")
-    verdict = _decide(expr, sp.Integer(0), domain, start + budget)
+    verdict = _decide(expr, sp.Integer(0), domain, start + budget, ALONE)
     return replace(verdict, question="the expression is zero", seconds=time.monotonic() - start)
+
+
+def vanishes_where_defined(expr: Expr, domain: Domain, budget: float) -> Verdict:
+    """Decide whether an expression is zero wherever it has a value, be that nowhere.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> vanishes_where_defined(sp.log(x**2) - 2 * sp.log(x), Domain((sp.Eq(x, 0),)), 1.0).status.name
+    'HOLDS'
+    """
+    start = time.monotonic()
+    verdict = _decide(expr, sp.Integer(0), domain, start + budget, ())
+    return replace(
+        verdict, question="the expression is zero where it has a value", seconds=time.monotonic() - start
+    )
 
 
 def equal(
     a: Expr | sp.MatrixBase, b: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: float = 10.0
 ) -> Verdict:
     """Decide whether two expressions, or two matrices of one shape, are equal on a domain.
+
+    Where one has a value the other must have one too, up to isolated points.
 
     Parameters
     ----------
@@ -106,8 +132,12 @@ def equal(
     if isinstance(a, sp.MatrixBase) and isinstance(b, sp.MatrixBase):
         if a.shape != b.shape:
             raise ValueError(f"matrices of shapes {a.shape} and {b.shape} cannot be compared entry by entry")
-        return _matrix_vanishes(a - b, domain, start, budget).about("the matrices are equal")
-    verdict = _decide(a, b, domain, start + budget)
+        verdict = _matrix_vanishes(a - b, domain, start, budget)
+        if not verdict.fails:
+            pairs = zip(cast("list[Expr]", a.flat()), cast("list[Expr]", b.flat()), strict=True)
+            verdict = _entries_with_values(verdict, dict.fromkeys(pairs), domain, start + budget)
+        return verdict.about("the matrices are equal")
+    verdict = _decide(a, b, domain, start + budget, SIDES)
     return replace(verdict, question="the expressions are equal", seconds=time.monotonic() - start)
 
 
@@ -141,7 +171,7 @@ def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget
             undecided = undecided if undecided is not None else late
             undecided = _at_entry(undecided, places[entry], "was not decided", start)
             break
-        verdict = _decide(entry, sp.Integer(0), domain, start + budget)
+        verdict = _decide(entry, sp.Integer(0), domain, start + budget, ALONE)
         if verdict.fails:
             return _at_entry(verdict, places[entry], "does not vanish", start)
         if verdict.holds:
@@ -151,7 +181,26 @@ def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget
     if undecided is not None:
         screened = Evidence("screen", f"no entry was refuted at {search.agreements} random points")
         return replace(undecided, evidence=(screened, *undecided.evidence))
-    return Verdict(Status.HOLDS, certificate=" + ".join(rungs) or "exact", seconds=time.monotonic() - start)
+    proved = Verdict(Status.HOLDS, certificate=" + ".join(rungs) or "exact")
+    for number, entry in enumerate(entries):
+        verdict = _with_values(
+            proved, (entry,), ALONE, domain, start + budget, valued=number in search.valued
+        )
+        if not verdict.holds:
+            return _at_entry(verdict, places[entry], verdict.feedback.removeprefix(ALONE[0]).strip(), start)
+    return replace(proved, seconds=time.monotonic() - start)
+
+
+def _entries_with_values(
+    verdict: Verdict, pairs: Iterable[tuple[Expr, Expr]], domain: Domain, deadline: float
+) -> Verdict:
+    """Return the verdict that two matrices are equal, unless an entry of one has no value where the other has."""
+    sides = ("an entry of the first matrix", "an entry of the second matrix")
+    for pair in pairs:
+        verdict = _with_values(verdict, pair, sides, domain, deadline, valued=False)
+        if verdict.fails:
+            break
+    return verdict
 
 
 def _at_entry(verdict: Verdict, place: tuple[int, int], what: str, start: float) -> Verdict:
@@ -178,14 +227,14 @@ def _exact(expr: object) -> Expr:
     return evaluated(expr) if found.has(sp.Derivative, sp.Subs) else expr
 
 
-def _decide(left: object, right: object, domain: Domain, deadline: float) -> Verdict:
+def _decide(left: object, right: object, domain: Domain, deadline: float, names: tuple[str, ...]) -> Verdict:
     too_deep = Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "the expression is nested too deeply"),))
     try:
         a, b = _exact(left), _exact(right)
     except RecursionError:
         return too_deep
     try:
-        return _climb(a, b, domain, deadline)
+        return _climb(a, b, domain, deadline, names)
     except RecursionError:
         return too_deep
     except REFUSALS as reason:
@@ -193,9 +242,10 @@ def _decide(left: object, right: object, domain: Domain, deadline: float) -> Ver
         return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", said),))
 
 
-def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
+def _climb(left: Expr, right: Expr, domain: Domain, deadline: float, names: tuple[str, ...]) -> Verdict:
     """Climb the ladder: a few balls, the quick proof, many balls, the thorough proof in the worker."""
     found = anatomy([left, right])
+    sides = (left, right)[: len(names)]
     search = look_for_counterexample(
         left,
         right,
@@ -208,8 +258,14 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
         return _refuted(left, right, search)
     proof = prove_zero(left - right, domain, min(deadline, time.monotonic() + QUICK_SECONDS), QUICK)
     if proof.holds:
-        nothing = search.agreements == 0 and domain.conditions and is_empty(domain, deadline)
-        return replace(_proved(proof), assumed=(EMPTY,)) if nothing else _proved(proof)
+        if search.agreements == 0 and domain.conditions and is_empty(domain, deadline):
+            return replace(_proved(proof), assumed=(EMPTY,))
+        return _with_values(_proved(proof), sides, names, domain, deadline, valued=search.agreements > 0)
+    if search.agreements == 0 and not search.unmodelled:
+        nothing = Verdict(Status.UNDECIDED)
+        without = _with_values(nothing, sides, names, domain, _share(SEARCH_SHARE, deadline), valued=False)
+        if without.fails:
+            return without
     search = search_widely(left, right, domain, _share(SEARCH_SHARE, deadline))
     if search.agreements == 0 and search.counterexample is None:
         search = search_branches(left, right, domain, _share(SEARCH_SHARE, deadline))
@@ -224,12 +280,43 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float) -> Verdict:
         if isinstance(answer, str):
             obstacles = [*obstacles, answer]
         elif answer[0].holds:
-            return _proved(answer[0])
+            valued = search.agreements > 0
+            return _with_values(_proved(answer[0]), sides, names, domain, deadline, valued=valued)
         else:
             obstacles = answer[0].obstacles
     tried = tuple(Evidence("tried", obstacle) for obstacle in obstacles)
     known = Evidence("balls", search.known)
-    return Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, known))
+    undecided = Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, known))
+    if search.unmodelled:
+        return undecided
+    return _with_values(undecided, sides, names, domain, deadline, valued=search.agreements > 0)
+
+
+def _with_values(
+    verdict: Verdict,
+    sides: Sequence[Expr],
+    names: Sequence[str],
+    domain: Domain,
+    deadline: float,
+    *,
+    valued: bool,
+) -> Verdict:
+    """Return a verdict on expressions, unless one has no value: then it fails, and nothing holds of it."""
+    lacks = [lack_of_value(side, domain, deadline, valued=valued) for side in sides]
+    if len(sides) == 2 and may_lack(anatomy(sides)):
+        this, that = sides
+        lacks += [lack_beside(this, [that], domain, deadline), lack_beside(that, [this], domain, deadline)]
+    for number, lack in enumerate(lacks):
+        if lack is None:
+            continue
+        sentence = lack.sentence(names[number % len(names)])
+        if lack.proved:
+            return Verdict(
+                Status.FAILS, certificate="definedness", counterexample=lack.counterexample, feedback=sentence
+            )
+        if verdict.holds:
+            verdict = Verdict(Status.UNDECIDED, evidence=(Evidence("open", sentence),))
+    return verdict
 
 
 def _share(share: float, deadline: float) -> float:

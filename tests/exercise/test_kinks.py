@@ -117,6 +117,8 @@ CLAIMS = [
     ("bilinear-covariant", {"x": ["x", "y"], "form": ["Abs(y)", "0"]}, "claim",
      f"{up('y')}*(delta_y*d_x - d_y*delta_x)", "delta_y*d_x - d_y*delta_x"),
     ("bilinear-covariant", PHASE | {"Q": "Abs(q)", "factor": "1"}, "P", f"p*{up('q')}", "p"),
+    ("parameters", {"of": "constant-of-motion", "q": "x", "L": "x_dot**2/2 - Abs(x)", "I": "x_dot**2/2 + a*Abs(x)",
+                    "parameters": {"a": "real"}, "find": "a"}, "values", [{"a": "1"}], [{"a": "2"}]),
     ("generating-F1", NEW | {"F": "Abs(q)*Q"}, "map",
      {"Q": f"p*{up('q')}", "P": "-Abs(q)"}, {"Q": "p", "P": "-Abs(q)"}),
     ("generating-F2", NEW | {"F": "Abs(q)*P"}, "map",

@@ -14,7 +14,19 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["all_of", "counted", "given_expression", "given_kind", "given_seconds", "given_symbols"]
+__all__ = [
+    "NotFiniteError",
+    "all_of",
+    "counted",
+    "given_expression",
+    "given_kind",
+    "given_seconds",
+    "given_symbols",
+]
+
+
+class NotFiniteError(ValueError):
+    """What was given, or came out, is infinite or undefined."""
 
 
 def given_expression(f: Any, name: str = "") -> Expr:
@@ -31,7 +43,7 @@ def given_expression(f: Any, name: str = "") -> Expr:
     ------
     TypeError
         For text, lists, systems and conditions, with what to write instead.
-    ValueError
+    NotFiniteError
         For what is no finite number.
 
     Examples
@@ -55,7 +67,7 @@ def given_expression(f: Any, name: str = "") -> Expr:
         if not isinstance(expression, sp.Expr):
             raise TypeError(_not_an_expression(f, name))
     if expression in (sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise ValueError(f"{name or 'the expression'} is {expression}, which is no finite quantity")
+        raise NotFiniteError(f"{name or 'the expression'} is {expression}, which is no finite quantity")
     return expression
 
 

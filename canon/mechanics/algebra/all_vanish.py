@@ -6,16 +6,20 @@ import time as clock
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from canon.proof.definedness import lack_beside, lack_of_value
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict, all_hold
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sympy import Expr
 
-__all__ = ["all_vanish", "differ"]
+__all__ = ["all_vanish", "differ", "having_values"]
+
+VALUE_SECONDS = 2.0
+"""Time for the question whether an answer has a value."""
 
 
 def all_vanish(
@@ -69,6 +73,61 @@ def all_vanish(
 
     verdict = all_hold(verdicts(), question)
     return replace(verdict, certificate=verdict.certificate or "exact") if verdict.holds else verdict
+
+
+def having_values(
+    verdict: Verdict, answers: Mapping[str, Expr], beside: Sequence[Expr], domain: Domain | None = None
+) -> Verdict:
+    """Return a verdict on answers that are proved right where they have a value, unless one has none.
+
+    Derivatives do not show it: those of log(h) where h is zero everywhere may cancel.
+
+    Parameters
+    ----------
+    verdict
+        What was found of the answers.
+    answers
+        The answers, by what they are called.
+    beside
+        What is given: where that has a value, the answers should have one.
+    domain
+        Where they are meant.
+
+    Examples
+    --------
+    >>> from sympy import Symbol, log
+    >>> x = Symbol("x", real=True)
+    >>> hidden = (x + 1)**2 - x**2 - 2*x - 1
+    >>> having_values(Verdict(Status.HOLDS), {"Q": log(hidden)}, [x]).feedback[:25]
+    'Q has a value nowhere: it'
+    """
+    if not verdict.holds:
+        return verdict
+    domain = as_domain(domain)
+    until = clock.monotonic() + VALUE_SECONDS
+    open_: Verdict | None = None
+    for name, answer in answers.items():
+        lack = lack_of_value(answer, domain, until) or lack_beside(answer, beside, domain, until)
+        if lack is None:
+            continue
+        sentence = lack.sentence(name)
+        if lack.proved:
+            example = lack.counterexample
+            return replace(
+                verdict,
+                status=Status.FAILS,
+                certificate="definedness",
+                counterexample=example,
+                assumed=(),
+                feedback=sentence,
+            )
+        open_ = Verdict(
+            Status.UNDECIDED,
+            verdict.question,
+            evidence=(Evidence("open", sentence),),
+            seconds=verdict.seconds,
+        )
+    return verdict if open_ is None else open_
 
 
 def differ(expression: Expr, domain: Domain | None = None) -> bool:

@@ -23,12 +23,12 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression, given_kind, given_symbols
-from canon.mechanics.algebra.all_vanish import all_vanish
+from canon.mechanics.algebra.all_vanish import all_vanish, having_values
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.continuity.continuity import continuity
 from canon.proof.domain.domain import Domain, as_domain
-from canon.proof.domain.verdict import Verdict, all_hold
+from canon.proof.domain.verdict import Status, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -236,7 +236,11 @@ class GeneratingFunction:
             yield is_regular(self.mixed_hessian.xreplace(there), domain, "the mixed Hessian")
             variables = (*self.q, *self.p, *self.new_q, *self.new_p, self.t)
             on_the_map = substitute(self.F, there)
-            yield continuity(on_the_map, variables, domain, name="F", given=there.values())
+            answers = {**{f"{z} on the map": f for z, f in there.items()}, "F": on_the_map}
+            verdict = having_values(Verdict(Status.HOLDS), answers, (), domain)
+            yield verdict
+            if verdict.holds:
+                yield continuity(on_the_map, variables, domain, name="F", given=there.values())
 
         return all_hold(verdicts(), f"F of type {self._named_kind} generates the map")
 

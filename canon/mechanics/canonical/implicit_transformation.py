@@ -16,7 +16,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression, given_kind, given_symbols
-from canon.mechanics.algebra.all_vanish import all_vanish
+from canon.mechanics.algebra.all_vanish import all_vanish, having_values
 from canon.mechanics.algebra.linear import SingularMatrixError, is_regular, solve
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged, substitute
 from canon.mechanics.hamilton.bracket import symplectic_unit
@@ -127,7 +127,8 @@ class ImplicitTransformation:
                 ((part, substitute(f, explicit)) for part, f in entries), question, self.domain, budget
             )
 
-        return all_hold(verdicts(), question)
+        answers = {f"equation {i}": E for i, E in enumerate(self.equations, 1)}
+        return having_values(all_hold(verdicts(), question), answers, (), self.domain)
 
     def evaluate(
         self, values: Mapping[Symbol, float], start: Mapping[Symbol, float], digits: int = 20

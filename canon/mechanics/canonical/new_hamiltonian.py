@@ -14,13 +14,13 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.user_input import counted, given_expression, given_kind
-from canon.mechanics.algebra.all_vanish import all_vanish
+from canon.mechanics.algebra.all_vanish import all_vanish, having_values
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.proof.continuity.continuity import continuity
 from canon.proof.domain.domain import as_domain
-from canon.proof.domain.verdict import Verdict, all_hold
+from canon.proof.domain.verdict import Status, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -152,6 +152,9 @@ def is_new_hamiltonian(
     def verdicts() -> Iterator[Verdict]:
         yield T.is_canonical(valence=valence)
         yield all_vanish(claims, "the new Hamiltonian is right", domain)
-        yield continuity(gap, T.variables, domain, name="K", given=T.images)
+        verdict = having_values(Verdict(Status.HOLDS), {"K": carried}, [given_expression(before)], domain)
+        yield verdict
+        if verdict.holds:
+            yield continuity(gap, T.variables, domain, name="K", given=T.images)
 
     return all_hold(verdicts(), "the map is canonical and K is the new Hamiltonian")

@@ -24,7 +24,7 @@ from canon.expression.symbols.user_input import (
     given_seconds,
     given_symbols,
 )
-from canon.mechanics.algebra.all_vanish import all_vanish
+from canon.mechanics.algebra.all_vanish import all_vanish, having_values
 from canon.mechanics.algebra.jacobian import jacobian
 from canon.mechanics.algebra.linear import solve
 from canon.mechanics.algebra.potential import potential
@@ -199,7 +199,8 @@ class CanonicalTransformation:
         test = by or ("poisson" if self.jacobian.has(*self.variables) else "symplectic")
         left = deadline - clock.monotonic()
         verdict = all_vanish(residuals(self, test, c), question, self.domain, left)
-        if verdict.fails:
+        verdict = having_values(verdict, self._named_images, self.variables, self.domain)
+        if verdict.fails and verdict.certificate != "definedness":
             left = deadline - clock.monotonic()
             return replace(verdict, feedback=mending(self, c, left) or verdict.feedback)
         if verdict.holds and by == "contact":
@@ -209,6 +210,11 @@ class CanonicalTransformation:
                 verdict, evidence=(*verdict.evidence, Evidence("F with dF = c p dq − P dQ", found))
             )
         return verdict
+
+    @property
+    def _named_images(self) -> dict[str, Expr]:
+        numbered = [f"{letter}{i}" for letter in "QP" for i in range(1, len(self.q) + 1)]
+        return dict(zip(numbered if len(self.q) > 1 else "QP", self.images, strict=True))
 
     def _without_valence(self, budget: float) -> Verdict:
         """Judge a map whose {Q₁, P₁} is not known to be constant: FAILS if it certainly is not."""

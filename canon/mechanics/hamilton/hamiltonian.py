@@ -12,6 +12,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import momentum, time, velocity
 from canon.expression.symbols.user_input import counted, given_kind
+from canon.mechanics.algebra.all_vanish import having_values
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all, plain_places
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
@@ -112,13 +113,15 @@ class Hamiltonian:
             raise ValueError(
                 f"{counted(len(claimed), 'rate')} given for {2 * len(self.q)} canonical variables"
             )
-        return all_hold(
+        verdict = all_hold(
             (
                 vanishes_off_kinks(claim - rate, domain).about(f"d{z}/dt = {claim}")
                 for z, rate, claim in zip((*self.q, *self.p), self.vector_field, claimed, strict=True)
             ),
             "these are Hamilton's equations",
         )
+        answers = {f"d{z}/dt": f for z, f in zip((*self.q, *self.p), claimed, strict=True)}
+        return having_values(verdict, answers, [self.H], domain)
 
     def is_solution(self, motion: Mapping[Symbol, Expr], domain: Domain | None = None) -> Verdict:
         """Tell whether these functions of time solve Hamilton's equations.
@@ -150,9 +153,14 @@ class Hamiltonian:
             )
             for z, rate in zip(variables, self.vector_field, strict=True)
         )
+        question = "these functions solve Hamilton's equations"
+        answers = {f"{z}(t)": motion[z] for z in variables}
+        verdict = having_values(all_hold(satisfied, question), answers, [self.t], domain)
+        if not verdict.holds:
+            return verdict
         real = motion_is_real(motion, domain)
         continuous = motion_is_continuous(motion, self.t, domain, [self.H], velocities=False)
-        return all_hold(chain(satisfied, real, continuous), "these functions solve Hamilton's equations")
+        return all_hold(chain([verdict], real, continuous), question)
 
     def lagrangian(self, domain: Domain | None = None) -> Lagrangian:
         """Return L = Σ p q̇ − H with the momenta eliminated.
@@ -259,10 +267,11 @@ def is_hamiltonian_of(
     domain = as_domain(domain)
     question = "H is the Hamiltonian of L"
 
+    momenta = coordinate_symbols(p)
+    energy = plain(H, (*lagrangian.q, *momenta), lagrangian.t)
+
     def verdicts() -> Iterator[Verdict]:
         yield has_hamiltonian(lagrangian, domain)
-        momenta = coordinate_symbols(p)
-        energy = plain(H, (*lagrangian.q, *momenta), lagrangian.t)
         yield vanishes_off_kinks(
             legendre_residual(
                 energy, dict(zip(momenta, lagrangian.momenta, strict=True)), lagrangian.jacobi_energy
@@ -270,4 +279,5 @@ def is_hamiltonian_of(
             domain,
         )
 
-    return all_hold(verdicts(), question)
+    there = substitute(energy, dict(zip(momenta, lagrangian.momenta, strict=True)))
+    return having_values(all_hold(verdicts(), question), {"H": there}, [lagrangian.L], domain)

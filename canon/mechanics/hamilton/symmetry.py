@@ -15,7 +15,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import all_of, given_kind
-from canon.mechanics.algebra.all_vanish import all_vanish
+from canon.mechanics.algebra.all_vanish import all_vanish, having_values
 from canon.mechanics.algebra.dynamicsymbols import plain, plain_all
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.substitution import exchanged
@@ -80,6 +80,7 @@ def is_constant_of_motion(
     everywhere, moving = as_domain(domain), (*state, system.t)
     verdict = all_vanish([("dI/dt = 0", rate)], f"{I} is a constant of motion", domain, budget)
     given = (system.H if isinstance(system, Hamiltonian) else system.L,)
+    verdict = having_values(verdict, {str(I): function}, given, domain)
     return _and_continuous(verdict, function, moving, everywhere, str(I), given)
 
 
@@ -198,6 +199,7 @@ def is_gauge_equivalent(
         function = plain(F, q, t)
         gap = difference - time_derivative(function, q, t)
         verdict = all_vanish([("L2 − L1 = dF/dt", gap)], "the Lagrangians differ by dF/dt", domain)
+        verdict = having_values(verdict, {"F": function, "L2": second.L}, [first.L], domain)
         return _and_continuous(verdict, function, (*q, t), as_domain(domain), "F", (first.L, second.L))
     v = [velocity(s) for s in q]
     A = [difference.diff(a) for a in v]

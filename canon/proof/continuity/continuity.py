@@ -34,7 +34,7 @@ from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
 from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.sympy_types import arguments, free_symbols
-from canon.proof.vanish import vanishes
+from canon.proof.vanish import vanishes_where_defined
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -355,7 +355,7 @@ def _meets(f: Expr, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline
     kept = (c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne))
     on_gap = (*kept, cast("Boolean", sp.Eq(cut.gap, 0, evaluate=False)))
     there = Domain(tuple(cast("Boolean", c.xreplace(plain)) for c in on_gap))
-    return vanishes(cast("Expr", change.xreplace(plain)), there, min(1.0, left)).holds
+    return vanishes_where_defined(cast("Expr", change.xreplace(plain)), there, min(1.0, left)).holds
 
 
 def _centre(cut: Cut, moving: Sequence[Symbol], domain: Domain) -> str | None:

@@ -299,6 +299,8 @@ def _impulse(z: acb, *_order: acb) -> acb:
 def _atan2(y: acb, x: acb) -> acb:
     if y.is_zero() and x.is_zero():
         raise Undefined("atan2(0, 0)")
+    if y.contains(0) and x.contains(0):
+        raise NotDecided("atan2 near (0, 0)")
     if y.imag.is_zero() and x.imag.is_zero():
         return acb(arb.atan2(y.real, x.real))
     z = (x + acb(0, 1) * y) * _reciprocal((x * x + y * y).sqrt())
@@ -385,7 +387,7 @@ _FUNCTIONS: dict[Any, Callable[..., acb]] = {
     sp.re: lambda z: acb(z.real),
     sp.im: lambda z: acb(z.imag),
     sp.conjugate: lambda z: z.conjugate(),
-    sp.arg: lambda z: acb(z.arg()),
+    sp.arg: lambda z: _atan2(acb(z.imag), acb(z.real)),
     sp.Max: _choose(greater=True),
     sp.Min: _choose(greater=False),
     sp.LambertW: _lambert_w,

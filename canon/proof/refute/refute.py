@@ -56,7 +56,7 @@ LARGEST_GAP = 200
 
 @dataclass
 class Search:
-    """What evaluating two sides at points has shown."""
+    """What evaluating two sides at points has shown; ``valued`` has the places of those found to have a value."""
 
     counterexample: Counterexample | None = None
     agreements: int = 0
@@ -65,6 +65,7 @@ class Search:
     unmodelled: str = ""
     tried: int = 0
     functions: dict[str, str] = field(default_factory=dict[str, str])
+    valued: set[int] = field(default_factory=set[int])
 
     @property
     def known(self) -> str:
@@ -165,6 +166,7 @@ def first_counterexample(
                     ball = value(expr, point, memo)
                 except (Undefined, NotDecided, Unmodelled):
                     continue
+                result.valued.add(place)
                 if not ball.contains(0):
                     _record(ball, acb(0), point, result)
                     return result, place

@@ -1,0 +1,158 @@
+"""Has an answer a value? What stands in a claim is looked at as it was written, before anything cancels."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from canon.exercise.sheet.kinds import KINDS, Shape
+from canon.expression.as_written import as_written
+from canon.expression.symbols.symbol import Coordinate, velocity
+from canon.expression.text.tokens import LanguageError
+from canon.mechanics.algebra.substitution import substitute
+from canon.proof.definedness import lack_beside, lack_of_value
+from canon.proof.domain.verdict import Evidence, Status, Verdict
+from canon.proof.surroundings import put_in
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from sympy import Expr, Symbol
+
+    from canon.exercise.question.deadline import Deadline
+    from canon.exercise.sheet.reading import Reading
+    from canon.proof.definedness import Lack
+
+__all__ = ["without_value"]
+
+SHARE = 0.4
+"""Part of the time of a claim that may be spent here."""
+
+_EXPRESSIONS = (
+    Shape.TEXT, Shape.TEXTS, Shape.EXPRESSIONS, Shape.LISTS, Shape.BRACKETS, Shape.BODIES, Shape.FORCES
+)  # fmt: skip
+
+
+_CLAIMED_TOO: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "equality-only": ("lhs",),
+        "lagrangian-equivalence": ("L2",),
+        "bilinear-covariant": ("Q", "P"),
+        "transformed-hamiltonian-K": ("map", "inverse_map"),
+        "positive-real": ("H",),
+        **{f"generating-F{number}": ("map", "inverse_map") for number in "1234"},
+    }
+)
+"""Keys of what is claimed together with the answer."""
+
+
+def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
+    """Yield FAILS for what has a value nowhere, and for answers without one where all that is given has one.
+
+    Where no value is found, and it is not proved that there is none, that is left UNDECIDED.
+
+    Parameters
+    ----------
+    reading
+        The claim.
+    deadline
+        When its judgement should end.
+    """
+    until = deadline.at - (1 - SHARE) * deadline.left
+    written = dict(_written(reading))
+    for key, expression in written.items():
+        if lack := lack_of_value(expression, reading.domain, until):
+            open_ = Verdict(Status.UNDECIDED, evidence=(Evidence("open", lack.sentence(key)),))
+            yield _fails(lack, key) if lack.proved else open_
+    following = _following(reading)
+    answers = {key: f for key, f in written.items() if _is_answer(reading, key)}
+    given = [_seen(f, following) for key, f in written.items() if key not in answers]
+    for key, answer in answers.items():
+        other = [_seen(f, following) for k, f in answers.items() if k != key] if _two_sided(reading) else []
+        lack = lack_beside(_seen(answer, following), [*given, *other], reading.domain, until)
+        if lack is not None:
+            yield _fails(lack, key)
+
+
+def _seen(f: Expr, following: Mapping[Symbol, Expr]) -> Expr:
+    """Return an expression in the free variables, nothing cancelled where that can be avoided."""
+    if f.has(sp.Derivative, sp.Subs):
+        return substitute(f, following)
+    return put_in(f, dict(following.items()))
+
+
+def _fails(lack: Lack, key: str) -> Verdict:
+    return Verdict(
+        Status.FAILS,
+        "the answer has a value",
+        certificate="definedness",
+        counterexample=lack.counterexample,
+        feedback=lack.sentence(key),
+    )
+
+
+def _two_sided(reading: Reading) -> bool:
+    """Whether what is claimed is that two sides are the same, each an answer beside the other."""
+    return reading.claim.kind == "equality-only"
+
+
+def _is_answer(reading: Reading, key: str) -> bool:
+    outer = key.partition(".")[0].partition("[")[0]
+    inner_is_given = outer == "pairs" and not key.endswith(".value")
+    answers = (*KINDS[reading.claim.kind].answer, *_CLAIMED_TOO.get(reading.claim.kind, ()))
+    return outer in answers and not inner_is_given
+
+
+def _written(reading: Reading) -> Iterator[tuple[str, Expr]]:
+    """Yield every expression of a claim as it is written, by its key."""
+    kind = KINDS[reading.claim.kind]
+    shapes = {**kind.required, **kind.optional}
+    extended = reading.with_names(_displacements(reading))
+    for key, value in reading.claim.keys.items():
+        if shapes.get(key) in _EXPRESSIONS:
+            for where, text in _texts(key, value):
+                try:
+                    yield where, as_written(text, extended.scope)
+                except LanguageError:  # the judge of the kind says what is wrong with it
+                    continue
+
+
+def _texts(key: str, value: Any) -> Iterator[tuple[str, str]]:
+    if isinstance(value, str):
+        yield key, value
+    elif isinstance(value, list):
+        for i, item in enumerate(value):
+            yield from _texts(f"{key}[{i}]", item)
+    elif hasattr(value, "items"):
+        for name, item in value.items():
+            yield from _texts(f"{key}.{name}", item)
+
+
+def _displacements(reading: Reading) -> dict[str, Symbol]:
+    """Return the names d_x and delta_x that judges of variations and differentials add."""
+    declared = reading.scope.names
+    names = [str(s) for key in ("q", "x") if reading.is_names(key) for s in reading.symbols(key)]
+    made: dict[str, Symbol] = {}
+    for name in (*names, reading.time.name):
+        made[f"d_{name}"] = sp.Symbol(f"d_{name}", real=True)
+        made[f"delta_{name}"] = Coordinate(f"delta_{name}", real=True)
+    return {name: symbol for name, symbol in made.items() if name not in declared}
+
+
+def _following(reading: Reading) -> Mapping[Symbol, Expr]:
+    """Return the variables that are not free in what is written, in terms of those that are."""
+    for key, parts, like in (
+        ("map", ("Q", "P"), ("new_q", "new_p")),
+        ("inverse_map", ("q", "p"), ("q", "p")),
+    ):
+        if reading.has(key):
+            names = [s for part in like for s in reading.symbols(part)]
+            given = reading.claim.keys[key]
+            images = [f for part in parts for f in reading.inside(f"{key}.{part}", given.get(part, []))]
+            return dict(zip(names, images, strict=False))
+    if reading.claim.kind == "legendre-hamiltonian":
+        L = reading.expression("L")
+        return {p: L.diff(velocity(x)) for x, p in zip(*reading.phase_space("q", "p"), strict=True)}
+    return {}
