@@ -1,12 +1,10 @@
 """``canon choose`` from its arguments to its table, lines and exit status."""
 
 import json
-import sys
 
 import pytest
 
 from canon.cli import main
-from canon.command.progress import Progress
 
 
 def choose(*arguments):
@@ -53,18 +51,3 @@ def test_what_nothing_keeps_is_an_exit_status(capsys):
 def test_bad_usage_says_what_to_do(arguments, told, capsys):
     assert main(["choose", *arguments]) == 2
     assert told in capsys.readouterr().err
-
-
-def test_progress_tells_what_is_left_on_a_terminal_and_nothing_elsewhere(monkeypatch, capsys):
-    monkeypatch.setattr("canon.command.progress.EVERY", 0.0)
-    with Progress() as progress:
-        progress("verlet", 0.5)
-    assert capsys.readouterr().err == ""
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with Progress() as progress:
-        progress("verlet", 0.25)
-        progress("verlet", 0.5)
-    shown = capsys.readouterr().err
-    assert "verlet  50 %" in shown
-    assert "s left" in shown
-    assert shown.endswith("\r")

@@ -81,11 +81,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _choice(scene: Scene, arguments: argparse.Namespace) -> Choice:
-    from canon.command.progress import Progress
+    from canon.progress import ProgressBar
     from canon.study.choose.choose import choose
 
     span = arguments.until if arguments.until is not None else arguments.periods * scene.period
-    with Progress() as progress:
+    with ProgressBar() as progress:
         return choose(
             scene,
             arguments.start,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from canon.command.progress import Progress
 from canon.command.scene_options import add_duration, add_scene, list_scenes, methods_given, scene_given
 
 if TYPE_CHECKING:
@@ -119,9 +118,10 @@ def save_figure(study: DriftStudy, file: str) -> bool:
 
 
 def _study(scene: Scene, arguments: argparse.Namespace) -> DriftStudy:
+    from canon.progress import ProgressBar
     from canon.study.drift.drift_study import drift_study
 
-    with Progress() as progress:
+    with ProgressBar() as progress:
         return drift_study(
             scene,
             arguments.start,

@@ -241,25 +241,16 @@ def _executor(arguments: argparse.Namespace) -> Generator[tuple[Executor | None,
 
 
 @contextmanager
-def _progress() -> Generator[Callable[[Status], None] | None]:
-    """Show a bar with the remaining time on stderr; nothing when piped or where tqdm is not installed."""
-    try:
-        from tqdm import tqdm
-    except ImportError:
-        yield None
-        return
-    if not sys.stderr.isatty():
-        yield None
-        return
-    form = "{percentage:3.0f}% {bar} {n:.2f} of {total_fmt} cases, {remaining} left {postfix}"
-    with tqdm(total=0, leave=False, bar_format=form) as bar:
+def _progress() -> Generator[Callable[[Status], None]]:
+    """Show how much of the cases is done, and the time that is left."""
+    from canon.progress import ProgressBar
+
+    with ProgressBar() as bar:
 
         def show(status: Status) -> None:
             done = status.finished + status.failed + status.partly
-            if not bar.total:  # what was finished before says nothing of the time that is left
-                bar.total, bar.initial, bar.n = status.total, done, done
-            bar.set_postfix_str(f"({status.failed} failed)" if status.failed else "")
-            bar.update(done - bar.n)
+            failed = f", {status.failed} failed" if status.failed else ""
+            bar("study", done, status.total, f"{done:.2f} of {status.total} cases{failed}")
 
         yield show
 

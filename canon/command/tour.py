@@ -71,8 +71,8 @@ def _judge_answers() -> bool:
 
 
 def _study() -> DriftStudy:
-    from canon.command.progress import Progress
     from canon.flow.method.method import RK4, Splitting, Taylor
+    from canon.progress import ProgressBar
     from canon.scene import find
     from canon.study.drift.drift_study import drift_study
 
@@ -80,7 +80,7 @@ def _study() -> DriftStudy:
     print("2. Does its simulation stay right, and what does that cost?\n", flush=True)
     methods = (Splitting("kahan-li-8"), Splitting("verlet"), RK4(), Taylor())
     step = scene.period / STEPS_PER_PERIOD
-    with Progress() as progress:
+    with ProgressBar() as progress:
         return drift_study(scene, methods=methods, step=step, periods=PERIODS, progress=progress)
 
 
