@@ -24,13 +24,13 @@ from canon.exercise.judges import small_quantities as judge_small
 from canon.exercise.judges import solution as judge_solution
 from canon.exercise.judges import variation as judge_variation
 from canon.exercise.question.answer import other_variables
+from canon.exercise.question.answer_values import without_value
 from canon.exercise.question.constraint_manifold import EmptyDomainError
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
 from canon.exercise.sheet.key_shapes import faults
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim, ClaimError
-from canon.exercise.values import without_value
 from canon.expression.symbols.user_input import NotFiniteError, given_kind
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.expression.symbols.user_input import given_expression, given_seconds
-from canon.proof.definedness import lack_beside, lack_of_value, may_lack
+from canon.proof.definedness.definedness import lack_beside, lack_of_value, may_lack
 from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.domain.limits import QUICK
 from canon.proof.domain.verdict import Evidence, Status, Verdict

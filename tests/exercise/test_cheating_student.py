@@ -1,8 +1,8 @@
 """Someone wants full marks without the answer: of many worthless answers not one holds, beside each a right one does.
 
-A worthless answer is a form (a jump, right on a part only, an equation that says nothing) made of a right answer of
-each kind, in the plain language and in LaTeX; or, by hand, one that says nothing or copies the question. Beside each
-form stands the same decoration done honestly: the answer still holds.
+A worthless answer is a form (no value anywhere, a value almost nowhere, a jump, right on a part only, an equation that
+says nothing) made of a right answer of each kind, in the plain language and in LaTeX; or, by hand, one that says
+nothing or copies the question. Beside each form stands the same decoration done honestly: the answer still holds.
 """
 
 import json
@@ -26,6 +26,8 @@ from tests.exercise.worthless_forms import CLASSES, HIDDEN_ZEROS, PLAIN_ZEROS, F
 BUDGET = 3
 """Seconds for a worthless answer: one that is undecided has not got its marks."""
 SHARES = {
+    "nowhere": 0.35,
+    "almost nowhere": 0.4,
     "jumps": 0.8,
     "parts": 0.7,
     "equations": 1.0,
@@ -132,11 +134,11 @@ def test_the_right_answers_hold_in_both_languages():
 
 def test_there_are_enough_attempts_of_every_kind_and_sort():
     worthless = [attempt for attempt in attempts() if not attempt.honest]
-    assert len(worthless) >= 1500
+    assert len(worthless) >= 2000
     assert {attempt.kind for attempt in worthless} == set(KINDS)
     assert {attempt.kind for attempt in attempts() if attempt.sort == "by hand"} == set(KINDS)
-    assert min(Counter(attempt.kind for attempt in worthless).values()) >= 5
-    assert sum(attempt.latex for attempt in worthless) >= 400
+    assert min(Counter(attempt.kind for attempt in worthless).values()) >= 15
+    assert sum(attempt.latex for attempt in worthless) >= 600
     assert all(form.beside for sort, (forms, _) in CLASSES.items() for form in forms if sort != "honest")
 
 

@@ -79,6 +79,131 @@ SYSTEMS = ("equation", "multiplier", "condition", "implicit")
 OFF_POINTS = ("value", "equation", "multiplier", "map")
 """Answers of which nothing is asked at single points: they need neither be continuous nor have an expansion."""
 
+NOWHERE = (
+    Form("seven over zero", "7/Z", r"\frac{7}{Z}", beside="R*7/(7 + Z)"),
+    Form(
+        "zero over zero",
+        "(exp(U)*exp(-U) - 1)/Z",
+        r"\frac{e^U e^{-U} - 1}{Z}",
+        beside="R + Z/(exp(U)*exp(-U))",
+    ),
+    Form("power minus one", "Z**-1", r"Z^{-1}", beside="R*(1 + Z)**-1"),
+    Form("beside the answer", "R + 7/Z", r"R + \frac{7}{Z}", beside="R + Z/7"),
+    Form("times over", "R*Z/(2*Z)", r"\frac{R Z}{2 Z}", beside="R*(Z + 1 + U**2)/(1 + U**2)"),
+    Form(
+        "over another zero",
+        "R + (sin(U)**2 + cos(U)**2 - 1)/Z",
+        r"R + \frac{\sin^2 U + \cos^2 U - 1}{Z}",
+        beside="R + (sin(U)**2 + cos(U)**2 - 1)/(1 + U**2)",
+    ),
+    Form(
+        "times one over zero",
+        "R*(1 + (cosh(V)**2 - sinh(V)**2 - 1)/Z)",
+        r"R (1 + \frac{\cosh^2 V - \sinh^2 V - 1}{Z})",
+        beside="R*(1 + (cosh(V)**2 - sinh(V)**2 - 1)/(2 + Z))",
+    ),
+    Form(
+        "a plain zero below",
+        "R + (exp(U)*exp(-U) - 1)/(U - U)",
+        r"R + \frac{e^U e^{-U} - 1}{U - U}",
+        beside="R + (exp(U)*exp(-U) - 1)/(U**2 + 1)",
+    ),
+    Form("nothing to the minus one", "R + 0*0**-1", r"R + 0\cdot 0^{-1}", beside="R + 0*1**-1"),
+    Form("logarithm", "R + (U - U)*log(Z)", r"R + 0\cdot\ln Z", beside="R + (U - U)*log(1 + Z + U**2)"),
+    Form(
+        "logarithm less itself",
+        "R + log(Z) - log(2*Z) + log(2)",
+        r"R + \ln Z - \ln(2 Z) + \ln 2",
+        beside="R + log(1 + U**2) - log(2 + 2*U**2) + log(2)",
+    ),
+    Form(
+        "tangent of a right angle",
+        "R + Z*tan(pi/2 + Z)",
+        r"R + Z\tan(\frac\pi2 + Z)",
+        beside="R + Z*tan(pi/4 + Z)",
+    ),
+    Form("cotangent of zero", "R + Z*cot(Z)", r"R + Z\cot Z", beside="R + Z*cot(1 + Z)"),
+    Form(
+        "artanh of one", "R + Z*atanh(1 + Z)", r"R + Z\operatorname{artanh}(1 + Z)", beside="R + Z*atanh(Z)"
+    ),
+    Form("root below", "R + Z/sqrt(Z)", r"R + \frac{Z}{\sqrt{Z}}", beside="R + Z/sqrt(1 + U**2)"),
+    Form(
+        "greatest below", "R + Z/Max(Z, -U**2)", r"R + \frac{Z}{\max(Z, -U^2)}", beside="R + Z/Max(1, U**2)"
+    ),
+    Form("modulus below", "R + Z/Abs(Z)", r"R + \frac{Z}{|Z|}", beside="R + Z/(1 + Abs(U))"),
+    Form("fraction in a fraction", "R/(1 + 1/Z)", r"\frac{R}{1 + \frac{1}{Z}}", beside="R/(1 + Z/2)"),
+    Form(
+        "wave of one over zero", "R + Z*sin(1/Z)", r"R + Z\sin(\frac{1}{Z})", beside="R + Z*sin(1/(1 + U**2))"
+    ),
+    Form("exponential of one over zero", "R*exp(Z/Z**2)", r"R \exp(\frac{Z}{Z^2})", beside="R*exp(Z/2)"),
+    Form("a small power below", "R + Z/Z**(1/3)", r"R + \frac{Z}{\sqrt[3]{Z}}", beside="R + Z/8**(1/3)"),
+    Form("nothing to a negative power", "R*(1 + 0**(-1 - U**2))", beside="R*(1 + 0**(1 + U**2))"),
+    Form("elliptic integral of one", "R + Z*elliptic_k(1 + Z)", beside="R + Z*elliptic_k(1/2)"),
+    Form(
+        "Lambert's function of no logarithm",
+        "R + LambertW(log(Z)) - LambertW(log(Z/2) + log(2))",
+        beside="R + Z*LambertW(1 + U**2)",
+    ),
+    Form("modulus of a pole", "R + Abs(1/Z) - Max(1/Z, -1/Z)", beside="R + Abs(Z)"),
+    Form(
+        "sign of a pole", "R*sign(1/Z)**2", r"R \operatorname{sgn}(\frac{1}{Z})^2", beside="R*sign(1 + Z**2)"
+    ),
+    Form(
+        "piece: sine above one", "Piecewise((R, sin(U) > 1))", beside="Piecewise((R, sin(U) > 1), (R, True))"
+    ),
+    Form("piece: a square below zero", "Piecewise((R, U**2 < 0))", beside="Piecewise((R, U**2 >= 0))"),
+    Form("piece: unlike itself", "Piecewise((R, Ne(U, U)))", beside="Piecewise((R, U == U))"),
+    Form("piece: modulus below zero", "Piecewise((R, Abs(U) < 0))", beside="Piecewise((R, Abs(U) >= 0))"),
+    Form(
+        "piece: two at once",
+        "Piecewise((R, Max(U, -U) < 0))",
+        beside="Piecewise((R, Max(U, -U) < 0), (R, True))",
+    ),
+    Form("piece: exponential", "Piecewise((R, exp(U) < 0))", beside="Piecewise((R, exp(U) > 0))"),
+    Form(
+        "piece: above another",
+        "Piecewise((R, U > V), (R, U < V)) + Piecewise((0, cosh(U) < 1))",
+        beside="Piecewise((R, U > V), (R, U <= V))",
+    ),
+    Form("piece: zero is not zero", "Piecewise((R, Ne(Z, 0)))", beside="Piecewise((R, Ne(Z, 0)), (R, True))"),
+)
+"""No value anywhere, or wherever the right answer has one."""
+
+ALMOST_NOWHERE = (
+    Form("at one point", "Piecewise((R, U == 0))", beside="Piecewise((R, U == 0), (R, True))"),
+    Form("far out", "Piecewise((R, U > 10**200))", beside="Piecewise((R, U > 10**200), (R, True))"),
+    Form(
+        "close to zero",
+        "Piecewise((R, Abs(U) < 10**(-200)))",
+        beside="Piecewise((R, Abs(U) < 10**(-200)), (R, True))",
+    ),
+    Form("on a grid", "Piecewise((R, sin(pi*U) == 0))", beside="Piecewise((R, sin(pi*U) == 0), (R, True))"),
+    Form("where two agree", "Piecewise((R, U - V == 1))", beside="Piecewise((R, U - V == 1), (R, True))"),
+    Form("not above zero and not below", "Piecewise((R, U**2 <= 0))", beside="Piecewise((R, U**2 >= 0))"),
+    Form("at the crest", "Piecewise((R, sin(U) >= 1))", beside="Piecewise((R, sin(U) >= 1), (R, True))"),
+    Form(
+        "two points",
+        "Piecewise((R, U == 1), (R, U == 2))",
+        beside="Piecewise((R, U == 1), (R, U == 2), (R, True))",
+    ),
+    Form(
+        "a strip",
+        "Piecewise((R, Abs(U - 3) < 10**(-9)))",
+        beside="Piecewise((R, Abs(U - 3) < 10**(-9)), (R, True))",
+    ),
+    Form("a half", "Piecewise((R, U > 0))", beside="Piecewise((R, U > 0), (R, U <= 0))"),
+    Form("zero times a half", "R + Piecewise((0, U < 0))", beside="R + Piecewise((0, U < 0), (0, True))"),
+    Form(
+        "beyond a strip",
+        "Piecewise((R, Abs(U) > 10**(-9)))",
+        beside="Piecewise((R, Abs(U) > 10**(-9)), (R, True))",
+    ),
+    Form(
+        "not on a far end", "Piecewise((R, U < 10**9))", beside="Piecewise((R, U < 10**9), (R, U >= 10**9))"
+    ),
+)
+"""No value on an open part of the domain."""
+
 JUMPS = (
     Form("sign", "R + sign(U)", r"R + \operatorname{sgn}(U)", beside="R + sign(1 + U**2) - 1"),
     Form("modulus over itself", "R + Abs(U)/U", r"R + \frac{|U|}{U}", beside="R + Abs(U)*Abs(U)/U - U"),
@@ -248,7 +373,12 @@ HONEST = (
     Form("a modulus and its root", "R + Abs(U) - sqrt(U**2)", r"R + |U| - \sqrt{U^2}"),
     Form("modulus times sign", "R + Abs(U)*sign(U) - U", r"R + |U|\operatorname{sgn}(U) - U"),
     Form("times the square of a sign", "R*sign(U)**2", r"R \operatorname{sgn}(U)^2", roles=OFF_POINTS),
-    Form("logarithms", "R + log(U**2) - 2*log(Abs(U))", r"R + \ln(U^2) - 2\ln|U|"),
+    Form(
+        "logarithms",
+        "R + log(U**2) - 2*log(Abs(U))",
+        r"R + \ln(U^2) - 2\ln|U|",
+        roles=("value", "equation", "multiplier", "constant", "map"),
+    ),
     Form("exponentials", "R*exp(U)*exp(-U)", r"R e^U e^{-U}"),
     Form("an honest denominator", "R*(Z + 1 + U**2)/(1 + U**2)", r"\frac{R (Z + 1 + U^2)}{1 + U^2}"),
     Form("a fraction in a fraction", "R/(1 + Z/(1 + U**2))", r"\frac{R}{1 + \frac{Z}{1 + U^2}}"),
@@ -266,9 +396,14 @@ HONEST = (
 """The right answer in other clothes: it still holds."""
 
 CLASSES = {
-    "jumps": (JUMPS, (*ALL, "number")),
-    "parts": (PARTS, (*ALL, *MAPS, "number")),
+    "nowhere": (
+        NOWHERE,
+        (*ALL, *MAPS, "number", "constraint", "rational", "open", "not constant", "parameter"),
+    ),
+    "almost nowhere": (ALMOST_NOWHERE, (*ALL, *MAPS, "number")),
+    "jumps": (JUMPS, (*ALL, "number", "parameter")),
+    "parts": (PARTS, (*ALL, *MAPS, "number", "parameter")),
     "equations": (EQUATIONS, SYSTEMS),
-    "honest": (HONEST, tuple({*ALL, *MAPS, "open", "not constant"} - {"condition", "implicit"})),
+    "honest": (HONEST, tuple({*ALL, *MAPS, "open", "not constant", "parameter"} - {"condition", "implicit"})),
 }
 """The forms of each class, and of which answers they are made."""

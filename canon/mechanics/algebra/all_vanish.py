@@ -6,7 +6,7 @@ import time as clock
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from canon.proof.definedness import lack_beside, lack_of_value
+from canon.proof.definedness.definedness import lack_beside, lack_of_value
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict, all_hold
 from canon.proof.kinks import vanishes_off_kinks

@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from canon.proof.definedness.formula_around import NoPiece, formula_around, put_in
+from canon.proof.definedness.hazards import branching, hazards, incomplete, unconditional
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import EVERYWHERE, Domain, declared_complex
 from canon.proof.domain.limits import QUICK
 from canon.proof.domain.verdict import Counterexample
-from canon.proof.hazards import branching, hazards, incomplete, unconditional
 from canon.proof.refute.refute import landmarks
 from canon.proof.refute.sample_functions import with_example_functions
 from canon.proof.rungs.ladder import REFUSALS, is_empty, prove_zero
-from canon.proof.surroundings import NoPiece, formula_around, put_in
 from canon.proof.trees.anatomy import Anatomy, anatomy
 from canon.proof.trees.replacement import NoValue, defined_nowhere, replaced
 from canon.proof.worker.budget import prove_in_worker

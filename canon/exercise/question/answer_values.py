@@ -12,9 +12,9 @@ from canon.expression.as_written import as_written
 from canon.expression.symbols.symbol import Coordinate, velocity
 from canon.expression.text.tokens import LanguageError
 from canon.mechanics.algebra.substitution import substitute
-from canon.proof.definedness import lack_beside, lack_of_value
+from canon.proof.definedness.definedness import lack_beside, lack_of_value
+from canon.proof.definedness.formula_around import put_in
 from canon.proof.domain.verdict import Evidence, Status, Verdict
-from canon.proof.surroundings import put_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.question.deadline import Deadline
     from canon.exercise.sheet.reading import Reading
-    from canon.proof.definedness import Lack
+    from canon.proof.definedness.definedness import Lack
 
 __all__ = ["without_value"]
 

@@ -1,0 +1,1 @@
+"""Where expressions have values: denominators, logarithms and pieces that take them away."""
