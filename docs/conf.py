@@ -172,9 +172,11 @@ def public_names() -> str:
         about = (importlib.import_module(f"canon.{room}").__doc__ or "").splitlines()[0]
         lines += [f"## {SUBJECTS[room]}", "", about, ""]
         lines += _listed(names)
-        if room in RETURNED:
+        at_a_door = {*ROOM_DOORS, *FRONT_DOOR}
+        others = [name for name in RETURNED.get(room, ()) if name.rpartition(".")[2] not in at_a_door]
+        if others:
             lines += ["What these return and raise, imported from where it stands:", ""]
-            lines += _listed([f"canon.{name}" for name in RETURNED[room]])
+            lines += _listed([f"canon.{name}" for name in others])
     return "\n".join(lines)
 
 
