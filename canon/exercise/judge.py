@@ -6,29 +6,16 @@ import time
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
-from canon.exercise.judges import canonical as judge_canonical
-from canon.exercise.judges import conserved as judge_conserved
-from canon.exercise.judges import constrained as judge_constrained
-from canon.exercise.judges import constraint_class as judge_constraint_class
-from canon.exercise.judges import energy_and_force as judge_energy
-from canon.exercise.judges import gibbs_appell as judge_appell
-from canon.exercise.judges import hamiltonian as judge_hamiltonian
-from canon.exercise.judges import invariance as judge_invariance
-from canon.exercise.judges import lagrangian as judge_lagrangian
-from canon.exercise.judges import parameter_values as judge_parameters
-from canon.exercise.judges import positive_real as judge_passive
-from canon.exercise.judges import reaction as judge_reaction
-from canon.exercise.judges import small_quantities as judge_small
-from canon.exercise.judges import solution as judge_solution
-from canon.exercise.judges import variation as judge_variation
 from canon.exercise.question.answer import other_variables
 from canon.exercise.question.answer_values import without_value
 from canon.exercise.question.constraint_manifold import EmptyDomainError
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
 from canon.exercise.sheet.key_shapes import faults
+from canon.exercise.sheet.kind import named_function
+from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim, ClaimError
 from canon.expression.symbols.user_input import NotFiniteError, given_kind
@@ -40,49 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["JUDGES", "Finding", "InvalidClaim", "examine", "judge", "questions"]
 
-Judge: TypeAlias = "Callable[[Reading], Iterator[Question]]"
-
-JUDGES: Mapping[str, Judge] = MappingProxyType(
-    {
-        "euler-lagrange": judge_lagrangian.euler_lagrange,
-        "dissipative": judge_lagrangian.dissipative,
-        "multiplier-holonomic": judge_constrained.multiplier_holonomic,
-        "nonholonomic": judge_constrained.nonholonomic,
-        "legendre-hamiltonian": judge_hamiltonian.legendre_hamiltonian,
-        "hamilton-equations": judge_hamiltonian.hamilton_equations,
-        "routhian": judge_lagrangian.routhian,
-        "gibbs-appell": judge_appell.gibbs_appell,
-        "poisson-bracket": judge_canonical.poisson_brackets,
-        "lagrange-bracket": judge_canonical.lagrange_brackets,
-        "lie-bracket": judge_canonical.lie_brackets,
-        "canonicity": judge_canonical.canonicity,
-        "canonicity-time-dependent": judge_canonical.canonicity,
-        "bilinear-covariant": judge_canonical.bilinear,
-        "generating-F1": judge_canonical.generating,
-        "generating-F2": judge_canonical.generating,
-        "generating-F3": judge_canonical.generating,
-        "generating-F4": judge_canonical.generating,
-        "transformed-hamiltonian-K": judge_canonical.new_hamiltonian,
-        "constant-of-motion": judge_hamiltonian.constant_of_motion,
-        "lagrangian-equivalence": judge_lagrangian.lagrangian_equivalence,
-        "equality-only": judge_hamiltonian.equality,
-        "kinetic-energy": judge_energy.kinetic_energy,
-        "generalized-force": judge_energy.generalized_force,
-        "constraint-class": judge_constraint_class.constraint_class,
-        "degrees-of-freedom": judge_constraint_class.degrees_of_freedom,
-        "reaction": judge_reaction.reaction,
-        "leaving-condition": judge_reaction.leaving_condition,
-        "conserved-or-not": judge_conserved.conserved_or_not,
-        "solution": judge_solution.solution,
-        "linearisation": judge_small.linearisation,
-        "first-order": judge_small.first_order,
-        "invariance": judge_invariance.invariance,
-        "jacobi-identity": judge_invariance.jacobi_identity,
-        "positive-real": judge_passive.positive_real,
-        "parameters": lambda reading: judge_parameters.parameters(questions, reading),
-        "variation": judge_variation.variation,
-        "differential": judge_variation.differential,
-    }
+JUDGES: Mapping[str, Callable[..., Iterator[Question]]] = MappingProxyType(
+    {name: named_function("canon.exercise.judges", kind.judge) for name, kind in KINDS.items()}
 )
 """What each kind of claim comes down to."""
 
@@ -120,7 +66,9 @@ def questions(reading: Reading) -> Iterator[Question]:
         Where the claim does not say something that could be judged.
     """
     yield from other_variables(reading)
-    for question in JUDGES[reading.claim.kind](reading):
+    judge_of_kind = JUDGES[reading.claim.kind]
+    inside = {"ask": questions} if reading.kind.about else {}
+    for question in judge_of_kind(reading, **inside):
         asked = isinstance(question, Determines)
         yield replace(question, wanted=reading.complete) if asked else question
 

@@ -24,11 +24,18 @@ from canon.proof.trees.sympy_types import arguments
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from sympy import Expr, Symbol
 
-__all__ = ["equivalent_equations", "without_solution"]
+__all__ = [
+    "NotAffineError",
+    "Stray",
+    "equivalent_equations",
+    "not_affine",
+    "systems_compared",
+    "without_solution",
+]
 
 SAME_SOLUTIONS = "the two systems of equations have the same solutions"
 
@@ -39,6 +46,36 @@ LONGEST_SAID = 80
 
 WORKING_BITS = 256
 POINTS = 12
+
+
+_ORDINALS = ("first", "second")
+
+
+@dataclass(frozen=True)
+class Stray:
+    """An equation of one of two systems that does not follow from the other; the numbers count from 0."""
+
+    system: int
+    number: int
+    equation: Expr
+
+    def __str__(self) -> str:
+        own, other = _ORDINALS[self.system], _ORDINALS[1 - self.system]
+        which = f"equation {self.number + 1} of the {own} system"
+        return f"{which} does not follow from the {other}: {self.equation} = 0"
+
+
+class NotAffineError(ValueError):
+    """An equation of one of two systems that is not affine in the unknowns; the numbers count from 0."""
+
+    def __init__(self, which: str, number: int, equation: Expr) -> None:
+        super().__init__(f"equation {number + 1} of the {which} system is {not_affine(equation)}")
+        self.which, self.number, self.equation = which, number, equation
+
+
+def not_affine(equation: Expr) -> str:
+    """Return in words that an equation is not affine, and what can be done."""
+    return f"not affine in the unknowns: {equation} = 0; solve it for the unknowns or name others"
 
 
 @dataclass(frozen=True)
@@ -102,6 +139,33 @@ def equivalent_equations(
     >>> print(equivalent_equations([u - x, v], [u - x], [u, v]).feedback)
     equation 2 of the first system does not follow from the second: v = 0
     """
+    return systems_compared(system_a, system_b, unknowns, domain, budget, str)
+
+
+def systems_compared(
+    system_a: Sequence[Expr],
+    system_b: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    domain: Domain,
+    budget: float,
+    said: Callable[[Stray], str],
+) -> Verdict:
+    """Decide what :func:`equivalent_equations` does, and say in the caller's words which equation does not follow.
+
+    Raises
+    ------
+    NotAffineError
+        If an equation is not affine in the unknowns.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, u, v = symbols("x u v")
+    >>> def said(stray):
+    ...     return f"{stray.equation} is more than the other system says"
+    >>> systems_compared([u - x, v], [u - x], [u, v], EVERYWHERE, 1.0, said).feedback
+    'v is more than the other system says'
+    """
     unknowns, domain = given_symbols(unknowns, "unknowns"), as_domain(domain)
     for name, system in (("system_a", system_a), ("system_b", system_b)):
         given_kind(system, (list, tuple), name, "put a single equation into brackets")
@@ -109,12 +173,12 @@ def equivalent_equations(
     deadline = start + given_seconds(budget)
     given = [
         [given_expression(e, f"equation {i} of the {which} system") for i, e in enumerate(system, start=1)]
-        for which, system in (("first", system_a), ("second", system_b))
+        for which, system in zip(_ORDINALS, (system_a, system_b), strict=True)
     ]
     off = off_kinks([e for system in given for e in system], domain)
     first, second = ([off.seen(e) for e in system] for system in given)
     return replace(
-        off.ask(lambda there: _equivalent(first, second, unknowns, there, deadline)),
+        off.ask(lambda there: _equivalent(first, second, unknowns, there, deadline, said)),
         seconds=time.monotonic() - start,
     )
 
@@ -125,6 +189,7 @@ def _equivalent(
     unknowns: Sequence[Symbol],
     domain: Domain,
     deadline: float,
+    said: Callable[[Stray], str],
 ) -> Verdict:
     a = _augmented(system_a, unknowns, domain, "first", deadline)
     b = _augmented(system_b, unknowns, domain, "second", deadline)
@@ -133,10 +198,10 @@ def _equivalent(
         verdict = Verdict(Status.UNDECIDED, evidence=tuple(Evidence("affine", text) for text in unknown))
         return replace(verdict, question=SAME_SOLUTIONS)
     field = is_analytic([entry for system in (a, b) for row in system.rows for entry in row], domain)
-    extra = _rows_follow(b, a, system_b, ("second", "first"), domain, deadline, field=field)
+    extra = _rows_follow(b, a, system_b, 1, domain, deadline, said, field=field)
     if extra.fails:
         return replace(extra, question=SAME_SOLUTIONS)
-    missing = _rows_follow(a, b, system_a, ("first", "second"), domain, deadline, field=field)
+    missing = _rows_follow(a, b, system_a, 0, domain, deadline, said, field=field)
     worst = missing if missing.fails or extra.holds else extra
     assumed = tuple(dict.fromkeys((*extra.assumed, *missing.assumed))) if worst.holds else worst.assumed
     return replace(worst, question=SAME_SOLUTIONS, assumed=assumed)
@@ -179,10 +244,7 @@ def _augmented(
             without_value = any(map(defined_nowhere, row))
             rebuilt = None if without_value else vanishes(expr - again, domain, deadline - time.monotonic())
             if rebuilt is None or rebuilt.fails:
-                raise ValueError(
-                    f"equation {number} of the {which} system is not affine in the unknowns: {expr} = 0; "
-                    "solve it for the unknowns or name others"
-                )
+                raise NotAffineError(which, number - 1, expr)
             if not rebuilt.holds:
                 return f"equation {number} of the {which} system was not proved affine in the unknowns"
         rows.append(tuple(row))
@@ -203,9 +265,10 @@ def _rows_follow(
     rows: _System,
     basis: _System,
     equations: Sequence[Expr],
-    names: tuple[str, str],
+    which: int,
     domain: Domain,
     deadline: float,
+    said: Callable[[Stray], str],
     *,
     field: bool,
 ) -> Verdict:
@@ -213,6 +276,7 @@ def _rows_follow(
 
     Everything follows from a basis without solutions, one whose largest minor needs the column of the rest.
     """
+    names = (_ORDINALS[which], _ORDINALS[1 - which])
     pivots = _largest_minor(basis, domain)
     minor = _determinant([[basis.rows[i][c] for c in pivots.columns] for i in pivots.rows])
     sure = field or proved_sign(minor, domain) in ("+", "-") or is_analytic(_without_moduli(minor), domain)
@@ -229,13 +293,8 @@ def _rows_follow(
             if verdict.fails and not sure:
                 verdict = vanishes(minor * determinant, domain, max(0.1, deadline - time.monotonic()))
             if verdict.fails and _minor_is_largest(basis, pivots, domain, deadline):
-                equation = equations[number]
-                return replace(
-                    verdict,
-                    residual=equation,
-                    feedback=f"equation {number + 1} of the {names[0]} system does not follow from the "
-                    f"{names[1]}: {equation} = 0",
-                )
+                stray = Stray(which, number, equations[number])
+                return replace(verdict, residual=stray.equation, feedback=said(stray))
             if verdict.fails:
                 undecided.append(Evidence("rank", f"the rank of the {names[1]} system is not known"))
             elif not verdict.holds:

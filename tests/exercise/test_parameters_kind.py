@@ -9,7 +9,7 @@ from canon.exercise.check import judged
 from canon.exercise.judge import InvalidClaim, judge
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.parameter_system import covers, families
-from canon.exercise.sheet.kinds import KINDS, OF_PARAMETERS, kind_of
+from canon.exercise.sheet.kinds import KINDS, kind_of
 from canon.exercise.sheet.sheet import Claim, claim_from
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
@@ -130,7 +130,7 @@ def test_undecided_where_conditions_have_no_closed_form():
 
 
 def test_the_keys_of_a_kind_are_those_of_both():
-    for of in OF_PARAMETERS:
+    for of in KINDS["parameters"].about:
         both = kind_of("parameters", {"of": of})
         assert {"of", "find", "values", *KINDS[of].required} == set(both.required)
         assert not {"of", "find", "values"} & {*KINDS[of].required, *KINDS[of].optional}

@@ -10,7 +10,8 @@ import pytest
 import canon
 from canon.exercise.check import check
 from canon.exercise.report.judgement import Judgement
-from canon.exercise.sheet.kinds import COMMON, KINDS
+from canon.exercise.sheet.kind import COMMON
+from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.sheet import Sheet, sheet_from
 
 PAGE = (Path(__file__).parents[2] / "docs" / "sheets.md").read_text("utf-8")

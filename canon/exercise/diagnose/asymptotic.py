@@ -25,6 +25,7 @@ from canon.proof.kinks import vanishes_off_kinks
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from canon.exercise.diagnose.diagnosis import WrongAnswer
     from canon.exercise.question.question import Part
 
 __all__ = ["right_to_an_order"]
@@ -45,25 +46,16 @@ class _Limit:
     name: str
 
 
-def right_to_an_order(parts: Sequence[Part], domain: Domain, deadline: float) -> Iterator[Diagnosis]:
-    """Yield in what, and to which order, all components are right, once that is proved.
-
-    Parameters
-    ----------
-    parts
-        The components of an answer, one of which is wrong.
-    domain
-        Where they are meant.
-    deadline
-        When to give up.
-    """
+def right_to_an_order(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield in what, and to which order, all components are right, once that is proved."""
+    parts, domain = wrong.parts, wrong.domain
     residuals = [(part.residual, _of_first_order(part)) for part in parts]
     residuals = [(r, c) for r, c in residuals if r != 0]
     if any(r.has(*_KINKED) or sp.count_ops(r) > MOST_OPERATIONS for r, _ in residuals):
         return
     epsilon = sp.Dummy("epsilon", positive=True)
     for limit in _limits([r for r, _ in residuals], epsilon):
-        if time.monotonic() > deadline:
+        if time.monotonic() > wrong.deadline:
             return
         scaled = [(substitute(r, limit.values), substitute(c, limit.values)) for r, c in residuals]
         orders = [_order(r, c, epsilon, domain) for r, c in scaled]

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from dataclasses import replace
 from itertools import chain, groupby
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
+from canon.exercise.diagnose.repair import is_wrong
+from canon.exercise.diagnose.rereadings import read_anew
 from canon.exercise.diagnose.screening import screening
 from canon.exercise.diagnose.slips import Change, common_slips, slipped, times, variants
-from canon.exercise.sheet.reading import InvalidClaim, Reading
-from canon.exercise.sheet.sympy_trees import arguments, replaced, symbols_of
+from canon.exercise.sheet.kind import Shape, named_function
+from canon.exercise.sheet.reading import InvalidClaim
+from canon.exercise.sheet.sympy_trees import arguments, symbols_of
 from canon.expression.symbols.symbol import velocity
 
 if TYPE_CHECKING:
@@ -22,72 +26,52 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-__all__ = ["another_gauge", "another_reading", "one_change", "only_where", "right_where"]
+    from canon.exercise.diagnose.diagnosis import WrongAnswer
+    from canon.exercise.sheet.reading import Reading
+
+__all__ = [
+    "another_gauge",
+    "another_reading",
+    "one_change",
+    "one_change_of_two",
+    "only_where",
+    "right_where",
+    "staggered_step",
+]
 
 TRIAL_SECONDS = 0.25
 MOST_DIVIDING = 16
 _BOUNDS = (sp.exp(-1), 1, -1, 3 * sp.pi / 2, sp.pi, sp.pi / 2, -sp.pi / 2, -sp.pi)
-_ANSWERS: Mapping[str, tuple[str, ...]] = {
-    "gibbs-appell": ("S",),
-    "hamilton-equations": ("solution",),
-    "canonicity": ("P", "Q", "implicit"),
-    "canonicity-time-dependent": ("P", "Q", "implicit"),
-    "bilinear-covariant": ("P", "Q"),
-    "lagrange-bracket": ("p", "q"),
-    "transformed-hamiltonian-K": ("K", "map.P", "map.Q", "inverse_map.p", "inverse_map.q"),
-    "constant-of-motion": ("I",),
-    "lagrangian-equivalence": ("F", "L2"),
-    "equality-only": ("rhs", "lhs"),
-    **{f"generating-F{k}": ("F", "map.Q", "map.P", "inverse_map.q", "inverse_map.p") for k in "1234"},
-}
-"""Where the answer stands in claims that are judged as a whole."""
 
 
-def another_reading(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+def another_reading(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield which other claim, of the same formulas, is right: another type, variables exchanged, the inverse."""
-    keys, kind = reading.claim.keys, reading.claim.kind
-    trials: list[tuple[str, Mapping[str, Any], str]] = []
-    if kind.startswith("generating"):
-        trials += [
-            (f"generating-F{k}", keys, f"F generates this map as a function of type {k}, not {kind[-1]}")
-            for k in "1234"
-            if k != kind[-1]
-        ]
-    if reading.has("map"):
-        exchanged = {"Q": keys["map"].get("P"), "P": keys["map"].get("Q")}
-        trials.append((kind, {**keys, "map": exchanged}, "Q and P are exchanged in the map"))
-    if kind == "hamilton-equations" and reading.has("q_dot"):
-        exchanged = {"q_dot": keys["p_dot"], "p_dot": keys["q_dot"]}
-        trials.append((kind, {**keys, **exchanged}, "the equations of q and p are exchanged"))
-    if kind == "lagrangian-equivalence" and reading.word("relation") == "gauge" and not reading.has("F"):
-        sentence = "L1 and L2 have the same equations of motion, but L2 − L1 is not dF/dt"
-        trials.append((kind, {**keys, "relation": "equations"}, f"{sentence} of any F(q, t)"))
-    if kind == "routhian":
-        other = {"L-pq": "pq-L", "pq-L": "L-pq"}[reading.word("convention")]
-        trials.append((kind, {**keys, "convention": other}, f"right under the other convention, {other}"))
-    readings = [(_read_anew(reading, other, changed), sentence) for other, changed, sentence in trials]
-    if reading.has("map"):
-        readings.insert(0, (_inverted(reading), "what is given as the map is its inverse"))
-    for trial, sentence in readings:
-        if time.monotonic() < deadline and _could_hold(trial) and _holds(trial, deadline):
+    trials = [
+        trial
+        for name in wrong.reading.kind.rereadings
+        for trial in named_function("canon.exercise.diagnose.rereadings", name)(wrong.reading)
+    ]
+    for trial, sentence in trials:
+        if time.monotonic() < wrong.deadline and _could_hold(trial) and _holds(trial, wrong.deadline):
             yield Diagnosis(sentence, trial)
 
 
-def another_gauge(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+def another_gauge(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield whether L₂ − L₁ is the derivative of another function than the one that was given."""
-    if reading.claim.kind != "lagrangian-equivalence" or not reading.has("F"):
+    reading = wrong.reading
+    if not reading.has("F"):
         return
-    others = {key: value for key, value in reading.claim.keys.items() if key != "F"}
-    trial = _read_anew(reading, reading.claim.kind, others)
-    if _holds(trial, deadline):
+    trial = read_anew(reading, {key: value for key, value in reading.claim.keys.items() if key != "F"})
+    if _holds(trial, wrong.deadline):
         yield Diagnosis("L2 − L1 is dF/dt of some F(q, t), but not of this one", trial)
 
 
-def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+def only_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield a region, or a value of a parameter, for which the claim does hold.
 
     It may hold for more: that it holds only there is not proved, and not said.
     """
+    reading, deadline = wrong.reading, wrong.deadline
     keys = reading.claim.keys
     assumed = dict(keys.get("parameters", {}))
     following = {name for key in _following(reading) for name in _names(keys.get(key))}
@@ -100,14 +84,13 @@ def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
         for word, sign in (("positive", ">"), ("negative", "<")):
             if time.monotonic() > deadline:
                 return
-            changed = {**keys, "parameters": {**assumed, symbol.name: word}}
-            trial = _read_anew(reading, reading.claim.kind, changed)
+            trial = read_anew(reading, {**keys, "parameters": {**assumed, symbol.name: word}})
             if _is_somewhere(trial) and _could_hold(trial) and _holds(trial, deadline):
                 yield Diagnosis(f"right for {symbol} {sign} 0, but not on the whole domain", trial)
     variables = {
         name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
     }
-    if reading.claim.kind == "equality-only" and len(assumed) < 2:
+    if reading.kind.two_sided and len(assumed) < 2:
         return  # at one point two functions may meet by chance
     for name in [n for n in assumed if n not in variables and n in reading.scope.names][:8]:
         if time.monotonic() > deadline:
@@ -117,8 +100,9 @@ def only_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
             yield Diagnosis(f"right for {name} = 1, but not in general", trial)
 
 
-def right_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
+def right_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield a condition under which the claim does hold: the sign of a denominator, of a difference, a bound."""
+    reading, deadline = wrong.reading, wrong.deadline
     expressions = [f for _, f in _answers(reading)]
     for g in _dividing(expressions):
         for sign in (">", "<"):
@@ -126,7 +110,7 @@ def right_where(reading: Reading, deadline: float) -> Iterator[Diagnosis]:
                 return
             domain = reading.claim.keys.get("domain", [])
             conditions = [*(domain if isinstance(domain, list) else [domain]), f"{g} {sign} 0"]
-            trial = _read_anew(reading, reading.claim.kind, {**reading.claim.keys, "domain": conditions})
+            trial = read_anew(reading, {**reading.claim.keys, "domain": conditions})
             if _is_somewhere(trial) and _could_hold(trial) and _holds(trial, deadline):
                 yield Diagnosis(f"right where {g} {sign} 0, but not on the whole domain", trial)
 
@@ -147,7 +131,7 @@ def _following(reading: Reading) -> tuple[str, ...]:
         return ("new_q", "new_p")
     if reading.has("inverse_map") or reading.has("solution"):
         return ("q", "p")
-    return ("p",) if reading.claim.kind == "legendre-hamiltonian" else ("momenta", "multipliers")
+    return reading.kind.following
 
 
 def _dividing(expressions: Sequence[Expr]) -> list[Expr]:
@@ -167,32 +151,21 @@ def _dividing(expressions: Sequence[Expr]) -> list[Expr]:
     return list(found)[:MOST_DIVIDING]
 
 
-def one_change(
-    reading: Reading, deadline: float, suspects: Sequence[str] = (), held: int = 0
-) -> Iterator[Diagnosis]:
-    """Yield one change in the answer that makes the whole claim right.
+def one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield one change in the answer that makes the whole claim right."""
+    yield from _one_change(wrong.within(0.75))
 
-    Parameters
-    ----------
-    reading
-        The claim.
-    deadline
-        When to give up.
-    suspects
-        Names of what is probably wrong, such as ``P2``, the first suspect first.
-    held
-        How many questions of the claim were answered before the one that failed.
-    """
+
+def one_change_of_two(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield one change in F or L₂; where both are answered, half of the time is left to L₂ as a component."""
+    yield from _one_change(wrong.within(0.5 if wrong.reading.has("F") else 0.75))
+
+
+def _one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    reading, deadline, suspects = wrong.reading, wrong.deadline, _suspects(wrong)
     answers = sorted(_answers(reading), key=lambda answer: _rank(answer[0], suspects))
     screen = screening(reading, dict(answers))
     symbols = tuple(reading.scope.names.values())
-    for changed, sentence in _staggered(reading, dict(answers)):
-        if screen is None or screen.passes(changed):
-            trial = reading
-            for name, new in changed.items():
-                trial = trial.with_instead(name, new)
-            if _holds(trial, deadline):
-                yield Diagnosis(sentence, trial)
     groups = groupby(sorted(answers, key=lambda a: _outer(a[0])), key=lambda a: _outer(a[0]))
     for key, group in groups:
         items = list(group)
@@ -215,17 +188,40 @@ def one_change(
         for new, change in chain(_rescaled(key, expression), _named(key, variants(expression, symbols))):
             if time.monotonic() > until:
                 break
-            if _trivial(new, reading) or (screen is not None and not screen.passes({key: new})):
+            if _trivial(key, new, reading) or (screen is not None and not screen.passes({key: new})):
                 continue
             trial = reading.with_instead(key, new)
-            if _holds(trial, deadline, held if key == "K" else 0):
+            if _holds(trial, deadline, wrong.finding.held if key == "K" else 0):
                 yield Diagnosis(str(change), trial)
+
+
+def _suspects(wrong: WrongAnswer) -> list[str]:
+    """Return the names in brackets that are wrong, the most frequent first."""
+    counts: Counter[str] = Counter()
+    for part in wrong.parts:
+        if part.bracket_of and is_wrong(part, wrong.domain):
+            counts.update(part.bracket_of)
+    return [name for name, _ in counts.most_common()]
+
+
+def staggered_step(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield that new momenta or coordinates belong in place of the old ones: a step of one after that of the other."""
+    reading = wrong.reading
+    if not reading.has("Q"):
+        return
+    answers = dict(_answers(reading))
+    screen = screening(reading, answers)
+    for changed, sentence in _staggered(reading, answers):
+        if screen is None or screen.passes(changed):
+            trial = reading
+            for name, new in changed.items():
+                trial = trial.with_instead(name, new)
+            if _holds(trial, wrong.deadline):
+                yield Diagnosis(sentence, trial)
 
 
 def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[Mapping[str, Expr], str]]:
     """Yield maps with new momenta or coordinates where the old ones stand: a step of one after that of the other."""
-    if not reading.claim.kind.startswith("canonicity") or not reading.has("Q"):
-        return
     for here, there, letter in (("Q", "P", "p"), ("P", "Q", "q")):
         old = reading.symbols(letter)
         step = {z: answers[f"{there}[{i}]"] for i, z in enumerate(old)}
@@ -266,50 +262,37 @@ def _named(key: str, found: Iterator[tuple[Expr, Change]]) -> Iterator[tuple[Exp
 
 
 def _answers(reading: Reading) -> Iterator[tuple[str, Expr]]:
-    if reading.claim.kind == "poisson-bracket":
-        for i, (f, g, value) in enumerate(reading.brackets("f", "g")):
-            yield from zip((f"pairs[{i}].{key}" for key in ("value", "f", "g")), (value, f, g), strict=True)
-    for key in _ANSWERS.get(reading.claim.kind, ()):
+    """Yield the expressions in which a change is tried, by keys such as ``Q[0]``."""
+    for key in reading.kind.repaired:
         outer, _, inner = key.partition(".")
         if not reading.has(outer):
             continue
         value = reading.claim.keys[outer]
-        if inner:
-            items = reading.inside(key, value.get(inner, []))
-        elif isinstance(value, list):
-            items = (reading.equations if outer == "implicit" else reading.expressions)(outer)
-        elif outer == "solution":
-            yield from ((f"{key}.{name}", item) for name, item in reading.table(key).items())
-            continue
-        else:
-            yield key, reading.expression(key)
-            continue
-        yield from ((f"{key}[{i}]", item) for i, item in enumerate(items))
+        match reading.kind.shapes[outer]:
+            case Shape.BRACKETS:
+                yield from _of_brackets(reading, key)
+            case Shape.EXPRESSIONS:
+                yield from ((f"{key}.{name}", item) for name, item in reading.table(key).items())
+            case Shape.LISTS:
+                items = reading.inside(key, value.get(inner, []))
+                yield from ((f"{key}[{i}]", item) for i, item in enumerate(items))
+            case Shape.TEXTS if isinstance(value, list):
+                items = (reading.equations if outer == "implicit" else reading.expressions)(outer)
+                yield from ((f"{key}[{i}]", item) for i, item in enumerate(items))
+            case _:
+                yield key, reading.expression(key)
 
 
-def _inverted(reading: Reading) -> Reading:
-    """Return the claim with its map read as giving the old variables by the new ones."""
-    keys = {key: value for key, value in reading.claim.keys.items() if key != "map"}
-    symbols = [reading.symbols(key) for key in ("q", "p", "new_q", "new_p")]
-    swap = dict(zip((*symbols[0], *symbols[1]), (*symbols[2], *symbols[3]), strict=True))
-    inverted = _read_anew(
-        reading, reading.claim.kind, {**keys, "inverse_map": {k: ["0"] * len(symbols[0]) for k in "qp"}}
-    )
-    for part, name in (("Q", "q"), ("P", "p")):
-        for i, f in enumerate(reading.inside(f"map.{part}", reading.claim.keys["map"][part])):
-            inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", replaced(f, swap))
-    return inverted
+def _of_brackets(reading: Reading, key: str) -> Iterator[tuple[str, Expr]]:
+    for i, (f, g, value) in enumerate(reading.brackets("f", "g")):
+        yield from zip((f"{key}[{i}].{name}" for name in ("value", "f", "g")), (value, f, g), strict=True)
 
 
-def _trivial(answer: Expr, reading: Reading) -> bool:
-    """Whether an answer says nothing any more: a constant of the motion that is constant anyway."""
+def _trivial(key: str, answer: Expr, reading: Reading) -> bool:
+    """Whether an answer under a key says nothing any more: a constant of the motion that is constant anyway."""
     variables = {s for key in ("q", "p", "x") if reading.is_names(key) for s in reading.symbols(key)}
     rates = {velocity(s) for s in variables}
-    return reading.claim.kind == "constant-of-motion" and not answer.free_symbols & (variables | rates)
-
-
-def _read_anew(reading: Reading, kind: str, keys: Mapping[str, Any]) -> Reading:
-    return Reading(replace(reading.claim, kind=kind, keys=MappingProxyType(dict(keys))))
+    return key in reading.kind.varying and not answer.free_symbols & (variables | rates)
 
 
 def _holds(reading: Reading, deadline: float, held: int = 0) -> bool:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
+    from canon.exercise.diagnose.diagnosis import WrongAnswer
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
@@ -107,11 +108,12 @@ def second_lagrangian_part(reading: Reading) -> Part:
     return Part("L2", reading.expression("L2"), right, key="L2")
 
 
-def time_term(reading: Reading) -> Iterator[Diagnosis]:
+def time_term(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield the term of a constant of the motion that holds the time explicitly, where it was lost.
 
     If dI/dt is the same in every state, I − t dI/dt is conserved.
     """
+    reading = wrong.reading
     I, t = reading.expression("I"), reading.time
     if I.has(t) or reading.has("restrict"):
         return

@@ -1,4 +1,4 @@
-"""A diagnosis, the claim repaired as it says, and the judgement on the whole of the repaired claim.
+"""A diagnosis of a wrong answer, the claim repaired as it says, and the judgement on the whole of the repaired claim.
 
 The law of feedback: what a sentence proposes is put into the claim, and the claim is judged anew from its first
 question to its last. A sentence whose claim does not hold then is not told.
@@ -6,7 +6,8 @@ question to its last. A sentence whose claim does not hold then is not told.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -21,10 +22,12 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
+    from canon.exercise.judge import Finding
     from canon.exercise.question.question import Part
     from canon.exercise.sheet.reading import Reading
+    from canon.proof.domain.domain import Domain
 
-__all__ = ["Diagnosis", "judged_to_hold", "scaled"]
+__all__ = ["Diagnosis", "WrongAnswer", "judged_to_hold", "scaled"]
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,36 @@ class Diagnosis:
     sentence: str
     repaired: Reading | None = None
     only_fault: bool = False
+
+
+@dataclass(frozen=True)
+class WrongAnswer:
+    """A claim that fails, with what was compared when it did.
+
+    Parameters
+    ----------
+    finding
+        The judgement with the question on which it turned.
+    parts, domain
+        The components that were compared, and where they are meant.
+    deadline
+        When to stop looking for what is wrong.
+    """
+
+    finding: Finding
+    parts: tuple[Part, ...]
+    domain: Domain
+    deadline: float
+
+    @property
+    def reading(self) -> Reading:
+        """The claim."""
+        return self.finding.reading
+
+    def within(self, share: float) -> WrongAnswer:
+        """Return the same with a share of the time that is left, so that some is left to what comes after."""
+        now = time.monotonic()
+        return replace(self, deadline=now + share * (self.deadline - now))
 
 
 def judged_to_hold(reading: Reading, seconds: float, held: int = 0, but: int | None = None) -> bool:

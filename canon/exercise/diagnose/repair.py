@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from canon.exercise.question.question import Part
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Repair", "Screen", "common_ratio", "repair", "repairs"]
+__all__ = ["Repair", "Screen", "common_ratio", "is_wrong", "repair", "repairs"]
 
 POINTS = 3
 PRECISION = 128
@@ -96,6 +96,11 @@ def common_ratio(parts: Sequence[Part], domain: Domain) -> Fraction | None:
             continue
         ratios.add(screen.ratio(part.right, part.claimed))
     return ratios.pop() if len(ratios) == 1 else None
+
+
+def is_wrong(part: Part, domain: Domain) -> bool:
+    """Whether a component is wrong as far as its values tell."""
+    return not Screen(part, domain).passes(part.claimed)
 
 
 def _is_right(part: Part, expression: Expr, domain: Domain) -> bool:

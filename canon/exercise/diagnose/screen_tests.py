@@ -1,10 +1,11 @@
 """What must vanish for a claim to be right, as a test of its answers in the neighbourhood of a point.
 
-One test for each kind, from values and slopes alone; the laws are those of the judges.
+From values and slopes alone; the laws are those of the judges. A kind of claim names the function that makes its test.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -12,24 +13,26 @@ from flint import acb
 from sympy import Expr, Symbol
 
 from canon.exercise.diagnose.point_derivatives import small
+from canon.exercise.judges.canonical import map_values
+from canon.exercise.judges.conserved import motion_of
 from canon.expression.symbols.symbol import velocity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from canon.exercise.diagnose.point_derivatives import Neighbourhood
     from canon.exercise.sheet.reading import Reading
+    from canon.proof.domain.domain import Domain
 
 __all__ = [
-    "Answers",
+    "Screened",
     "Test",
-    "canonical_map",
+    "bilinear_covariant",
+    "canonicity",
     "constant",
-    "dependent",
     "equality",
     "gauge",
     "generating",
-    "implicit",
     "lagrange_brackets",
     "new_hamiltonian",
     "poisson_brackets",
@@ -43,11 +46,37 @@ Answers: TypeAlias = "Callable[[str], Expr]"
 Test: TypeAlias = "Callable[[Answers, Neighbourhood], bool]"
 
 
+@dataclass(frozen=True)
+class Screened:
+    """The test of a claim's answers, what needs a value for it, where, and the expressions that are not answered."""
+
+    test: Test
+    symbols: tuple[Symbol, ...]
+    domain: Domain
+    given: tuple[Expr, ...] = ()
+
+
+def _screened(
+    reading: Reading, test: Test, given: Sequence[Expr] = (), more: Sequence[Symbol] = ()
+) -> Screened:
+    """Return a test in which every name of a claim, the time and some more symbols have values."""
+    symbols = (*reading.scope.names.values(), reading.time, *more)
+    return Screened(test, symbols, reading.domain, tuple(given))
+
+
+def _on_the_map(reading: Reading, test: Test, given: Sequence[Expr] = ()) -> Screened:
+    """Return a test in which the variables that a map gives have the values that follow."""
+    names = (*reading.scope.names.values(), reading.time)
+    following = _dependent(reading)
+    free = tuple(s for s in names if s not in following)
+    return Screened(test, free, map_values(reading)[1], tuple(given))
+
+
 def _keys(*names: str, like: Sequence[Symbol]) -> list[str]:
     return [f"{name}[{i}]" for name in names for i in range(len(like))]
 
 
-def dependent(reading: Reading) -> tuple[Symbol, ...]:
+def _dependent(reading: Reading) -> tuple[Symbol, ...]:
     """Return the variables that a map gives."""
     keys = ("new_q", "new_p") if reading.has("map") else ("q", "p")
     return tuple(s for key in keys for s in reading.symbols(key))
@@ -68,7 +97,17 @@ def _symplectic(M: Sequence[Sequence[acb]], valence: acb) -> bool:
     )
 
 
-def canonical_map(reading: Reading) -> Test:
+def canonicity(reading: Reading) -> Screened:
+    """The map is canonical, as functions give it or as equations do."""
+    return _screened(reading, _implicit(reading) if reading.has("implicit") else _canonical_map(reading))
+
+
+def bilinear_covariant(reading: Reading) -> Screened | None:
+    """A map multiplies the bilinear covariant by a factor as it does the brackets."""
+    return _screened(reading, _canonical_map(reading)) if reading.has("Q") else None
+
+
+def _canonical_map(reading: Reading) -> Test:
     """M J Mᵀ = c J with M = ∂(Q, P)/∂(q, p)."""
     q, p = reading.phase_space("q", "p")
     keys = _keys("Q", "P", like=q)
@@ -82,16 +121,16 @@ def canonical_map(reading: Reading) -> Test:
     return test
 
 
-def equality() -> Test:
+def equality(reading: Reading) -> Screened:
     """Both sides have the same value."""
 
     def test(answer: Answers, place: Neighbourhood) -> bool:
         return small([place.value(answer("lhs")), -place.value(answer("rhs"))])
 
-    return test
+    return _screened(reading, test)
 
 
-def poisson_brackets(reading: Reading) -> Test:
+def poisson_brackets(reading: Reading) -> Screened:
     """{f, g} is the value of each pair."""
     z, pairs = (*reading.symbols("q"), *reading.symbols("p")), range(len(reading.brackets("f", "g")))
 
@@ -106,10 +145,10 @@ def poisson_brackets(reading: Reading) -> Test:
             for i in pairs
         )
 
-    return test
+    return _screened(reading, test)
 
 
-def lagrange_brackets(reading: Reading) -> Test:
+def lagrange_brackets(reading: Reading) -> Screened:
     """Σ (∂q/∂u ∂p/∂v − ∂q/∂v ∂p/∂u) is the value of each pair."""
     pairs = reading.brackets("u", "v")
     like = reading.expressions("q")
@@ -120,7 +159,7 @@ def lagrange_brackets(reading: Reading) -> Test:
             small([*_lagrange(answer, place, size, u, v), -place.value(value)]) for u, v, value in pairs
         )
 
-    return test
+    return _screened(reading, test, [value for *_, value in pairs])
 
 
 def _lagrange(answer: Answers, place: Neighbourhood, size: range, u: Expr, v: Expr) -> Iterator[acb]:
@@ -133,7 +172,7 @@ def _symbols(*found: Expr) -> list[Symbol]:
     return [s for s in found if isinstance(s, Symbol)]
 
 
-def implicit(reading: Reading) -> Test:
+def _implicit(reading: Reading) -> Test:
     """B J Bᵀ = c A J Aᵀ with A = ∂G/∂Z and B = ∂G/∂z, for any Z: a sufficient condition, and one for most schemes.
 
     It says that all the maps G(z, Z) = constant are canonical.
@@ -155,9 +194,9 @@ def implicit(reading: Reading) -> Test:
     return test
 
 
-def generating(reading: Reading) -> Test:
+def generating(reading: Reading) -> Screened:
     """The rules of the type of generating function."""
-    kind = int(reading.claim.kind[-1])
+    kind = reading.kind.implied["type"]
     q, p, Q, P = (reading.symbols(key) for key in ("q", "p", "new_q", "new_p"))
     there = _mapping(reading)
     old, other_old, sign_old = (q, p, 1) if kind in (1, 2) else (p, q, -1)
@@ -169,13 +208,13 @@ def generating(reading: Reading) -> Test:
         here, F = there(answer, place), answer("F")
         return all(small([here.point[y], -sign * here.slope(F, x)]) for y, x, sign in rules)
 
-    return test
+    return _on_the_map(reading, test)
 
 
 def _mapping(reading: Reading) -> Callable[[Answers, Neighbourhood], Neighbourhood]:
     """Return what adds to a place the values of the dependent variables."""
     which = ("map.Q", "map.P") if reading.has("map") else ("inverse_map.q", "inverse_map.p")
-    keys, names = _keys(*which, like=reading.symbols("q")), dependent(reading)
+    keys, names = _keys(*which, like=reading.symbols("q")), _dependent(reading)
     known: dict[tuple[int, tuple[Expr, ...]], Neighbourhood] = {}
 
     def there(answer: Answers, place: Neighbourhood) -> Neighbourhood:
@@ -191,7 +230,7 @@ def _mapping(reading: Reading) -> Callable[[Answers, Neighbourhood], Neighbourho
     return there
 
 
-def new_hamiltonian(reading: Reading) -> Test:
+def new_hamiltonian(reading: Reading) -> Screened:
     """With Z = Z(z, t): ∂Z/∂t + M J ∇H = J ∇K; the same with z and Z, H and K exchanged for the inverse map."""
     there, t, H = _mapping(reading), reading.time, reading.expression("H")
     z = (*reading.symbols("q"), *reading.symbols("p"))
@@ -213,7 +252,7 @@ def new_hamiltonian(reading: Reading) -> Test:
             for key, row, rate in zip(keys, M, wanted, strict=True)
         )
 
-    return test
+    return _on_the_map(reading, test, [H])
 
 
 def _field(slopes: Sequence[acb]) -> list[acb]:
@@ -221,9 +260,11 @@ def _field(slopes: Sequence[acb]) -> list[acb]:
     return [*slopes[n:], *(-s for s in slopes[:n])]
 
 
-def constant(reading: Reading, rates: Mapping[Symbol, Expr]) -> Test:
+def constant(reading: Reading) -> Screened | None:
     """Σ ∂I/∂x ẋ + ∂I/∂t = 0."""
-    t = reading.time
+    if reading.has("restrict"):
+        return None
+    t, rates = reading.time, motion_of(reading)
 
     def test(answer: Answers, place: Neighbourhood) -> bool:
         I = answer("I")
@@ -232,11 +273,13 @@ def constant(reading: Reading, rates: Mapping[Symbol, Expr]) -> Test:
             return False  # constant anyway
         return small([place.slope(I, t), *(slopes[x] * place.value(f) for x, f in rates.items())])
 
-    return test
+    return _screened(reading, test, tuple(rates.values()), tuple(rates))
 
 
-def gauge(reading: Reading) -> Test:
+def gauge(reading: Reading) -> Screened | None:
     """L₂ − L₁ = dF/dt."""
+    if not reading.has("F"):
+        return None
     q, t, first = reading.symbols("q"), reading.time, reading.expression("L1")
 
     def test(answer: Answers, place: Neighbourhood) -> bool:
@@ -246,11 +289,13 @@ def gauge(reading: Reading) -> Test:
             [place.value(answer("L2")), -place.value(first), -place.slope(F, t), *(-m for m in moving)]
         )
 
-    return test
+    return _screened(reading, test, [first], [velocity(x) for x in q])
 
 
-def solution(reading: Reading) -> Test:
+def solution(reading: Reading) -> Screened | None:
     """The functions of time solve Hamilton's equations."""
+    if not reading.has("solution"):
+        return None
     q, p = reading.phase_space("q", "p")
     H, t, z = reading.expression("H"), reading.time, (*q, *p)
 
@@ -260,4 +305,4 @@ def solution(reading: Reading) -> Test:
         rates = _field(here.slopes(H, z))
         return all(small([place.slope(f, t), -rate]) for f, rate in zip(motion, rates, strict=True))
 
-    return test
+    return _screened(reading, test, [H])

@@ -11,13 +11,10 @@ from typing import TYPE_CHECKING
 
 from flint import acb
 
-from canon.exercise.diagnose import screen_tests as tests
 from canon.exercise.diagnose.point_derivatives import BITS, Examples, Neighbourhood
-from canon.exercise.judges.canonical import map_values
-from canon.exercise.judges.conserved import motion_of
 from canon.exercise.question.constraint_manifold import EmptyDomainError
+from canon.exercise.sheet.kind import named_function
 from canon.exercise.sheet.reading import InvalidClaim
-from canon.expression.symbols.symbol import velocity
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision
 from canon.proof.domain.verdict import Undecided
@@ -25,11 +22,10 @@ from canon.proof.domain.verdict import Undecided
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from sympy import Expr, Symbol
+    from sympy import Expr
 
-    from canon.exercise.diagnose.screen_tests import Test
+    from canon.exercise.diagnose.screen_tests import Screened, Test
     from canon.exercise.sheet.reading import Reading
-    from canon.proof.domain.domain import Domain
 
 __all__ = ["Screening", "screening"]
 
@@ -69,55 +65,20 @@ def screening(reading: Reading, answers: Mapping[str, Expr]) -> Screening | None
     answers
         What it answers, by keys such as ``Q[0]``.
     """
+    if not reading.kind.screen:
+        return None
     try:
-        found = _test_of(reading)
+        found: Screened | None = named_function("canon.exercise.diagnose.screen_tests", reading.kind.screen)(
+            reading
+        )
     except (InvalidClaim, EmptyDomainError, SingularMatrixError, Undecided):
         return None
     if found is None:
         return None
-    test, symbols, domain, given = found
-    examples = Examples((*answers.values(), *given))
+    examples = Examples((*answers.values(), *found.given))
     with precision(BITS):
         places = [
             Neighbourhood({s: acb(int(v.p)) / acb(int(v.q)) for s, v in point.items()}, examples)
-            for point in domain.points(symbols, POINTS, seed=23, but_functions=True)
+            for point in found.domain.points(found.symbols, POINTS, seed=23, but_functions=True)
         ]
-    return Screening(answers, test, places) if len(places) == POINTS else None
-
-
-def _test_of(reading: Reading) -> tuple[Test, Sequence[Symbol], Domain, Sequence[Expr]] | None:
-    """Return the test of a kind, what needs a value, where, and the expressions that are not answered."""
-    kind, names = reading.claim.kind, (*reading.scope.names.values(), reading.time)
-    given: list[Expr] = []
-    domain = reading.domain
-    if kind.startswith("canonicity") and reading.has("implicit"):
-        test = tests.implicit(reading)
-    elif kind.startswith("canonicity") or (kind == "bilinear-covariant" and reading.has("Q")):
-        test = tests.canonical_map(reading)
-    elif kind == "equality-only":
-        test = tests.equality()
-    elif kind == "poisson-bracket":
-        test = tests.poisson_brackets(reading)
-    elif kind == "lagrange-bracket":
-        test = tests.lagrange_brackets(reading)
-        given += [value for *_, value in reading.brackets("u", "v")]
-    elif kind.startswith("generating"):
-        test, domain = tests.generating(reading), map_values(reading)[1]
-        names = tuple(s for s in names if s not in tests.dependent(reading))
-    elif kind == "transformed-hamiltonian-K":
-        test, domain = tests.new_hamiltonian(reading), map_values(reading)[1]
-        names = tuple(s for s in names if s not in tests.dependent(reading))
-        given.append(reading.expression("H"))
-    elif kind == "constant-of-motion" and not reading.has("restrict"):
-        rates = motion_of(reading)
-        test, names = tests.constant(reading, rates), (*names, *rates)
-        given += rates.values()
-    elif kind == "lagrangian-equivalence" and reading.has("F"):
-        test, names = tests.gauge(reading), (*names, *(velocity(q) for q in reading.symbols("q")))
-        given += [reading.expression("L1")]
-    elif kind == "hamilton-equations" and reading.has("solution"):
-        test = tests.solution(reading)
-        given.append(reading.expression("H"))
-    else:
-        return None
-    return test, names, domain, given
+    return Screening(answers, found.test, places) if len(places) == POINTS else None

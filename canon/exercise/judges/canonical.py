@@ -111,6 +111,7 @@ def canonical_parts(
             f"{{{names[i]}, {names[j]}}}",
             poisson_bracket(new[i], new[j], q, p),
             valence if j - i == n else sp.S.Zero,
+            bracket_of=(names[i], names[j]),
         )
         for i, j in pairs
     )
@@ -183,7 +184,7 @@ def bilinear(reading: Reading) -> Iterator[Question]:
 
 def generating(reading: Reading) -> Iterator[Question]:
     """The rules of the type hold identically on the map, and the mixed Hessian is regular."""
-    kind, F = int(reading.claim.kind[-1]), reading.expression("F")
+    kind, F = reading.kind.implied["type"], reading.expression("F")
     there, domain = map_values(reading)
     rules = rules_of(reading, kind, F)
     on_the_map = substitute(F, there)

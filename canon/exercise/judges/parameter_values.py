@@ -23,7 +23,6 @@ from canon.exercise.question.question import (
     Tells,
     decide,
 )
-from canon.exercise.sheet.kinds import OF_PARAMETERS
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim
 from canon.exercise.sheet.sympy_trees import replaced
@@ -46,7 +45,7 @@ Ask: TypeAlias = "Callable[[Reading], Iterator[Question]]"
 """What a claim of any kind comes down to."""
 
 
-def parameters(ask: Ask, reading: Reading) -> Iterator[Question]:
+def parameters(reading: Reading, ask: Ask) -> Iterator[Question]:
     """The inner claim, which ``ask`` takes apart, holds at each of the claimed values and at no others."""
     inner, wanted = _inner(reading), _wanted(reading)
     claimed = [_assigned(reading, i, table, wanted) for i, table in enumerate(reading.claim.keys["values"])]
@@ -94,8 +93,8 @@ def parameters(ask: Ask, reading: Reading) -> Iterator[Question]:
 def _inner(reading: Reading) -> Reading:
     """Return the claim whose parameters are asked for."""
     kind = reading.word("of")
-    if kind not in OF_PARAMETERS:
-        reading.fault("of", f"should be one of {', '.join(OF_PARAMETERS)}")
+    if kind not in reading.kind.about:
+        reading.fault("of", f"should be one of {', '.join(reading.kind.about)}")
     claim = reading.claim
     keys = {key: value for key, value in claim.keys.items() if key not in _OWN}
     keys["kind"] = kind

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from canon.exercise.question.question import fails
-from canon.exercise.sheet.kinds import KINDS, Shape, kind_of
+from canon.exercise.sheet.kind import Shape
 from canon.expression.symbols.symbol import Coordinate, Rate
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.linear import eliminate
@@ -47,7 +47,7 @@ def _allowed(reading: Reading) -> set[str]:
     for name in sorted(listed):
         if scope.symbol(name) is None and name not in scope.functions:
             reading.fault("in", f"{name} is not declared; {scope.near(name)}")
-    shapes = _shapes(reading)
+    shapes = reading.kind.shapes
     names = (key for key, shape in shapes.items() if shape is Shape.NAMES and reading.has(key))
     moving = {name for key in names if key not in ("constants", "small") for name in reading.words(key)}
     declared = {*scope.names, *reading.claim.keys.get("parameters", {})} - moving
@@ -64,8 +64,8 @@ def _displacements(reading: Reading) -> dict[str, Symbol]:
 
 def _answers(reading: Reading) -> Iterator[Expr]:
     """Yield the expressions of the answer as they were written."""
-    shapes, extended = _shapes(reading), reading.with_names(_displacements(reading))
-    for key in KINDS[reading.claim.kind].answer:
+    shapes, extended = reading.kind.shapes, reading.with_names(_displacements(reading))
+    for key in reading.kind.answer:
         if not reading.has(key) or shapes[key] is Shape.WORDS:
             continue
         value: Any = reading.claim.keys[key]
@@ -85,11 +85,6 @@ def _answers(reading: Reading) -> Iterator[Expr]:
             texts = {key: value}
         for where, text in texts.items():
             yield extended.equation(where, text)
-
-
-def _shapes(reading: Reading) -> dict[str, Shape]:
-    kind = kind_of(reading.claim.kind, reading.claim.keys)
-    return {**kind.required, **kind.optional}
 
 
 def stay_open(names: Sequence[object]) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,18 +9,20 @@ import sympy as sp
 
 from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.proof.domain.verdict import Status, Undecided, Verdict
-from canon.proof.equivalence import equivalent_equations, without_solution
+from canon.proof.equivalence import NotAffineError, Stray, not_affine, systems_compared, without_solution
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from sympy import Expr, Symbol
 
     from canon.exercise.question.deadline import Deadline
     from canon.proof.domain.domain import Domain
 
-__all__ = ["in_our_words", "same_equations"]
+__all__ = ["AFFINE", "same_equations"]
+
+AFFINE = "the equations are affine in what they determine"
 
 LONGEST_FORMULA = 200
 """Characters of an equation that is still written out in a sentence."""
@@ -33,23 +34,29 @@ def same_equations(
     unknowns: tuple[Symbol, ...],
     domain: Domain,
     deadline: Deadline,
+    before: int = 0,
 ) -> Verdict:
-    """Tell whether two systems, affine in the unknowns, have the same solutions at generic points."""
-    for i, equation in enumerate(claimed, 1):
+    """Tell whether two systems, affine in the unknowns, have the same solutions at generic points.
+
+    The claim counts its equations from the one after the first ``before``. A verdict that turned on an equation
+    that is not affine answers the question ``AFFINE``.
+    """
+    for i, equation in enumerate(claimed, 1 - before):
         slopes = sp.Matrix([[equation.diff(a).diff(b) for b in unknowns] for a in unknowns])
         affine = vanishes_off_kinks(slopes, domain, deadline.left)
         if not affine.holds:
-            return replace(
-                affine, residual=equation, feedback=f"equation {i} is not affine in {_listed(unknowns)}"
-            )
+            why = f"equation {i} is not affine in {_listed(unknowns)}"
+            return replace(affine, question=AFFINE, residual=equation, feedback=why)
+
+    def said(stray: Stray) -> str:
+        return _with_formula(_does_not_follow(stray, before), f"{stray.equation} = 0")
+
     try:
-        verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
-    except ValueError as not_affine:  # |u| + 1 = 0 has no second derivative off its kink
-        return Verdict(
-            Status.FAILS, "affine", "exact", feedback=str(not_affine).replace("of the first system ", "")
-        )
+        verdict = systems_compared(claimed, right, unknowns, domain, deadline.left, said)
+    except NotAffineError as error:  # |u| + 1 = 0 has no second derivative off its kink
+        return Verdict(Status.FAILS, AFFINE, "exact", feedback=_not_affine(error, before))
     if verdict.holds and without_solution(right, unknowns, domain):
-        return _equations_of_lower_order(claimed, right, unknowns, domain, deadline)
+        return _equations_of_lower_order(claimed, right, unknowns, domain, deadline, said)
     return verdict
 
 
@@ -59,6 +66,7 @@ def _equations_of_lower_order(
     unknowns: tuple[Symbol, ...],
     domain: Domain,
     deadline: Deadline,
+    said: Callable[[Stray], str],
 ) -> Verdict:
     """Compare systems that no accelerations solve at a generic state, as they bind velocities or coordinates.
 
@@ -70,7 +78,7 @@ def _equations_of_lower_order(
         names = (f"{base}{ending}" for base in bases)
         unknowns += tuple(known[n] for n in names if n in known and known[n] not in unknowns)
         try:
-            verdict = equivalent_equations(claimed, right, unknowns, domain, budget=deadline.left)
+            verdict = systems_compared(claimed, right, unknowns, domain, deadline.left, said)
         except ValueError:
             break
         if not verdict.holds or not without_solution(right, unknowns, domain):
@@ -78,23 +86,24 @@ def _equations_of_lower_order(
     raise Undecided("the equations bind the state in a way that is not affine; solve them for the velocities")
 
 
-def in_our_words(feedback: str, before: int) -> str:
-    """Say "claimed" and "of motion" where the proof room says first and second, and count as the claim does."""
-    feedback = re.sub(
-        r"^equation (\d+) (?=of the first system|is not affine)",
-        lambda found: f"equation {int(found[1]) - before} ",
-        feedback,
-    )
-    sentence, _, formula = feedback.partition(": ")
-    if len(formula) > LONGEST_FORMULA:
-        feedback = sentence
-    words = {
-        "of the second system does not follow from the first": "of motion does not follow from the claimed ones",
-        "of the first system does not follow from the second": "of the claim does not follow from those of motion",
-    }
-    for theirs, ours in words.items():
-        feedback = feedback.replace(theirs, ours)
-    return feedback
+def _does_not_follow(stray: Stray, before: int) -> str:
+    """Say which equation does not follow, counted as the claim does."""
+    if stray.system == 0:
+        return f"equation {stray.number + 1 - before} of the claim does not follow from those of motion"
+    return f"equation {stray.number + 1} of motion does not follow from the claimed ones"
+
+
+def _not_affine(error: NotAffineError, before: int) -> str:
+    if error.which == "first":
+        which = f"equation {error.number + 1 - before}"
+    else:
+        which = f"equation {error.number + 1} of motion"
+    sentence, _, formula = not_affine(error.equation).partition(": ")
+    return _with_formula(f"{which} is {sentence}", formula)
+
+
+def _with_formula(sentence: str, formula: str) -> str:
+    return f"{sentence}: {formula}" if len(formula) <= LONGEST_FORMULA else sentence
 
 
 def _listed(symbols: Sequence[Symbol]) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.equation_systems import in_our_words, same_equations
+from canon.exercise.question.equation_systems import same_equations
 from canon.expression.symbols.symbol import Momentum
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.substitution import substitute
@@ -68,6 +68,8 @@ class Part:
         Where the claim has the expression, such as ``claim[0]``; empty where it follows from what was claimed.
     written
         How the claim writes what a symbol of the expression stands for.
+    bracket_of
+        The names of the two new variables whose bracket it is; empty where it is none.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Part:
     through: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
     key: str = ""
     written: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    bracket_of: tuple[str, ...] = ()
 
     def seen(self, expression: Expr) -> Expr:
         """Return an expression after the substitution."""
@@ -267,8 +270,7 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
         case Same():
             return _all_vanish(question, deadline)
         case SameEquations(claimed, right, unknowns, domain, before=before):
-            verdict = same_equations(claimed, right, unknowns, domain, deadline)
-            return replace(verdict, feedback=in_our_words(verdict.feedback, before))
+            return same_equations(claimed, right, unknowns, domain, deadline, before)
         case Regular(matrix, name, domain, singular_is):
             off = off_kinks(matrix.flat(), domain)
             seen = matrix.applyfunc(off.seen)

@@ -12,7 +12,8 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 
 from canon.exercise.report.judgement import printable
 from canon.exercise.report.page_style import PAGE_STYLE, STYLE
-from canon.exercise.sheet.kinds import COMMON, KINDS, Shape, kind_of
+from canon.exercise.sheet.kind import COMMON, Shape
+from canon.exercise.sheet.kinds import KINDS, kind_of
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.expression.mathml import formula
 from canon.expression.parse import Scope
@@ -152,7 +153,7 @@ def _scope(claim: Claim | None) -> Scope:
 
 def _claimed(card: Element, claim: Claim, scope: Scope) -> None:
     kind = kind_of(claim.kind, claim.keys) if claim.kind in KINDS else None
-    shapes = {**COMMON, **kind.required, **kind.optional} if kind is not None else {}
+    shapes = {**COMMON, **kind.shapes} if kind is not None else {}
     given = _put(card, "dl")
     for key, value in claim.keys.items():
         if key not in _OWN_KEYS or (key in shapes and shapes[key] not in (Shape.NAMES, *COMMON.values())):

@@ -12,7 +12,8 @@ from decimal import Decimal
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.sheet.kinds import COMMON, KINDS, OF_PARAMETERS, Shape, kind_of
+from canon.exercise.sheet.kind import COMMON, Shape
+from canon.exercise.sheet.kinds import KINDS, kind_of
 from canon.expression.text.tokens import GREEK
 
 if TYPE_CHECKING:
@@ -48,10 +49,10 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "kind", f"unknown kind {kind[:60]!r}; {remedy}" if kind else f"missing; {remedy}"
         return
     wanted = kind_of(kind, keys)
-    if kind == "parameters" and isinstance(keys.get("of"), str) and keys["of"] not in OF_PARAMETERS:
-        yield "of", f"should be one of {', '.join(OF_PARAMETERS)}"
+    if wanted.about and isinstance(keys.get("of"), str) and keys["of"] not in wanted.about:
+        yield "of", f"should be one of {', '.join(wanted.about)}"
         return
-    known = {**COMMON, **wanted.required, **wanted.optional}
+    known = {**COMMON, **wanted.shapes}
     for key, shape in wanted.required.items():
         if key not in keys:
             yield key, f"missing ({shape.value})"

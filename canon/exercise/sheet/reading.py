@@ -12,7 +12,8 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.exercise.sheet.key_shapes import ASSUMPTIONS
-from canon.exercise.sheet.kinds import Shape, kind_of
+from canon.exercise.sheet.kind import Kind, Shape
+from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.sheet import Claim, ClaimError
 from canon.expression.parse import (
     LanguageError,
@@ -52,8 +53,6 @@ _NAME_KEYS = (
     "quasi",
     "constants",
 )
-_COMPLEX = {("positive-real", "variables")}
-"""Names of complex variables: of a real one |s|² is s², and would pass for a polynomial."""
 
 
 class InvalidClaim(ValueError):
@@ -114,6 +113,11 @@ class Reading:
         """Return a list of words as written."""
         return tuple(map(str, _as_list(self.claim.keys[key])))
 
+    @cached_property
+    def kind(self) -> Kind:
+        """The kind of the claim."""
+        return kind_of(self.claim.kind, self.claim.keys)
+
     @property
     def complete(self) -> bool:
         """Whether the answer should determine every unknown of its kind."""
@@ -142,7 +146,7 @@ class Reading:
                     continue
                 if name in names:
                     self.fault(key, f"{name} is declared twice")
-                real = (self.claim.kind, key) not in _COMPLEX
+                real = key not in self.kind.complex_names
                 said = self._assumptions(name) if real else {"complex": True}
                 names[name] = _MAKERS.get(key, Symbol)(name, **said)
         for name in names:
@@ -165,8 +169,7 @@ class Reading:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is passed over in reading the claim: units after numbers."""
-        kind = kind_of(self.claim.kind, self.claim.keys)
-        shapes = {**kind.required, **kind.optional, "domain": Shape.TEXTS}
+        shapes = {**self.kind.shapes, "domain": Shape.TEXTS}
         said = {
             key: value
             for key, value in self.claim.keys.items()
@@ -306,8 +309,7 @@ class Reading:
 
     def is_names(self, key: str) -> bool:
         """Whether a list of names stands under a key."""
-        kind = kind_of(self.claim.kind, self.claim.keys)
-        return self.has(key) and {**kind.required, **kind.optional}.get(key) is Shape.NAMES
+        return self.has(key) and self.kind.shapes.get(key) is Shape.NAMES
 
     def _assumptions(self, name: str) -> dict[str, bool]:
         word = self.claim.keys.get("parameters", {}).get(name, "real")

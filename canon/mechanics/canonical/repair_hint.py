@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, cast
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from canon.mechanics.canonical.canonicity_tests import PhaseSpaceMap
     from canon.proof.domain.domain import Domain
 
-__all__ = ["constant_value", "mending"]
+__all__ = ["Mending", "constant_value", "mending"]
 
 _PLACES = (sp.S.Zero, sp.S.One, sp.Rational(1, 2), sp.Rational(-1, 3))
 
@@ -65,51 +66,89 @@ def _arbitrary(f: Expr, moving: set[Symbol]) -> list[Expr]:
     return [cast("Expr", u) for u in found if u.free_symbols & moving]
 
 
-def mending(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> str:
-    """Return one sentence that says how to mend the map, or nothing where that is not simple or takes too long."""
+@dataclass(frozen=True)
+class Mending:
+    """What makes a map canonical whose pairs of coordinate and momentum have constant brackets.
+
+    Parameters
+    ----------
+    brackets
+        {Qᵢ, Pⱼ} of each pair, in the order of the coordinates.
+    wanted
+        What each of them should be: the valence.
+    partners
+        The momentum that belongs to each coordinate, by its number from 0; empty for a single pair.
+    """
+
+    brackets: tuple[Expr, ...]
+    wanted: Expr
+    partners: tuple[int, ...] = ()
+
+    @property
+    def is_renumbering(self) -> bool:
+        """Whether the momenta stand in another order than the coordinates."""
+        return any(i != j for i, j in enumerate(self.partners))
+
+    @property
+    def bracket(self) -> Expr | None:
+        """The one value of all brackets, None where they differ or the order is wrong."""
+        alike = not self.is_renumbering and len(set(self.brackets)) == 1
+        return self.brackets[0] if alike else None
+
+    @property
+    def valence(self) -> Expr | None:
+        """The valence with which the map is canonical; None where it is not, or where an exchange is in place."""
+        return None if self.bracket in (None, 0, -self.wanted) else self.bracket
+
+    def __str__(self) -> str:
+        c = self.wanted
+        if self.is_renumbering:
+            moved = ((i, j) for i, j in enumerate(self.partners) if i != j)
+            order = ", ".join(f"P{i + 1} = old P{j + 1}" for i, j in moved)
+            return f"the momenta stand in the wrong order: renumber them so that {order}"
+        if self.bracket == 0:
+            return "{Q, P} = 0: Q and P depend on each other, so nothing simple mends the map"
+        if self.bracket == -c:
+            return f"{{Q, P}} = {self.bracket}, not {c}: exchange Q and P, or change the sign of one of them"
+        if self.valence is not None:
+            return (
+                f"{{Q, P}} = {self.valence}, not {c}: canonical with valence {self.valence}; "
+                f"multiply P by {c / self.valence} to make it {'univalent' if c == 1 else f'of valence {c}'}"
+            )
+        return "; ".join(
+            f"{{Q{i}, P{i}}} = {value}, not {c}: multiply P{i} by {c / value}"
+            for i, value in enumerate(self.brackets, 1)
+            if value != c
+        )
+
+
+def mending(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> Mending | None:
+    """Return what would mend the map, None where that is not simple or takes too long."""
     if is_large(T.images):
-        return ""
+        return None
     n, deadline = len(T.q), time.monotonic() + seconds
     if n == 1:
         value = constant_value(T.poisson_bracket_of(0, 1), T.variables, T.t, T.domain, seconds)
-        return _of_one_pair(value, c)
+        return None if value is None else Mending((value,), c)
     for a, b in ((first + i, first + j) for first in (0, n) for i in range(n) for j in range(i)):
         if time.monotonic() > deadline or not _vanishes(T.poisson_bracket_of(a, b), T.domain):
-            return ""
+            return None
     constants: dict[tuple[int, int], Expr | None] = {}
     for i, j in product(range(n), repeat=2):
         left = deadline - time.monotonic()
         if left < 0:
-            return ""
+            return None
         constants[i, j] = constant_value(T.poisson_bracket_of(i, n + j), T.variables, T.t, T.domain, left)
-    partners = {i: [j for j in range(n) if constants[i, j] != 0] for i in range(n)}
-    if any(len(js) != 1 or constants[i, js[0]] is None for i, js in partners.items()):
-        return ""
-    paired = {i: js[0] for i, js in partners.items()}
-    values = {i: constants[i, j] for i, j in paired.items()}
-    if any(i != j for i, j in paired.items()):
-        exchanged = ", ".join(f"P{i + 1} = old P{j + 1}" for i, j in paired.items() if i != j)
-        return f"the momenta stand in the wrong order: renumber them so that {exchanged}"
-    if len(set(values.values())) == 1:
-        return _of_one_pair(values[0], c)
-    return "; ".join(
-        f"{{Q{i + 1}, P{i + 1}}} = {value}, not {c}: multiply P{i + 1} by {c / value}"
-        for i, value in values.items()
-        if value != c
-    )
-
-
-def _of_one_pair(value: Expr | None, c: Expr) -> str:
-    if value is None:
-        return ""
-    if value == 0:
-        return "{Q, P} = 0: Q and P depend on each other, so nothing simple mends the map"
-    if value == -c:
-        return f"{{Q, P}} = {value}, not {c}: exchange Q and P, or change the sign of one of them"
-    return (
-        f"{{Q, P}} = {value}, not {c}: canonical with valence {value}; multiply P by {c / value} "
-        f"to make it {'univalent' if c == 1 else f'of valence {c}'}"
-    )
+    found: list[Expr] = []
+    partners: list[int] = []
+    for i in range(n):
+        others = [j for j in range(n) if constants[i, j] != 0]
+        value = constants[i, others[0]] if len(others) == 1 else None
+        if value is None:
+            return None
+        found.append(value)
+        partners += others
+    return Mending(tuple(found), c, tuple(partners))
 
 
 def _vanishes(f: Expr, domain: Domain) -> bool:

@@ -202,7 +202,8 @@ class CanonicalTransformation:
         verdict = having_values(verdict, self._named_images, self.variables, self.domain)
         if verdict.fails and verdict.certificate != "definedness":
             left = deadline - clock.monotonic()
-            return replace(verdict, feedback=mending(self, c, left) or verdict.feedback)
+            mended = mending(self, c, left)
+            return verdict if mended is None else replace(verdict, feedback=str(mended))
         if verdict.holds and by == "contact":
             F = self.contact_function(c)
             found = "an exact differential, not integrated in closed form" if F is None else str(F)

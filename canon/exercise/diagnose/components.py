@@ -1,0 +1,161 @@
+"""Components of a wrong answer repaired one by one: what to change in each, proved of the claim as a whole."""
+
+from __future__ import annotations
+
+import time
+from itertools import islice
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.exercise.diagnose.derived_part import new_hamiltonian_part, second_lagrangian_part
+from canon.exercise.diagnose.diagnosis import Diagnosis
+from canon.exercise.diagnose.repair import is_wrong, repairs
+from canon.exercise.question.affine_systems import solved
+from canon.exercise.question.question import Part, SameEquations
+from canon.exercise.sheet.sympy_trees import replaced, symbols_of
+from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.algebra.substitution import substitute
+from canon.proof.domain.verdict import Undecided
+from canon.proof.kinks import vanishes_off_kinks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from sympy import Expr, Symbol
+
+    from canon.exercise.diagnose.diagnosis import WrongAnswer
+    from canon.exercise.sheet.reading import Reading
+    from canon.proof.domain.domain import Domain
+
+__all__ = ["new_hamiltonian", "on_the_motion", "part_by_part", "second_lagrangian"]
+
+MOST_SENTENCES = 3
+MOST_TRIALS = 4
+"""Proved repairs of one component that are tried in the whole claim."""
+
+
+def part_by_part(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield what is wrong with each component that is wrong."""
+    if wrong.parts and not wrong.reading.has("solution"):
+        yield from _part_by_part(wrong, wrong.parts, _hints(wrong))
+
+
+def new_hamiltonian(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield what is wrong with K, where the map is canonical."""
+    for part in new_hamiltonian_part(wrong.reading) if wrong.finding.held else ():
+        yield from _part_by_part(wrong.within(0.6), (part,), [()])
+
+
+def second_lagrangian(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield what is wrong with L₂ beside L₁ + dF/dt."""
+    if wrong.reading.has("F"):
+        yield from _part_by_part(wrong, (second_lagrangian_part(wrong.reading),), [()])
+
+
+def on_the_motion(question: SameEquations) -> tuple[Part, ...]:
+    """Return each equation as it was written, as what should vanish with the right accelerations put in."""
+    motion = _motion(question, question.unknowns) or _motion(question, _velocities(question))
+    if motion is None:
+        return ()
+    through = {name: substitute(value, motion) for name, value in question.through.items()} | motion
+    return tuple(
+        Part(f"equation {i + 1}", e, through=through, key=f"claim[{i}]")
+        for i, e in enumerate(question.written)
+    )
+
+
+def _motion(question: SameEquations, unknowns: Sequence[Symbol]) -> dict[Symbol, Expr] | None:
+    """Return what the right equations determine, None where it is not all the unknowns."""
+    if len(question.right) != len(unknowns):
+        return None
+    try:
+        return solved(question.right, unknowns, question.domain)
+    except (SingularMatrixError, Undecided):
+        return None
+
+
+def _velocities(question: SameEquations) -> list[Symbol]:
+    """Return the velocities that equations without accelerations bind."""
+    if any(f.has(*question.unknowns) for f in question.right):
+        return []
+    names = {u.name.replace("_ddot", "_dot") for u in question.unknowns}
+    return [s for s in symbols_of(*question.right) if s.name in names]
+
+
+def _hints(wrong: WrongAnswer) -> list[tuple[Expr, ...]]:
+    """Return for each claimed equation the terms of the right ones, brought to its scale."""
+    question = wrong.finding.question
+    if not isinstance(question, SameEquations):
+        return [() for _ in wrong.parts]
+    right_equations = _in_the_claims_terms(question)
+    hints: list[tuple[Expr, ...]] = []
+    for claimed in question.written:
+        terms: dict[Expr, None] = {}
+        for right in right_equations:
+            for u in question.unknowns:
+                above, below = claimed.diff(u), right.diff(u)
+                if above != 0 and below != 0:
+                    small = sp.count_ops(above) + sp.count_ops(below) < 60
+                    scale = sp.cancel(above / below) if small else above / below
+                    scaled = (
+                        scale * t for t in sp.Add.make_args(sp.expand(right)) if not t.has(*question.unknowns)
+                    )
+                    terms |= dict.fromkeys(scaled)
+        hints.append(tuple(terms))
+    return hints
+
+
+def _in_the_claims_terms(question: SameEquations) -> tuple[Expr, ...]:
+    """Return the right equations as they are shown: those of Routh in momenta, not in ignorable velocities."""
+    if not question.through or question.answer is None:
+        return question.right
+    try:
+        answer = question.answer()
+    except (ValueError, Undecided):
+        return ()
+    return tuple(e for e in answer if isinstance(e, sp.Expr)) if isinstance(answer, tuple) else ()
+
+
+def _part_by_part(
+    answer: WrongAnswer, parts: Sequence[Part], hints: Sequence[tuple[Expr, ...]]
+) -> Iterator[Diagnosis]:
+    domain = answer.domain
+    wrong = [(part, hint) for part, hint in zip(parts, hints, strict=True) if is_wrong(part, domain)]
+    if not wrong:
+        if all(
+            part.through and vanishes_off_kinks(part.residual, domain, budget=0.5).holds for part in parts
+        ):
+            yield Diagnosis(
+                "each equation is right, but together they do not determine the motion: an equation is missing"
+            )
+        return
+    if all(part.key for part, _ in wrong):
+        yield from _repaired(answer.reading, wrong, domain, answer.deadline)
+
+
+def _repaired(
+    reading: Reading,
+    wrong: Sequence[tuple[Part, tuple[Expr, ...]]],
+    domain: Domain,
+    deadline: float,
+    said: tuple[str, ...] = (),
+) -> Iterator[Diagnosis]:
+    """Yield the claim with one wrong component after the other repaired, and what was changed."""
+    if not wrong:
+        more = len(said) - MOST_SENTENCES
+        told = said[:MOST_SENTENCES] + ((f"{more} more components are wrong",) if more > 0 else ())
+        yield Diagnosis("; ".join(told), reading)
+        return
+    part, hint = wrong[0]
+    if len(said) >= MOST_SENTENCES and not part.through:  # it is not told what to change here
+        yield from _repaired(_with(reading, part, part.right), wrong[1:], domain, deadline, (*said, ""))
+        return
+    seconds = (deadline - time.monotonic()) / len(wrong)
+    for found in islice(repairs(part, domain, seconds, hint), MOST_TRIALS):
+        here = _with(reading, part, found.right)
+        yield from _repaired(here, wrong[1:], domain, deadline, (*said, str(found.change)))
+
+
+def _with(reading: Reading, part: Part, right: Expr) -> Reading:
+    return reading.with_instead(part.key, replaced(right, part.written))

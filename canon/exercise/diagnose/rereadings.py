@@ -1,0 +1,90 @@
+"""Other claims of the same formulas that may have been meant: another type, variables exchanged, the inverse map."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from canon.exercise.sheet.kinds import KINDS
+from canon.exercise.sheet.reading import Reading
+from canon.exercise.sheet.sympy_trees import replaced
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+__all__ = [
+    "exchanged_equations",
+    "exchanged_map",
+    "inverse_map",
+    "other_convention",
+    "other_type",
+    "read_anew",
+    "same_equations_of_motion",
+]
+
+Trial: TypeAlias = "tuple[Reading, str]"
+"""Another claim, and what is told where it holds."""
+
+
+def read_anew(reading: Reading, keys: Mapping[str, Any], kind: str = "") -> Reading:
+    """Return a claim with other keys, or of another kind."""
+    kind = kind or reading.claim.kind
+    return Reading(replace(reading.claim, kind=kind, keys=MappingProxyType(dict(keys))))
+
+
+def inverse_map(reading: Reading) -> Iterator[Trial]:
+    """Yield the claim with its map read as giving the old variables by the new ones."""
+    if not reading.has("map"):
+        return
+    keys = {key: value for key, value in reading.claim.keys.items() if key != "map"}
+    symbols = [reading.symbols(key) for key in ("q", "p", "new_q", "new_p")]
+    swap = dict(zip((*symbols[0], *symbols[1]), (*symbols[2], *symbols[3]), strict=True))
+    inverted = read_anew(reading, {**keys, "inverse_map": {k: ["0"] * len(symbols[0]) for k in "qp"}})
+    for part, name in (("Q", "q"), ("P", "p")):
+        for i, f in enumerate(reading.inside(f"map.{part}", reading.claim.keys["map"][part])):
+            inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", replaced(f, swap))
+    yield inverted, "what is given as the map is its inverse"
+
+
+def exchanged_map(reading: Reading) -> Iterator[Trial]:
+    """Yield the claim with Q and P exchanged in the map."""
+    if reading.has("map"):
+        given = reading.claim.keys["map"]
+        exchanged = {"Q": given.get("P"), "P": given.get("Q")}
+        yield (
+            read_anew(reading, {**reading.claim.keys, "map": exchanged}),
+            "Q and P are exchanged in the map",
+        )
+
+
+def other_type(reading: Reading) -> Iterator[Trial]:
+    """Yield the claim with F as a generating function of each other type."""
+    own = reading.kind.implied["type"]
+    for name, kind in KINDS.items():
+        number = kind.implied.get("type", own)
+        if number != own:
+            sentence = f"F generates this map as a function of type {number}, not {own}"
+            yield read_anew(reading, reading.claim.keys, name), sentence
+
+
+def exchanged_equations(reading: Reading) -> Iterator[Trial]:
+    """Yield the claim with the rates of the coordinates and of the momenta exchanged."""
+    keys = reading.claim.keys
+    if reading.has("q_dot"):
+        exchanged = {"q_dot": keys["p_dot"], "p_dot": keys["q_dot"]}
+        yield read_anew(reading, {**keys, **exchanged}), "the equations of q and p are exchanged"
+
+
+def same_equations_of_motion(reading: Reading) -> Iterator[Trial]:
+    """Yield the claim that two Lagrangians have the same equations, where they are said to differ by dF/dt."""
+    if reading.word("relation") == "gauge" and not reading.has("F"):
+        sentence = "L1 and L2 have the same equations of motion, but L2 − L1 is not dF/dt of any F(q, t)"
+        yield read_anew(reading, {**reading.claim.keys, "relation": "equations"}), sentence
+
+
+def other_convention(reading: Reading) -> Iterator[Trial]:
+    """Yield the claim with the Routhian of the other sign."""
+    other = {"L-pq": "pq-L", "pq-L": "L-pq"}[reading.word("convention")]
+    trial = read_anew(reading, {**reading.claim.keys, "convention": other})
+    yield trial, f"right under the other convention, {other}"
