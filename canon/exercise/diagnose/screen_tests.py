@@ -196,11 +196,11 @@ def _implicit(reading: Reading) -> Test:
 
 def generating(reading: Reading) -> Screened:
     """The rules of the type of generating function."""
-    kind = reading.kind.implied["type"]
+    number = reading.kind.implied["type"]
     q, p, Q, P = (reading.symbols(key) for key in ("q", "p", "new_q", "new_p"))
     there = _mapping(reading)
-    old, other_old, sign_old = (q, p, 1) if kind in (1, 2) else (p, q, -1)
-    new, other_new, sign_new = (Q, P, -1) if kind in (1, 3) else (P, Q, 1)
+    old, other_old, sign_old = (q, p, 1) if number in (1, 2) else (p, q, -1)
+    new, other_new, sign_new = (Q, P, -1) if number in (1, 3) else (P, Q, 1)
     rules = [(y, x, sign_old) for y, x in zip(other_old, old, strict=True)]
     rules += [(y, x, sign_new) for y, x in zip(other_new, new, strict=True)]
 

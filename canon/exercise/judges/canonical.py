@@ -184,21 +184,21 @@ def bilinear(reading: Reading) -> Iterator[Question]:
 
 def generating(reading: Reading) -> Iterator[Question]:
     """The rules of the type hold identically on the map, and the mixed Hessian is regular."""
-    kind, F = reading.kind.implied["type"], reading.expression("F")
+    number, F = reading.kind.implied["type"], reading.expression("F")
     there, domain = map_values(reading)
-    rules = rules_of(reading, kind, F)
+    rules = rules_of(reading, number, F)
     on_the_map = substitute(F, there)
     independent = [z for key in ("q", "p", "new_q", "new_p") for z in reading.symbols(key)]
-    yield Same(rules.on(there), domain, lambda: generating_function_of(reading, kind), answers="F")
+    yield Same(rules.on(there), domain, lambda: generating_function_of(reading, number), answers="F")
     yield Regular(
         rules.mixed_hessian.applyfunc(lambda entry: substitute(entry, there)),
         "the mixed Hessian",
         domain,
-        f"the mixed Hessian ∂²F/∂{rules.old[0]}∂{rules.new[0]} is singular: F of type {kind} generates no map",
+        f"the mixed Hessian ∂²F/∂{rules.old[0]}∂{rules.new[0]} is singular: F of type {number} generates no map",
     )
     foreign = ", ".join(sorted(str(s) for s in F.free_symbols & set(rules.foreign)))
     if foreign:
-        why = f"F of type {kind} depends on {foreign}, and may depend on {rules.old + rules.new} only"
+        why = f"F of type {number} depends on {foreign}, and may depend on {rules.old + rules.new} only"
         yield Verdict(Status.FAILS, "the variables of F", certificate="structure", residual=F, feedback=why)
         return
     yield is_continuous(on_the_map, (*independent, reading.time), domain, "F", there.values())
@@ -235,11 +235,11 @@ class Rules:
         )
 
 
-def rules_of(reading: Reading, kind: int, F: Expr) -> Rules:
+def rules_of(reading: Reading, number: int, F: Expr) -> Rules:
     """Return the rules of a generating function of type 1, 2, 3 or 4."""
     q, p, Q, P = (reading.symbols(key) for key in ("q", "p", "new_q", "new_p"))
-    old, other_old, old_sign = (q, p, 1) if kind in (1, 2) else (p, q, -1)
-    new, other_new, new_sign = (Q, P, -1) if kind in (1, 3) else (P, Q, 1)
+    old, other_old, old_sign = (q, p, 1) if number in (1, 2) else (p, q, -1)
+    new, other_new, new_sign = (Q, P, -1) if number in (1, 3) else (P, Q, 1)
     given = [(y, x, old_sign) for y, x in zip(other_old, old, strict=True)]
     given += [(y, x, new_sign) for y, x in zip(other_new, new, strict=True)]
     return Rules(

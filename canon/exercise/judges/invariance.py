@@ -129,17 +129,21 @@ def _generated(reading: Reading) -> Iterator[Question]:
 
     Σ dq∧dp = Σ dQ∧dP in the variables of F is invariance of Lagrange's brackets, and for a regular map of the rest.
     """
-    kind = int(reading.claim.keys["type"])
-    if kind not in (1, 2, 3, 4):
+    number = int(reading.claim.keys["type"])
+    if number not in (1, 2, 3, 4):
         reading.fault("type", "should be 1, 2, 3 or 4")
     q, p = reading.phase_space("q", "p")
     Q, P = reading.phase_space("new_q", "new_p")
     if len(Q) != len(q):
         reading.fault("new_q", f"{counted(len(Q), 'new coordinate')} for {len(q)} old; give one each")
     F = reading.expression("F")
-    if F.has(*((*p, *P) if kind == 1 else (*p, *Q) if kind == 2 else (*q, *P) if kind == 3 else (*q, *Q))):
-        reading.fault("F", f"depends on variables that a generating function of type {kind} can't depend on")
-    rules = rules_of(reading, kind, F)
+    if F.has(
+        *((*p, *P) if number == 1 else (*p, *Q) if number == 2 else (*q, *P) if number == 3 else (*q, *Q))
+    ):
+        reading.fault(
+            "F", f"depends on variables that a generating function of type {number} can't depend on"
+        )
+    rules = rules_of(reading, number, F)
     domain = reading.domain
     hessian = _with_free_jets(rules.mixed_hessian)
     yield Regular(hessian, "the mixed Hessian", domain, "the mixed Hessian is singular: F generates no map")

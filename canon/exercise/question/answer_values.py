@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.exercise.sheet.kinds import KINDS, Shape
+from canon.exercise.sheet.kind import Shape
+from canon.exercise.sheet.kinds import KINDS
 from canon.expression.as_written import as_written
 from canon.expression.symbols.symbol import Coordinate, velocity
 from canon.expression.text.tokens import LanguageError
@@ -35,19 +35,6 @@ _EXPRESSIONS = (
 )  # fmt: skip
 
 
-_CLAIMED_TOO: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "equality-only": ("lhs",),
-        "lagrangian-equivalence": ("L2",),
-        "bilinear-covariant": ("Q", "P"),
-        "transformed-hamiltonian-K": ("map", "inverse_map"),
-        "positive-real": ("H",),
-        **{f"generating-F{number}": ("map", "inverse_map") for number in "1234"},
-    }
-)
-"""Keys of what is claimed together with the answer."""
-
-
 def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
     """Yield FAILS for what has a value nowhere, and for answers without one where all that is given has one.
 
@@ -70,7 +57,9 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
     answers = {key: f for key, f in written.items() if _is_answer(reading, key)}
     given = [_seen(f, following) for key, f in written.items() if key not in answers]
     for key, answer in answers.items():
-        other = [_seen(f, following) for k, f in answers.items() if k != key] if _two_sided(reading) else []
+        other = (
+            [_seen(f, following) for k, f in answers.items() if k != key] if reading.kind.two_sided else []
+        )
         lack = lack_beside(_seen(answer, following), [*given, *other], reading.domain, until)
         if lack is not None:
             yield _fails(lack, key)
@@ -93,22 +82,16 @@ def _fails(lack: Lack, key: str) -> Verdict:
     )
 
 
-def _two_sided(reading: Reading) -> bool:
-    """Whether what is claimed is that two sides are the same, each an answer beside the other."""
-    return reading.claim.kind == "equality-only"
-
-
 def _is_answer(reading: Reading, key: str) -> bool:
     outer = key.partition(".")[0].partition("[")[0]
     inner_is_given = outer == "pairs" and not key.endswith(".value")
-    answers = (*KINDS[reading.claim.kind].answer, *_CLAIMED_TOO.get(reading.claim.kind, ()))
-    return outer in answers and not inner_is_given
+    kind = KINDS[reading.claim.kind]
+    return outer in (*kind.answer, *kind.claimed_too) and not inner_is_given
 
 
 def _written(reading: Reading) -> Iterator[tuple[str, Expr]]:
     """Yield every expression of a claim as it is written, by its key."""
-    kind = KINDS[reading.claim.kind]
-    shapes = {**kind.required, **kind.optional}
+    shapes = KINDS[reading.claim.kind].shapes
     extended = reading.with_names(_displacements(reading))
     for key, value in reading.claim.keys.items():
         if shapes.get(key) in _EXPRESSIONS:
@@ -152,7 +135,7 @@ def _following(reading: Reading) -> Mapping[Symbol, Expr]:
             given = reading.claim.keys[key]
             images = [f for part in parts for f in reading.inside(f"{key}.{part}", given.get(part, []))]
             return dict(zip(names, images, strict=False))
-    if reading.claim.kind == "legendre-hamiltonian":
+    if "p" in reading.kind.following:
         L = reading.expression("L")
         return {p: L.diff(velocity(x)) for x, p in zip(*reading.phase_space("q", "p"), strict=True)}
     return {}

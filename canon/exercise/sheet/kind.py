@@ -86,6 +86,8 @@ class Kind:
         Whether the alternatives say the same thing, so that only one of them can be there.
     answer
         The keys where the answer stands; all others say what is asked.
+    claimed_too
+        Keys of what is claimed together with the answer.
     unknowns
         What a complete answer determines.
     implied
@@ -121,6 +123,7 @@ class Kind:
     exclusive: bool = False
     answer: tuple[str, ...] = ()
     unknowns: str = ""
+    claimed_too: tuple[str, ...] = ()
     implied: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     about: tuple[str, ...] = ()
     complex_names: tuple[str, ...] = ()
