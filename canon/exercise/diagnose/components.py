@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.diagnose.derived_part import new_hamiltonian_part, second_lagrangian_part
-from canon.exercise.diagnose.diagnosis import Diagnosis
+from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis
 from canon.exercise.diagnose.repair import is_wrong, repairs
 from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.question import Part, SameEquations
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["new_hamiltonian", "on_the_motion", "part_by_part", "second_lagrangian"]
 
-MOST_SENTENCES = 3
 MOST_TRIALS = 4
 """Proved repairs of one component that are tried in the whole claim."""
 

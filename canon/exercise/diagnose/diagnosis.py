@@ -27,7 +27,10 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Diagnosis", "WrongAnswer", "judged_to_hold", "scaled"]
+__all__ = ["MOST_SENTENCES", "Diagnosis", "WrongAnswer", "judged_to_hold", "scaled"]
+
+MOST_SENTENCES = 3
+"""Components that a person is told of at once."""
 
 
 @dataclass(frozen=True)

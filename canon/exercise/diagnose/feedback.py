@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 
 from canon.exercise.diagnose.changed_claims import another_reading
 from canon.exercise.diagnose.components import on_the_motion
-from canon.exercise.diagnose.diagnosis import Diagnosis, WrongAnswer, judged_to_hold
+from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis, WrongAnswer, judged_to_hold
 from canon.exercise.question.equation_systems import AFFINE
 from canon.exercise.question.question import Same, SameEquations, Stated
 from canon.exercise.sheet.kind import named_function
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = ["corrected", "diagnosis", "feedback"]
 
-MOST_SENTENCES = 3
 WHOLE_SECONDS = 1.0
 ANSWER_SECONDS = 0.5
 """Time for the judgement on a repaired claim."""
