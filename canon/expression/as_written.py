@@ -83,10 +83,18 @@ class _Unevaluated(Builder):
         if not value.args or value.free_symbols:
             return value
         number = Builder(self.text, self.scope).expression(node)
-        return number if isinstance(number, Rational) else value
+        return number if isinstance(number, Rational) and _is_arithmetic(value) else value
 
     def joined(self, pieces: Sequence[tuple[Expr, Boolean]]) -> Expr:
         return sp.Piecewise(*pieces, evaluate=False)
+
+
+def _is_arithmetic(value: Expr) -> bool:
+    """Tell whether a number is written with rational numbers alone; sign(1/(√(3 + 2√2) − 1 − √2))² = 1 is not."""
+    return all(
+        isinstance(part, Rational | sp.Add | sp.Mul) or (isinstance(part, sp.Pow) and part.exp.is_Integer)
+        for part in sp.preorder_traversal(value)
+    )
 
 
 def _sum(terms: Sequence[Expr]) -> Expr:
