@@ -177,3 +177,19 @@ def test_a_given_without_a_value_is_no_ground_to_hold():
     verdict = judge(Claim("a", "euler-lagrange", keys))
     assert verdict.fails
     assert verdict.feedback.startswith("L has a value nowhere")
+
+
+@pytest.mark.parametrize(
+    ("below", "second", "holds"),
+    [
+        ("1 + (tan(q) - sin(q)/cos(q))/(1 + q**2)", "P - p + h*(q + Q)/2", True),
+        ("1 + (tan(q) - sin(q)/cos(q))/(1 + q**2)", "P - p + h*(q - Q)/2", False),
+        ("1 + q**2", "P - p + h*(q + Q)/2", True),
+    ],
+)
+def test_zeros_of_denominators_are_no_part_of_an_implicit_map(below, second, holds):
+    keys = {"q": ["q"], "p": ["p"], "new_q": ["Q"], "new_p": ["P"], "parameters": {"h": "positive"}}
+    verdict = judge(
+        Claim("a", "canonicity", {**keys, "implicit": [f"(Q - q - h*(p + P)/2)/({below})", second]})
+    )
+    assert verdict.holds if holds else verdict.fails

@@ -20,6 +20,8 @@ from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.expression.symbols.symbol import velocity
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.analytic import proved_sign
+from canon.proof.definedness.definedness import lack_of_value
+from canon.proof.definedness.formula_around import put_in
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
@@ -42,6 +44,9 @@ __all__ = [
 ]
 
 MAX_BRANCHES = 16
+VALUE_SECONDS = 0.5
+"""Time for the question whether a constraint has a value on a branch."""
+
 _NO_POINT = "no point satisfies the constraints, assumptions and conditions"
 
 
@@ -112,9 +117,17 @@ def on_manifold(
         branches = [part for branch in branches for part in _restricted(branch, constraint, keep, prefer)]
         if len(branches) > MAX_BRANCHES:
             raise Undecided(f"the constraints have more than {MAX_BRANCHES} branches; split the claim")
+    branches = [branch for branch in branches if not any(_without_value(c, branch) for c in constraints)]
     if not branches:
         raise EmptyDomainError(_NO_POINT)
     return branches
+
+
+def _without_value(constraint: Expr, branch: Branch) -> bool:
+    """Whether a constraint has a value nowhere on a branch: zeros of its denominators are no solutions of it."""
+    there = put_in(constraint, dict(branch.values.items()))
+    lack = lack_of_value(there, branch.domain, time.monotonic() + VALUE_SECONDS)
+    return lack is not None and lack.proved
 
 
 def inhabited(branches: Iterable[Branch]) -> list[Branch]:
