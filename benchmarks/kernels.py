@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from canon.kernel.llvm.loop import Loop
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 REPEATS = 7
 ORBITS = 10_000
@@ -253,7 +253,7 @@ def ensemble(case: Case, scheme: str, folder: Path) -> str:
     return f"{case.name:14} {scheme:12} {times_of_c}; {ratios} × C (scalar C); compiled in {spent:.2f} s"
 
 
-def _many(system: Equations, case: Case, scheme: str, precision: str) -> Callable[[int], float]:
+def _many(system: HamiltonEquations, case: Case, scheme: str, precision: str) -> Callable[[int], float]:
     """Return what takes steps of 10⁴ equal orbits and tells the processor time."""
     loop = compiled_loop(system, Splitting(scheme), FIXED[precision], ORBITS)
     lanes, pair = loop.number.lanes, 1 + loop.number.pair

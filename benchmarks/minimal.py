@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from canon.kernel.program.program import program
 from canon.scene import find
-from canon.scene.equations_of_motion import equation_of
+from canon.scene.equations_of_motion import scene_equations
 from canon.scene.reduced import reduced
 from canon.scene.scene_motion import run
 
@@ -150,7 +150,7 @@ def figures(scene: Scene, start: str | None) -> tuple[int, int, float, float]:
     """Return variables, operations of a right-hand side, processor time and drift over 1000 periods."""
     from canon.scene.known_truths import integrals_along
 
-    equation = equation_of(scene)
+    equation = scene_equations(scene)
     field = equation.field
     made = program(field.graph, field.rates, (*field.x, field.t))
     operations = sum(each.operation not in ("input", "constant") for each in made.instructions)
@@ -166,7 +166,7 @@ def observed() -> None:
     print(f"{'observables: scene':26s} {'rates':>8s} {'with energy and integrals':>27s}")
     for name in ("kepler", "kovalevskaya-top", "toda-6", "outer-solar-system", "rolling-disc"):
         scene = find(name)
-        equation = equation_of(scene)
+        equation = scene_equations(scene)
         field = equation.field
         extra = [equation.energy, *(equation.node(f, title) for title, f in scene.constants().items())]
         counts = [

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from canon.scene.describe import Section
     from canon.scene.scene import Scene
-    from canon.scene.scene_motion import Motion
+    from canon.scene.scene_motion import SceneMotion
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -147,7 +147,7 @@ def _draw(scene: Scene, arguments: argparse.Namespace) -> None:
     from canon.scene.scene_motion import run as motion_of
 
     periods = min(arguments.periods or scene.shown, scene.horizon)
-    motion: Motion = motion_of(
+    motion: SceneMotion = motion_of(
         scene, arguments.start, periods, samples=max(400, min(4000, round(200 * periods)))
     )
     if arguments.plot:

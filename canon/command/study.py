@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from canon.study.cases.result import Result
-    from canon.study.cases.run_study import Status
+    from canon.study.cases.run_study import StudyStatus
     from canon.study.cases.store import Store
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
@@ -241,13 +241,13 @@ def _executor(arguments: argparse.Namespace) -> Generator[tuple[Executor | None,
 
 
 @contextmanager
-def _progress() -> Generator[Callable[[Status], None]]:
+def _progress() -> Generator[Callable[[StudyStatus], None]]:
     """Show how much of the cases is done, and the time that is left."""
     from canon.progress import ProgressBar
 
     with ProgressBar() as bar:
 
-        def show(status: Status) -> None:
+        def show(status: StudyStatus) -> None:
             done = status.finished + status.failed + status.partly
             failed = f", {status.failed} failed" if status.failed else ""
             bar("study", done, status.total, f"{done:.2f} of {status.total} cases{failed}")

@@ -15,13 +15,13 @@ from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE
 from canon.expression.symbols.user_input import counted
 from canon.flow.fixed_step.fixed_steps import planned
 from canon.flow.method.method import DOP853, FixedStep, Method, Taylor, TimeTransformed
-from canon.flow.run.event import Event, prepared
+from canon.flow.run.event import Event, prepared_events
 from canon.flow.run.range_check import check_magnitudes, is_narrow
 from canon.flow.run.sampling_plan import adaptive_plan, fictitious_plan, sampling
 from canon.flow.task import Task
-from canon.flow.transformed.extended_hamiltonian import extended, fictitious
+from canon.flow.transformed.extended_hamiltonian import extended, extended_system
 from canon.kernel.llvm.number_types import double_pair
-from canon.kernel.program.hamilton_equations import Equations, equations, exact, exact_numbers
+from canon.kernel.program.hamilton_equations import HamiltonEquations, equations, exact_number, exact_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
-__all__ = ["system_of", "task_of"]
+__all__ = ["hamilton_equations_of", "task_of"]
 
 _KEPT = 64
 """Systems kept for the next call."""
@@ -63,10 +63,10 @@ def task_of(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
     fixed, varying = _by_orbit(parameters or {})
-    system = system_of(hamiltonian, fixed, tuple(varying))
+    system = hamilton_equations_of(hamiltonian, fixed, tuple(varying))
     nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
     given, single = _with_parameters(y0, len(hamiltonian.q), varying)
-    start, end = (exact(t, "t_span") for t in t_span)
+    start, end = (exact_number(t, "t_span") for t in t_span)
     wanted = sampling((start, end), samples, times)
     _check_start(system, given, start, precision)
     check_magnitudes(system, given[0], start, method, precision)
@@ -76,7 +76,9 @@ def task_of(
     elif isinstance(method, TimeTransformed):
         _check_transformed(method, step, cadence)
         larger = extended(hamiltonian, method)
-        frame = fictitious(larger, system_of(larger, fixed, tuple(varying)), hamiltonian, Fraction(step or 0))
+        frame = extended_system(
+            larger, hamilton_equations_of(larger, fixed, tuple(varying)), hamiltonian, Fraction(step or 0)
+        )
         plan = fictitious_plan(wanted, named=times is not None or not single)
     else:
         _check_adaptive(method, step, cadence, precision)
@@ -110,11 +112,11 @@ def _with_tolerance(method: Method, tolerance: float | None) -> Method:
     raise ValueError(f"{method} takes fixed steps: give step=, not tolerance=")
 
 
-def system_of(
+def hamilton_equations_of(
     hamiltonian: HamiltonianSystem,
     parameters: Mapping[Symbol | str, Any],
     varying: tuple[str, ...] = (),
-) -> Equations:
+) -> HamiltonEquations:
     """Return a Hamiltonian's equations, kept from an earlier call if there was one.
 
     Parameters
@@ -144,7 +146,7 @@ def _kept_system(
     t: Symbol,
     parameters: frozenset[tuple[str, Fraction]],
     varying: tuple[str, ...],
-) -> Equations:
+) -> HamiltonEquations:
     known = {symbol.name: symbol for symbol in H.free_symbols if isinstance(symbol, Symbol)}
     missing = [name for name in varying if name not in known]
     if missing:
@@ -176,7 +178,7 @@ def _with_parameters(
         raise ValueError(f"{given} for y0 of shape {np.shape(y0)}: parameters by orbit have shape (orbits,)")
     count = orbits.pop()
     pairs = [
-        [double_pair(exact(value, f"{name}[{k}]")) for k, value in enumerate(values.tolist())]
+        [double_pair(exact_number(value, f"{name}[{k}]")) for k, value in enumerate(values.tolist())]
         for name, values in varying.items()
     ]
     parameters = np.array(pairs).transpose(2, 0, 1)
@@ -199,14 +201,14 @@ def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]
     if given.dtype == np.float64 and not np.isfinite(given).all():
         raise ValueError(f"y0 = {given} is not finite: give a state (q, p) of finite numbers")
     if given.dtype != np.float64:
-        pairs = [double_pair(exact(x, "a component of y0")) for x in given.ravel().tolist()]
+        pairs = [double_pair(exact_number(x, "a component of y0")) for x in given.ravel().tolist()]
         high, low = (np.array(part).reshape(2 * n, -1) for part in zip(*pairs, strict=True))
         return high, low
     return given.reshape(2 * n, -1), np.zeros((2 * n, given.size // (2 * n)))
 
 
 def _check_start(
-    system: Equations, given: tuple[Array, Array], start: Fraction, precision: str | int | None
+    system: HamiltonEquations, given: tuple[Array, Array], start: Fraction, precision: str | int | None
 ) -> None:
     states, low = given
     narrow = is_narrow(precision)
@@ -258,4 +260,4 @@ def _check_events(task: Task) -> None:
         raise ValueError("events are met at times of each orbit's own: propagate the orbits one by one")
     if task.cadence is not None:
         raise ValueError("events and cadence: statistics inside the loop do not see events; leave one out")
-    prepared(task.system, task.events)
+    prepared_events(task.system, task.events)

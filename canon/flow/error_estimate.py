@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.run.samples import Samples
     from canon.flow.task import Task
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["ErrorEstimate", "error_estimate"]
 
@@ -168,7 +168,7 @@ def error_estimate(
     states = (task.states[0][:, chosen], task.states[1][:, chosen])
     task = replace(task, states=states, single=False, cadence=None, dense=False)
     away, apart, found, words = np.full(own.shape, np.inf), np.full(own.shape, np.nan), None, "no companion"
-    for better in _better(task, samples):
+    for better in _companion_tasks(task, samples):
         made, known = _companions(better, samples, scale)
         if made is None:
             continue
@@ -181,7 +181,7 @@ def error_estimate(
             break
     if task.system.autonomous and not any(met.after is not None for met in samples.crossings):
         change = energy_change.reshape(len(samples.t), -1)[:, chosen]
-        deluded = _deluded(
+        deluded = _contradicted_by_energy(
             task.system, replace(samples, y=samples.y[:, :, chosen]), change, away / scale, scale
         )
         away = np.where(np.maximum.accumulate(deluded, axis=0), np.inf, away)
@@ -196,8 +196,8 @@ def error_estimate(
     return ErrorEstimate(samples.t, away, relative, condition, events, words)
 
 
-def _deluded(
-    system: Equations, samples: Samples, change: Array, relative: Array, scale: Array
+def _contradicted_by_energy(
+    system: HamiltonEquations, samples: Samples, change: Array, relative: Array, scale: Array
 ) -> npt.NDArray[np.bool_]:
     """Return where the energy's error shows that a motion errs by more than it differs from its companion.
 
@@ -209,7 +209,7 @@ def _deluded(
     return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach)
 
 
-def _rates(system: Equations, t: Array, y: Array) -> npt.NDArray[Any]:
+def _rates(system: HamiltonEquations, t: Array, y: Array) -> npt.NDArray[Any]:
     """Return the sizes of q̇ and ṗ, shape (2n, times, orbits)."""
     nodes = (*system.velocity, *system.force)
     wide = (part.astype(np.longdouble) for part in (*y, t[:, np.newaxis]))
@@ -252,7 +252,7 @@ def _sizes(y: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class _Better:
+class _CompanionTask:
     """A companion's task, what to call it, and the rounding unit of its numbers."""
 
     task: Task
@@ -260,7 +260,7 @@ class _Better:
     unit: float
 
 
-def _better(task: Task, samples: Samples) -> Iterator[_Better]:
+def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
     """Yield companions, each more exact than the one before."""
     plan = task.plan
     if plan.h is None:
@@ -271,14 +271,14 @@ def _better(task: Task, samples: Samples) -> Iterator[_Better]:
         given = str(task.precision or "double") if isinstance(task.method, Taylor) else "double"
         for precision, bits in _wider_taylor(given):
             better = replace(task, method=Taylor(), plan=plan, precision=precision)
-            yield _Better(
+            yield _CompanionTask(
                 better, f"Taylor, {precision}{'' if isinstance(precision, str) else ' digits'}", 2.0**-bits
             )
         return
     half = replace(plan, h=plan.h / 2, stops=tuple(2 * stop for stop in plan.stops))
     for precision in _wider(task):
         words = f"{task.method}, step {float(half.h or 0):g}, {precision}"
-        yield _Better(replace(task, plan=half, precision=precision), words, 2.0 ** -_BITS[precision])
+        yield _CompanionTask(replace(task, plan=half, precision=precision), words, 2.0 ** -_BITS[precision])
 
 
 def _wider_taylor(given: str) -> list[tuple[str | int, int]]:
@@ -302,7 +302,7 @@ def _wider(task: Task) -> list[str]:
     )
 
 
-def _companions(better: _Better, samples: Samples, scale: Array) -> tuple[Samples | None, int]:
+def _companions(better: _CompanionTask, samples: Samples, scale: Array) -> tuple[Samples | None, int]:
     """Return the companion, with two neighbours as further orbits where there can be any, and its samples.
 
     One starts a small part of the motion's size beside it, the other so near that rounding might have put it there.

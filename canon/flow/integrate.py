@@ -8,10 +8,10 @@ from canon.flow.adaptive.dop853 import dop853_motion
 from canon.flow.adaptive.taylor_motion import taylor_motion
 from canon.flow.fixed_step.compiled_loop import compiled_loop
 from canon.flow.fixed_step.fixed_steps import fixed_steps
-from canon.flow.fixed_step.statistics import watch_for
+from canon.flow.fixed_step.statistics import loop_observables
 from canon.flow.method.method import DOP853, FixedStep, Taylor, TimeTransformed
 from canon.flow.method.number_formats import fixed_precision
-from canon.flow.run.event import prepared
+from canon.flow.run.event import prepared_events
 from canon.flow.run.samples import joined
 from canon.flow.transformed.transformed_motion import transformed_motion
 
@@ -50,12 +50,14 @@ def integrate(
 def _more(task: Task, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
     """Return the part of the motion that was not done before."""
     states = task.states if so_far is None else (so_far.y[:, -1], so_far.carried[:, -1])
-    events, orbits = prepared(task.system, task.events), states[0].shape[1]
+    events, orbits = prepared_events(task.system, task.events), states[0].shape[1]
     if isinstance(task.method, FixedStep):
         loop = compiled_loop(task.system, task.method, fixed_precision(task.precision), orbits)
         watch = None
         if task.cadence is not None:
-            watch = watch_for(task.system, task.nodes, loop, task.states, task.plan.start, task.cadence)
+            watch = loop_observables(
+                task.system, task.nodes, loop, task.states, task.plan.start, task.cadence
+            )
         return fixed_steps(task.system, loop, task.method, states, task.plan, progress, watch, so_far, events)
     if isinstance(task.method, DOP853):
         return dop853_motion(task.system, states[0], task.plan, task.method, progress, so_far)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
-from canon.flow.fixed_step.partial_step import State
+from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.method import FixedStep, Taylor
 from canon.flow.method.number_formats import fixed_precision
 
@@ -59,7 +59,7 @@ def _at(steps: PartialSteps, task: Task, samples: Samples, filled: Any, t: Fract
     if float(steps.time(round(place), Fraction(0))) == float(t):
         place = Fraction(round(place))
     n = int(place)
-    state = State(samples.y[:, k, filled], samples.carried[:, k, filled])
+    state = LoopState(samples.y[:, k, filled], samples.carried[:, k, filled])
     if n > stops[k]:
         state = steps.whole(state, stops[k], n - stops[k])
     return steps.moved(state, n, Fraction(0), place - n).high

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.checked_request import system_of, task_of
+from canon.flow.checked_request import hamilton_equations_of, task_of
 from canon.flow.run.hamiltonian_system import HamiltonianSystem
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.trajectory import Interrupted, Trajectory, carried_out
@@ -155,4 +155,4 @@ def is_separable(hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | st
     >>> is_separable(kepler.hamiltonian, kepler.values), is_separable(pendulum.hamiltonian, pendulum.values)
     (True, False)
     """
-    return system_of(hamiltonian, parameters).separable
+    return hamilton_equations_of(hamiltonian, parameters).separable

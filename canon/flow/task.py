@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from canon.flow.run.event import Event
     from canon.flow.run.samples import Samples
     from canon.flow.run.sampling_plan import Plan
-    from canon.flow.transformed.extended_hamiltonian import Fictitious
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["Task"]
 
@@ -49,7 +49,7 @@ class Task:
         Of a time-transformed method: what the motion in the fictitious time needs.
     """
 
-    system: Equations
+    system: HamiltonEquations
     method: Method
     precision: str | int | None
     states: tuple[Array, Array]
@@ -60,7 +60,7 @@ class Task:
     cadence: int | None
     events: tuple[Event, ...]
     dense: bool
-    fictitious: Fictitious | None = None
+    fictitious: ExtendedSystem | None = None
 
     def arrived(self, found: Samples) -> bool:
         """Return whether samples reach to the end of what was to be done."""

@@ -15,7 +15,7 @@ from canon.flow.integrate import integrate, silently
 from canon.flow.interpolation import states_at
 from canon.flow.run.observables_along import measured, warn_of_jumps
 from canon.flow.run.samples import Samples, Statistics
-from canon.kernel.program.hamilton_equations import exact
+from canon.kernel.program.hamilton_equations import exact_number
 from canon.progress import reporting
 
 if TYPE_CHECKING:
@@ -235,7 +235,7 @@ class Trajectory:
         if until is not None:
             if not task.arrived(kept):
                 raise ValueError("complete the interrupted run first: run.resume()")
-            task = task.until(exact(until, "until"), kept, samples, times)
+            task = task.until(exact_number(until, "until"), kept, samples, times)
         elif task.arrived(kept):
             raise ValueError(f"the motion has arrived at t = {self.t[-1]:g}: say how far to go on, until=")
         with reporting(progress) as report:

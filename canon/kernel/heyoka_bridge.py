@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.expression.graph.graph import Graph
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = [
     "heyoka_equations", "heyoka_expressions", "heyoka_functions", "heyoka_number", "taylor_integrator",
@@ -127,7 +127,7 @@ def heyoka_expressions(
 
 
 def heyoka_functions(
-    system: Equations, nodes: Sequence[int], number: Callable[[Fraction], Any] = float
+    system: HamiltonEquations, nodes: Sequence[int], number: Callable[[Fraction], Any] = float
 ) -> list[Any]:
     """Return functions of (q, p, t) in the variables of :func:`heyoka_equations`."""
     import heyoka as hy
@@ -147,12 +147,14 @@ def _product_of_squares(x: Any, power: int) -> Any:
         square = square * square
 
 
-def heyoka_equations(system: Equations, number: Callable[[Fraction], Any] = float) -> list[tuple[Any, Any]]:
+def heyoka_equations(
+    system: HamiltonEquations, number: Callable[[Fraction], Any] = float
+) -> list[tuple[Any, Any]]:
     """Return Hamilton's equations as heyoka takes them: pairs of a variable and its rate, (q, p) in order."""
     return list(zip(_variables(system).values(), heyoka_functions(system, system.rates, number), strict=True))
 
 
-def _variables(system: Equations) -> dict[Symbol, Any]:
+def _variables(system: HamiltonEquations) -> dict[Symbol, Any]:
     import heyoka as hy
 
     names = [f"{letter}{i}" for letter in "qp" for i in range(len(system.q))]
@@ -160,7 +162,7 @@ def _variables(system: Equations) -> dict[Symbol, Any]:
 
 
 def taylor_integrator(
-    system: Equations,
+    system: HamiltonEquations,
     y0: Sequence[Fraction],
     t0: Fraction,
     tolerance: float | None,

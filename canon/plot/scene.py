@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.scene.picture import Picture, Point
-    from canon.scene.scene_motion import Motion
+    from canon.scene.scene_motion import SceneMotion
 
 __all__ = ["animate_scene", "plot_scene"]
 
@@ -29,7 +29,7 @@ _AZIMUTH, _ELEVATION = math.radians(-60.0), math.radians(20.0)
 _COILS = 7
 
 
-def plot_scene(motion: Motion, ax: Axes | None = None, *, at: int = 0) -> Axes:
+def plot_scene(motion: SceneMotion, ax: Axes | None = None, *, at: int = 0) -> Axes:
     """Draw a scene at one sample of a motion, and the way its masses take.
 
     Parameters
@@ -64,7 +64,7 @@ def plot_scene(motion: Motion, ax: Axes | None = None, *, at: int = 0) -> Axes:
     return axes
 
 
-def animate_scene(motion: Motion, file: str | Path, *, seconds: float = 6.0, rate: int = 20) -> None:
+def animate_scene(motion: SceneMotion, file: str | Path, *, seconds: float = 6.0, rate: int = 20) -> None:
     """Write an animation of a motion to a file: ``.gif``, or ``.mp4`` where ffmpeg is installed.
 
     Parameters
@@ -122,7 +122,7 @@ def animate_scene(motion: Motion, file: str | Path, *, seconds: float = 6.0, rat
 class _Drawing:
     """The points of a scene's picture along a motion, projected to the plane."""
 
-    def __init__(self, motion: Motion) -> None:
+    def __init__(self, motion: SceneMotion) -> None:
         from sympy import sympify
 
         self.scene = motion.scene
@@ -151,7 +151,7 @@ class _Drawing:
         return found[0], found[1], found[2]
 
 
-def _picture(motion: Motion) -> Picture:
+def _picture(motion: SceneMotion) -> Picture:
     """Return the picture a scene has, or the point of its configuration."""
     from canon.scene.picture import Picture
 

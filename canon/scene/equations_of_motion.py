@@ -17,7 +17,7 @@ import sympy as sp
 
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import momentum, velocity
-from canon.flow.geometry.vector_field_motion import Field
+from canon.flow.geometry.vector_field_motion import VectorFieldSystem
 from canon.kernel.program.hamilton_equations import exact_numbers
 from canon.mechanics.at_scale.constrained import constrained
 from canon.mechanics.at_scale.ldl import solved_on_graph
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from canon.mechanics.at_scale.second_order import SecondOrderEquations
     from canon.scene.scene import Scene
 
-__all__ = ["Equation", "equation_of"]
+__all__ = ["SceneEquations", "scene_equations"]
 
 _PULL = 12.0
 """How many times in a period a deviation from the constraints falls by a factor e."""
@@ -41,7 +41,7 @@ _WORK = sp.Dummy("W")
 
 
 @dataclass(frozen=True, eq=False)
-class Equation:
+class SceneEquations:
     """A scene's equations of motion ẋ = X(x, t), numbers put in for the parameters.
 
     Parameters
@@ -60,7 +60,7 @@ class Equation:
         The nodes of λ.
     """
 
-    field: Field
+    field: VectorFieldSystem
     energy: int
     work: int
     residuals: tuple[int, ...]
@@ -84,7 +84,7 @@ class Equation:
         return found
 
 
-def equation_of(scene: Scene) -> Equation:
+def scene_equations(scene: Scene) -> SceneEquations:
     """Return a scene's equations of motion.
 
     Examples
@@ -97,19 +97,19 @@ def equation_of(scene: Scene) -> Equation:
     return _lagrangian_equation(scene) if scene.has_lagrangian else _hamiltonian_equation(scene)
 
 
-def _hamiltonian_equation(scene: Scene) -> Equation:
+def _hamiltonian_equation(scene: Scene) -> SceneEquations:
     graph, hamiltonian = Graph(), scene.hamiltonian
     x, n, t = (*hamiltonian.q, *hamiltonian.p), len(hamiltonian.q), hamiltonian.t
     numbers = exact_numbers({**scene.values})
-    H = Field(graph, x, t, numbers, ()).node(hamiltonian.H, "the Hamiltonian")
+    H = VectorFieldSystem(graph, x, t, numbers, ()).node(hamiltonian.H, "the Hamiltonian")
     slopes = graph.gradient(H, x)
     rates = (*slopes[n:], *map(graph.negative, slopes[:n]))
     named: dict[Symbol, int] = dict(zip(map(velocity, hamiltonian.q), slopes[n:], strict=True))
-    field = Field(graph, x, t, numbers, rates)
-    return _with_work(Equation(field, H, graph.zero, (), named), graph.derivative(H, t))
+    field = VectorFieldSystem(graph, x, t, numbers, rates)
+    return _with_work(SceneEquations(field, H, graph.zero, (), named), graph.derivative(H, t))
 
 
-def _lagrangian_equation(scene: Scene) -> Equation:
+def _lagrangian_equation(scene: Scene) -> SceneEquations:
     lagrangian = scene.lagrangian
     q, v, t = lagrangian.q, lagrangian.velocities, lagrangian.t
     found = derivation_of_lagrangian(lagrangian)
@@ -135,8 +135,8 @@ def _lagrangian_equation(scene: Scene) -> Equation:
     rates = (*q_dot, *(next(nodes) for _ in p_dot))
     power, energy = next(nodes), next(nodes)
     multipliers = tuple(next(nodes) for _ in multipliers)
-    field = Field(graph, (*q, *p), t, numbers, rates)
-    made = Equation(field, energy, graph.zero, tuple(nodes), named, multipliers)
+    field = VectorFieldSystem(graph, (*q, *p), t, numbers, rates)
+    made = SceneEquations(field, energy, graph.zero, tuple(nodes), named, multipliers)
     return _with_work(made, power)
 
 
@@ -178,10 +178,10 @@ def _dot(graph: Graph, a: Sequence[int], b: Sequence[int]) -> int:
     return graph.add([graph.mul(pair) for pair in zip(a, b, strict=True)])
 
 
-def _with_work(equation: Equation, power: int) -> Equation:
+def _with_work(equation: SceneEquations, power: int) -> SceneEquations:
     """Return the equations with the work as a further variable where power is exchanged."""
     field = equation.field
     if power == field.graph.zero:
         return equation
-    worked = Field(field.graph, (*field.x, _WORK), field.t, field.numbers, (*field.rates, power))
+    worked = VectorFieldSystem(field.graph, (*field.x, _WORK), field.t, field.numbers, (*field.rates, power))
     return replace(equation, field=worked, work=field.graph.symbol(_WORK))

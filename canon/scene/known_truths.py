@@ -15,7 +15,7 @@ import numpy as np
 
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.scene.parts import Integral, SceneError, Solution
-from canon.scene.scene_motion import Motion, first_zero, run
+from canon.scene.scene_motion import SceneMotion, first_zero, run
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -134,7 +134,7 @@ def check(scene: Scene, start: str | None = None, periods: float | None = None) 
     return (*found, *solutions_met(scene, start))
 
 
-def integrals_along(motion: Motion) -> tuple[Check, ...]:
+def integrals_along(motion: SceneMotion) -> tuple[Check, ...]:
     """Return how well energy, integrals and constraints are kept along a motion.
 
     Examples
@@ -205,7 +205,7 @@ def _met(scene: Scene, solution: Solution, about: str) -> Check:
     )
 
 
-def _kept(motion: Motion, integral: Integral, node: int, about: str, work: int | None = None) -> Check:
+def _kept(motion: SceneMotion, integral: Integral, node: int, about: str, work: int | None = None) -> Check:
     """Return how much a quantity, less the work, changes along a motion, relative to itself or its terms."""
     graph = motion.equation.field.graph
     kind, operands, _ = graph.nodes[node]

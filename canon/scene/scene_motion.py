@@ -13,7 +13,7 @@ from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.heyoka_bridge import heyoka_expressions
 from canon.mechanics.at_scale.constrained import constrained, constrained_motion
 from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
-from canon.scene.equations_of_motion import Equation, equation_of
+from canon.scene.equations_of_motion import SceneEquations, scene_equations
 from canon.scene.parts import SceneError, Start
 
 if TYPE_CHECKING:
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from canon.array import Array
-    from canon.flow.geometry.vector_field_motion import Field
+    from canon.flow.geometry.vector_field_motion import VectorFieldSystem
     from canon.scene.scene import Scene
 
-__all__ = ["Motion", "first_zero", "run", "start_state"]
+__all__ = ["SceneMotion", "first_zero", "run", "start_state"]
 
 _MET = -1
 """heyoka's outcome where the first of its terminal events stopped the motion."""
@@ -36,7 +36,7 @@ _TURN_HIGH, _TURN_LOW = 6.28125, 1.9353071795864769e-03
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class SceneMotion:
     """A sampled motion of a scene.
 
     Parameters
@@ -58,7 +58,7 @@ class Motion:
 
     scene: Scene
     start: Start
-    equation: Equation
+    equation: SceneEquations
     t: Array
     x: Array
     turns: Array
@@ -85,7 +85,7 @@ class Motion:
 
 def run(
     scene: Scene, start: str | Start | None = None, periods: float = 100.0, samples: int = 1009
-) -> Motion:
+) -> SceneMotion:
     """Return the motion of a scene over some periods, by heyoka's Taylor method to round-off.
 
     Parameters
@@ -114,15 +114,17 @@ def run(
     if not periods > 0.0:
         raise SceneError(f"periods={periods}: give a positive, finite number")
     chosen = start if isinstance(start, Start) else scene.start(start)
-    equation = equation_of(scene)
+    equation = scene_equations(scene)
     times = np.linspace(0.0, periods * scene.period, samples + 1)
     y0 = start_state(scene, chosen, equation)
     angles = [s.name in scene.angles.split() for s in scene.q]
     x, turns, steps = _carried(equation.field, y0, times, np.flatnonzero(angles))
-    return Motion(scene, chosen, equation, times, x, turns, steps)
+    return SceneMotion(scene, chosen, equation, times, x, turns, steps)
 
 
-def _carried(field: Field, y0: Array, times: Array, angles: NDArray[np.intp]) -> tuple[Array, Array, int]:
+def _carried(
+    field: VectorFieldSystem, y0: Array, times: Array, angles: NDArray[np.intp]
+) -> tuple[Array, Array, int]:
     """Return states and turns at the times, and the steps taken; angles are turned back as they grow.
 
     An angle that went on growing would be rounded to ever fewer digits, and heyoka's steps with it, as their error is
@@ -155,7 +157,7 @@ def _carried(field: Field, y0: Array, times: Array, angles: NDArray[np.intp]) ->
     return np.array(rows).T, np.array(whole).T, steps
 
 
-def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Motion:
+def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> SceneMotion:
     """Return the motion up to the first instant at which f(q, q̇, p, t) vanishes: its start and that instant.
 
     Raises
@@ -175,7 +177,7 @@ def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Moti
     """
     import heyoka as hy
 
-    chosen, equation = scene.start(start), equation_of(scene)
+    chosen, equation = scene.start(start), scene_equations(scene)
     field = equation.field
     pairs = field.heyoka_pairs()
     variables = {s: pair[0] for s, pair in zip(field.x, pairs, strict=True)} | {field.t: hy.time}
@@ -191,10 +193,10 @@ def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Moti
         )
     t = np.array([0.0, float(integrator.time)])
     x = np.array([y0, integrator.state]).T
-    return Motion(scene, chosen, equation, t, x, np.zeros_like(x), int(steps))
+    return SceneMotion(scene, chosen, equation, t, x, np.zeros_like(x), int(steps))
 
 
-def start_state(scene: Scene, start: Start, equation: Equation) -> Array:
+def start_state(scene: Scene, start: Start, equation: SceneEquations) -> Array:
     """Return the state to start from: (q, p), put onto the constraints, and W = 0 where work is done."""
     state, n = scene.state(start), len(scene.q)
     if equation.residuals:

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.checked_request import system_of
-from canon.flow.fixed_step.partial_step import PartialSteps, State
+from canon.flow.checked_request import hamilton_equations_of
+from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
 from canon.flow.method.method import Gauss, Splitting, TimeTransformed
 from canon.flow.propagate import Interrupted, propagate
 from canon.flow.run.event import Event
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.flow.transformed.extended_hamiltonian import extended, fictitious
-from canon.flow.transformed.land_at_time import Leg, landed
+from canon.flow.transformed.extended_hamiltonian import extended, extended_system
+from canon.flow.transformed.land_at_time import Segment, state_at_time
 from tests.flow.systems import KEPLER, PENDULUM, System, kepler_start
 from tests.flow.test_geometry import kepler_orbit
 
@@ -37,12 +37,12 @@ def keywords(method, **others):
 def at_time(t):
     """A state of the extended Kepler problem."""
     state = np.array([[1.0], [0.0], [float(t)], [0.0], [1.0], [0.5]])
-    return State(state, np.zeros_like(state))
+    return LoopState(state, np.zeros_like(state))
 
 
 def extended_kepler():
     larger = extended(KEPLER, LOGARITHMIC)
-    return fictitious(larger, system_of(larger, {}), KEPLER, Fraction(1))
+    return extended_system(larger, hamilton_equations_of(larger, {}), KEPLER, Fraction(1))
 
 
 # times ----------------------------------------------------------------------------------------------------
@@ -134,9 +134,9 @@ def test_an_end_that_no_part_of_a_step_meets_is_an_error():
     steps = PartialSteps(SimpleNamespace(implicit=False), list, Fraction(0), Fraction(1))
     object.__setattr__(steps, "moved", lambda state, n, begin, end: at_time(end > Fraction(3, 10)))
     frame = extended_kepler()
-    legs = [Leg(Fraction(0), at_time(0)), Leg(Fraction(1), at_time(1))]
+    legs = [Segment(Fraction(0), at_time(0)), Segment(Fraction(1), at_time(1))]
     with pytest.raises(ArithmeticError, match=r"no part of a step ends at t = 0\.5"):
-        landed(frame, steps, legs, Fraction(1, 2), Fraction(1, 2**56), Fraction(1, 2**51))
+        state_at_time(frame, steps, legs, Fraction(1, 2), Fraction(1, 2**56), Fraction(1, 2**51))
 
 
 # observables ----------------------------------------------------------------------------------------------

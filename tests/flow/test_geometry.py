@@ -10,7 +10,7 @@ from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.program.hamilton_equations import equations
-from canon.kernel.program.program import run
+from canon.kernel.program.program import interpret
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
@@ -37,12 +37,12 @@ def exact_step(system, scheme, state, h, t=0):
     q, p = list(state[:n]), list(state[n:])
     drift_clock = kick_clock = number(0) + t
     for i, a in enumerate(scheme.a):
-        rate = run(velocity, [*q, *p, kick_clock], number, FUNCTIONS)
+        rate = interpret(velocity, [*q, *p, kick_clock], number, FUNCTIONS)
         q = [x + number(a) * h * v for x, v in zip(q, rate, strict=True)]
         drift_clock += number(a) * h
         if i < len(scheme.b):
             b = number(scheme.b[i])
-            rate = run(force, [*q, *p, drift_clock], number, FUNCTIONS)
+            rate = interpret(force, [*q, *p, drift_clock], number, FUNCTIONS)
             p = [x + b * h * f for x, f in zip(p, rate, strict=True)]
             kick_clock += b * h
     return [*q, *p]
@@ -101,7 +101,7 @@ def test_runge_kutta_is_not_symplectic():
         h = mpmath.mpf("0.3")
 
         def f(y):
-            return mpmath.matrix(run(field, [*y, mpmath.mpf(0)], DIGITS.number, FUNCTIONS))
+            return mpmath.matrix(interpret(field, [*y, mpmath.mpf(0)], DIGITS.number, FUNCTIONS))
 
         y = mpmath.matrix(state)
         k1 = f(y)

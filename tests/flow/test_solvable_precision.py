@@ -11,7 +11,7 @@ from canon.flow.method.method import Taylor
 from canon.flow.method.number_formats import FIXED, unit_round_off
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
 from canon.flow.propagate import propagate
-from canon.kernel.solvable.planet_coordinates import democratic_chart, jacobi_chart
+from canon.kernel.solvable.planet_coordinates import heliocentric_coordinates, jacobi_coordinates
 from tests.flow.systems import HENON_HEILES, KEPLER, System, kepler_start
 from tests.flow.test_solvable import planets
 from tests.kernel.test_kepler import true_increments
@@ -49,7 +49,7 @@ def product(matrix, rows):
 def kicks(x, mass, coordinates, t):
     """Changes of places and velocities by H₁, written down from the definitions of the coordinates."""
     n = len(mass)
-    chart = (jacobi_chart if coordinates == "jacobi" else democratic_chart)(mass)
+    chart = (jacobi_coordinates if coordinates == "jacobi" else heliocentric_coordinates)(mass)
     m = [mpmath.mpf(a.numerator) / a.denominator for a in mass]
     bodies = product(chart.places_back, [[0, 0, 0], *x])
     first = 0 if coordinates == "jacobi" else 1
@@ -72,7 +72,7 @@ def kicks(x, mass, coordinates, t):
 
 def wisdom_holman_step(q, p, mass, coordinates, h):
     """One step in 60 digits."""
-    chart = (jacobi_chart if coordinates == "jacobi" else democratic_chart)(mass)
+    chart = (jacobi_coordinates if coordinates == "jacobi" else heliocentric_coordinates)(mass)
     m = [mpmath.mpf(a.numerator) / a.denominator for a in mass]
     v = [[a / b for a in row] for row, b in zip(p, m, strict=True)]
     mean = [[a / sum(mass) for a in mass]]

@@ -17,7 +17,7 @@ from canon.flow.method.method import Splitting
 from canon.flow.method.number_formats import FIXED
 from canon.flow.propagate import propagate
 from canon.kernel.loops import splitting
-from canon.kernel.program.hamilton_equations import Equations, equations
+from canon.kernel.program.hamilton_equations import HamiltonEquations, equations
 from canon.kernel.program.pairwise import PairForces, pair_forces
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
@@ -25,7 +25,7 @@ BODIES = 13
 SOFTENING = sp.Rational(1, 4)
 
 
-def system_of(potential: sp.Expr, q: tuple[sp.Symbol, ...]) -> Equations:
+def system_of(potential: sp.Expr, q: tuple[sp.Symbol, ...]) -> HamiltonEquations:
     H = sp.Add(*(s.momentum**2 / 2 for s in q)) + potential
     return equations(H, q, tuple(s.momentum for s in q), t, {})
 

@@ -13,8 +13,8 @@ from canon.expression.graph.graph import Graph
 from canon.expression.graph.number_systems import multiprecision
 from canon.kernel.llvm.loop import field_function
 from canon.kernel.llvm.number_types import DOUBLE, EXTENDED, SINGLE
-from canon.kernel.program.hamilton_equations import exact
-from canon.kernel.program.program import program, run
+from canon.kernel.program.hamilton_equations import exact_number
+from canon.kernel.program.program import interpret, program
 from tests.expression.test_graph import expressions, x, y, z
 
 DIGITS = multiprecision(40)
@@ -41,7 +41,7 @@ def test_lowering_keeps_the_value(f):
     node = graph.from_sympy(f)
     point = [DIGITS.number(v) for v in POINT]
     direct = graph.evaluate([node], dict(zip((x, y, z), point, strict=True)), DIGITS)[0]
-    through = run(program(graph, [node], (x, y, z)), point, DIGITS.number, FUNCTIONS)[0]
+    through = interpret(program(graph, [node], (x, y, z)), point, DIGITS.number, FUNCTIONS)[0]
     assert abs(direct - through) < 1e-30 * (1 + abs(direct))
 
 
@@ -51,7 +51,7 @@ def test_machine_code_computes_the_program(f):
     steps = lowered(f)
     point = [float(v) for v in POINT]
     found = compiled_values(steps, point)[0]
-    reference = run(
+    reference = interpret(
         steps, [np.float64(v) for v in point], float, {**_NUMPY, "sqrt": np.sqrt, "pow": np.power}
     )[0]
     assert found == pytest.approx(float(reference), rel=1e-13, abs=1e-14)
@@ -146,9 +146,9 @@ def test_constants_too_large_for_a_type_are_refused():
 
 
 def test_exact_numbers():
-    assert exact(np.float32(0.1), "g") == Fraction(float(np.float32(0.1)))
-    assert exact("1/3", "g") == Fraction(1, 3)
-    assert abs(float(exact(sp.pi / 2, "g")) - np.pi / 2) < 1e-16
+    assert exact_number(np.float32(0.1), "g") == Fraction(float(np.float32(0.1)))
+    assert exact_number("1/3", "g") == Fraction(1, 3)
+    assert abs(float(exact_number(sp.pi / 2, "g")) - np.pi / 2) < 1e-16
     for wrong in (True, None, "a", float("nan"), sp.Symbol("s"), [1]):
         with pytest.raises(ValueError, match="g = "):
-            exact(wrong, "g")
+            exact_number(wrong, "g")

@@ -5,7 +5,7 @@ import sympy as sp
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from canon.mechanics.algebra.branch_point import Witness, witnesses
+from canon.mechanics.algebra.branch_point import BranchPoint, branch_points
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.solve_on_branch import Inversion, UnstatableError, isolate, solve_system
 from canon.mechanics.algebra.table_integrals import table_integral
@@ -36,10 +36,10 @@ LAYERS = {
 
 
 def test_where_two_branches_meet_none_is_chosen():
-    fold = Inversion(Witness({x: sp.Rational(-1, 2)}, {Y: x**2 + x}))
+    fold = Inversion(BranchPoint({x: sp.Rational(-1, 2)}, {Y: x**2 + x}))
     with pytest.raises(UnstatableError):
         isolate(x**2 + x, Y, x, fold)
-    beside = Inversion(Witness({x: sp.Rational(-2, 3)}, {Y: x**2 + x}))
+    beside = Inversion(BranchPoint({x: sp.Rational(-2, 3)}, {Y: x**2 + x}))
     assert isolate(x**2 + x, Y, x, beside).subs(Y, 2) == -2
     assert beside.conditions == [2 * x + 1 < 0]
 
@@ -52,7 +52,7 @@ def test_an_isolated_unknown_is_right_wherever_its_conditions_hold(layers, seed)
     f = x
     for layer in layers:
         f = LAYERS[layer](f)
-    found_witnesses = list(witnesses({x, u}, {Y: f}, Domain(), 1, seed=seed))
+    found_witnesses = list(branch_points({x, u}, {Y: f}, Domain(), 1, seed=seed))
     if not found_witnesses:
         return
     inversion = Inversion(found_witnesses[0])
@@ -64,14 +64,14 @@ def test_an_isolated_unknown_is_right_wherever_its_conditions_hold(layers, seed)
         return
     assert not found.has(x)
     assert found_witnesses[0].agree(found, x)
-    for other in witnesses({x, u}, {Y: f}, Domain(tuple(inversion.conditions)), 4, seed=seed + 1):
+    for other in branch_points({x, u}, {Y: f}, Domain(tuple(inversion.conditions)), 4, seed=seed + 1):
         assert other.agree(found, x), (found, inversion.conditions)
 
 
 @pytest.mark.parametrize("layer", sorted(LAYERS))
 def test_every_layer_can_be_peeled(layer):
     f = LAYERS[layer](x)
-    witness = next(iter(witnesses({x, u}, {Y: f}, Domain(), 1)))
+    witness = next(iter(branch_points({x, u}, {Y: f}, Domain(), 1)))
     assert isolate(f, Y, x, Inversion(witness)) is not None
 
 
@@ -81,7 +81,7 @@ def test_the_branch_follows_the_witness():
         (-sp.Rational(1, 2), -sp.acos(Y)),
         (sp.Integer(7), sp.acos(Y) + 2 * sp.pi),
     ):
-        inversion = Inversion(Witness({x: place}, {Y: sp.cos(x)}))
+        inversion = Inversion(BranchPoint({x: place}, {Y: sp.cos(x)}))
         assert isolate(sp.cos(x), Y, x, inversion) == branch
         assert all(c.subs(x, place) for c in inversion.conditions)
 
@@ -90,11 +90,13 @@ def test_systems():
     equations = [(x * sp.cos(y), Y), (x * sp.sin(y), Z)]
     meaning = {Y: x * sp.cos(y), Z: x * sp.sin(y)}
     first = Domain((x > 0, y > 0, y < sp.pi / 2))
-    witness = next(iter(witnesses({x, y}, meaning, first, 1)))
+    witness = next(iter(branch_points({x, y}, meaning, first, 1)))
     solved = solve_system(equations, [x, y], Inversion(witness))
     assert solved is not None
     assert vanishes(solved[x].subs(meaning, simultaneous=True) - x, first).holds
-    assert solve_system([(x**5 + x, Y)], [x], Inversion(Witness({x: sp.Integer(1)}, {Y: x**5 + x}))) is None
+    assert (
+        solve_system([(x**5 + x, Y)], [x], Inversion(BranchPoint({x: sp.Integer(1)}, {Y: x**5 + x}))) is None
+    )
 
 
 POTENTIALS = [

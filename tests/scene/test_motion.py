@@ -16,7 +16,7 @@ from canon.mechanics.at_scale.constrained import constrained, constrained_motion
 from canon.mechanics.at_scale.numeric_functions import acceleration_function
 from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
 from canon.scene import SCENES, Integral, SceneError, Solution, find, names
-from canon.scene.equations_of_motion import equation_of
+from canon.scene.equations_of_motion import scene_equations
 from canon.scene.known_truths import Check, check, conserved, integrals_along, solutions_met
 from canon.scene.scene_motion import first_zero, run, start_state
 
@@ -203,14 +203,14 @@ def test_refused_questions():
     from sympy import Symbol
 
     with pytest.raises(SceneError, match="holds w, which the scene lacks"):
-        equation_of(scene).node(Symbol("w"), "the claim")
+        scene_equations(scene).node(Symbol("w"), "the claim")
 
 
 @pytest.mark.parametrize("name", [scene.name for scene in SCENES if scene.angles])
 def test_angles_may_be_turned_back(name):
     """The rates of change are the same a whole turn further."""
     scene = find(name)
-    equation = equation_of(scene)
+    equation = scene_equations(scene)
     field = equation.field
     at = dict(zip(field.x, start_state(scene, scene.starts[-1], equation) + 0.01, strict=True)) | {
         field.t: 0.3

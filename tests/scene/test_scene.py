@@ -13,7 +13,7 @@ import sympy as sp
 from canon.expression.symbols.symbol import time
 from canon.proof.vanish import equal, vanishes
 from canon.scene import SCENES, Condition, Parameter, SceneError, Start, find, names
-from canon.scene.equations_of_motion import equation_of
+from canon.scene.equations_of_motion import scene_equations
 from canon.scene.known_truths import conserved
 from canon.scene.scene_motion import start_state
 
@@ -55,7 +55,7 @@ def test_every_start_is_a_finite_state_with_finite_rates(scene):
         assert y.shape == (2 * len(scene.q),)
         known = {**values, **dict(zip((*scene.q, *scene.p), y, strict=True))}
         if not scene.is_free:
-            equation = equation_of(scene)
+            equation = scene_equations(scene)
             at = dict(zip(equation.field.x, start_state(scene, start, equation), strict=True))
             at[equation.field.t] = 0.0
             rates = equation.field.graph.evaluate(equation.field.rates, at)
@@ -193,7 +193,7 @@ def test_the_default_state_is_the_first_start():
         (lambda scene: scene.values, set()),
         (lambda scene: scene.lagrangian.equations, {"q", "symbols", "lagrangian"}),
         (lambda scene: scene.hamiltonian.H, {"q", "p", "symbols", "lagrangian", "hamiltonian"}),
-        (equation_of, {"q", "symbols", "lagrangian"}),
+        (scene_equations, {"q", "symbols", "lagrangian"}),
     ],
 )
 def test_a_question_builds_what_it_needs_and_nothing_else(question, built):

@@ -10,7 +10,7 @@ import pytest
 from canon import DOP853, RK4, Gauss, Splitting, Taylor, propagate
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.solvable_splitting import WisdomHolman
-from canon.study.cases.case import Case, parts_of
+from canon.study.cases.case import Case, part_count
 from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance, started
 from canon.study.drift.drift import Growth, drift
 from canon.study.motion.hamiltonian_text import Formula
@@ -47,7 +47,7 @@ def in_legs(case):
     while isinstance(reached := advance(case, reached, seconds=0.0), Checkpoint):
         reached = Checkpoint.from_text(reached.to_text())
         seen.append(reached.part)
-    assert seen == list(range(1, parts_of(case)))
+    assert seen == list(range(1, part_count(case)))
     return reached
 
 
@@ -135,9 +135,9 @@ def test_the_error_is_that_since_the_start_of_the_run():
 
 def test_the_number_of_parts_follows_from_the_case():
     long = replace(KEPLER, span=1e6, parts=None)
-    assert parts_of(long) == 48
-    assert parts_of(replace(KEPLER, parts=None)) == 1
-    assert parts_of(replace(long, method=Taylor(), step=None, samples=4096)) == 32
+    assert part_count(long) == 48
+    assert part_count(replace(KEPLER, parts=None)) == 1
+    assert part_count(replace(long, method=Taylor(), step=None, samples=4096)) == 32
 
 
 def test_a_collision_is_a_failed_run_with_its_reason():

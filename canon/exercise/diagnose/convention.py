@@ -10,7 +10,7 @@ from sympy.core.function import AppliedUndef
 from canon.exercise.diagnose.diagnosis import Diagnosis, scaled
 from canon.exercise.diagnose.repair import common_ratio
 from canon.exercise.diagnose.slips import times
-from canon.mechanics.canonical.repair_hint import mending
+from canon.mechanics.canonical.repair_hint import repair_hint
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.proof.kinks import vanishes_off_kinks
 
@@ -125,7 +125,7 @@ def _mended(reading: Reading) -> Mending | None:
     if any(f.has(AppliedUndef) for f in (*Q, *P)):
         return None  # arbitrary functions have no values at which a bracket could be looked at
     map_ = CanonicalTransformation(q, p, Q, P, reading.time, reading.domain)
-    return mending(map_, reading.expression("valence", sp.S.One))
+    return repair_hint(map_, reading.expression("valence", sp.S.One))
 
 
 def lost_time_derivative(wrong: WrongAnswer) -> Iterator[Diagnosis]:

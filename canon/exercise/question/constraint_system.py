@@ -21,7 +21,7 @@ from canon.exercise.question.question import Part, Same, decide
 from canon.expression.symbols.symbol import time_derivative, velocity
 from canon.mechanics.algebra.linear import eliminate
 from canon.mechanics.algebra.substitution import exchanged, substitute
-from canon.mechanics.lagrange.frobenius import Pfaffian, curl
+from canon.mechanics.lagrange.frobenius import Pfaffian, exterior_derivative
 from canon.proof.continuity.smooth import PIECED, without_pieces
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
@@ -124,7 +124,7 @@ class ConstraintSystem:
         yield sp.S.Zero  # where nothing moves, nothing is curved
         for X, Y in combinations(allowed, 2):
             for form in forms:
-                yield substitute(curl(form, z, X, Y), branch.values)
+                yield substitute(exterior_derivative(form, z, X, Y), branch.values)
 
     def check_consistent(self) -> None:
         """Refuse constraints such as ẋ = 0, ẋ = z, that contradict each other off positions they do not name."""

@@ -26,7 +26,7 @@ from lark import Lark, Token, Transformer_NonRecursive, UnexpectedToken
 from lark.exceptions import VisitError
 
 from canon.expression.latex.meaning import Meaning
-from canon.expression.latex.pieces import Group, Head, Piece, Powered, Run
+from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered
 from canon.expression.latex.words import Word, Words, words_of
 from canon.expression.text.syntax import (
     Call,
@@ -194,8 +194,8 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             factors += [(divides, node) for node in found]
         return Product(tuple(factors), children[0].column)
 
-    def run(self, children: list[Any]) -> Run:
-        return Run(tuple(children), children[0].column)
+    def run(self, children: list[Any]) -> FactorRun:
+        return FactorRun(tuple(children), children[0].column)
 
     def power(self, children: list[Any]) -> Powered:
         base, _, exponent = children
@@ -240,7 +240,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
 
 def _items(piece: Piece) -> tuple[Piece, ...]:
-    return piece.items if isinstance(piece, Run) else (piece,)
+    return piece.items if isinstance(piece, FactorRun) else (piece,)
 
 
 def _unexpected(text: str, before: Word | None, word: Word | None, end: int) -> LanguageError:

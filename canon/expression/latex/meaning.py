@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, NoReturn
 from canon.expression.latex.derivatives import Derivatives, derivative
 from canon.expression.latex.names import Applied, Function, Mark
 from canon.expression.latex.pieces import (
-    Fraction,
+    FactorRun,
     Group,
     Head,
+    LatexFraction,
     Operator,
     Piece,
     Powered,
-    Run,
     is_function,
     is_minus_one,
     items_of,
@@ -76,12 +76,12 @@ class Meaning:
                 return self.node(piece.inner)
             case Powered():
                 return self._power(piece)
-            case Run():
+            case FactorRun():
                 factors = self.factors(piece.items)
                 if len(factors) == 1:
                     return factors[0]
                 return Product(tuple((False, factor) for factor in factors), piece.column)
-            case Fraction():
+            case LatexFraction():
                 return piece.node
             case Head() | Operator() | Mark():
                 return self.factors((piece,))[0]
@@ -125,7 +125,7 @@ class Meaning:
         first = unbraced(right.base) if isinstance(right, Powered) else right
         if isinstance(first, Number) and (hidden or isinstance(left, Name | Number)):
             self.refuse(column, "a number after a factor", r"write x_2, x^2, 2x or \cdot, whichever is meant")
-        if isinstance(left, Number) and isinstance(first, Fraction) and first.numbers:
+        if isinstance(left, Number) and isinstance(first, LatexFraction) and first.numbers:
             self.refuse(
                 column, "a number before a fraction of numbers: a product or a mixed number?", r"put \cdot"
             )
@@ -144,7 +144,7 @@ class Meaning:
         hidden = (
             isinstance(base, Group) and not base.printed and not isinstance(unbraced(base), Name | Number)
         )
-        if hidden or isinstance(base, Fraction):
+        if hidden or isinstance(base, LatexFraction):
             self.refuse(
                 base.column, "print does not show what is raised here", r"write \left( \right) around it"
             )
@@ -354,7 +354,7 @@ class Meaning:
             operand = items_of(above)[1:]
             if not operand:
                 return operator
-            return self.derivatives.of(operator, self.node(Run(operand, operand[0].column)))
+            return self.derivatives.of(operator, self.node(FactorRun(operand, operand[0].column)))
         numerator, denominator = self.node(above), self.node(below)
         numbers = isinstance(numerator, Number) and isinstance(denominator, Number)
-        return Fraction(Product(((False, numerator), (True, denominator)), column), numbers, column)
+        return LatexFraction(Product(((False, numerator), (True, denominator)), column), numbers, column)

@@ -23,8 +23,21 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 __all__ = [
-    "Fraction", "Group", "Head", "Operator", "Piece", "Powered", "Run", "is_function", "is_minus_one",
-    "items_of", "mark_of", "names_in", "raised", "unbraced", "whole",
+    "FactorRun",
+    "Group",
+    "Head",
+    "LatexFraction",
+    "Operator",
+    "Piece",
+    "Powered",
+    "is_function",
+    "is_minus_one",
+    "items_of",
+    "mark_of",
+    "names_in",
+    "raised",
+    "unbraced",
+    "whole",
 ]  # fmt: skip
 
 
@@ -62,7 +75,7 @@ class Head:
 
 
 @dataclass(frozen=True, slots=True)
-class Fraction:
+class LatexFraction:
     """A fraction; ``numbers`` says whether it is one of two numbers."""
 
     node: Product
@@ -80,14 +93,14 @@ class Operator:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class FactorRun:
     """Factors side by side."""
 
     items: tuple[Piece, ...]
     column: int
 
 
-Piece: TypeAlias = Node | Group | Powered | Head | Fraction | Operator | Run | Mark
+Piece: TypeAlias = Node | Group | Powered | Head | LatexFraction | Operator | FactorRun | Mark
 
 
 def is_function(piece: Piece) -> bool:
@@ -120,7 +133,7 @@ def unbraced(piece: Piece) -> Piece:
 def items_of(piece: Piece) -> tuple[Piece, ...]:
     """Return what stands side by side in a piece, seen through braces."""
     piece = unbraced(piece)
-    return piece.items if isinstance(piece, Run) else (piece,)
+    return piece.items if isinstance(piece, FactorRun) else (piece,)
 
 
 def mark_of(piece: Piece) -> str | None:

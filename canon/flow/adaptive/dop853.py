@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.samples import Samples
 from canon.kernel.llvm.loop import field_function
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.method.method import DOP853
     from canon.flow.run.sampling_plan import Plan
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["dop853_motion"]
 
 
 def dop853_motion(
-    system: Equations,
+    system: HamiltonEquations,
     states: Array,
     plan: Plan,
     method: DOP853,
@@ -60,7 +60,7 @@ def dop853_motion(
 
 
 def _dop853(
-    system: Equations, y0: Array, times: Array, method: DOP853, progress: Callable[[float], None]
+    system: HamiltonEquations, y0: Array, times: Array, method: DOP853, progress: Callable[[float], None]
 ) -> Samples:
     """Integrate with SciPy's DOP853 on the compiled right-hand side."""
     from scipy import integrate
@@ -101,7 +101,7 @@ def _dop853(
 
 def _lost(t: float, state: Array, reason: object) -> NonFiniteStateError:
     return NonFiniteStateError(
-        f"the motion can't be continued after {described(t, state)} ({reason}): a collision or the edge of H's "
+        f"the motion can't be continued after {time_and_state(t, state)} ({reason}): a collision or the edge of H's "
         "domain; stop earlier",
         t,
         state,

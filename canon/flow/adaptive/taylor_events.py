@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.run.event import Crossing
-from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.observables_along import values_in
 from canon.kernel.heyoka_bridge import heyoka_functions
 from canon.kernel.llvm.number_types import DOUBLE, DOUBLE_DOUBLE, EXTENDED
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.array import Array
-    from canon.flow.run.event import Prepared
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.flow.run.event import PreparedEvent
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Meeting"]
+__all__ = ["TaylorEvents"]
 
 _ROUNDING = 2.0**-9
 """What part of the motion on leaving a zero rounding may make up."""
 
 
-class Meeting:
+class TaylorEvents:
     """Events of one orbit as heyoka's, and the crossings it tells of.
 
     Parameters
@@ -46,8 +46,8 @@ class Meeting:
 
     def __init__(
         self,
-        system: Equations,
-        events: Sequence[Prepared],
+        system: HamiltonEquations,
+        events: Sequence[PreparedEvent],
         precision: str | int,
         number: Callable[[Fraction], Any],
         *,
@@ -56,8 +56,8 @@ class Meeting:
         self.system, self.events, self.number, self.forward = system, events, number, forward
         self.recorded = [event for event in events if event.event.action == "record"]
         self.terminal = [event for event in events if event.event.action != "record"]
-        self.met: list[Crossing] = []
-        self.met_state: Any = None
+        self.crossings: list[Crossing] = []
+        self.new_state: Any = None
         self.wide = {"double": EXTENDED if EXTENDED.available() else DOUBLE}.get(
             str(precision), DOUBLE_DOUBLE
         )
@@ -74,7 +74,7 @@ class Meeting:
             return {}
         kinds = {0: hy.event_direction.any, 1: hy.event_direction.positive, -1: hy.event_direction.negative}
 
-        def of(event: Prepared, make: Any, callback: Any) -> Any:
+        def of(event: PreparedEvent, make: Any, callback: Any) -> Any:
             direction = kinds[event.event.direction * self.forward]
             (function,) = heyoka_functions(self.system, [event.value], self.number)
             kind = type(self.number(Fraction(0)))
@@ -85,7 +85,7 @@ class Meeting:
             "t_events": [of(e, hy.t_event, self._stopper(e)) for e in self.terminal],
         }
 
-    def event_of(self, outcome: Any) -> Prepared | None:
+    def event_of(self, outcome: Any) -> PreparedEvent | None:
         """Return the event at which the motion stands, if its outcome is one."""
         place = -outcome.value - 1
         return self.terminal[place] if 0 <= place < len(self.terminal) else None
@@ -113,22 +113,24 @@ class Meeting:
                 first = int(np.argmax(lost))
                 state = y[self.system.rows, first]
                 raise NonFiniteStateError(
-                    f"the function of {event.event} is not finite at {described(float(t[first]), state)}: it left its "
-                    "own domain there, and its zeros may have been missed",
+                    f"the function of {event.event} is not finite at {time_and_state(float(t[first]), state)}: it left "
+                    "its own domain there, and its zeros may have been missed",
                     float(t[first]),
                     state,
                 )
 
     def crossed(
-        self, handled: Sequence[Prepared], t: Any, part: float, before: Any, after: Any
-    ) -> Prepared | None:
+        self, handled: Sequence[PreparedEvent], t: Any, part: float, before: Any, after: Any
+    ) -> PreparedEvent | None:
         """Meet the first of the other events whose function changes its sign from one state to the next, if any.
 
         Rounding may have put the first state a little beyond the zero already.
         """
         near = part * _ROUNDING
         for event in self.events:
-            known = any(met.event is event.event and abs(met.t - float(t)) <= near for met in self.met[-9:])
+            known = any(
+                met.event is event.event and abs(met.t - float(t)) <= near for met in self.crossings[-9:]
+            )
             if known or any(event is other for other in handled):
                 continue
             old, new = (self._value(event, float(t), *_parts(state)) for state in (before, after))
@@ -136,12 +138,12 @@ class Meeting:
                 if not event.event.counts(new > 0):
                     continue
                 changed = None if event.jump is None else self._changed(event.jump, float(t), before)
-                self.met_state = before if changed is None else changed
-                self._meet(event, float(t), before, self.forward if new > 0 else -self.forward, changed)
+                self.new_state = before if changed is None else changed
+                self._record(event, float(t), before, self.forward if new > 0 else -self.forward, changed)
                 return event
         return None
 
-    def check_left(self, event: Prepared, changed: Any, t: Any, after: Any) -> None:
+    def check_left(self, event: PreparedEvent, changed: Any, t: Any, after: Any) -> None:
         """Make sure that a motion has left an event's zero to the side to which it was sent.
 
         Raises
@@ -154,30 +156,30 @@ class Meeting:
         if now * sent <= 0:
             y = changed.astype(np.float64)[self.system.rows]
             raise NonFiniteStateError(
-                f"{event.event} is met again at once at {described(float(t), y)}: events pile up there; stop the "
+                f"{event.event} is met again at once at {time_and_state(float(t), y)}: events pile up there; stop the "
                 "motion before",
                 float(t),
                 y,
             )
 
-    def _value(self, event: Prepared, t: float, high: Array, low: Array, *, rate: bool = False) -> float:
+    def _value(self, event: PreparedEvent, t: float, high: Array, low: Array, *, rate: bool = False) -> float:
         node = event.rate if rate else event.value
         found = values_in(self.wide, self.system, [node], t, high[:, np.newaxis], low[:, np.newaxis])
         return float(found[0, 0].sum())
 
-    def _recorder(self, event: Prepared) -> Callable[[Any, Any, int], None]:
+    def _recorder(self, event: PreparedEvent) -> Callable[[Any, Any, int], None]:
         def recorded(integrator: Any, t: Any, sign: int) -> None:
             integrator.update_d_output(t)
-            self._meet(event, float(t), integrator.d_output, sign, None)
+            self._record(event, float(t), integrator.d_output, sign, None)
 
         return recorded
 
-    def _stopper(self, event: Prepared) -> Callable[[Any, int], bool]:
+    def _stopper(self, event: PreparedEvent) -> Callable[[Any, int], bool]:
         def met(integrator: Any, sign: int) -> bool:
             t, state = float(integrator.time), integrator.state.copy()
             after = None if event.jump is None else self._changed(event.jump, t, state)
-            self.met_state = after
-            self._meet(event, t, state, sign, after)
+            self.new_state = after
+            self._record(event, t, state, sign, after)
             return False
 
         return met
@@ -187,15 +189,17 @@ class Meeting:
         found = values_in(self.wide, self.system, jump, t, high[:, np.newaxis], low[:, np.newaxis])[:, 0]
         if not np.isfinite(found.astype(np.float64)).all():
             y = high[self.system.rows]
-            raise NonFiniteStateError(f"the new state of an event is not finite at {described(t, y)}", t, y)
+            raise NonFiniteStateError(
+                f"the new state of an event is not finite at {time_and_state(t, y)}", t, y
+            )
         exact = [sum((Fraction(*x.as_integer_ratio()) for x in parts), Fraction(0)) for parts in found]
         return np.array([self.number(x) for x in exact])
 
-    def _meet(self, event: Prepared, t: float, state: Any, sign: int, after: Any) -> None:
+    def _record(self, event: PreparedEvent, t: float, state: Any, sign: int, after: Any) -> None:
         rows = self.system.rows
         moved = None if after is None else after.astype(np.float64)[rows]
         y = state.astype(np.float64)[rows]
-        self.met.append(Crossing(event.event, t, y, sign * self.forward > 0, moved))
+        self.crossings.append(Crossing(event.event, t, y, sign * self.forward > 0, moved))
 
 
 def _parts(state: Any) -> tuple[Array, Array]:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.adaptive.taylor_events import Meeting
-from canon.flow.adaptive.taylor_orbit import Orbit, Slice, ends_of, orbits_of
+from canon.flow.adaptive.taylor_events import TaylorEvents
+from canon.flow.adaptive.taylor_orbit import Slice, TaylorOrbit, ends_of, orbits_of
 from canon.flow.run.samples import Samples
 from canon.kernel.heyoka_bridge import heyoka_number
 
@@ -22,22 +22,22 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.flow.method.method import Taylor
-    from canon.flow.run.event import Prepared
+    from canon.flow.run.event import PreparedEvent
     from canon.flow.run.sampling_plan import Plan
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["Polynomials", "taylor_motion"]
 
 
 def taylor_motion(
-    system: Equations,
+    system: HamiltonEquations,
     states: tuple[Array, Array],
     plan: Plan,
     method: Taylor,
     precision: str | int,
     progress: Callable[[float], None],
     so_far: Samples | None = None,
-    events: Sequence[Prepared] = (),
+    events: Sequence[PreparedEvent] = (),
     *,
     dense: bool = False,
 ) -> Samples:
@@ -69,36 +69,36 @@ def taylor_motion(
     number = heyoka_number(precision)
     first = 0 if so_far is None else len(so_far.t) - 1
     grid = np.array([number(Fraction(t)) for t in plan.instants[first:].tolist()])
-    meeting = Meeting(system, events, precision, number, forward=plan.forward)
+    taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward)
     t0, span = Fraction(float(plan.instants[first])), grid[-1] - grid[0]
-    orbits = orbits_of(system, states, t0, method, number, meeting, span)
+    orbits = orbits_of(system, states, t0, method, number, taylor_events, span)
     if so_far is not None:
         for orbit, (state, clock) in zip(orbits, so_far.beyond, strict=True):
             orbit.integrator.state[:], orbit.integrator.dtime = state, clock
     compiled = time.perf_counter() - compiling
-    if events and so_far is None and meeting.at_zero(float(plan.instants[0]), *states):
+    if events and so_far is None and taylor_events.at_zero(float(plan.instants[0]), *states):
         orbits[0].leave([], (), dense=dense)
-    course = _Course(orbits, meeting, [_stacked(states, number)], ends_of(orbits))
-    course.follow(grid, plan, first, progress, system.rows, dense=dense)
-    found = np.concatenate(course.rows).transpose(1, 0, 2)
+    run = _TaylorRun(orbits, taylor_events, [_stacked(states, number)], ends_of(orbits))
+    run.follow(grid, plan, first, progress, system.rows, dense=dense)
+    found = np.concatenate(run.rows).transpose(1, 0, 2)
     y = found.astype(np.float64)
     exact = np.array([number(Fraction(x)) for x in y.ravel().tolist()]).reshape(y.shape)
     t = plan.instants[first : first + y.shape[1]]
-    if course.stopped:
-        t = np.append(t[: y.shape[1] - 1], meeting.met[-1].t)
+    if run.stopped:
+        t = np.append(t[: y.shape[1] - 1], taylor_events.crossings[-1].t)
     if events:
-        meeting.check_domain(t, y[:, :, 0])
+        taylor_events.check_domain(t, y[:, :, 0])
     return Samples(
         t=t,
         y=y,
         carried=(found - exact).astype(np.float64),
-        steps=course.steps,
-        evaluations=course.steps,
+        steps=run.steps,
+        evaluations=run.steps,
         step=None,
-        cpu_seconds=course.seconds,
+        cpu_seconds=run.seconds,
         compile_seconds=compiled,
-        beyond=course.beyond,
-        crossings=tuple(meeting.met),
+        beyond=run.beyond,
+        crossings=tuple(taylor_events.crossings),
         dense=tuple(Polynomials(tuple(orbit.pieces), number) for orbit in orbits) if dense else (),
     )
 
@@ -111,11 +111,11 @@ def _stacked(states: tuple[Array, Array], number: Callable[[Fraction], Any]) -> 
 
 
 @dataclass(eq=False)
-class _Course:
+class _TaylorRun:
     """Orbits side by side on their way: what was reached by all of them, and what it cost."""
 
-    orbits: list[Orbit]
-    meeting: Meeting
+    orbits: list[TaylorOrbit]
+    taylor_events: TaylorEvents
     rows: list[Any]
     beyond: list[tuple[Any, Any]]
     steps: int = 0
@@ -145,12 +145,12 @@ class _Course:
                         if each.outcome is not None:
                             raise orbit.lost(each.outcome, rows)
                     self._add(made)
-                    met = len(self.meeting.met)
+                    met = len(self.taylor_events.crossings)
                     if self.stopped:
                         return
                     progress(end / (len(plan.instants) - 1))
             except KeyboardInterrupt:
-                del self.meeting.met[met:]
+                del self.taylor_events.crossings[met:]
 
     def _add(self, made: Sequence[Slice]) -> None:
         self.stopped = any(each.stopped for each in made)
@@ -163,7 +163,7 @@ class _Course:
 @contextlib.contextmanager
 def _side_by_side(
     orbits: int,
-) -> Generator[Callable[[Callable[[Orbit], Slice], list[Orbit]], Iterable[Slice]]]:
+) -> Generator[Callable[[Callable[[TaylorOrbit], Slice], list[TaylorOrbit]], Iterable[Slice]]]:
     """Yield a map over orbits: on threads where there are several, and in this one where there is one."""
     if orbits == 1:
         yield map

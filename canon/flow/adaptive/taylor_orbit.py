@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.kernel.heyoka_bridge import taylor_integrator
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.array import Array
-    from canon.flow.adaptive.taylor_events import Meeting
+    from canon.flow.adaptive.taylor_events import TaylorEvents
     from canon.flow.method.method import Taylor
-    from canon.flow.run.event import Prepared
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.flow.run.event import PreparedEvent
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Orbit", "Slice", "ends_of", "orbits_of"]
+__all__ = ["Slice", "TaylorOrbit", "ends_of", "orbits_of"]
 
 _MANY_STEPS, _CREEPING = 50_000, 1e-10
 """Where so many steps pass less than this part of what is left, they shrink towards a singularity."""
@@ -43,11 +43,11 @@ class Slice:
 
 
 @dataclass(eq=False)
-class Orbit:
+class TaylorOrbit:
     """One orbit on its way: heyoka's integrator, and one without events to leave their zeros with."""
 
     integrator: Any
-    meeting: Meeting
+    taylor_events: TaylorEvents
     free: Any
     span: Any
     pieces: list[Any] = field(default_factory=list[Any])
@@ -62,7 +62,7 @@ class Orbit:
             steps += steps_taken
             rows += found
             left = left[len(found) :]
-            event = self.meeting.event_of(outcome)
+            event = self.taylor_events.event_of(outcome)
             if event is None:
                 failure = outcome
                 break
@@ -82,14 +82,14 @@ class Orbit:
             failure = None
         return Slice(made, steps, time.thread_time() - started, failure, stopped)
 
-    def _at_the_same_time(self, event: Prepared) -> list[Prepared]:
+    def _at_the_same_time(self, event: PreparedEvent) -> list[PreparedEvent]:
         """Change the state as an event does, then as every other does that would be met on leaving its zero.
 
         heyoka tells of one event that changes the state; another at the same instant, as in a corner between two
         walls, would be passed unseen.
         """
         own, handled = self.integrator, [event]
-        own.state[:] = self.meeting.met_state
+        own.state[:] = self.taylor_events.new_state
         while True:
             before, clock = own.state.copy(), own.dtime
             self.free.state[:], self.free.dtime = before, clock
@@ -97,15 +97,17 @@ class Orbit:
             self.free.state[:], self.free.dtime = before, clock
             part = natural * type(natural)(_SMALL_PART)
             self.free.propagate_until(own.time + part)
-            found = self.meeting.crossed(handled, own.time, abs(float(part)), before, self.free.state)
+            found = self.taylor_events.crossed(handled, own.time, abs(float(part)), before, self.free.state)
             if found is None:
                 return handled
             handled.append(found)
-            own.state[:] = self.meeting.met_state
+            own.state[:] = self.taylor_events.new_state
             if found.event.action == "stop":
                 return handled
 
-    def leave(self, left: list[Any], events: Sequence[Prepared], *, dense: bool) -> tuple[int, list[Any]]:
+    def leave(
+        self, left: list[Any], events: Sequence[PreparedEvent], *, dense: bool
+    ) -> tuple[int, list[Any]]:
         """Move off an event's zero, by a small part of a step that looks for no events.
 
         heyoka takes a zero at the very beginning of a step for others of the step too.
@@ -117,13 +119,13 @@ class Orbit:
         free.state[:], free.dtime = before, clock
         end = own.time + natural * type(natural)(_SMALL_PART)
         at_once = [before for t in left if t == own.time]
-        near = [t for t in left if t != own.time and (t - end) * self.meeting.forward < 0]
+        near = [t for t in left if t != own.time and (t - end) * self.taylor_events.forward < 0]
         steps, found, _ = self._towards(free, [*near, end], dense=dense)
         for event in events:
             if event.jump is not None:
-                self.meeting.check_left(event, before, own.time, free.state)
+                self.taylor_events.check_left(event, before, own.time, free.state)
         own.state[:], own.dtime = free.state, free.dtime
-        if self.meeting.terminal:
+        if self.taylor_events.terminal:
             own.reset_cooldowns()
         return steps, [*at_once, *found[: len(near)]]
 
@@ -146,7 +148,7 @@ class Orbit:
         from heyoka import taylor_outcome
 
         limits = {"max_steps": _MANY_STEPS}
-        if self.meeting.events:
+        if self.taylor_events.events:
             limits["max_delta_t"] = abs(self.span)
         if not dense and len(times) == 1:  # keeping every step's series for times between costs a fifth
             outcome, _, _, steps, _, _ = integrator.propagate_until(times[-1], **limits)
@@ -174,37 +176,37 @@ class Orbit:
             t, state = own.time, own.state.copy()
         y = state.astype(np.float64)[list(rows)]
         return NonFiniteStateError(
-            f"the motion can't be continued after {described(float(t), y)} ({outcome}): a collision or the edge of "
-            "H's domain; stop earlier",
+            f"the motion can't be continued after {time_and_state(float(t), y)} ({outcome}): a collision or the edge "
+            "of H's domain; stop earlier",
             float(t),
             y,
         )
 
 
 def orbits_of(
-    system: Equations,
+    system: HamiltonEquations,
     states: tuple[Array, Array],
     t0: Fraction,
     method: Taylor,
     number: Callable[[Fraction], Any],
-    meeting: Meeting,
+    taylor_events: TaylorEvents,
     span: Any,
-) -> list[Orbit]:
+) -> list[TaylorOrbit]:
     """Compile one integrator and copy it for the other orbits."""
-    made, free = list[Orbit](), None
+    made, free = list[TaylorOrbit](), None
     for high, low in zip(states[0].T.tolist(), states[1].T.tolist(), strict=True):
         y0 = [Fraction(a) + Fraction(b) for a, b in zip(high, low, strict=True)]
         if not made:
             settings = system, y0, t0, method.tolerance, number
-            integrator = taylor_integrator(*settings, meeting.heyoka_events())
-            free = taylor_integrator(*settings) if meeting.events else None
+            integrator = taylor_integrator(*settings, taylor_events.heyoka_events())
+            free = taylor_integrator(*settings) if taylor_events.events else None
         else:
             integrator = copy.deepcopy(made[0].integrator)
             integrator.state[:] = [number(x) for x in y0]
-        made.append(Orbit(integrator, meeting, free, span))
+        made.append(TaylorOrbit(integrator, taylor_events, free, span))
     return made
 
 
-def ends_of(orbits: Sequence[Orbit]) -> list[tuple[Any, Any]]:
+def ends_of(orbits: Sequence[TaylorOrbit]) -> list[tuple[Any, Any]]:
     """Return each orbit's state and time, which go on with the same bits."""
     return [(orbit.integrator.state.copy(), orbit.integrator.dtime) for orbit in orbits]

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.array import Array
-from canon.flow.fixed_step.loop_buffers import Job, Memory, Watch
+from canon.flow.fixed_step.loop_buffers import LoopBuffers, LoopObservables, Memory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.kernel.llvm.loop import Loop
 
-__all__ = ["Interruption", "Run", "run"]
+__all__ = ["AdvancedStates", "Interruption", "advance_orbits"]
 
 _SLICE_SECONDS = 0.1
 """Between calls of compiled code Python can handle an interruption and report progress."""
@@ -30,7 +30,7 @@ class Interruption(Exception):
 
 
 @dataclass(frozen=True)
-class Run:
+class AdvancedStates:
     """States at the wanted steps, and what they cost.
 
     Parameters
@@ -55,24 +55,24 @@ class Run:
     iterations: int
     cpu_seconds: float
 
-    def first(self, samples: int) -> Run:
+    def first(self, samples: int) -> AdvancedStates:
         """Return the first so many samples of this run."""
         watched = None if self.watched is None else self.watched[: samples - 1]
         high, low = self.high[:, :samples], self.low[:, :samples]
-        return Run(high, low, watched, self.beyond[:samples], self.iterations, self.cpu_seconds)
+        return AdvancedStates(high, low, watched, self.beyond[:samples], self.iterations, self.cpu_seconds)
 
 
-def run(
+def advance_orbits(
     loop: Loop,
     high: Array,
     low: Array,
     coefficients: tuple[Array, Array],
     stops: Sequence[int],
     progress: Callable[[float], None] = lambda _: None,
-    watch: Watch | None = None,
+    watch: LoopObservables | None = None,
     memory: Memory | None = None,
     rows: Memory | None = None,
-) -> Run:
+) -> AdvancedStates:
     """Advance orbits step by step and keep their states at the wanted step numbers.
 
     An interruption (Ctrl-C, or :class:`Interruption` from ``progress``) ends the run at its last stop: fewer
@@ -102,39 +102,39 @@ def run(
     NonFiniteStateError
         A state is not finite; the error knows the last finite one.
     """
-    job = Job(loop, high, low, coefficients, watch, memory)
-    rows_kept, watched = _Rows(job, len(stops)), list[Array]()
+    buffers = LoopBuffers(loop, high, low, coefficients, watch, memory)
+    rows_kept, watched = _Rows(buffers, len(stops)), list[Array]()
     started, done, slice_steps = time.thread_time(), stops[0], 64
-    clock, safe, checked = time.perf_counter(), (job.y.copy(), job.e.copy()), done
+    clock, safe, checked = time.perf_counter(), (buffers.y.copy(), buffers.e.copy()), done
     try:
         for sample, stop in enumerate(stops):
             while done < stop:
                 steps = min(slice_steps - (done - checked), stop - done)
-                job.advance(done, steps)
+                buffers.advance(done, steps)
                 done += steps
                 if done - checked < slice_steps and done < stops[-1]:
                     continue
-                if not job.finite():
-                    raise job.lost(*safe, checked, done - checked, rows)
+                if not buffers.finite():
+                    raise buffers.lost(*safe, checked, done - checked, rows)
                 spent, steps = time.perf_counter() - clock, done - checked
                 if steps == slice_steps and spent < _SLICE_SECONDS / 2:
                     slice_steps *= 2
                 elif spent > _SLICE_SECONDS and slice_steps > 1:
                     slice_steps //= 2
-                safe, checked = (job.y.copy(), job.e.copy()), done
+                safe, checked = (buffers.y.copy(), buffers.e.copy()), done
                 progress(done / stops[-1])
                 clock = time.perf_counter()
             if sample and watch is not None:
-                watched.append(job.watched())
+                watched.append(buffers.watched())
             rows_kept.keep()
     except (KeyboardInterrupt, Interruption):
         if not rows_kept.count:
             raise
-        if not job.finite():
-            raise job.lost(*safe, checked, done - checked, rows) from None
+        if not buffers.finite():
+            raise buffers.lost(*safe, checked, done - checked, rows) from None
     kept, beyond = rows_kept.all()
-    entries = (job.orbits, job.watch.start.shape[1], 3) if job.watch is not None else ()
-    found = Run(
+    entries = (buffers.orbits, buffers.watch.start.shape[1], 3) if buffers.watch is not None else ()
+    found = AdvancedStates(
         kept[0],
         kept[1],
         np.array(watched).reshape(-1, *entries) if watch is not None else None,
@@ -146,37 +146,37 @@ def run(
 
 
 class _Rows:
-    """The states kept: copies of a job's memory, brought into order many at a time.
+    """The states kept: copies of a buffers's memory, brought into order many at a time.
 
     Parameters
     ----------
-    job
-        The job.
+    buffers
+        The buffers.
     samples
         How many there will be.
     """
 
-    def __init__(self, job: Job, samples: int) -> None:
-        self.job, self.count, self._ordered = job, 0, 0
-        self._kept = np.empty((2, job.size, samples, job.orbits))
-        at_once = max(1, min(samples, _KEPT_NUMBERS // job.y.size))
-        self._y = np.empty((at_once, *job.y.shape), dtype=job.y.dtype)
-        self._e = np.empty((at_once, *job.e.shape), dtype=job.e.dtype)
-        self._beyond = np.empty((samples, *job.beyond().shape), dtype=job.e.dtype)
+    def __init__(self, buffers: LoopBuffers, samples: int) -> None:
+        self.buffers, self.count, self._ordered = buffers, 0, 0
+        self._kept = np.empty((2, buffers.size, samples, buffers.orbits))
+        at_once = max(1, min(samples, _KEPT_NUMBERS // buffers.y.size))
+        self._y = np.empty((at_once, *buffers.y.shape), dtype=buffers.y.dtype)
+        self._e = np.empty((at_once, *buffers.e.shape), dtype=buffers.e.dtype)
+        self._beyond = np.empty((samples, *buffers.beyond().shape), dtype=buffers.e.dtype)
 
     def keep(self) -> None:
-        """Keep the state that the job has reached."""
+        """Keep the state that the buffers has reached."""
         place = self.count - self._ordered
         if place == len(self._y):
             self._order()
             place = 0
-        self._y[place], self._e[place] = self.job.y, self.job.e
+        self._y[place], self._e[place] = self.buffers.y, self.buffers.e
         self.count += 1
 
     def _order(self) -> None:
         part, new = slice(self._ordered, self.count), self.count - self._ordered
-        self._kept[:, :, part] = self.job.states_in(self._y[:new], self._e[:new])
-        self._beyond[part] = self.job.beyond_in(self._e[:new])
+        self._kept[:, :, part] = self.buffers.states_in(self._y[:new], self._e[:new])
+        self._beyond[part] = self.buffers.beyond_in(self._e[:new])
         self._ordered = self.count
 
     def all(self) -> tuple[Array, Memory]:

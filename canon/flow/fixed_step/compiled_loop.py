@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from canon.flow.method.number_formats import Precision
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.llvm.number_types import MachineType
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["compiled_loop", "steps_between"]
 
@@ -40,7 +40,9 @@ _SMALL = 200
 """Up to this many operations in the force the registers hold that many orbits."""
 
 
-def compiled_loop(system: Equations, method: FixedStep, precision: Precision, orbits: int = 1) -> Loop:
+def compiled_loop(
+    system: HamiltonEquations, method: FixedStep, precision: Precision, orbits: int = 1
+) -> Loop:
     """Return the machine code that steps a system with a method, kept from an earlier call if there was one.
 
     Parameters
@@ -84,7 +86,7 @@ def compiled_loop(system: Equations, method: FixedStep, precision: Precision, or
     )
 
 
-def _with_lanes(number: MachineType, system: Equations, orbits: int, stages: int) -> MachineType:
+def _with_lanes(number: MachineType, system: HamiltonEquations, orbits: int, stages: int) -> MachineType:
     if number.scalar == "x86_fp80":  # x87 numbers have no SIMD instructions
         return number
     registers, force = 1, system.program(system.force)
@@ -97,18 +99,18 @@ def _with_lanes(number: MachineType, system: Equations, orbits: int, stages: int
 
 @functools.lru_cache(maxsize=_KEPT)
 def _kept_splitting(
-    system: Equations, stages: int, number: MachineType, *, compensated: bool, kick_first: bool
+    system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool, kick_first: bool
 ) -> Loop:
     return splitting_loop(system, stages, number=number, compensated=compensated, kick_first=kick_first)
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_runge_kutta(system: Equations, number: MachineType, *, compensated: bool) -> Loop:
+def _kept_runge_kutta(system: HamiltonEquations, number: MachineType, *, compensated: bool) -> Loop:
     return runge_kutta_loop(system, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_gauss(system: Equations, stages: int, number: MachineType, *, compensated: bool) -> Loop:
+def _kept_gauss(system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool) -> Loop:
     return gauss_loop(system, stages, compensated=compensated, number=number)
 
 

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.fixed_step.partial_step import PartialSteps, State
+from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
 from canon.flow.run.event import Crossing
-from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.observables_along import values_in
 from canon.kernel.loops.statistics_loop import wide_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from canon.flow.run.event import Prepared
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.flow.run.event import PreparedEvent
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Guard"]
+__all__ = ["EventLocator"]
 
 _IN_ONE_STEP = 100
 """More events in one step than this pile up towards an instant."""
@@ -31,7 +31,7 @@ _AT_ONCE = Fraction(1, 2**30)
 _TRIES = 200
 
 
-class Guard:
+class EventLocator:
     """What is known of events while a motion goes on.
 
     Parameters
@@ -44,17 +44,19 @@ class Guard:
         What to look for.
     """
 
-    def __init__(self, system: Equations, steps: PartialSteps, events: Sequence[Prepared]) -> None:
+    def __init__(
+        self, system: HamiltonEquations, steps: PartialSteps, events: Sequence[PreparedEvent]
+    ) -> None:
         self.system, self.steps, self.events = system, steps, events
         self.forward = 1 if steps.h > 0 else -1
         self.wide = wide_number(steps.loop.number)
         self.bits = steps.loop.number.mantissa + 4
-        self.met: list[Crossing] = []
+        self.crossings: list[Crossing] = []
         self.sides: list[int] = []
-        self.legs: list[tuple[Fraction, State]] = []
+        self.segments: list[tuple[Fraction, LoopState]] = []
         """Where the latest step that was gone through began, and where in it events changed the state."""
 
-    def look(self, state: State, t: Fraction) -> list[tuple[float, float]]:
+    def values_and_rates(self, state: LoopState, t: Fraction) -> list[tuple[float, float]]:
         """Return each event's g and dg/dt, positive where g rises in the order of passing."""
         nodes = [node for event in self.events for node in (event.value, event.rate)]
         found = values_in(self.wide, self.system, nodes, float(t), state.high, state.low)[:, 0]
@@ -62,15 +64,15 @@ class Guard:
         if not all(map(math.isfinite, numbers)):
             y = state.high[self.system.rows, 0]
             raise NonFiniteStateError(
-                f"an event's function is not finite at {described(float(t), y)}: it left its own domain there",
+                f"an event's function is not finite at {time_and_state(float(t), y)}: it left its own domain there",
                 float(t),
                 y,
             )
         return [(g, self.forward * rate) for g, rate in zip(numbers[::2], numbers[1::2], strict=True)]
 
-    def start(self, state: State, t: Fraction) -> list[tuple[int, float, float]]:
+    def start(self, state: LoopState, t: Fraction) -> list[tuple[int, float, float]]:
         """Note on which side of zero each g is and return that with dg/dt and g, for the compiled loop."""
-        looks = self.look(state, t)
+        looks = self.values_and_rates(state, t)
         self.sides = [_sign(g) or _sign(rate) for g, rate in looks]
         return self.known(looks)
 
@@ -78,9 +80,9 @@ class Guard:
         """Return what the compiled loop is to know of each event."""
         return [(side, rate, g) for side, (g, rate) in zip(self.sides, looks, strict=True)]
 
-    def through(
-        self, n: int, before: State, after: State
-    ) -> tuple[State, Fraction, list[tuple[int, float, float]]]:
+    def locate(
+        self, n: int, before: LoopState, after: LoopState
+    ) -> tuple[LoopState, Fraction, list[tuple[int, float, float]]]:
         """Meet the events of step n + 1 in their order.
 
         Parameters
@@ -97,9 +99,9 @@ class Guard:
             all of it was passed; what the compiled loop is to know, empty where the motion stopped.
         """
         base, begin, end = before, Fraction(0), after
-        self.legs = [(begin, base)]
-        at_end = self.look(end, self.steps.time(n, Fraction(1)))
-        found_at = [(begin, rate) for _, rate in self.look(base, self.steps.time(n, begin))]
+        self.segments = [(begin, base)]
+        at_end = self.values_and_rates(end, self.steps.time(n, Fraction(1)))
+        found_at = [(begin, rate) for _, rate in self.values_and_rates(base, self.steps.time(n, begin))]
         self.sides = [side or _sign(g) for side, (g, _) in zip(self.sides, at_end, strict=True)]
         changed = dict[int, Fraction]()
         for _ in range(_IN_ONE_STEP):
@@ -111,40 +113,42 @@ class Guard:
             here, t = self.steps.moved(base, n, begin, place), self.steps.time(n, place)
             rising, event = self.sides[i] < 0, self.events[i]
             self.sides[i] = -self.sides[i]
-            found_at[i] = (place, self.look(here, t)[i][1])
+            found_at[i] = (place, self.values_and_rates(here, t)[i][1])
             if not event.event.counts(rising):
                 continue
             if event.event.action == "stop":
-                self._meet(event, t, here, rising, None)
+                self._record(event, t, here, rising, None)
                 return here, place, []
             if event.jump is None:
-                self._meet(event, t, here, rising, None)
+                self._record(event, t, here, rising, None)
                 continue
             if changed.get(i, Fraction(-1)) > place - _AT_ONCE:
                 break
             changed[i] = place
             base, begin = self._jumped(event, here, t), place
-            self.legs.append((begin, base))
-            self._meet(event, t, here, rising, base)
+            self.segments.append((begin, base))
+            self._record(event, t, here, rising, base)
             end = self.steps.moved(base, n, begin, Fraction(1))
-            looks = self.look(base, t)
+            looks = self.values_and_rates(base, t)
             self.sides[i] = _sign(looks[i][1]) or -self.sides[i]
             found_at = [(begin, rate) for _, rate in looks]
-            at_end = self.look(end, self.steps.time(n, Fraction(1)))
+            at_end = self.values_and_rates(end, self.steps.time(n, Fraction(1)))
         t, y = float(self.steps.time(n, begin)), base.high[self.system.rows, 0]
+        again = self.crossings[-1].event if self.crossings else "an event"
         raise NonFiniteStateError(
-            f"{self.met[-1].event if self.met else 'an event'} is met again at once at {described(t, y)}: events "
-            "pile up there; stop the motion before",
+            f"{again} is met again at once at {time_and_state(t, y)}: events pile up there; stop the motion before",
             t,
             y,
         )
 
-    def _meet(self, event: Prepared, t: Fraction, here: State, rising: bool, after: State | None) -> None:
+    def _record(
+        self, event: PreparedEvent, t: Fraction, here: LoopState, rising: bool, after: LoopState | None
+    ) -> None:
         rows = self.system.rows
         moved = None if after is None else after.high[rows, 0]
-        self.met.append(Crossing(event.event, float(t), here.high[rows, 0], rising, moved))
+        self.crossings.append(Crossing(event.event, float(t), here.high[rows, 0], rising, moved))
 
-    def _jumped(self, event: Prepared, here: State, t: Fraction) -> State:
+    def _jumped(self, event: PreparedEvent, here: LoopState, t: Fraction) -> LoopState:
         assert event.jump is not None
         found = values_in(self.wide, self.system, event.jump, float(t), here.high, here.low)
         high = found[..., 0].astype(np.float64)
@@ -152,15 +156,15 @@ class Guard:
         if not np.isfinite(high).all():
             y = here.high[self.system.rows, 0]
             raise NonFiniteStateError(
-                f"the new state of {event.event} is not finite at {described(float(t), y)}", float(t), y
+                f"the new state of {event.event} is not finite at {time_and_state(float(t), y)}", float(t), y
             )
-        return State(high, low, here.beyond)
+        return LoopState(high, low, here.beyond)
 
     def _first(
         self,
         i: int,
         n: int,
-        base: State,
+        base: LoopState,
         begin: Fraction,
         latest: tuple[Fraction, float],
         at_end: tuple[float, float],
@@ -174,7 +178,7 @@ class Guard:
         def ahead(part: Fraction) -> tuple[float, float]:
             """Return g and dg/d(part), taken with the side's sign: positive until the crossing."""
             state = self.steps.moved(base, n, begin, part)
-            value, rate = self.look(state, self.steps.time(n, part))[i]
+            value, rate = self.values_and_rates(state, self.steps.time(n, part))[i]
             return side * value, side * rate * abs(float(self.steps.h))
 
         last = Fraction(1)

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.fixed_step.advance import Interruption, Run, run
+from canon.flow.fixed_step.advance import AdvancedStates, Interruption, advance_orbits
 from canon.flow.fixed_step.compiled_loop import steps_between
-from canon.flow.fixed_step.partial_step import State, coefficient_pairs
+from canon.flow.fixed_step.partial_step import LoopState, coefficient_pairs
 from canon.flow.fixed_step.statistics import check_cadence, statistics
 from canon.flow.fixed_step.steps_with_events import run_with_events
 from canon.flow.run.samples import Samples
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.array import Array
-    from canon.flow.fixed_step.loop_buffers import Memory, Watch
+    from canon.flow.fixed_step.loop_buffers import LoopObservables, Memory
     from canon.flow.method.method import FixedStep
-    from canon.flow.run.event import Prepared
+    from canon.flow.run.event import PreparedEvent
     from canon.kernel.llvm.loop import Loop
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["fixed_steps", "planned"]
 
@@ -46,15 +46,15 @@ def planned(wanted: Sampling, step: float | None, method: FixedStep) -> Plan:
 
 
 def fixed_steps(
-    system: Equations,
+    system: HamiltonEquations,
     loop: Loop,
     method: FixedStep,
     states: tuple[Array, Array],
     plan: Plan,
     progress: Callable[[float], None],
-    watch: Watch | None = None,
+    watch: LoopObservables | None = None,
     so_far: Samples | None = None,
-    events: Sequence[Prepared] = (),
+    events: Sequence[PreparedEvent] = (),
 ) -> Samples:
     """Step along a plan and sample on the way; an interruption ends that at the last sample reached by all orbits.
 
@@ -85,7 +85,7 @@ def fixed_steps(
     pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
     met, end = (), Fraction(0)
     if events:
-        start = State(*states, memory)
+        start = LoopState(*states, memory)
         found, met, end = run_with_events(system, steps, start, stops, events, progress)
         runs = [found]
     else:
@@ -122,23 +122,23 @@ def _on_threads(
     coefficients: tuple[Array, Array],
     stops: Sequence[int],
     progress: Callable[[float], None],
-    watch: Watch | None,
+    watch: LoopObservables | None,
     memory: Memory | None,
     rows: Memory,
-) -> list[Run]:
+) -> list[AdvancedStates]:
     """Run orbits on as many threads as there are processors, each a whole number of blocks."""
     (high, low), lanes = states, loop.number.lanes
     orbits = high.shape[1]
     blocks = -(-orbits // lanes)
     if blocks == 1 and lanes == 1:
-        return [run(loop, high, low, coefficients, stops, progress, watch, memory, rows)]
+        return [advance_orbits(loop, high, low, coefficients, stops, progress, watch, memory, rows)]
     # The last block is filled up with copies of the last orbit.
     filled = np.minimum(np.arange(blocks * lanes), orbits - 1)
     parts = np.array_split(filled.reshape(blocks, lanes), min(os.cpu_count() or 1, blocks))
     own_blocks = np.array_split(np.arange(blocks), len(parts))
     stopped, done, lock = threading.Event(), [0.0] * len(parts), threading.Lock()
 
-    def part(k: int) -> Run:
+    def part(k: int) -> AdvancedStates:
         def report(fraction: float) -> None:
             if stopped.is_set():
                 raise Interruption
@@ -149,7 +149,9 @@ def _on_threads(
         chosen = parts[k].ravel()
         own = None if watch is None else dataclasses.replace(watch, start=watch.start[chosen])
         kept = None if memory is None else memory[own_blocks[k]]
-        found = run(loop, high[:, chosen], low[:, chosen], coefficients, stops, report, own, kept, rows)
+        found = advance_orbits(
+            loop, high[:, chosen], low[:, chosen], coefficients, stops, report, own, kept, rows
+        )
         if found.high.shape[1] < len(stops):
             stopped.set()
         return found

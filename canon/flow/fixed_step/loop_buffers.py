@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.kernel.loops.statistics_loop import ENTRIES
 
 if TYPE_CHECKING:
@@ -16,19 +16,19 @@ if TYPE_CHECKING:
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
 
-__all__ = ["Job", "Memory", "Watch"]
+__all__ = ["LoopBuffers", "LoopObservables", "Memory"]
 
 Memory = npt.NDArray[Any]
 
 
 @dataclass(frozen=True)
-class Watch:
+class LoopObservables:
     """Observables to follow inside the loop.
 
     Parameters
     ----------
     code
-        The machine code of :func:`canon.kernel.loops.statistics_loop.watching_function`.
+        The machine code of :func:`canon.kernel.loops.statistics_loop.statistics_function`.
     cadence
         After how many steps they are evaluated each time.
     start
@@ -40,7 +40,7 @@ class Watch:
     start: Memory
 
 
-class Job:
+class LoopBuffers:
     """Orbits on their way: states, what compensation carries, coefficients, statistics.
 
     Parameters
@@ -54,7 +54,7 @@ class Job:
     watch
         Observables to follow.
     memory
-        What an implicit method kept beyond the state, from :meth:`beyond` of an earlier job.
+        What an implicit method kept beyond the state, from :meth:`beyond` of earlier buffers.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Job:
         high: Array,
         low: Array,
         coefficients: tuple[Array, Array],
-        watch: Watch | None = None,
+        watch: LoopObservables | None = None,
         memory: Memory | None = None,
     ) -> None:
         self.loop, number = loop, loop.number
@@ -131,7 +131,7 @@ class Job:
         Parameters
         ----------
         y, e
-            Copies of this job's memory, one after the other along the first axis.
+            Copies of these buffers, one after the other along the first axis.
         """
         times = len(y)
 
@@ -150,7 +150,7 @@ class Job:
         return self.beyond_in(self.e).copy()
 
     def beyond_in(self, e: Memory) -> Memory:
-        """Return what lies beyond the states in copies of this job's e, shape (…, blocks, …)."""
+        """Return what lies beyond the states in copies of these buffers' e, shape (…, blocks, …)."""
         return e[..., self.size * self._scalars :]
 
     def lost(self, y: Memory, e: Memory, first: int, steps: int, rows: Memory | None) -> NonFiniteStateError:
@@ -198,4 +198,4 @@ def _complaint(t: float, step: int, state: Array, change: float, orbit: int | No
         what = f"the state stops being finite in step {step}"
         why = "a collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()"
     which = "" if orbit is None else f" of orbit {orbit}"
-    return NonFiniteStateError(f"{what}{which}, after {described(t, state)}: {why}", t, state)
+    return NonFiniteStateError(f"{what}{which}, after {time_and_state(t, state)}: {why}", t, state)

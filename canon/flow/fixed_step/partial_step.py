@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.fixed_step.loop_buffers import Job
+from canon.flow.fixed_step.loop_buffers import LoopBuffers
 from canon.kernel.llvm.number_types import double_pair
 
 if TYPE_CHECKING:
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from canon.flow.fixed_step.loop_buffers import Memory
     from canon.kernel.llvm.loop import Loop
 
-__all__ = ["PartialSteps", "State", "coefficient_pairs"]
+__all__ = ["LoopState", "PartialSteps", "coefficient_pairs"]
 
 
 @dataclass(frozen=True)
-class State:
+class LoopState:
     """States high + low, each of shape (2n, orbits), and what an implicit method keeps beyond them."""
 
     high: Array
@@ -61,18 +61,18 @@ class PartialSteps:
         """Return the time of a part of step n + 1."""
         return self.t0 + (n + part) * self.h
 
-    def moved(self, state: State, n: int, begin: Fraction, end: Fraction) -> State:
+    def moved(self, state: LoopState, n: int, begin: Fraction, end: Fraction) -> LoopState:
         """Return the state after one step from t0 + (n + begin) h to t0 + (n + end) h."""
         if begin == end:
             return state
         pairs = coefficient_pairs(self.coefficients, self.time(n, begin), (end - begin) * self.h)
-        job = Job(self.loop, state.high, state.low, pairs, memory=state.beyond)
-        job.advance(0, 1)
-        return State(*job.states(), job.beyond())
+        buffers = LoopBuffers(self.loop, state.high, state.low, pairs, memory=state.beyond)
+        buffers.advance(0, 1)
+        return LoopState(*buffers.states(), buffers.beyond())
 
-    def whole(self, state: State, n: int, steps: int) -> State:
+    def whole(self, state: LoopState, n: int, steps: int) -> LoopState:
         """Return the state after whole steps of the run, from the one at t0 + n h."""
         pairs = coefficient_pairs(self.coefficients, self.t0, self.h)
-        job = Job(self.loop, state.high, state.low, pairs, memory=state.beyond)
-        job.advance(n, steps)
-        return State(*job.states(), job.beyond())
+        buffers = LoopBuffers(self.loop, state.high, state.low, pairs, memory=state.beyond)
+        buffers.advance(n, steps)
+        return LoopState(*buffers.states(), buffers.beyond())

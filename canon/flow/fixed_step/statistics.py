@@ -8,34 +8,34 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.fixed_step.loop_buffers import Watch
+from canon.flow.fixed_step.loop_buffers import LoopObservables
 from canon.flow.run.observables_along import values_in
-from canon.kernel.loops.statistics_loop import watching_function, wide_number
+from canon.kernel.loops.statistics_loop import statistics_function, wide_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
     from canon.array import Array
-    from canon.flow.fixed_step.advance import Run
+    from canon.flow.fixed_step.advance import AdvancedStates
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["check_cadence", "statistics", "watch_for"]
+__all__ = ["check_cadence", "loop_observables", "statistics"]
 
 _KEPT = 64
 """Compiled functions kept for the next call."""
 
 
-def watch_for(
-    system: Equations,
+def loop_observables(
+    system: HamiltonEquations,
     nodes: Sequence[int],
     loop: Loop,
     states: tuple[Array, Array],
     t0: Fraction,
     cadence: int,
-) -> Watch:
+) -> LoopObservables:
     """Return what follows nodes of a system's graph inside a loop, every so many steps.
 
     Raises
@@ -53,10 +53,10 @@ def watch_for(
         high, low = (part.reshape(high.shape) for part in one.unpacked(one.packed(high.ravel(), low.ravel())))
     found = values_in(wide, system, nodes, float(t0), high, low)
     start = np.moveaxis(found, 0, 1)
-    return Watch(_kept_watching(system, tuple(nodes), loop), int(cadence), start)
+    return LoopObservables(_kept_statistics_function(system, tuple(nodes), loop), int(cadence), start)
 
 
-def check_cadence(watch: Watch, stops: Sequence[int]) -> None:
+def check_cadence(watch: LoopObservables, stops: Sequence[int]) -> None:
     """Make sure that observables are looked at between any two samples.
 
     Raises
@@ -71,7 +71,9 @@ def check_cadence(watch: Watch, stops: Sequence[int]) -> None:
         )
 
 
-def statistics(runs: Sequence[Run], stops: Sequence[int], watch: Watch | None, orbits: int) -> Array | None:
+def statistics(
+    runs: Sequence[AdvancedStates], stops: Sequence[int], watch: LoopObservables | None, orbits: int
+) -> Array | None:
     """Return mean, least and greatest change, shape (observables, 3, times − 1, orbits)."""
     parts = [each.watched for each in runs if each.watched is not None]
     if watch is None or not parts:
@@ -89,5 +91,5 @@ def statistics(runs: Sequence[Run], stops: Sequence[int], watch: Watch | None, o
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_watching(system: Equations, nodes: tuple[int, ...], loop: Loop) -> MachineCode:
-    return watching_function(system, nodes, loop)
+def _kept_statistics_function(system: HamiltonEquations, nodes: tuple[int, ...], loop: Loop) -> MachineCode:
+    return statistics_function(system, nodes, loop)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from canon.mechanics.canonical.transformation import CanonicalTransformation
 
-__all__ = ["FINE", "Miss", "Value", "bracket_misses", "definite_node", "values_at"]
+__all__ = ["FINE", "Residual", "RoundedValue", "bracket_residuals", "definite_node", "values_at"]
 
 _COARSE, FINE = 30, 50
 """Digits of the two evaluations, whose difference shows the round-off."""
@@ -32,7 +32,7 @@ _TRIES = 4
 """Points drawn for every point wanted, as the map need not be real everywhere."""
 
 
-class Miss(NamedTuple):
+class Residual(NamedTuple):
     """What should vanish at an exact point: its size, its round-off and its terms' size, all absolute."""
 
     size: Fraction
@@ -52,9 +52,9 @@ class Miss(NamedTuple):
         return self.size > max(self.unit, _UNCERTAIN * self.scale)
 
 
-def bracket_misses(
+def bracket_residuals(
     T: CanonicalTransformation, valence: Expr, count: int, seed: int, fixed: Mapping[str, Fraction]
-) -> Iterator[list[Miss]]:
+) -> Iterator[list[Residual]]:
     """Yield the misses of M J Mᵀ = c J at each point where the map has a finite real value."""
     graph = Graph()
     images = [definite_node(graph, f, "the map") for f in T.images]
@@ -77,13 +77,17 @@ def bracket_misses(
             return
 
 
-def _point_misses(values: Sequence[Value], n: int, point: Mapping[Symbol, Fraction]) -> Iterator[Miss]:
+def _point_misses(
+    values: Sequence[RoundedValue], n: int, point: Mapping[Symbol, Fraction]
+) -> Iterator[Residual]:
     rows = [values[2 * n * i : 2 * n * (i + 1)] for i in range(2 * n)]
     c = values[-1]
     names = [f"{letter}{i + 1}" for letter in "QP" for i in range(n)]
     for i in range(2 * n):
         for j in range(i + 1, 2 * n):
-            expected = Value(c.number, c.error) if j == i + n else Value(Fraction(0), Fraction(0))
+            expected = (
+                RoundedValue(c.number, c.error) if j == i + n else RoundedValue(Fraction(0), Fraction(0))
+            )
             miss, unit, scale = -expected.number, expected.error, abs(expected.number)
             for k in range(n):
                 for sign, a, b in ((1, rows[i][k], rows[j][n + k]), (-1, rows[i][n + k], rows[j][k])):
@@ -91,23 +95,25 @@ def _point_misses(values: Sequence[Value], n: int, point: Mapping[Symbol, Fracti
                     scale += abs(a.number * b.number)
                     unit += abs(a.number) * b.error + abs(b.number) * a.error
             name = f"{{{names[i]}, {names[j]}}} differs from {float(expected.number):g}"
-            yield Miss(abs(miss), unit, scale, name, point)
+            yield Residual(abs(miss), unit, scale, name, point)
 
 
-class Value(NamedTuple):
+class RoundedValue(NamedTuple):
     """A number and the size of its round-off."""
 
     number: Fraction
     error: Fraction
 
 
-def values_at(graph: Graph, nodes: Sequence[int], point: Mapping[Symbol, Fraction]) -> list[Value] | None:
+def values_at(
+    graph: Graph, nodes: Sequence[int], point: Mapping[Symbol, Fraction]
+) -> list[RoundedValue] | None:
     """Return nodes at an exact point, or None where one has no finite real value there."""
     coarse, fine = (_evaluated(graph, nodes, point, digits) for digits in (_COARSE, FINE))
     if coarse is None or fine is None:
         return None
     gain, last = Fraction(1, 10 ** (FINE - _COARSE - 2)), Fraction(1, 10 ** (FINE - 2))
-    return [Value(b, abs(b - a) * gain + abs(b) * last) for a, b in zip(coarse, fine, strict=True)]
+    return [RoundedValue(b, abs(b - a) * gain + abs(b) * last) for a, b in zip(coarse, fine, strict=True)]
 
 
 def _evaluated(

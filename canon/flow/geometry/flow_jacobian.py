@@ -11,7 +11,7 @@ import numpy as np
 from canon.expression.symbols.user_input import counted
 from canon.flow.checked_request import task_of
 from canon.flow.geometry.solvable_jacobian import solvable_jacobian
-from canon.flow.geometry.transformed_jacobian import section_jacobian
+from canon.flow.geometry.transformed_jacobian import transformed_jacobian
 from canon.flow.method.method import DOP853, Taylor, TimeTransformed
 from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.flow.propagate import propagate
@@ -131,7 +131,7 @@ def flow_jacobian(
             "the Jacobian is made of one orbit at a time: give one state and one set of parameters"
         )
     if isinstance(task.method, TimeTransformed):
-        return FlowJacobian(*section_jacobian(task, hamiltonian, parameters or {}))
+        return FlowJacobian(*transformed_jacobian(task, hamiltonian, parameters or {}))
     if isinstance(task.method, SolvableSplitting) or getattr(task.method, "parts", None) is not None:
         t, motion, slopes = solvable_jacobian(task)
         return FlowJacobian(t, motion, slopes, np.zeros_like(slopes))

@@ -22,8 +22,8 @@ import numpy as np
 import sympy as sp
 
 from canon.display import preformatted
-from canon.flow.geometry.certified_derivatives import FINE, Miss, bracket_misses
-from canon.flow.geometry.vector_field_motion import carried, field_of, look_at, step_error
+from canon.flow.geometry.certified_derivatives import FINE, Residual, bracket_residuals
+from canon.flow.geometry.vector_field_motion import carried, integral_rate, step_error, vector_field_system
 from canon.kernel.program.hamilton_equations import exact_numbers
 from canon.proof.domain.verdict import Evidence
 
@@ -126,8 +126,8 @@ def brackets_at_points(
     {Q1, P1} differs from 1 by 1 at ...: the map is certainly not canonical with valence 1
     """
     fixed = exact_numbers(parameters)
-    seen, misses = 0, list[Miss]()
-    for found in bracket_misses(transformation, sp.sympify(valence, strict=True), points, seed, fixed):
+    seen, misses = 0, list[Residual]()
+    for found in bracket_residuals(transformation, sp.sympify(valence, strict=True), points, seed, fixed):
         misses.extend(found)
         seen += 1
     if not seen:
@@ -195,7 +195,7 @@ def symplectic_flow(
     """
     import heyoka as hy
 
-    field = field_of(motion, parameters)
+    field = vector_field_system(motion, parameters)
     n = field.half()
     pairs = field.heyoka_pairs()
     states, steps = carried(
@@ -249,7 +249,7 @@ def bilinear_covariant(
     >>> bilinear_covariant(pendulum, [1, 0], (0, 20)).speaks
     'for'
     """
-    field = field_of(motion, parameters)
+    field = vector_field_system(motion, parameters)
     n = field.half()
     if variations is None:
         start = np.random.default_rng(seed).standard_normal((2, 2 * n))
@@ -308,7 +308,7 @@ def integral_drift(
     >>> print(integral_drift(pendulum.H + q/100, pendulum, [1, 0], (0, 20)).text)
     the claimed integral changes by 0.02 over t = 0 … 20, ... times the round-off expected, ...
     """
-    field = field_of(motion, parameters)
+    field = vector_field_system(motion, parameters)
     claimed = field.node(integral, "the claimed integral")
     if not field.graph.symbols(claimed) & {*field.x, field.t}:
         raise ValueError(
@@ -318,7 +318,7 @@ def integral_drift(
     if (states == states[0]).all():
         raise ValueError(f"nothing moves from {list(y0)}: start away from equilibrium")
     times = np.linspace(float(t_span[0]), float(t_span[1]), samples + 1)
-    looks = [look_at(field, claimed, y, t) for y, t in zip(states, times.tolist(), strict=True)]
+    looks = [integral_rate(field, claimed, y, t) for y, t in zip(states, times.tolist(), strict=True)]
     first = looks[0].value
     change = float(max(abs(look.value - first) for look in looks))
     scale = float(max(look.scale for look in looks))

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.flow.task import Task
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.solvable.solvable_parts import Centres, Part
 
 __all__ = ["solvable_jacobian"]
@@ -101,7 +101,7 @@ class _Map:
 # a step ---------------------------------------------------------------------------------------------------
 
 
-def _step(system: Equations, part: Part, method: SolvableSplitting, h: Fraction) -> _Map:
+def _step(system: HamiltonEquations, part: Part, method: SolvableSplitting, h: Fraction) -> _Map:
     """Return a step, with what a corrector does before and after it."""
     scheme = method.kicks
     chosen = corrector(method.scheme, method.corrector) if method.corrector else None
@@ -121,7 +121,7 @@ def _step(system: Equations, part: Part, method: SolvableSplitting, h: Fraction)
     return _Map(tuple(moves))
 
 
-def _kick(system: Equations, part: Part) -> Any:
+def _kick(system: HamiltonEquations, part: Part) -> Any:
     """Return the kick by −τ ∂H₁ + σ ∂(½ Σ A_ij ∂_iH₁ ∂_jH₁), A = ∂²H₀/∂p², as a function of τ, σ, y, δ."""
     rest = _planets_rest(system, part) if isinstance(part, Planets) else part.rest
     graph, n = rest.graph, len(rest.q)
@@ -151,7 +151,7 @@ def _inverse_mass(part: Part, n: int) -> list[list[Fraction]]:
     return [[by_index[i] if i == j else Fraction(0) for j in range(n)] for i in range(n)]
 
 
-def _planets_rest(system: Equations, part: Planets) -> Equations:
+def _planets_rest(system: HamiltonEquations, part: Planets) -> HamiltonEquations:
     """Return the equations of H₁ = −Σ k_ij/|q_i − q_j| + Σ k'_i/|X_i|, X_i Jacobi's coordinates."""
     places = [sp.Matrix([system.q[i] for i in body]) for body in part.bodies]
     weights, _, strengths = _jacobi(part)
@@ -184,7 +184,7 @@ def _jacobi(part: Planets) -> tuple[list[list[Fraction]], list[Fraction], list[F
 # flows of H₀ ----------------------------------------------------------------------------------------------
 
 
-def _flow(system: Equations, part: Part) -> Any:
+def _flow(system: HamiltonEquations, part: Part) -> Any:
     """Return what makes of a time the flow of H₀ as a function of y and δ."""
     if isinstance(part, Quadratic):
         return functools.partial(_linear_flow, part)

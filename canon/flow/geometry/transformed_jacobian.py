@@ -18,15 +18,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from canon.flow.checked_request import system_of
+from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
-from canon.flow.fixed_step.partial_step import State
+from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.number_formats import fixed_precision
-from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.sampling_plan import fixed_plan
 from canon.flow.transformed.extended_hamiltonian import extended
-from canon.flow.transformed.transformed_orbit import Footing, Walk
+from canon.flow.transformed.transformed_orbit import StepEnd, TransformedOrbit
 from canon.kernel.llvm.number_types import DOUBLE, double_pair
 from canon.kernel.program.program import exact_value
 from canon.kernel.program.variational import variational
@@ -39,17 +39,17 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.task import Task
-    from canon.flow.transformed.extended_hamiltonian import Fictitious
-    from canon.flow.transformed.land_at_time import Landed
+    from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
+    from canon.flow.transformed.land_at_time import StateAtTime
 
-__all__ = ["section_jacobian"]
+__all__ = ["transformed_jacobian"]
 
 _C = sp.Dummy("size of steps", real=True)
 
 _LITTLE = Fraction(1, 2**40)
 
 
-def section_jacobian(
+def transformed_jacobian(
     task: Task, hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, Any]
 ) -> tuple[Array, Array, Array, Array]:
     """Return times, the motion, and its Jacobian as the sum of two arrays, shape (2n, 2n, times).
@@ -66,7 +66,7 @@ def section_jacobian(
     assert isinstance(method, TimeTransformed)
     larger = extended(hamiltonian, method)
     scaled = replace(larger, H=_C * larger.H)  # pyright: ignore[reportOperatorIssue]
-    system = replace(variational(system_of(scaled, parameters, (_C.name,)), 1), varying=0)
+    system = replace(variational(hamilton_equations_of(scaled, parameters, (_C.name,)), 1), varying=0)
     plan = task.plan
     instants = (
         np.linspace(plan.instants[0], plan.instants[-1], plan.wanted + 1) if plan.wanted else plan.instants
@@ -85,7 +85,7 @@ def _start(task: Task) -> list[Fraction]:
     return [Fraction(high) + Fraction(low) for high, low in pairs]
 
 
-def _variations(task: Task, frame: Fictitious) -> list[list[Fraction]]:
+def _variations(task: Task, frame: ExtendedSystem) -> list[list[Fraction]]:
     """Return for each of (q, p) the variation of (q, t, c, p, p_t, c) at the start that goes with it."""
     physical, graph, state = frame.physical, frame.physical.graph, _start(task)
     x = (*physical.q, *physical.p)
@@ -104,7 +104,7 @@ def _variations(task: Task, frame: Fictitious) -> list[list[Fraction]]:
 
 
 def _column(
-    task: Task, frame: Fictitious, method: TimeTransformed, instants: Array, variation: Sequence[Fraction]
+    task: Task, frame: ExtendedSystem, method: TimeTransformed, instants: Array, variation: Sequence[Fraction]
 ) -> tuple[Array, Any]:
     """Return the motion and the change of (q, p) at every instant that goes with a variation of the start."""
     kind, clock = fixed_precision(task.precision), frame.clock
@@ -117,21 +117,21 @@ def _column(
     high, low = (np.array(part)[:, np.newaxis] for part in zip(*map(double_pair, first), strict=True))
     steps = steps_between(loop, method.method, fixed_plan(Fraction(0), task.plan.forward * h, (0,)))
     bits = min(kind.number.mantissa, DOUBLE.mantissa)
-    walk = Walk(frame, steps, Footing(0, State(high, low)), (), bits, lambda _: None)
-    y, column = [high[layout.own, 0]], [_sum(State(high, low))[layout.varied]]
+    orbit = TransformedOrbit(frame, steps, StepEnd(0, LoopState(high, low)), (), bits, lambda _: None)
+    y, column = [high[layout.own, 0]], [_sum(LoopState(high, low))[layout.varied]]
     for instant in instants[1:].tolist():
         try:
-            walk.go(Fraction(instant))
+            orbit.go(Fraction(instant))
         except NonFiniteStateError as lost:
             t, at = float(lost.state[clock]), lost.state[layout.own]
             raise NonFiniteStateError(
-                f"the motion or its variations are not finite after {described(t, at)}: a collision or the edge of H's "
-                "domain; stop earlier",
+                f"the motion or its variations are not finite after {time_and_state(t, at)}: a collision or the edge "
+                "of H's domain; stop earlier",
                 t,
                 at,
             ) from None
-        found = walk.landing(Fraction(instant))
-        delta, along = _sum(found.state), _along(walk, found, layout)
+        found = orbit.state_at(Fraction(instant))
+        delta, along = _sum(found.state), _along(orbit, found, layout)
         y.append(found.state.high[layout.own, 0])
         column.append((delta - along * (delta[layout.time] / along[layout.time]))[layout.varied])
     return np.stack(y, axis=1), np.stack(column, axis=1)
@@ -165,17 +165,17 @@ class _Layout:
         return [2 * self.half + 1, 4 * self.half + 3]
 
 
-def _along(walk: Walk, found: Landed, layout: _Layout) -> Any:
+def _along(orbit: TransformedOrbit, found: StateAtTime, layout: _Layout) -> Any:
     """Return the variation of the state at the end of a part of a step by its length, up to a factor."""
-    leg, size = found.leg, layout.half + 1
-    high, low = leg.state.high.copy(), leg.state.low.copy()
+    segment, size = found.segment, layout.half + 1
+    high, low = segment.state.high.copy(), segment.state.low.copy()
     for first in (size, 3 * size):
         high[first : first + size], low[first : first + size] = 0.0, 0.0
     high[layout.sizes] = 1.0
     # A part of no length has the direction of a very small one.
-    end = max(found.part, leg.begin + _LITTLE)
-    return _sum(walk.steps.moved(State(high, low), 0, leg.begin, end))
+    end = max(found.part, segment.begin + _LITTLE)
+    return _sum(orbit.steps.moved(LoopState(high, low), 0, segment.begin, end))
 
 
-def _sum(state: State) -> Any:
+def _sum(state: LoopState) -> Any:
     return state.high[:, 0].astype(np.longdouble) + state.low[:, 0]

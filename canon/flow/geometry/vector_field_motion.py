@@ -13,10 +13,10 @@ import sympy as sp
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted
-from canon.flow.geometry.certified_derivatives import Miss, Value, definite_node, values_at
+from canon.flow.geometry.certified_derivatives import Residual, RoundedValue, definite_node, values_at
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.heyoka_bridge import heyoka_expressions
-from canon.kernel.program.hamilton_equations import exact, exact_numbers
+from canon.kernel.program.hamilton_equations import exact_number, exact_numbers
 from canon.mechanics.hamilton.vector_field import VectorField
 
 if TYPE_CHECKING:
@@ -27,14 +27,22 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
-__all__ = ["COMPACT_FROM", "Field", "Look", "carried", "field_of", "look_at", "step_error"]
+__all__ = [
+    "COMPACT_FROM",
+    "IntegralRate",
+    "VectorFieldSystem",
+    "carried",
+    "integral_rate",
+    "step_error",
+    "vector_field_system",
+]
 
 COMPACT_FROM = 60
 """Equations with more operations are compiled in heyoka's compact mode."""
 
 
 @dataclass(frozen=True, eq=False)
-class Field:
+class VectorFieldSystem:
     """Equations of motion ẋ = X(x, t) on a graph, with numbers for their parameters."""
 
     graph: Graph
@@ -66,7 +74,7 @@ class Field:
 
     def state(self, y: Sequence[Any]) -> Array:
         """Return a state as doubles."""
-        given = np.array([float(exact(value, "a component of the state")) for value in y])
+        given = np.array([float(exact_number(value, "a component of the state")) for value in y])
         if given.shape != (len(self.x),):
             raise ValueError(
                 f"{counted(given.size, 'number')} given for the "
@@ -91,22 +99,29 @@ class Field:
         return list(zip(variables.values(), made, strict=True))
 
 
-def field_of(motion: HamiltonianSystem | VectorField, parameters: Mapping[Symbol | str, Any]) -> Field:
+def vector_field_system(
+    motion: HamiltonianSystem | VectorField, parameters: Mapping[Symbol | str, Any]
+) -> VectorFieldSystem:
     """Return Hamilton's equations, or those of a vector field, with numbers for the parameters."""
     graph, numbers = Graph(), exact_numbers(parameters)
     if isinstance(motion, VectorField):
-        empty = Field(graph, motion.x, time, numbers, ())
+        empty = VectorFieldSystem(graph, motion.x, time, numbers, ())
         rates = tuple(empty.node(f, "the vector field") for f in motion.components)
-        return Field(graph, motion.x, time, numbers, rates)
+        return VectorFieldSystem(graph, motion.x, time, numbers, rates)
     x, n = (*motion.q, *motion.p), len(motion.q)
-    empty = Field(graph, x, motion.t, numbers, ())
+    empty = VectorFieldSystem(graph, x, motion.t, numbers, ())
     slopes = graph.gradient(empty.node(motion.H, "the Hamiltonian"), x)
     rates = (*slopes[n:], *(graph.negative(slope) for slope in slopes[:n]))
-    return Field(graph, x, motion.t, numbers, rates)
+    return VectorFieldSystem(graph, x, motion.t, numbers, rates)
 
 
 def carried(
-    field: Field, equations: Any, y0: Array, t_span: tuple[float, float], samples: int, variations: int = 0
+    field: VectorFieldSystem,
+    equations: Any,
+    y0: Array,
+    t_span: tuple[float, float],
+    samples: int,
+    variations: int = 0,
 ) -> tuple[Array, int]:
     """Return the states at evenly spaced times, shape (samples + 1, …), and the steps taken.
 
@@ -119,7 +134,7 @@ def carried(
     """
     import heyoka as hy
 
-    start, end = (float(exact(t, "t_span")) for t in t_span)
+    start, end = (float(exact_number(t, "t_span")) for t in t_span)
     if start == end or samples < 1:
         raise ValueError(f"t_span = {t_span} with samples={samples}: there is no motion to look at")
     large = len(field.graph.reachable(field.rates)) * (1 + variations) > COMPACT_FROM
@@ -145,16 +160,16 @@ def step_error(states: Array, steps: int) -> Array:
     return np.finfo(float).eps * math.sqrt(steps + 1) * np.abs(states).max(axis=0)
 
 
-class Look(NamedTuple):
+class IntegralRate(NamedTuple):
     """A claimed integral at one state: its value, the |∂I/∂x|, the size of its terms, and dI/dt."""
 
     value: Fraction
     slopes: tuple[float, ...]
     scale: Fraction
-    rate: Miss
+    rate: Residual
 
 
-def look_at(field: Field, claimed: int, y: Array, t: float) -> Look:
+def integral_rate(field: VectorFieldSystem, claimed: int, y: Array, t: float) -> IntegralRate:
     """Return a claimed integral and its rate at a state, taken for the exact numbers it is.
 
     Raises
@@ -171,8 +186,8 @@ def look_at(field: Field, claimed: int, y: Array, t: float) -> Look:
             f"the claimed integral or its rate has no finite real value at t = {t:.9g} of the motion"
         )
     I, by, rates = values[0], values[1 : 1 + len(slopes)], values[1 + len(slopes) :]
-    terms = [(a, X) for a, X in zip(by, (*rates, Value(Fraction(1), Fraction(0))), strict=True)]
-    rate = Miss(
+    terms = [(a, X) for a, X in zip(by, (*rates, RoundedValue(Fraction(1), Fraction(0))), strict=True)]
+    rate = Residual(
         abs(sum((a.number * X.number for a, X in terms), Fraction(0))),
         sum((abs(a.number) * X.error + abs(X.number) * a.error for a, X in terms), Fraction(0)),
         sum((abs(a.number * X.number) for a, X in terms), Fraction(0)),
@@ -182,4 +197,4 @@ def look_at(field: Field, claimed: int, y: Array, t: float) -> Look:
     scale = abs(I.number) + sum(
         (abs(a.number * where[s]) for a, s in zip(by, variables, strict=True)), Fraction(0)
     )
-    return Look(I.number, tuple(abs(float(a.number)) for a in by[:-1]), scale, rate)
+    return IntegralRate(I.number, tuple(abs(float(a.number)) for a in by[:-1]), scale, rate)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from canon.flow.method.number_formats import Precision
     from canon.kernel.llvm.loop import Loop
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.schemes.splitting_schemes import Scheme
 
 __all__ = ["COORDINATES", "SABA", "SBAB", "SolvableSplitting", "UnsolvableError", "WisdomHolman", "loop_of"]
@@ -235,7 +235,7 @@ def SBAB(
     return SolvableSplitting(sbab(stages), corrector, parts, commutator, coordinates)
 
 
-def loop_of(system: Equations, method: SolvableSplitting, precision: Precision) -> Loop:
+def loop_of(system: HamiltonEquations, method: SolvableSplitting, precision: Precision) -> Loop:
     """Return the compiled loop of a splitting by solvable parts, kept from an earlier call if there was one.
 
     Raises
@@ -255,7 +255,7 @@ def loop_of(system: Equations, method: SolvableSplitting, precision: Precision) 
 
 
 @functools.lru_cache(maxsize=64)
-def _kept(system: Equations, method: SolvableSplitting, precision: Precision) -> Loop:
+def _kept(system: HamiltonEquations, method: SolvableSplitting, precision: Precision) -> Loop:
     part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
     if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:
         raise UnsolvableError(

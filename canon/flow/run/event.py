@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.array import Array
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Crossing", "Event", "Prepared", "prepared"]
+__all__ = ["Crossing", "Event", "PreparedEvent", "prepared_events"]
 
 Action = Literal["record", "stop", "bounce"]
 
@@ -116,7 +116,7 @@ class Crossing:
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class PreparedEvent:
     """An event's nodes in a system's graph: g, dg/dt along the motion, and the state after its change."""
 
     event: Event
@@ -125,7 +125,7 @@ class Prepared:
     jump: tuple[int, ...] | None
 
 
-def prepared(system: Equations, events: Sequence[Event]) -> tuple[Prepared, ...]:
+def prepared_events(system: HamiltonEquations, events: Sequence[Event]) -> tuple[PreparedEvent, ...]:
     """Return events on a system's graph.
 
     Raises
@@ -139,7 +139,7 @@ def prepared(system: Equations, events: Sequence[Event]) -> tuple[Prepared, ...]
     return tuple(_prepared(system, event) for event in events)
 
 
-def _prepared(system: Equations, event: Event) -> Prepared:
+def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
     graph, state = system.graph, (*system.q, *system.p)
     value = system.node(sp.sympify(event.function, strict=True), f"the event {event}")
     if not graph.symbols(value):
@@ -148,9 +148,11 @@ def _prepared(system: Equations, event: Event) -> Prepared:
     rates = (*system.velocity, *system.force, graph.one)
     rate = graph.add([graph.mul([a, b]) for a, b in zip(slopes, rates, strict=True)])
     if event.action == "bounce":
-        return Prepared(event, value, rate, _reflected(system, event, slopes[: len(system.q)], value, rate))
+        return PreparedEvent(
+            event, value, rate, _reflected(system, event, slopes[: len(system.q)], value, rate)
+        )
     if isinstance(event.action, str):
-        return Prepared(event, value, rate, None)
+        return PreparedEvent(event, value, rate, None)
     given: dict[Any, Expr] = dict(event.action)
     rows = system.rows
     strange = [str(s) for s in given if s not in {state[row] for row in rows}]
@@ -164,11 +166,11 @@ def _prepared(system: Equations, event: Event) -> Prepared:
         else graph.symbol(s)
         for s in state
     ]
-    return Prepared(event, value, rate, tuple(jump))
+    return PreparedEvent(event, value, rate, tuple(jump))
 
 
 def _reflected(
-    system: Equations, event: Event, normal: Sequence[int], value: int, rate: int
+    system: HamiltonEquations, event: Event, normal: Sequence[int], value: int, rate: int
 ) -> tuple[int, ...]:
     graph, p = system.graph, frozenset[Any](system.p)
     if graph.symbols(value) & p or not frozenset[Any](system.q) & graph.symbols(value):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from canon.array import Array
 
-__all__ = ["NonFiniteStateError", "described"]
+__all__ = ["NonFiniteStateError", "time_and_state"]
 
 
 class NonFiniteStateError(ArithmeticError):
@@ -27,7 +27,7 @@ class NonFiniteStateError(ArithmeticError):
         self.state = state
 
 
-def described(t: float, state: Array) -> str:
+def time_and_state(t: float, state: Array) -> str:
     """Return a time and a state in words."""
     shown = ", ".join(f"{x:.6g}" for x in state[:8]) + (", …" if len(state) > 8 else "")
     return f"t = {t:.9g} where (q, p) = ({shown})"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.run.samples import Samples
     from canon.kernel.llvm.number_types import MachineType
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["AccuracyWarning", "jumped", "measured", "values_in", "warn_of_jumps"]
 
@@ -28,7 +28,7 @@ _WIDE = bool(np.finfo(np.longdouble).nmant >= 63)
 
 
 def measured(
-    system: Equations, nodes: Sequence[int], samples: Samples, precision: str
+    system: HamiltonEquations, nodes: Sequence[int], samples: Samples, precision: str
 ) -> list[tuple[Array, Array]]:
     """Return each node's values along a trajectory and their changes since the start.
 
@@ -43,7 +43,7 @@ def measured(
 
 
 def values_in(
-    wide: MachineType, system: Equations, nodes: Sequence[int], t: float, y: Array, carried: Array
+    wide: MachineType, system: HamiltonEquations, nodes: Sequence[int], t: float, y: Array, carried: Array
 ) -> npt.NDArray[Any]:
     """Return nodes at one time and states y + carried of shape (2n, orbits), as wide machine numbers.
 
@@ -69,7 +69,7 @@ class AccuracyWarning(UserWarning):
     """The computed motion is certainly not the system's."""
 
 
-def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
+def warn_of_jumps(system: HamiltonEquations, samples: Samples, change: Array) -> None:
     """Warn where the energy of an autonomous system changed as by a step over a singularity.
 
     Steps of one size may pass a collision from one side to the other without ever meeting an infinity. The
@@ -104,7 +104,7 @@ def warn_of_jumps(system: Equations, samples: Samples, change: Array) -> None:
     )
 
 
-def jumped(system: Equations, samples: Samples, change: Array) -> npt.NDArray[np.bool_]:
+def jumped(system: HamiltonEquations, samples: Samples, change: Array) -> npt.NDArray[np.bool_]:
     """Return where the energy has changed by half the size of H's terms at the start, shape (times, orbits)."""
     node = system.graph.nodes[system.hamiltonian]
     terms = node.operands if node.kind == "add" else (system.hamiltonian,)
@@ -125,7 +125,7 @@ def _rounded(values: npt.NDArray[Any]) -> Array:
 
 
 def _wide_values(
-    system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
+    system: HamiltonEquations, nodes: Sequence[int], t: Array, y: Array, carried: Array
 ) -> list[npt.NDArray[Any]]:
     state = y.astype(np.longdouble) + carried.astype(np.longdouble)
     times = t.astype(np.longdouble).reshape((-1,) + (1,) * (y.ndim - 2))
@@ -134,7 +134,7 @@ def _wide_values(
 
 
 def _many_digits(
-    system: Equations, nodes: Sequence[int], t: Array, y: Array, carried: Array
+    system: HamiltonEquations, nodes: Sequence[int], t: Array, y: Array, carried: Array
 ) -> list[npt.NDArray[Any]]:
     digits = multiprecision(40)
     found = np.empty((len(nodes), *y.shape[1:]), dtype=object)

@@ -15,7 +15,7 @@ from canon.kernel.llvm.double_double_functions import LARGEST_ANGLE
 if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.method.method import Method
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["check_magnitudes", "is_narrow"]
 
@@ -30,7 +30,7 @@ _RANGE = 300.0
 
 
 def check_magnitudes(
-    system: Equations, states: Array, start: Fraction, method: Method, precision: str | int | None
+    system: HamiltonEquations, states: Array, start: Fraction, method: Method, precision: str | int | None
 ) -> None:
     """Make sure that doubles can hold what is computed on the way from a state to its rate of change.
 
@@ -71,7 +71,7 @@ def check_magnitudes(
             )
 
 
-def _check_angles(system: Equations, state: Array, start: Fraction) -> None:
+def _check_angles(system: HamiltonEquations, state: Array, start: Fraction) -> None:
     nodes = system.graph.reachable((*system.velocity, *system.force))
     kinds = [system.graph.nodes[node] for node in nodes]
     angles = [each.operands[0] for each in kinds if each.kind in ("sin", "cos", "tan")]

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.flow.run.event import Prepared, prepared
+from canon.flow.run.event import PreparedEvent, prepared_events
 from canon.kernel.program.program import exact_value
 
 if TYPE_CHECKING:
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from canon.flow.method.method import TimeTransformed
     from canon.flow.run.event import Event
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Extended", "Fictitious", "extended", "fictitious"]
+__all__ = ["Extended", "ExtendedSystem", "extended", "extended_system"]
 
 # No parameter of H is one of these, whatever its name is.
 _P_T, _S = sp.Dummy("p_t", real=True), sp.Dummy("s", real=True)
@@ -105,7 +105,7 @@ def _split(hamiltonian: HamiltonianSystem) -> tuple[Any, Any]:
 
 
 @dataclass(frozen=True, eq=False)
-class Fictitious:
+class ExtendedSystem:
     """What a motion in a fictitious time needs beside H's own equations.
 
     Parameters
@@ -122,8 +122,8 @@ class Fictitious:
         The size in t of the first step.
     """
 
-    system: Equations
-    physical: Equations
+    system: HamiltonEquations
+    physical: HamiltonEquations
     rate: int
     words: str
     step: Fraction
@@ -163,11 +163,11 @@ class Fictitious:
         p.insert(self.clock, -energy)
         return [*q, *p], self.step / rate
 
-    def events(self, events: Sequence[Event]) -> tuple[Prepared, ...]:
+    def events(self, events: Sequence[Event]) -> tuple[PreparedEvent, ...]:
         """Return events for the extended motion: their slopes are by s, and p_t changes as −H does."""
-        return tuple(self._prepared(event) for event in prepared(self.physical, events))
+        return tuple(self._prepared(event) for event in prepared_events(self.physical, events))
 
-    def _prepared(self, event: Prepared) -> Prepared:
+    def _prepared(self, event: PreparedEvent) -> PreparedEvent:
         graph, physical = self.system.graph, self.physical
         rate = graph.mul([event.rate, self.system.velocity[self.clock]])
         if event.jump is None:
@@ -184,9 +184,9 @@ class Fictitious:
         return replace(event, rate=rate, jump=(*q, *p))
 
 
-def fictitious(
-    larger: Extended, system: Equations, hamiltonian: HamiltonianSystem, step: Fraction
-) -> Fictitious:
+def extended_system(
+    larger: Extended, system: HamiltonEquations, hamiltonian: HamiltonianSystem, step: Fraction
+) -> ExtendedSystem:
     """Return what a motion in the fictitious time of an extended Hamiltonian needs.
 
     Parameters
@@ -213,4 +213,4 @@ def fictitious(
         velocity=(*slopes[n:], *stays),
         force=(*(graph.negative(slope) for slope in slopes[:n]), *stays),
     )
-    return Fictitious(system, physical, system.node(larger.rate, "dt/ds"), str(larger.rate), step)
+    return ExtendedSystem(system, physical, system.node(larger.rate, "dt/ds"), str(larger.rate), step)

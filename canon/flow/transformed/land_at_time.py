@@ -10,32 +10,32 @@ from canon.expression.graph.number_systems import FLOAT64
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.flow.fixed_step.partial_step import PartialSteps, State
-    from canon.flow.transformed.extended_hamiltonian import Fictitious
+    from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
+    from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
-__all__ = ["Landed", "Leg", "iterations", "landed", "time_of"]
+__all__ = ["Segment", "StateAtTime", "iterations", "state_at_time", "time_of"]
 
 _TRIES = 60
 """Trials of a part of a step; bisection alone would need 53."""
 
 
-class Leg(NamedTuple):
+class Segment(NamedTuple):
     """Where in a step a smooth part of the motion begins, and the state there."""
 
     begin: Fraction
-    state: State
+    state: LoopState
 
 
-class Landed(NamedTuple):
-    """A state at a given time: reached from a leg's state by a part of a step, and the steps that the search took."""
+class StateAtTime(NamedTuple):
+    """A state at a given time, the segment and the part of a step that lead to it, and the steps of the search."""
 
-    state: State
-    leg: Leg
+    state: LoopState
+    segment: Segment
     part: Fraction
     work: int
 
 
-def time_of(state: State, clock: int) -> Fraction:
+def time_of(state: LoopState, clock: int) -> Fraction:
     """Return the time that is a component of an extended state."""
     return Fraction(float(state.high[clock, 0])) + Fraction(float(state.low[clock, 0]))
 
@@ -45,14 +45,14 @@ def iterations(before: Any, after: Any) -> int:
     return round(float(after[0, 0])) - (0 if before is None else round(float(before[0, 0])))
 
 
-def landed(
-    frame: Fictitious,
+def state_at_time(
+    frame: ExtendedSystem,
     steps: PartialSteps,
-    legs: Sequence[Leg],
+    segments: Sequence[Segment],
     goal: Fraction,
     fine: Fraction,
     coarse: Fraction,
-) -> Landed:
+) -> StateAtTime:
     """Return the state at a time within a step.
 
     The first trial is that of a cubic polynomial with the right slopes, the others are the secant's.
@@ -61,7 +61,7 @@ def landed(
     ----------
     frame, steps
         The equations, and what takes parts of a step.
-    legs
+    segments
         The step's smooth parts, from its beginning to its end.
     goal
         The time.
@@ -74,20 +74,20 @@ def landed(
         No part of the step ends there.
     """
     forward, clock = (1 if steps.h > 0 else -1), frame.clock
-    times = [time_of(leg.state, clock) for leg in legs]
+    times = [time_of(segment.state, clock) for segment in segments]
     misses = [forward * (t - goal) for t in times]
     scale = max(map(abs, (goal, times[0], times[-1])))
     if misses[-1] <= fine * scale:
-        return Landed(legs[-1].state, legs[-2], legs[-1].begin, 0)
+        return StateAtTime(segments[-1].state, segments[-2], segments[-1].begin, 0)
     k = max((i for i, miss in enumerate(misses) if miss <= 0), default=0)
-    leg, last = legs[k], legs[k + 1].begin
+    segment, last = segments[k], segments[k + 1].begin
     if misses[k] >= -fine * scale:
-        return Landed(leg.state, leg, leg.begin, 0)
-    low, high = (leg.begin, misses[k]), (last, misses[k + 1])
-    x, known, best, work = _guess(frame, steps, legs[k], legs[k + 1], goal), low, None, 0
+        return StateAtTime(segment.state, segment, segment.begin, 0)
+    low, high = (segment.begin, misses[k]), (last, misses[k + 1])
+    x, known, best, work = _guess(frame, steps, segments[k], segments[k + 1], goal), low, None, 0
     for _ in range(_TRIES):
-        state = steps.moved(leg.state, 0, leg.begin, x)
-        work += iterations(leg.state.beyond, state.beyond) if steps.loop.implicit else 1
+        state = steps.moved(segment.state, 0, segment.begin, x)
+        work += iterations(segment.state.beyond, state.beyond) if steps.loop.implicit else 1
         miss = forward * (time_of(state, clock) - goal)
         if best is None or abs(miss) < best[0]:
             best = abs(miss), state, x
@@ -101,7 +101,7 @@ def landed(
         raise ArithmeticError(
             f"no part of a step ends at t = {float(goal):.9g}: dt/ds varies too fast there; take smaller steps"
         )
-    return Landed(best[1], leg, best[2], work)
+    return StateAtTime(best[1], segment, best[2], work)
 
 
 def _secant(
@@ -115,17 +115,21 @@ def _secant(
     return Fraction(float(found))
 
 
-def _guess(frame: Fictitious, steps: PartialSteps, first: Leg, last: Leg, goal: Fraction) -> Fraction:
+def _guess(
+    frame: ExtendedSystem, steps: PartialSteps, first: Segment, last: Segment, goal: Fraction
+) -> Fraction:
     """Return about where in a step the time is: the cubic polynomial s(t) with the slopes at both ends."""
-    start, end = (time_of(leg.state, frame.clock) for leg in (first, last))
+    start, end = (time_of(segment.state, frame.clock) for segment in (first, last))
     length = last.begin - first.begin
     u = float((goal - start) / (end - start))
-    slopes = [float((end - start) / (length * steps.h)) / _rate(frame, leg.state) for leg in (first, last)]
+    slopes = [
+        float((end - start) / (length * steps.h)) / _rate(frame, segment.state) for segment in (first, last)
+    ]
     part = u * u * (3 - 2 * u) + slopes[0] * u * (1 - u) ** 2 - slopes[1] * u * u * (1 - u)
     return first.begin + length * Fraction(min(max(part, u / 2), (1 + u) / 2))
 
 
-def _rate(frame: Fictitious, state: State) -> float:
+def _rate(frame: ExtendedSystem, state: LoopState) -> float:
     """Return dt/ds."""
     system = frame.system
     values = dict(zip(system.inputs, (*state.high[:, 0].tolist(), 0.0), strict=True))

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
-from canon.flow.fixed_step.partial_step import State
+from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.number_formats import fixed_precision
-from canon.flow.run.non_finite_state import NonFiniteStateError, described
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.samples import Samples
 from canon.flow.run.sampling_plan import fixed_plan
-from canon.flow.transformed.transformed_orbit import Footing, Walk
+from canon.flow.transformed.transformed_orbit import StepEnd, TransformedOrbit
 from canon.kernel.llvm.number_types import DOUBLE, double_pair
 
 if TYPE_CHECKING:
@@ -25,21 +25,21 @@ if TYPE_CHECKING:
     from canon.flow.method.method import TimeTransformed
     from canon.flow.run.event import Crossing, Event
     from canon.flow.run.sampling_plan import Plan
-    from canon.flow.transformed.extended_hamiltonian import Fictitious
+    from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
-__all__ = ["Standing", "transformed_motion"]
+__all__ = ["RunState", "transformed_motion"]
 
 Row = tuple[float, "Array", "Array"]
 """A time and the states y + carried there, each of shape (2n, orbits)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Standing:
+class RunState:
     """Where a motion in a fictitious time stands.
 
     Parameters
     ----------
-    footings
+    step_ends
         Of each orbit the end of its last whole step before the last state that is kept.
     stride
         How many steps apart states are kept, where they are.
@@ -49,14 +49,14 @@ class Standing:
         Whether the motion has come to its end, where the last state need not be the end of a stride.
     """
 
-    footings: tuple[Footing, ...]
+    step_ends: tuple[StepEnd, ...]
     stride: int = 1
     rows: int = 0
     arrived: bool = False
 
 
 def transformed_motion(
-    frame: Fictitious,
+    frame: ExtendedSystem,
     method: TimeTransformed,
     precision: str | int | None,
     states: tuple[Array, Array],
@@ -95,26 +95,26 @@ def transformed_motion(
     NonFiniteStateError
         The motion can't be continued.
     """
-    course = _Course(frame, method, precision, states, plan, events, progress, so_far)
+    run = _TransformedRun(frame, method, precision, states, plan, events, progress, so_far)
     started = time.thread_time()
     try:
         if plan.wanted:
-            course.in_steps()
+            run.in_steps()
         else:
-            course.at_instants()
+            run.at_instants()
     except NonFiniteStateError as lost:
-        raise _told(frame, lost, course.busy if course.orbits > 1 else None) from None
+        raise _told(frame, lost, run.busy if run.count > 1 else None) from None
     except KeyboardInterrupt:
         pass  # what is kept comes back
-    return course.samples(time.thread_time() - started)
+    return run.samples(time.thread_time() - started)
 
 
-class _Course:
+class _TransformedRun:
     """A motion on its way: its orbits, and what of it is kept."""
 
     def __init__(
         self,
-        frame: Fictitious,
+        frame: ExtendedSystem,
         method: TimeTransformed,
         precision: str | int | None,
         states: tuple[Array, Array],
@@ -129,39 +129,39 @@ class _Course:
         self.method, kind = method.method, fixed_precision(precision)
         self.bits = min(kind.number.mantissa, DOUBLE.mantissa)
         self.loop = compiled_loop(frame.system, self.method, kind)
-        self.orbits, self.busy = states[0].shape[1], 0
-        self.walks = [self._walk(k) for k in range(self.orbits)]
-        # In one attribute, so that an interruption finds rows and standing of the same moment.
+        self.count, self.busy = states[0].shape[1], 0
+        self.orbits = [self._orbit(k) for k in range(self.count)]
+        # In one attribute, so that an interruption finds rows and run state of the same moment.
         self.kept = self._kept_before()
 
-    def _walk(self, k: int) -> Walk:
+    def _orbit(self, k: int) -> TransformedOrbit:
         (high, low), frame, plan = self.states, self.frame, self.plan
         pairs = zip(high[:, k].tolist(), low[:, k].tolist(), strict=True)
         state, h = frame.start([Fraction(a) + Fraction(b) for a, b in pairs], self.start)
         if self.so_far is None:
             parts = [np.array(half)[:, np.newaxis] for half in zip(*map(double_pair, state), strict=True)]
-            footing = Footing(0, State(parts[0], parts[1]))
+            step_end = StepEnd(0, LoopState(parts[0], parts[1]))
         else:
-            footing = self.so_far.beyond.footings[k]
+            step_end = self.so_far.beyond.step_ends[k]
         steps = steps_between(self.loop, self.method, fixed_plan(Fraction(0), plan.forward * h, (0,)))
-        return Walk(frame, steps, footing, frame.events(self.events), self.bits, self._report)
+        return TransformedOrbit(frame, steps, step_end, frame.events(self.events), self.bits, self._report)
 
-    def _kept_before(self) -> tuple[list[Row], Standing]:
+    def _kept_before(self) -> tuple[list[Row], RunState]:
         """Return the times and states that are kept already, and where the motion stands."""
         if self.so_far is None:
-            footings = tuple(walk.footing for walk in self.walks)
-            return [(float(self.start), *self.states)], Standing(footings, rows=1)
-        standing: Standing = self.so_far.beyond
-        count = standing.rows - bool(standing.arrived and self.plan.wanted)
+            step_ends = tuple(orbit.step_end for orbit in self.orbits)
+            return [(float(self.start), *self.states)], RunState(step_ends, rows=1)
+        state: RunState = self.so_far.beyond
+        count = state.rows - bool(state.arrived and self.plan.wanted)
         parts = (np.moveaxis(part, 1, 0) for part in (self.so_far.y, self.so_far.carried))
         rows = list(zip(self.so_far.t.tolist(), *parts, strict=True))[:count]
-        return rows, replace(standing, rows=count, arrived=False)
+        return rows, replace(state, rows=count, arrived=False)
 
     def _report(self, t: float) -> None:
-        if self.orbits == 1:
+        if self.count == 1:
             self.progress(min(1.0, float((Fraction(t) - self.start) / (self.end - self.start))))
 
-    def _row(self, t: float, states: Sequence[State]) -> Row:
+    def _row(self, t: float, states: Sequence[LoopState]) -> Row:
         high, low = (
             np.concatenate(parts, axis=1) for parts in ([s.high for s in states], [s.low for s in states])
         )
@@ -171,18 +171,18 @@ class _Course:
 
     def at_instants(self) -> None:
         """Land at every instant, each time with all orbits."""
-        instants, first, (rows, standing) = self.plan.instants.tolist(), self.walks[0], self.kept
-        for k in range(standing.rows, len(instants)):
-            goal, states = Fraction(instants[k]), list[State]()
-            for orbit, walk in enumerate(self.walks):
-                self.busy = orbit
-                states.append(walk.landing(goal).state if walk.go(goal) else walk.state)
+        instants, first, (rows, state) = self.plan.instants.tolist(), self.orbits[0], self.kept
+        for k in range(state.rows, len(instants)):
+            goal, states = Fraction(instants[k]), list[LoopState]()
+            for index, orbit in enumerate(self.orbits):
+                self.busy = index
+                states.append(orbit.state_at(goal).state if orbit.go(goal) else orbit.state)
             # Where there are events there is one orbit.
             ended = first.stopped and not first.go(goal)
             rows.append(self._row(first.time if ended else instants[k], states))
-            footings = tuple(walk.before for walk in self.walks)
-            self.kept = rows, Standing(footings, rows=k + 1, arrived=ended or k + 1 == len(instants))
-            if self.orbits > 1:
+            step_ends = tuple(orbit.before for orbit in self.orbits)
+            self.kept = rows, RunState(step_ends, rows=k + 1, arrived=ended or k + 1 == len(instants))
+            if self.count > 1:
                 self.progress(k / (len(instants) - 1))
             if ended:
                 break
@@ -191,31 +191,31 @@ class _Course:
 
     def in_steps(self) -> None:
         """Keep every so manieth state, twice as far apart whenever there are twice as many as wanted."""
-        (walk,), end, (rows, standing) = self.walks, self.end, self.kept
-        stride, most = standing.stride, 2 * self.plan.wanted
+        (orbit,), end, (rows, state) = self.orbits, self.end, self.kept
+        stride, most = state.stride, 2 * self.plan.wanted
         while True:
-            more = self._leap(walk, stride, most + 1 - len(rows))
+            more = self._leap(orbit, stride, most + 1 - len(rows))
             if not more:
-                reached = walk.go(end, (walk.n // stride + 1) * stride)
-                if reached or walk.stopped:
+                reached = orbit.go(end, (orbit.n // stride + 1) * stride)
+                if reached or orbit.stopped:
                     break
-                more = [self._row(walk.time, [walk.state])]
+                more = [self._row(orbit.time, [orbit.state])]
             rows += more
             if len(rows) > most:
                 rows, stride = rows[::2], 2 * stride
-            self.kept = rows, Standing((walk.footing,), stride, len(rows))
-            if walk.interrupted:
+            self.kept = rows, RunState((orbit.step_end,), stride, len(rows))
+            if orbit.interrupted:
                 raise KeyboardInterrupt
-        last = walk.landing(end).state if reached else walk.state
-        rows = [*rows, self._row(float(end) if reached else walk.time, [last])]
-        self.kept = rows, Standing((walk.before,), stride, len(rows), arrived=True)
+        last = orbit.state_at(end).state if reached else orbit.state
+        rows = [*rows, self._row(float(end) if reached else orbit.time, [last])]
+        self.kept = rows, RunState((orbit.before,), stride, len(rows), arrived=True)
 
-    def _leap(self, walk: Walk, stride: int, most: int) -> list[Row]:
+    def _leap(self, orbit: TransformedOrbit, stride: int, most: int) -> list[Row]:
         """Return the states of many strides taken in one go; none where so many are not surely left."""
-        stops = walk.strides(self.end, stride)[: most + 1]
-        if walk.n % stride or len(stops) < 2:
+        stops = orbit.strides(self.end, stride)[: most + 1]
+        if orbit.n % stride or len(stops) < 2:
             return []
-        found = walk.leap(stops, self.end)
+        found = orbit.leap(stops, self.end)
         if found is None:
             return []
         times = found.high[self.frame.clock, 1:, 0] + found.low[self.frame.clock, 1:, 0]
@@ -226,11 +226,11 @@ class _Course:
 
     def samples(self, seconds: float) -> Samples:
         """Return all of the motion."""
-        before, (rows, standing) = self.so_far, self.kept
-        t, high, low = zip(*rows[: standing.rows], strict=True)
-        ended = standing.arrived
-        steps = sum(walk.n for walk in self.walks) if ended else sum(f.n for f in standing.footings)
-        work = sum(walk.work for walk in self.walks) * self.method.stages
+        before, (rows, state) = self.so_far, self.kept
+        t, high, low = zip(*rows[: state.rows], strict=True)
+        ended = state.arrived
+        steps = sum(orbit.n for orbit in self.orbits) if ended else sum(f.n for f in state.step_ends)
+        work = sum(orbit.work for orbit in self.orbits) * self.method.stages
         return Samples(
             t=np.array(t),
             y=np.stack(high, axis=1),
@@ -240,32 +240,32 @@ class _Course:
             step=float(self.frame.step),
             cpu_seconds=seconds + (before.cpu_seconds if before else 0.0),
             compile_seconds=self.loop.code.seconds,
-            beyond=standing,
+            beyond=state,
             crossings=self._crossings(t[-1]),
         )
 
     def _crossings(self, last: float) -> tuple[Crossing, ...]:
         """Return the events met up to the last state that is kept."""
-        (walk, *_), forward = self.walks, self.plan.forward
-        earlier = () if self.so_far is None else self.so_far.crossings[: self.so_far.beyond.footings[0].met]
-        found = [*earlier, *(_crossing(self.frame, met) for met in walk.guard.met)]
+        (orbit, *_), forward = self.orbits, self.plan.forward
+        earlier = () if self.so_far is None else self.so_far.crossings[: self.so_far.beyond.step_ends[0].met]
+        found = [*earlier, *(_crossing(self.frame, met) for met in orbit.locator.crossings)]
         return tuple(met for met in found if (met.t - last) * forward <= 0)
 
 
-def _crossing(frame: Fictitious, met: Crossing) -> Crossing:
+def _crossing(frame: ExtendedSystem, met: Crossing) -> Crossing:
     """Return an event met as one of the motion in t."""
     t, y = _in_time(frame, met.y)
     return replace(met, t=t, y=y, after=None if met.after is None else _in_time(frame, met.after)[1])
 
 
-def _told(frame: Fictitious, lost: NonFiniteStateError, orbit: int | None) -> NonFiniteStateError:
+def _told(frame: ExtendedSystem, lost: NonFiniteStateError, orbit: int | None) -> NonFiniteStateError:
     """Return an error in the fictitious time as one in t."""
     t, y = _in_time(frame, lost.state)
-    said = str(lost).replace(described(lost.time, lost.state), described(t, y))
+    said = str(lost).replace(time_and_state(lost.time, lost.state), time_and_state(t, y))
     return NonFiniteStateError(said if orbit is None else f"{said} (orbit {orbit})", t, y)
 
 
-def _in_time(frame: Fictitious, state: Array) -> tuple[float, Array]:
+def _in_time(frame: ExtendedSystem, state: Array) -> tuple[float, Array]:
     """Return t and (q, p) of an extended state without parameters that vary."""
     clock = frame.clock
     return float(state[clock]), np.delete(state, [clock, 2 * clock + 1])

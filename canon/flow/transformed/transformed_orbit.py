@@ -14,26 +14,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.fixed_step.advance import Run, run
-from canon.flow.fixed_step.event_search import Guard
-from canon.flow.fixed_step.loop_buffers import Job
-from canon.flow.fixed_step.partial_step import PartialSteps, State, coefficient_pairs
+from canon.flow.fixed_step.advance import AdvancedStates, advance_orbits
+from canon.flow.fixed_step.event_search import EventLocator
+from canon.flow.fixed_step.loop_buffers import LoopBuffers
+from canon.flow.fixed_step.partial_step import LoopState, PartialSteps, coefficient_pairs
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.flow.transformed.land_at_time import Leg, iterations, landed, time_of
-from canon.kernel.loops.event_loop import sentry_function
+from canon.flow.transformed.land_at_time import Segment, iterations, state_at_time, time_of
+from canon.kernel.loops.event_loop import event_function
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.flow.fixed_step.loop_buffers import Memory
-    from canon.flow.run.event import Prepared
-    from canon.flow.transformed.extended_hamiltonian import Fictitious
-    from canon.flow.transformed.land_at_time import Landed
+    from canon.flow.run.event import PreparedEvent
+    from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
+    from canon.flow.transformed.land_at_time import StateAtTime
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Footing", "Walk"]
+__all__ = ["StepEnd", "TransformedOrbit"]
 
 _SLICE = 10_000
 """Steps between looks at progress and interruptions; a time that stands still for so many has stopped."""
@@ -43,7 +43,7 @@ _LEAP = 16
 
 
 @dataclass(frozen=True, eq=False)
-class Footing:
+class StepEnd:
     """The end of a whole step, from which a motion goes on with the same bits.
 
     Parameters
@@ -59,19 +59,19 @@ class Footing:
     """
 
     n: int
-    state: State
+    state: LoopState
     sides: tuple[int, ...] = ()
     met: int = 0
 
 
 @functools.lru_cache(maxsize=64)
-def _kept_sentry(
-    system: Equations, values: tuple[int, ...], rates: tuple[int, ...], loop: Loop, clock: int
+def _kept_event_function(
+    system: HamiltonEquations, values: tuple[int, ...], rates: tuple[int, ...], loop: Loop, clock: int
 ) -> MachineCode:
-    return sentry_function(system, values, rates, loop, clock)
+    return event_function(system, values, rates, loop, clock)
 
 
-class Walk:
+class TransformedOrbit:
     """One orbit on its way.
 
     Parameters
@@ -80,7 +80,7 @@ class Walk:
         The extended equations.
     steps
         The method's steps in the fictitious time; negative ones where time runs back.
-    footing
+    step_end
         Where it stands.
     events
         What to look for.
@@ -92,10 +92,10 @@ class Walk:
 
     def __init__(
         self,
-        frame: Fictitious,
+        frame: ExtendedSystem,
         steps: PartialSteps,
-        footing: Footing,
-        events: Sequence[Prepared],
+        step_end: StepEnd,
+        events: Sequence[PreparedEvent],
         bits: int,
         report: Callable[[float], None],
     ) -> None:
@@ -103,42 +103,46 @@ class Walk:
         self.forward = 1 if steps.h > 0 else -1
         self.pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
         values, rates = tuple(e.value for e in events), tuple(e.rate for e in events)
-        self.code = _kept_sentry(frame.system, values, rates, steps.loop, frame.clock)
-        self.n, self.stopped, self.work, self.interrupted = footing.n, False, 0, False
-        self.before, self.legs, self._earlier = footing, [Leg(Fraction(0), footing.state)], footing.met
+        self.code = _kept_event_function(frame.system, values, rates, steps.loop, frame.clock)
+        self.n, self.stopped, self.work, self.interrupted = step_end.n, False, 0, False
+        self.before, self.segments, self._earlier = (
+            step_end,
+            [Segment(Fraction(0), step_end.state)],
+            step_end.met,
+        )
         self._pace, self._stride, self._still = _LEAP, float(frame.step), 0
-        self._stand(footing.state)
-        self.guard = Guard(frame.system, steps, events)
+        self._stand(step_end.state)
+        self.locator = EventLocator(frame.system, steps, events)
         self.kept = np.zeros(2 + 3 * len(events))
         self.kept[0] = self.forward
         if events:
-            self.kept[1:-1] = np.ravel(self._sides(footing))
+            self.kept[1:-1] = np.ravel(self._sides(step_end))
 
-    def _sides(self, footing: Footing) -> list[tuple[int, float, float]]:
-        guard, t = self.guard, Fraction(0)
-        known = guard.start(footing.state, t)
-        if footing.sides:
-            guard.sides = list(footing.sides)
-            known = guard.known(guard.look(footing.state, t))
+    def _sides(self, step_end: StepEnd) -> list[tuple[int, float, float]]:
+        locator, t = self.locator, Fraction(0)
+        known = locator.start(step_end.state, t)
+        if step_end.sides:
+            locator.sides = list(step_end.sides)
+            known = locator.known(locator.values_and_rates(step_end.state, t))
         return known
 
-    def _stand(self, state: State) -> None:
-        self.job = Job(self.steps.loop, state.high, state.low, self.pairs, memory=state.beyond)
+    def _stand(self, state: LoopState) -> None:
+        self.buffers = LoopBuffers(self.steps.loop, state.high, state.low, self.pairs, memory=state.beyond)
         self._read()
 
     def _read(self) -> None:
         """Note the state and the time at the end of the latest step, or where an event ended the motion."""
-        self.state = State(*self.job.states(), self.job.beyond())
+        self.state = LoopState(*self.buffers.states(), self.buffers.beyond())
         self.time = float(time_of(self.state, self.frame.clock))
 
     @property
-    def footing(self) -> Footing:
+    def step_end(self) -> StepEnd:
         """Where the latest step has ended."""
-        return Footing(self.n, self.state, tuple(self.guard.sides), self._met)
+        return StepEnd(self.n, self.state, tuple(self.locator.sides), self._met)
 
     @property
     def _met(self) -> int:
-        return self._earlier + len(self.guard.met)
+        return self._earlier + len(self.locator.crossings)
 
     # steps ----------------------------------------------------------------------------------------------
 
@@ -171,12 +175,12 @@ class Walk:
         steps = self._safe(self._there(goal))
         return list(range(self.n, self.n + (steps if steps >= _LEAP else 0) + 1, stride))
 
-    def leap(self, stops: Sequence[int], goal: Fraction) -> Run | None:
+    def leap(self, stops: Sequence[int], goal: Fraction) -> AdvancedStates | None:
         """Take steps in one go and return the states at some of them; take them back where they pass a time."""
         start, there, old = self.state, self._there(goal), self.time
         rows = np.array(self.frame.system.rows)
         try:
-            found = run(
+            found = advance_orbits(
                 self.steps.loop, start.high, start.low, self.pairs, stops, lambda _: self.report(old),
                 memory=start.beyond, rows=rows,
             )  # fmt: skip
@@ -194,9 +198,9 @@ class Walk:
             self._pace //= 4
             return None
         self.n, self._pace = reached, 2 * self._pace
-        self._stand(State(found.high[:, -1], found.low[:, -1], found.beyond[-1]))
+        self._stand(LoopState(found.high[:, -1], found.low[:, -1], found.beyond[-1]))
         self._stride = abs(self.time - old) / max(1, steps)
-        self.before, self.legs = self.footing, [Leg(Fraction(0), self.state)]
+        self.before, self.segments = self.step_end, [Segment(Fraction(0), self.state)]
         self.interrupted = reached < stops[-1]
         return found
 
@@ -208,38 +212,41 @@ class Walk:
 
     def _watched(self, steps: int, there: float) -> None:
         """Take steps one by one until the time has come or an event may have happened."""
-        job, first, start = self.job, self.n, self.state
-        safe, before = (job.y.copy(), job.e.copy()), (np.empty_like(job.y), np.empty_like(job.e))
+        buffers, first, start = self.buffers, self.n, self.state
+        safe, before = (
+            (buffers.y.copy(), buffers.e.copy()),
+            (np.empty_like(buffers.y), np.empty_like(buffers.e)),
+        )
         self.kept[-1] = there
         done = np.array([first], dtype=np.int64)
-        memory = (job.y, job.e, job.c, *before, self.kept, done)
-        self.code.call(job.loop.code.address, *(m.ctypes.data for m in memory), first, steps)
+        memory = (buffers.y, buffers.e, buffers.c, *before, self.kept, done)
+        self.code.call(buffers.loop.code.address, *(m.ctypes.data for m in memory), first, steps)
         self.n = int(done[0])
-        self._count(start, job.beyond(), self.n - first)
-        if not job.finite():
-            raise job.lost(*safe, first, self.n - first, np.array(self.frame.system.rows))
+        self._count(start, buffers.beyond(), self.n - first)
+        if not buffers.finite():
+            raise buffers.lost(*safe, first, self.n - first, np.array(self.frame.system.rows))
         self._read()
-        self.before = Footing(self.n - 1, _state_in(job, *before), tuple(self.guard.sides), self._met)
-        self.legs = [Leg(Fraction(0), self.before.state)]
+        self.before = StepEnd(self.n - 1, _state_in(buffers, *before), tuple(self.locator.sides), self._met)
+        self.segments = [Segment(Fraction(0), self.before.state)]
         if self.events:
-            self._meet()
+            self._pass_events()
         self._check_time(start, self.n - first)
 
-    def _meet(self) -> None:
+    def _pass_events(self) -> None:
         """Meet the events of the latest step."""
         end = self.state
-        new, part, known = self.guard.through(self.n - 1, self.before.state, end)
-        self.legs = [Leg(*leg) for leg in self.guard.legs]
+        new, part, known = self.locator.locate(self.n - 1, self.before.state, end)
+        self.segments = [Segment(*leg) for leg in self.locator.segments]
         if not known:
             self.stopped = True
-            self.legs.append(Leg(part, new))
+            self.segments.append(Segment(part, new))
             self._stand(new)
             return
         if new is not end:
             self._stand(new)
         self.kept[1:-1] = np.ravel(known)
 
-    def _check_time(self, start: State, steps: int) -> None:
+    def _check_time(self, start: LoopState, steps: int) -> None:
         """Make sure that the time goes on: not back in a step, nor by nothing in very many."""
         clock = self.frame.clock
         now, before, first = (time_of(s, clock) for s in (self.state, self.before.state, start))
@@ -250,7 +257,7 @@ class Walk:
                 f"the time stops or turns back after t = {float(before):.9g}: dt/ds is to be positive along the motion"
             )
 
-    def _count(self, start: State, beyond: object, steps: int) -> None:
+    def _count(self, start: LoopState, beyond: object, steps: int) -> None:
         """Count steps, of implicit methods iterations."""
         self.work += iterations(start.beyond, beyond) if self.steps.loop.implicit else steps
 
@@ -269,7 +276,7 @@ class Walk:
         wide = compensated or number.mantissa > self.bits
         return Fraction(1, 2 ** (self.bits + 3 if wide else self.bits - 1))
 
-    def landing(self, goal: Fraction) -> Landed:
+    def state_at(self, goal: Fraction) -> StateAtTime:
         """Return the state at a time that the latest step has reached, by a part of that step.
 
         Raises
@@ -277,13 +284,13 @@ class Walk:
         ArithmeticError
             No part of the step ends there.
         """
-        ends = self.legs if self.stopped else [*self.legs, Leg(Fraction(1), self.state)]
-        found = landed(self.frame, self.steps, ends, goal, self.fine, Fraction(4, 2**self.bits))
+        ends = self.segments if self.stopped else [*self.segments, Segment(Fraction(1), self.state)]
+        found = state_at_time(self.frame, self.steps, ends, goal, self.fine, Fraction(4, 2**self.bits))
         self.work += found.work
         return found
 
 
-def _state_in(job: Job, y: Memory, e: Memory) -> State:
+def _state_in(buffers: LoopBuffers, y: Memory, e: Memory) -> LoopState:
     """Return the state of which y and e are a copy."""
-    high, low = job.states_in(y[np.newaxis], e[np.newaxis])
-    return State(high[:, 0], low[:, 0], job.beyond_in(e).copy())
+    high, low = buffers.states_in(y[np.newaxis], e[np.newaxis])
+    return LoopState(high[:, 0], low[:, 0], buffers.beyond_in(e).copy())

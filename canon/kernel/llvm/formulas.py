@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
     from canon.kernel.llvm.writer import Writer
 
-__all__ = ["Arithmetic"]
+__all__ = ["LaneFormulas"]
 
 
-class Arithmetic:
+class LaneFormulas:
     """Operations on registers of one writer's numbers, lane by lane; pairs of doubles compare by their high parts.
 
     Parameters

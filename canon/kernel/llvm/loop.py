@@ -27,7 +27,7 @@ from canon.kernel.llvm.writer import LIBRARY, Writer
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
 
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.program.program import Program
 
 __all__ = [
@@ -78,7 +78,7 @@ class Loop:
     coefficients: Callable[[Fraction], list[Fraction]] | None = None
 
 
-def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
+def runge_kutta_loop(system: HamiltonEquations, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
     """Compile the classical fourth-order Runge–Kutta method; its coefficients are h/2, h/6, h/3."""
     n = len(system.q)
     w = Writer(number)
@@ -105,7 +105,7 @@ def runge_kutta_loop(system: Equations, *, compensated: bool, number: MachineTyp
                 w.store(w.multiply_add(weight, w.load(rate, i), w.load(total, i)), total, i)
         with w.loop(0, 2 * n) as i:
             increase(w, y, e, i, w.constant(Fraction(1)), w.load(total, i))
-    return finished(w, n, compensated=compensated)
+    return compile_loop(w, n, compensated=compensated)
 
 
 def field_function(field: Program) -> MachineCode:
@@ -145,7 +145,7 @@ def blocks_of(w: Writer, y: str, e: str, size: int, carry: int, gap: int = 0) ->
 
 
 @contextlib.contextmanager
-def steps_of(w: Writer, system: Equations) -> Generator[str]:
+def steps_of(w: Writer, system: HamiltonEquations) -> Generator[str]:
     """Repeat what is written inside for every step and yield the time at which the step starts."""
     start, h = w.load("%c", 0), w.load("%c", 1)
     last = w.let("add i64 %first, %steps")
@@ -165,7 +165,7 @@ def increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> 
     w.store(new, y, i)
 
 
-def finished(w: Writer, n: int, *, compensated: bool, carry: int = 0) -> Loop:
+def compile_loop(w: Writer, n: int, *, compensated: bool, carry: int = 0) -> Loop:
     """Compile what was written."""
     return Loop(
         compiled_function(w, "advance", PARAMETERS, SIGNATURE),

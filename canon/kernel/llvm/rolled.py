@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from canon.kernel.program.operation_families import LEAVES, families_of, is_regular, operand_places
+from canon.kernel.program.operation_families import LEAVES, families_of, has_stride, operand_places
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -45,7 +45,7 @@ def is_worth_rolling(steps: Program, beside: Program | None = None) -> bool:
         return False
     families, location = families_of(steps)
     places = operand_places(steps, families, location)
-    tables = sum(not is_regular(column) for columns in places for column in columns)
+    tables = sum(not has_stride(column) for columns in places for column in columns)
     return count > _IRREGULAR or tables == 0
 
 
@@ -275,7 +275,7 @@ class _Rolling:
     def _index(self, places: Sequence[int], k: str) -> str:
         """Write the place that belongs to member k: a stride, or an entry of a table."""
         stride = places[1] - places[0] if len(places) > 1 else 0
-        if is_regular(places):
+        if has_stride(places):
             if stride == 0:
                 return str(places[0])
             scaled = k if stride == 1 else self.w.let(f"mul i64 {k}, {stride}")

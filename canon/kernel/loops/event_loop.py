@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["sentry_function"]
+__all__ = ["event_function"]
 
 _REACH = Fraction(4)
 """A g that turns once within a step moves by no more than its slope times the step; so many times that is allowed."""
@@ -34,8 +34,8 @@ _PARAMETERS = ", ".join(
 )
 
 
-def sentry_function(
-    system: Equations,
+def event_function(
+    system: HamiltonEquations,
     values: Sequence[int],
     rates: Sequence[int],
     loop: Loop,

@@ -17,14 +17,14 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, finished, increase, steps_of
+from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, SINGLE
 from canon.kernel.llvm.writer import Writer
 from canon.kernel.schemes.gauss_tableau import lanes_for
 
 if TYPE_CHECKING:
     from canon.kernel.llvm.number_types import MachineType
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["gauss_loop"]
 
@@ -34,7 +34,9 @@ _SETTLED, _CONVERGED = 42, 20
 last change above 2⁻²⁰ of it means that the iteration has not converged. In other numbers accordingly."""
 
 
-def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:
+def gauss_loop(
+    system: HamiltonEquations, stages: int, *, compensated: bool, number: MachineType = DOUBLE
+) -> Loop:
     """Compile Gauss–Legendre steps, the stages side by side in SIMD lanes.
 
     After the 2n numbers of compensation, ``e`` keeps the number of iterations, the last change of an iteration
@@ -67,7 +69,7 @@ def gauss_loop(system: Equations, stages: int, *, compensated: bool, number: Mac
                     increase(w, y, e, i, w.constant(Fraction(1)), v.lane(found, j))
         with w.loop(0, size) as i:
             _store_row(w, v, v.load(iteration.stage, i), guess, i)
-    return finished(w, len(system.q), compensated=compensated, carry=carry)
+    return compile_loop(w, len(system.q), compensated=compensated, carry=carry)
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,7 @@ class _Iteration:
     v: Writer
     d: Writer
     g: Writer
-    system: Equations
+    system: HamiltonEquations
     y: str
     e: str
     method: _Stages
@@ -107,7 +109,9 @@ class _Iteration:
     reach: str
 
     @classmethod
-    def of(cls, w: Writer, v: Writer, system: Equations, y: str, e: str, method: _Stages) -> _Iteration:
+    def of(
+        cls, w: Writer, v: Writer, system: HamiltonEquations, y: str, e: str, method: _Stages
+    ) -> _Iteration:
         size = 2 * len(system.q)
         # Changes and sizes are watched in numbers no wider than doubles, of pairs by their high parts.
         watched = w.number if w.number == SINGLE else DOUBLE

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, finished, increase, steps_of
+from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
 from canon.kernel.llvm.pair_loops import write_pair_forces
 from canon.kernel.llvm.rolled import is_worth_rolling, write_rolled
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import TypeAlias
 
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.program.pairwise import PairForces
 
     _Take: TypeAlias = Callable[[str, str], None]
@@ -28,7 +28,7 @@ _LONG, _ALIGNED, _APART = 64, 8, 24
 
 
 def splitting_loop(
-    system: Equations,
+    system: HamiltonEquations,
     stages: int,
     *,
     compensated: bool,
@@ -66,7 +66,7 @@ def splitting_loop(
                 writing.kick(w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}")))
             if not kick_first:
                 writing.drift(w.load("%c", METHOD + 2 * stages))
-    return finished(w, n, compensated=compensated)
+    return compile_loop(w, n, compensated=compensated)
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class _SplittingWriter:
     """
 
     w: Writer
-    system: Equations
+    system: HamiltonEquations
     y: str
     e: str
     gap: int
@@ -101,7 +101,9 @@ class _SplittingWriter:
     kick_first: bool
 
     @classmethod
-    def of(cls, w: Writer, system: Equations, *, compensated: bool, kick_first: bool) -> _SplittingWriter:
+    def of(
+        cls, w: Writer, system: HamiltonEquations, *, compensated: bool, kick_first: bool
+    ) -> _SplittingWriter:
         n = len(system.q)
         gap = _gap(n)
         y, e = w.array(2 * n + gap), w.array(2 * n + gap) if compensated else ""

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["ENTRIES", "watching_function", "wide_number"]
+__all__ = ["ENTRIES", "statistics_function", "wide_number"]
 
 ENTRIES = 4
 """Numbers kept of an observable: its value at the start; the sum, the least and the greatest of its changes."""
@@ -50,7 +50,7 @@ def wide_number(number: MachineType) -> MachineType:
     return EXTENDED if EXTENDED.available() else DOUBLE_DOUBLE
 
 
-def watching_function(system: Equations, nodes: Sequence[int], loop: Loop) -> MachineCode:
+def statistics_function(system: HamiltonEquations, nodes: Sequence[int], loop: Loop) -> MachineCode:
     """Compile ``drive(advance, y, e, c, first, steps, blocks, cadence, kept)``.
 
     It calls the loop's own machine code and evaluates the nodes after every step whose number is a multiple of
@@ -84,7 +84,7 @@ def watching_function(system: Equations, nodes: Sequence[int], loop: Loop) -> Ma
 
 
 def _watch(
-    w: Writer, system: Equations, nodes: Sequence[int], loop: Loop, block: str, lane: str, step: str
+    w: Writer, system: HamiltonEquations, nodes: Sequence[int], loop: Loop, block: str, lane: str, step: str
 ) -> None:
     """Evaluate the nodes for one orbit and record their changes."""
     size, lanes = len(system.inputs) - 1, loop.number.lanes

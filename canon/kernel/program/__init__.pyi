@@ -1,2 +1,2 @@
-from .hamilton_equations import Equations as Equations
+from .hamilton_equations import HamiltonEquations as HamiltonEquations
 from .program import Program as Program

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["commutator_force"]
 
 
-def commutator_force(rest: Equations, inverse_mass: Sequence[Sequence[Fraction]]) -> tuple[int, ...]:
+def commutator_force(rest: HamiltonEquations, inverse_mass: Sequence[Sequence[Fraction]]) -> tuple[int, ...]:
     """Return the nodes of ∂_k(½ Σ A_ij ∂_iH₁ ∂_jH₁) in the graph of H₁'s equations of motion.
 
     Parameters

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["Equations", "equations", "exact", "exact_numbers"]
+__all__ = ["HamiltonEquations", "equations", "exact_number", "exact_numbers"]
 
 
 @dataclass(frozen=True, eq=False)
-class Equations:
+class HamiltonEquations:
     """Hamilton's equations of one Hamiltonian with numbers for its parameters.
 
     Parameters
@@ -93,7 +93,7 @@ def equations(
     t: Symbol,
     parameters: Mapping[str, Fraction],
     varying: Sequence[Symbol] = (),
-) -> Equations:
+) -> HamiltonEquations:
     """Return Hamilton's equations q̇ = ∂H/∂p, ṗ = −∂H/∂q, ready to compile.
 
     Parameters
@@ -129,7 +129,7 @@ def _equations(
     t: Symbol,
     parameters: Mapping[str, Fraction],
     varying: tuple[Symbol, ...],
-) -> Equations:
+) -> HamiltonEquations:
     graph = Graph()
     node = _with_numbers(graph, hamiltonian, (*q, *p, t, *varying), parameters, "the Hamiltonian")
     gradient = graph.gradient(node, (*q, *p))
@@ -144,7 +144,7 @@ def _equations(
         moved = {graph.symbol(a): graph.symbol(b) for a, b in zip(varying, twins, strict=True)}
         velocity = (*graph.substitute(velocity, moved), *stays)
         force = (*force, *stays)
-    return Equations(
+    return HamiltonEquations(
         graph=graph,
         q=(*q, *varying),
         p=(*p, *twins),
@@ -195,7 +195,7 @@ def _with_numbers(
     return graph.substitute([general], known)[0]
 
 
-def exact(value: Any, what: str) -> Fraction:
+def exact_number(value: Any, what: str) -> Fraction:
     """Return a number exactly: floats as the binary numbers they are, text as the decimal it spells.
 
     Raises
@@ -239,4 +239,4 @@ def exact_numbers(parameters: Mapping[Symbol | str, Any]) -> dict[str, Fraction]
     >>> exact_numbers({sp.Symbol("g"): "9.81", "m": 0.5})
     {'g': Fraction(981, 100), 'm': Fraction(1, 2)}
     """
-    return {str(name): exact(value, str(name)) for name, value in parameters.items()}
+    return {str(name): exact_number(value, str(name)) for name, value in parameters.items()}

@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
     from canon.kernel.program.program import Program
 
-__all__ = ["LEAVES", "Family", "families_of", "is_regular", "operand_places"]
+__all__ = ["LEAVES", "OperationFamily", "families_of", "has_stride", "operand_places"]
 
 LEAVES = ("input", "time", "constant")
 """What is no operation on others."""
 
 
 @dataclass
-class Family:
+class OperationFamily:
     """Operations of one kind on operands of the same families.
 
     ``members`` are the registers they write; a member's place in the family's array is its position here.
@@ -31,9 +31,9 @@ class Family:
     members: list[int] = field(default_factory=list[int])
 
 
-def families_of(steps: Program) -> tuple[list[Family], list[tuple[int, int]]]:
+def families_of(steps: Program) -> tuple[list[OperationFamily], list[tuple[int, int]]]:
     """Return the families, operands' before their users', and each register's family and place in it."""
-    found: list[Family] = []
+    found: list[OperationFamily] = []
     number: dict[Any, int] = {}
     family_of: list[int] = []
     operands_of: list[tuple[int, ...]] = []
@@ -46,7 +46,9 @@ def families_of(steps: Program) -> tuple[list[Family], list[tuple[int, int]]]:
         if key not in number:
             number[key] = len(found)
             found.append(
-                Family("time" if is_time else operation, value if operation == "constant" else None, kinds)
+                OperationFamily(
+                    "time" if is_time else operation, value if operation == "constant" else None, kinds
+                )
             )
         family_of.append(number[key])
         operands_of.append(operands)
@@ -63,7 +65,7 @@ def families_of(steps: Program) -> tuple[list[Family], list[tuple[int, int]]]:
 
 
 def operand_places(
-    steps: Program, families: Sequence[Family], location: Sequence[tuple[int, int]]
+    steps: Program, families: Sequence[OperationFamily], location: Sequence[tuple[int, int]]
 ) -> list[list[list[int]]]:
     """Return, by family and operand, where each member finds the operand in the operand's family."""
     found: list[list[list[int]]] = []
@@ -79,6 +81,6 @@ def operand_places(
     return found
 
 
-def is_regular(places: Sequence[int]) -> bool:
+def has_stride(places: Sequence[int]) -> bool:
     """Return whether places follow each other by a stride."""
     return len(places) < 3 or all(b - a == places[1] - places[0] for a, b in itertools.pairwise(places))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.expression.graph.graph import Graph
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["PairForces", "pair_forces"]
 
@@ -55,7 +55,7 @@ class PairForces:
     rest: tuple[int, ...]
 
 
-def pair_forces(system: Equations) -> PairForces | None:
+def pair_forces(system: HamiltonEquations) -> PairForces | None:
     """Find the forces of pairs in the sum that H is, or return None where there are none, or few.
 
     Every pair of bodies has to occur once, in terms that differ by a factor only; a body's coordinates follow each
@@ -178,7 +178,9 @@ def _signed(graph: Graph, term: int, slots: Mapping[Symbol, tuple[int, int]]) ->
     return repr(_key(graph, rest, slots)), factor
 
 
-def _forces(system: Equations, terms: Sequence[int], found: _Pairs, bodies: int, axes: int) -> PairForces:
+def _forces(
+    system: HamiltonEquations, terms: Sequence[int], found: _Pairs, bodies: int, axes: int
+) -> PairForces:
     graph = system.graph
     target, source = ([sp.Dummy(f"{letter}{k}", real=True) for k in range(axes)] for letter in ("x", "y"))
     renamed = {

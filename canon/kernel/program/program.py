@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from canon.expression.graph.graph import Graph
 
-__all__ = ["Instruction", "Program", "exact_value", "program", "run"]
+__all__ = ["Instruction", "Program", "exact_value", "interpret", "program"]
 
 _CONSTANT_DIGITS = 100
 
@@ -278,7 +278,7 @@ class _Lowering:
         return self._emit("mul", square, base) if times % 2 else square
 
 
-def run(
+def interpret(
     steps: Program, inputs: Sequence[Any], number: Callable[[Fraction], Any], functions: Mapping[str, Any]
 ) -> list[Any]:
     """Interpret a program in any arithmetic: the reference the compiled code is tested against."""

@@ -19,7 +19,7 @@ from collections import Counter
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from canon.kernel.program.terms import Product, Sum, Table, Term, written
+from canon.kernel.program.terms import Product, Sum, SumTable, Term, written_back
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -56,7 +56,7 @@ def with_shared_products(graph: Graph, nodes: Sequence[int]) -> list[int]:
     >>> [graph.to_sympy(node) for node in with_shared_products(graph, wanted)]
     [x/y, x*(x/y + 3*z)/y]
     """
-    table = Table(graph)
+    table = SumTable(graph)
     table.read(nodes)
     _share_products(table)
     _share_sums(table)
@@ -64,10 +64,10 @@ def with_shared_products(graph: Graph, nodes: Sequence[int]) -> list[int]:
     for node in list(table.sums):
         _factor_sum(table, node)
     _share_products(table)
-    return written(table, nodes)
+    return written_back(table, nodes)
 
 
-def _share_products(table: Table) -> None:
+def _share_products(table: SumTable) -> None:
     """Make pairs of factors that several products have functions of their own."""
 
     def named(pair: Product) -> int:
@@ -81,7 +81,7 @@ def _share_products(table: Table) -> None:
     table.products[: len(rows)] = rows.values()
 
 
-def _share_sums(table: Table) -> None:
+def _share_sums(table: SumTable) -> None:
     """Make pairs of terms that several sums have, up to a constant, functions of their own."""
 
     def named(pair: _Pair) -> int:
@@ -155,7 +155,7 @@ def _replaced(product: Product, pair: Product, new: Factor) -> Product:
     return tuple(sorted(counts.elements()))
 
 
-def _factor_sum(table: Table, node: int) -> None:
+def _factor_sum(table: SumTable, node: int) -> None:
     """Take common factors out of a sum's terms as long as that saves products."""
     terms = table.sums[node]
     while True:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from canon.expression.graph.graph import Graph
 
-__all__ = ["Factor", "Product", "Sum", "Table", "Term", "written"]
+__all__ = ["Factor", "Product", "Sum", "SumTable", "Term", "written_back"]
 
 Factor = tuple[int, int]
 """A function and 1, or −1 for its reciprocal; functions are nodes, or negative numbers for new ones."""
@@ -40,7 +40,7 @@ class Term:
 
 
 @dataclass
-class Table:
+class SumTable:
     """The products and sums of some functions; products are numbered, so that they can change in place."""
 
     graph: Graph
@@ -126,7 +126,7 @@ class Table:
         return [(operands[0], 1 if times > 0 else -1)] * abs(int(times))
 
 
-def written(table: Table, nodes: Sequence[int]) -> list[int]:
+def written_back(table: SumTable, nodes: Sequence[int]) -> list[int]:
     """Write the functions of a table back into its graph, and return the nodes that given ones have become."""
     return _Writing(table).written(nodes)
 
@@ -134,7 +134,7 @@ def written(table: Table, nodes: Sequence[int]) -> list[int]:
 class _Writing:
     """Writes the table back into the graph, what is read before what reads it."""
 
-    def __init__(self, table: Table) -> None:
+    def __init__(self, table: SumTable) -> None:
         self.table, self.graph = table, table.graph
         self.done: dict[int, int] = {}
 

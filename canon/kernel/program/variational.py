@@ -10,12 +10,12 @@ import sympy as sp
 if TYPE_CHECKING:
     from sympy import Symbol
 
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["variational"]
 
 
-def variational(system: Equations, variations: int) -> Equations:
+def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations:
     """Return the equations of (q, δq; p, δp) with so many variations δ: δẋ_i = Σ_j ∂ẋ_i/∂x_j δx_j.
 
     A velocity ∂H/∂p gives δq̇ and a force gives δṗ, so that what splits still splits. Splitting and Runge–Kutta

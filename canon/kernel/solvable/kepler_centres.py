@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.kernel.program.commutator import commutator_force
-from canon.kernel.solvable.lanes import Lanes, Times
+from canon.kernel.solvable.lanes import BodyLanes, StepLengths
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["CentresInLanes"]
 
 
-class CentresInLanes(Lanes):
+class CentresInLanes(BodyLanes):
     """Kepler's motion of bodies about fixed centres, and kicks by H₁(q).
 
     Parameters
@@ -58,7 +58,7 @@ class CentresInLanes(Lanes):
                     self.write(places[body], y, e, own[axis])
                     self.write(self.combined([mass], [velocities[body]]), y, e, self.degrees + own[axis])
 
-    def kicked(self, x: list[str], u: list[str], times: Times) -> tuple[list[str], list[str]]:
+    def kicked(self, x: list[str], u: list[str], times: StepLengths) -> tuple[list[str], list[str]]:
         """Write v ← v − t ∂H₁/∂q / m, and with a commutator + 2γτ³ ∂(Σ (∂H₁/∂q)²/2m)/∂q / m."""
         rest, inverse = self.part.rest, list[Fraction]([Fraction(0)] * self.degrees)
         for own, mass in zip(self.part.bodies, self.part.masses, strict=True):

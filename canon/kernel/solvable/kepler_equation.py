@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.formulas import Arithmetic
+from canon.kernel.llvm.formulas import LaneFormulas
 from canon.kernel.llvm.number_types import DOUBLE
 from canon.kernel.solvable.stumpff import REACH, stumpff, stumpff_series
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from canon.kernel.llvm.writer import Writer
 
-__all__ = ["TWO_PI", "Orbit", "in_doubles", "of_doubles", "universal_anomaly"]
+__all__ = ["TWO_PI", "KeplerOrbit", "in_doubles", "of_doubles", "universal_anomaly"]
 
 TWO_PI = Fraction("6.28318530717958647692528676655900576839433879875021")
 
@@ -43,7 +43,7 @@ _FURTHER = 6
 
 
 @dataclass(frozen=True)
-class Orbit:
+class KeplerOrbit:
     """What Kepler's equation reads: registers, one lane for each body; 1/r₀ is ``near``, µ/r₀ ``pull``."""
 
     r0: str
@@ -57,15 +57,17 @@ class Orbit:
     t: str
 
 
-def universal_anomaly(w: Writer, v: Writer, orbit: Orbit) -> tuple[str, str, str]:
+def universal_anomaly(w: Writer, v: Writer, orbit: KeplerOrbit) -> tuple[str, str, str]:
     """Solve Kepler's equation for X and return X, G₂, G₃."""
-    c = Arithmetic(v)
+    c = LaneFormulas(v)
     found = v.array(1), v.array(1), v.array(1)
     if dataclasses.replace(v.number, lanes=1) == DOUBLE:
         _solve(w, v, orbit, found)
     else:
         doubles = in_doubles(v, orbit.t)[0]
-        rounded = Orbit(*(in_doubles(v, getattr(orbit, each.name))[1] for each in dataclasses.fields(Orbit)))
+        rounded = KeplerOrbit(
+            *(in_doubles(v, getattr(orbit, each.name))[1] for each in dataclasses.fields(KeplerOrbit))
+        )
         first = doubles.array(1), doubles.array(1), doubles.array(1)
         _solve(w, doubles, rounded, first)
         v.store(of_doubles(v, doubles.load(first[0], 0)), found[0], 0)
@@ -73,7 +75,7 @@ def universal_anomaly(w: Writer, v: Writer, orbit: Orbit) -> tuple[str, str, str
     return v.load(found[0], 0), v.load(found[1], 0), v.load(found[2], 0)
 
 
-def _continue(w: Writer, v: Writer, c: Arithmetic, orbit: Orbit, found: Sequence[str]) -> None:
+def _continue(w: Writer, v: Writer, c: LaneFormulas, orbit: KeplerOrbit, found: Sequence[str]) -> None:
     """Write X, G₂ and G₃ of a root that is known roughly."""
     doubt = v.array(1)
     v.store(c.one, doubt, 0)
@@ -90,12 +92,12 @@ def _continue(w: Writer, v: Writer, c: Arithmetic, orbit: Orbit, found: Sequence
     v.store(c.add(v.load(found[0], 0), c.div(left, c.sub(c.one, left))), found[0], 0)
 
 
-def _solve(w: Writer, v: Writer, orbit: Orbit, found: tuple[str, str, str]) -> None:
+def _solve(w: Writer, v: Writer, orbit: KeplerOrbit, found: tuple[str, str, str]) -> None:
     """Write X, G₂, G₃ in doubles: by one step from the series where that is enough in all lanes, else by a search.
 
     The search repeats that step: lanes for which it was enough get the same bits, whatever their neighbours ask for.
     """
-    c = Arithmetic(v)
+    c = LaneFormulas(v)
     guess = _series(c, orbit)
     square = c.mul(guess.x, guess.x)
     z = c.mul(orbit.beta, square)
@@ -119,7 +121,7 @@ class _Guess:
     fair: str
 
 
-def _series(c: Arithmetic, orbit: Orbit) -> _Guess:
+def _series(c: LaneFormulas, orbit: KeplerOrbit) -> _Guess:
     """Return X up to t⁴ from dX/dt = 1/r and r̈ = h²/r³ − µ/r²."""
     reach = c.mul(orbit.t, orbit.near)
     square = c.mul(reach, reach)
@@ -147,7 +149,7 @@ class _Trial:
     last: str
 
 
-def _trial(c: Arithmetic, orbit: Orbit, x: str, g2: str, g3: str) -> _Trial:
+def _trial(c: LaneFormulas, orbit: KeplerOrbit, x: str, g2: str, g3: str) -> _Trial:
     """Write a step of fifth order from X.
 
     It is the last where (aF''/F')², a²F'''/F', a²β, ¼(a/X)² are below 2^(−0.4 (p + 2)), p the bits of the mantissa:
@@ -171,7 +173,7 @@ def _trial(c: Arithmetic, orbit: Orbit, x: str, g2: str, g3: str) -> _Trial:
     return _Trial(miss, (g0, g1, g2, g3), step, last)
 
 
-def _reversion(c: Arithmetic, bend: str, twist: str, curl: str) -> str:
+def _reversion(c: LaneFormulas, bend: str, twist: str, curl: str) -> str:
     """Return δ/a for the root δ of F's Taylor polynomial, up to the fourth power of Newton's step a = −F/F'.
 
     1 − b/2 + (b²/2 − w/6) + b(5w/12 − 5b²/8 + βa²/24) with b = aF⁽²⁾/F', w = a²F⁽³⁾/F'; F⁽⁴⁾ = −βF⁽²⁾.
@@ -182,7 +184,7 @@ def _reversion(c: Arithmetic, bend: str, twist: str, curl: str) -> str:
     return c.fma(bend, c.fma(c.number(Fraction(5, 12)), twist, inner), low)
 
 
-def _moved_on(c: Arithmetic, x: str, trial: _Trial, beta: str) -> tuple[str, str, str]:
+def _moved_on(c: LaneFormulas, x: str, trial: _Trial, beta: str) -> tuple[str, str, str]:
     """Return X + a, G₂(X + a) and G₃(X + a), by their Taylor series in the small a: G_k' = G_{k−1}, G₀' = −βG₁.
 
     What is added to G_k is rounded to it once: twice would make the energy drift.
@@ -209,9 +211,9 @@ def _moved_on(c: Arithmetic, x: str, trial: _Trial, beta: str) -> tuple[str, str
 # the search --------------------------------------------------------------------------------------------
 
 
-def _search(w: Writer, v: Writer, orbit: Orbit, found: tuple[str, str, str]) -> None:
+def _search(w: Writer, v: Writer, orbit: KeplerOrbit, found: tuple[str, str, str]) -> None:
     """Write X, G₂ and G₃ to where they are wanted, starting from what X is there."""
-    c = Arithmetic(v)
+    c = LaneFormulas(v)
     low, high, doubt = v.array(1), v.array(1), v.array(1)
     v.store(c.zero, low, 0)
     v.store(v.infinity(), high, 0)
@@ -250,7 +252,7 @@ def _search(w: Writer, v: Writer, orbit: Orbit, found: tuple[str, str, str]) -> 
     v.store(c.add(v.load(found[0], 0), v.load(doubt, 0)), found[0], 0)
 
 
-def _bound(c: Arithmetic, v: Writer, orbit: Orbit) -> str:
+def _bound(c: LaneFormulas, v: Writer, orbit: KeplerOrbit) -> str:
     """Return B with 0 ≤ X ≤ B; the cube root of y is at most √y or, for y < 1, ⁴√y."""
     bound = v.less(c.zero, orbit.beta)
     ellipse = c.div(c.number(TWO_PI), c.sqrt(v.select(bound, orbit.beta, c.one)))

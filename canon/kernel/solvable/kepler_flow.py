@@ -14,8 +14,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.formulas import Arithmetic
-from canon.kernel.solvable.kepler_equation import TWO_PI, Orbit, in_doubles, of_doubles, universal_anomaly
+from canon.kernel.llvm.formulas import LaneFormulas
+from canon.kernel.solvable.kepler_equation import (
+    TWO_PI,
+    KeplerOrbit,
+    in_doubles,
+    of_doubles,
+    universal_anomaly,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,7 +47,7 @@ def kepler_flow(
     t
         The time, of either sign; the same in all lanes.
     """
-    c = Arithmetic(v)
+    c = LaneFormulas(v)
     r0 = c.sqrt(c.dot(x, x))
     near = c.div(c.one, r0)
     pull = c.mul(mu, near)
@@ -50,7 +56,7 @@ def kepler_flow(
     zeta = c.fma(c.neg(beta), r0, mu)
     t = _within_half_a_period(w, v, mu, beta, t)
     forward = c.select(c.less(t, c.zero), c.neg(c.one), c.one)
-    orbit = Orbit(r0, near, c.mul(along, forward), speed2, beta, zeta, mu, pull, c.abs(t))
+    orbit = KeplerOrbit(r0, near, c.mul(along, forward), speed2, beta, zeta, mu, pull, c.abs(t))
     anomaly, g2, g3 = universal_anomaly(w, v, orbit)
     f = c.neg(c.mul(pull, g2))
     g = c.fma(c.neg(c.mul(mu, forward)), g3, t)
@@ -65,7 +71,7 @@ def kepler_flow(
 
 def _within_half_a_period(w: Writer, v: Writer, mu: str, beta: str, t: str) -> str:
     """Take the nearest whole number of periods P = 2πµ/β^(3/2) from t: (t/π)² β³ ≥ µ² tells without a root whether."""
-    c = Arithmetic(v)
+    c = LaneFormulas(v)
     kept = v.array(1)
     v.store(t, kept, 0)
     turn = c.mul(t, c.number(2 / TWO_PI))

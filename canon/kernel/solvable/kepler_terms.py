@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.kernel.program.hamilton_equations import Equations, exact
+from canon.kernel.program.hamilton_equations import HamiltonEquations, exact_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -74,7 +74,7 @@ class Terms:
         What is none of these.
     """
 
-    system: Equations
+    system: HamiltonEquations
     kinetic: list[Any] = field(default_factory=list[Any])
     inverse_mass: dict[int, Fraction] = field(default_factory=dict[int, Fraction])
     pairs: list[Pair] = field(default_factory=list[Pair])
@@ -99,7 +99,7 @@ class Terms:
         return 1 / found.pop()
 
 
-def terms_of(system: Equations, part: Any) -> Terms:
+def terms_of(system: HamiltonEquations, part: Any) -> Terms:
     """Return the terms of a part of H."""
     found = Terms(system)
     for term in (t for summand in sp.Add.make_args(part) for t in sp.Add.make_args(flat(summand, system))):
@@ -108,14 +108,14 @@ def terms_of(system: Equations, part: Any) -> Terms:
     return found
 
 
-def flat(term: Any, system: Equations) -> Any:
+def flat(term: Any, system: HamiltonEquations) -> Any:
     """Return a term multiplied out where it is a polynomial of coordinates and momenta."""
     return sp.expand(term) if term.is_polynomial(*system.q, *system.p) else term
 
 
 def number(value: Any) -> Fraction:
     """Return a coefficient as the exact number it is."""
-    return exact(value, "a coefficient of H₀")
+    return exact_number(value, "a coefficient of H₀")
 
 
 def _read_kinetic(term: Any, found: Terms) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.formulas import Arithmetic
+from canon.kernel.llvm.formulas import LaneFormulas
 from canon.kernel.llvm.number_types import DOUBLE, DOUBLE_DOUBLE
 from canon.kernel.solvable.kepler_flow import kepler_flow
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
     from canon.kernel.llvm.writer import Writer
 
-__all__ = ["Lanes", "Times"]
+__all__ = ["BodyLanes", "StepLengths"]
 
 _WIDE = 8
 
 
 @dataclass(frozen=True)
-class Times:
+class StepLengths:
     """How far a kick and the flow after it go: scalar registers.
 
     Parameters
@@ -42,7 +42,7 @@ def _lanes(bodies: int) -> int:
     return 1 << (bodies - 1).bit_length() if bodies <= _WIDE else -(-bodies // _WIDE) * _WIDE
 
 
-class Lanes:
+class BodyLanes:
     """Places and velocities by axis, each a vector over bodies, and what rounding takes from them.
 
     Parameters
@@ -65,7 +65,7 @@ class Lanes:
         self.w, self.count_of_bodies, self.axes, self.compensated = w, len(mu), axes, compensated
         self.lanes = _lanes(len(mu))
         self.v = w.side_by_side(self.lanes)
-        self.c = Arithmetic(self.v)
+        self.c = LaneFormulas(self.v)
         self.pair = w.in_numbers(DOUBLE_DOUBLE)
         self.pair.inlined = w.number.pair
         self.places, self.velocities, self.lost = 0, axes, 2 * axes
@@ -81,7 +81,7 @@ class Lanes:
 
     # motion ----------------------------------------------------------------------------------------
 
-    def move(self, times: Times, pair: str) -> None:
+    def move(self, times: StepLengths, pair: str) -> None:
         """Write a kick and then Kepler's motion of all bodies; ``pair`` is the number of the two in the tables."""
         del pair
         x, u = self.kicked(self.rows(self.places), self.rows(self.velocities), times)
@@ -89,7 +89,7 @@ class Lanes:
         self.increased(self.places, x, self.c.one, moved)
         self.increased(self.velocities, u, self.c.one, turned)
 
-    def kicked(self, x: list[str], u: list[str], times: Times) -> tuple[list[str], list[str]]:
+    def kicked(self, x: list[str], u: list[str], times: StepLengths) -> tuple[list[str], list[str]]:
         """Write the flow of H₁ and return places and velocities after it."""
         raise NotImplementedError
 

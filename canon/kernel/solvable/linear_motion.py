@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.llvm.writer import Writer
-    from canon.kernel.solvable.lanes import Times
+    from canon.kernel.solvable.lanes import StepLengths
     from canon.kernel.solvable.solvable_parts import Quadratic
 
 __all__ = ["LinearMotion", "flow_matrices"]
@@ -67,12 +67,12 @@ class LinearMotion:
     def count(self, steps: str) -> None:
         """Do nothing: all moves with the steps."""
 
-    def move(self, times: Times, pair: str) -> None:
+    def move(self, times: StepLengths, pair: str) -> None:
         """Write a kick and then the flow of H₀."""
         self._kick(times)
         self._flow(pair)
 
-    def _kick(self, times: Times) -> None:
+    def _kick(self, times: StepLengths) -> None:
         """Write p ← p − t ∂H₁/∂q, and with a commutator + 2γτ³ ∂(½ Σ A_ij ∂_iH₁ ∂_jH₁)/∂q, A = ∂²H₀/∂p²."""
         w, n, rest = self.w, self.size // 2, self.part.rest
         arguments = [*(w.load(self.state, i) for i in range(n)), *["poison"] * (n + 1)]

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
 
-__all__ = ["Chart", "democratic_chart", "jacobi_chart"]
+__all__ = ["PlanetCoordinates", "heliocentric_coordinates", "jacobi_coordinates"]
 
 Matrix = Sequence[Sequence[Fraction]]
 
 
 @dataclass(frozen=True)
-class Chart:
+class PlanetCoordinates:
     """Places and velocities of planets in terms of those of all bodies, and back.
 
     Parameters
@@ -35,7 +35,7 @@ class Chart:
     velocities_back: Matrix
 
 
-def jacobi_chart(m: Sequence[Fraction]) -> Chart:
+def jacobi_coordinates(m: Sequence[Fraction]) -> PlanetCoordinates:
     """Return Jacobi's coordinates: each planet's place from the centre of mass of the bodies before it.
 
     Examples
@@ -52,10 +52,10 @@ def jacobi_chart(m: Sequence[Fraction]) -> Chart:
     for i in range(n):
         before = [none] * (i - 1) + [total[i - 1] / total[i]] if i else []
         back.append([Fraction(1), *before, *(-m[j] / total[j] for j in range(i + 1, n))])
-    return Chart(there, there, back, back)
+    return PlanetCoordinates(there, there, back, back)
 
 
-def democratic_chart(m: Sequence[Fraction]) -> Chart:
+def heliocentric_coordinates(m: Sequence[Fraction]) -> PlanetCoordinates:
     """Return democratic heliocentric coordinates: places from the star, velocities from the centre of mass.
 
     Examples
@@ -69,7 +69,7 @@ def democratic_chart(m: Sequence[Fraction]) -> Chart:
     mean = [mass / whole for mass in m]
     star = [Fraction(1), *(-share for share in mean[1:])]
     slow = [Fraction(1), *(-mass / m[0] for mass in m[1:])]
-    return Chart(
+    return PlanetCoordinates(
         [_difference(row, unit[0]) for row in unit[1:]],
         [_difference(row, mean) for row in unit[1:]],
         [star, *(_difference(row, [-share for share in star]) for row in unit[1:])],

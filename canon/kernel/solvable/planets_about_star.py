@@ -24,8 +24,12 @@ from fractions import Fraction
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
-from canon.kernel.solvable.lanes import Lanes, Times
-from canon.kernel.solvable.planet_coordinates import Chart, democratic_chart, jacobi_chart
+from canon.kernel.solvable.lanes import BodyLanes, StepLengths
+from canon.kernel.solvable.planet_coordinates import (
+    PlanetCoordinates,
+    heliocentric_coordinates,
+    jacobi_coordinates,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,7 +49,7 @@ class _Pull:
     square: str
 
 
-class _PlanetsInLanes(Lanes):
+class _PlanetsInLanes(BodyLanes):
     """Planets about a star, in coordinates that a subclass knows.
 
     Parameters
@@ -63,7 +67,7 @@ class _PlanetsInLanes(Lanes):
     """
 
     def __init__(
-        self, w: Writer, part: Planets, mu: Sequence[Fraction], chart: Chart, *, compensated: bool
+        self, w: Writer, part: Planets, mu: Sequence[Fraction], chart: PlanetCoordinates, *, compensated: bool
     ) -> None:
         self.part, self.m, self.chart = part, part.masses, chart
         axes = len(part.bodies[0])
@@ -193,9 +197,9 @@ class JacobiPlanets(_PlanetsInLanes):
         self.shares = [m[i] / total[i] for i in count]
         mu = [sum(k[i][:i]) / reduced for i, reduced in zip(count, self.reduced, strict=True)]
         self.own = mu
-        super().__init__(w, part, mu, jacobi_chart(m), compensated=compensated)
+        super().__init__(w, part, mu, jacobi_coordinates(m), compensated=compensated)
 
-    def kicked(self, x: list[str], u: list[str], times: Times) -> tuple[list[str], list[str]]:
+    def kicked(self, x: list[str], u: list[str], times: StepLengths) -> tuple[list[str], list[str]]:
         """Write the velocities' change by what H₀ leaves of the attractions.
 
         With R_i the place from the star, R = CX, and f_i = −∂V/∂R_i the change of V_i is t(Σ_j C_ji f_j/m'_i + µ_i
@@ -265,9 +269,9 @@ class HeliocentricPlanets(_PlanetsInLanes):
     def __init__(self, w: Writer, part: Planets, *, compensated: bool) -> None:
         m = part.masses
         mu = [k / mass for k, mass in zip(part.attractions[0][1:], m[1:], strict=True)]
-        super().__init__(w, part, mu, democratic_chart(m), compensated=compensated)
+        super().__init__(w, part, mu, heliocentric_coordinates(m), compensated=compensated)
 
-    def kicked(self, x: list[str], u: list[str], times: Times) -> tuple[list[str], list[str]]:
+    def kicked(self, x: list[str], u: list[str], times: StepLengths) -> tuple[list[str], list[str]]:
         """Write X ← X + t Σ m_j V_j/m_0 and the change of V by the attractions among planets."""
         c, kick = self.c, self.v.splat(times.kick)
         m = self.part.masses

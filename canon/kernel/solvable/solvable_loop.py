@@ -21,7 +21,7 @@ from canon.kernel.llvm.loop import METHOD, PARAMETERS, SIGNATURE, Loop, compiled
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
 from canon.kernel.llvm.writer import Writer
 from canon.kernel.solvable.kepler_centres import CentresInLanes
-from canon.kernel.solvable.lanes import Times
+from canon.kernel.solvable.lanes import StepLengths
 from canon.kernel.solvable.linear_motion import LinearMotion, flow_matrices
 from canon.kernel.solvable.planets_about_star import HeliocentricPlanets, JacobiPlanets
 from canon.kernel.solvable.solvable_parts import Centres, Planets
@@ -49,7 +49,7 @@ _NUMBERS = 3
 """Numbers of a pair in c."""
 
 
-class Motion(Protocol):
+class SolvableMotion(Protocol):
     """What the loop asks of a solvable part: its working state, and how the two flows move it."""
 
     state: str
@@ -64,7 +64,7 @@ class Motion(Protocol):
         """Write y + e from the working state."""
         ...
 
-    def move(self, times: Times, pair: str) -> None:
+    def move(self, times: StepLengths, pair: str) -> None:
         """Write the flow of H₁ and then that of H₀; ``pair`` is the number of the two in the tables."""
         ...
 
@@ -141,19 +141,19 @@ def solvable_loop(
     return Loop(code, degrees, compensated, number, carry, coefficients=coefficients)
 
 
-def _write_pair(w: Writer, motion: Motion, pair: str, *, commutators: bool) -> None:
+def _write_pair(w: Writer, motion: SolvableMotion, pair: str, *, commutators: bool) -> None:
     """Write a kick and a flow, without branches between: what both read of the state is computed once."""
     place = w.at("%c", w.let(f"add i64 {w.let(f'mul i64 {pair}, {_NUMBERS}')}, {METHOD}"))
     kick, flow, commutator = (w.load(place, which) for which in range(_NUMBERS))
     if not commutators:
-        motion.move(Times(kick, flow), pair)
+        motion.move(StepLengths(kick, flow), pair)
         return
     weight = w.as_double(commutator)
     with_it = w.let(f"zext i1 {w.let(f'fcmp une double {weight}, 0.0')} to i64")
     with w.loop(0, with_it):
-        motion.move(Times(kick, flow, commutator), pair)
+        motion.move(StepLengths(kick, flow, commutator), pair)
     with w.loop(with_it, 1):
-        motion.move(Times(kick, flow), pair)
+        motion.move(StepLengths(kick, flow), pair)
 
 
 def _differs(w: Writer, record: str, state: tuple[str, str], size: int) -> str:
@@ -175,7 +175,7 @@ def _differs(w: Writer, record: str, state: tuple[str, str], size: int) -> str:
 
 def _motion(
     w: Writer, part: Part, pairs: int, *, compensated: bool, democratic: bool
-) -> tuple[Motion, Callable[[Sequence[Fraction]], list[Fraction]]]:
+) -> tuple[SolvableMotion, Callable[[Sequence[Fraction]], list[Fraction]]]:
     """Return a part's motion, and what it reads beyond the times of its flows."""
     if isinstance(part, Planets):
         kind = HeliocentricPlanets if democratic else JacobiPlanets

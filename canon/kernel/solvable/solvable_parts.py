@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from canon.expression.graph.number_systems import multiprecision
-from canon.kernel.program.hamilton_equations import Equations, equations
+from canon.kernel.program.hamilton_equations import HamiltonEquations, equations
 from canon.kernel.solvable.kepler_terms import Terms, UnsolvableError, flat, number, terms_of
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Centres:
     bodies: tuple[tuple[int, ...], ...]
     masses: tuple[Fraction, ...]
     attractions: tuple[Fraction, ...]
-    rest: Equations
+    rest: HamiltonEquations
 
 
 @dataclass(frozen=True)
@@ -77,13 +77,13 @@ class Quadratic:
     """
 
     field: Matrix
-    rest: Equations
+    rest: HamiltonEquations
 
 
 Part = Centres | Planets | Quadratic
 
 
-def solvable_part(system: Equations) -> Part:
+def solvable_part(system: HamiltonEquations) -> Part:
     """Find a solvable part: planets about a star, else motion about centres, else what is quadratic in (q, p).
 
     Raises
@@ -105,7 +105,7 @@ def solvable_part(system: Equations) -> Part:
     return _quadratic(system, sp.Add(*quadratic))
 
 
-def named_part(system: Equations, h0: Expr, h1: Expr) -> Part:
+def named_part(system: HamiltonEquations, h0: Expr, h1: Expr) -> Part:
     """Return the part that the user named, H = H₀ + H₁.
 
     Raises
@@ -122,7 +122,7 @@ def named_part(system: Equations, h0: Expr, h1: Expr) -> Part:
     return _centres(system, known)
 
 
-def _check_sum(system: Equations, zero: int, one: int) -> None:
+def _check_sum(system: HamiltonEquations, zero: int, one: int) -> None:
     """Compare H₀ + H₁ with H at three points, to nearly all digits computed."""
     digits = multiprecision(_DIGITS)
     for shift in range(1, 4):
@@ -143,7 +143,7 @@ def _shown(point: dict[Any, Any]) -> str:
     return ", ".join(f"{s} = {float(x):.3g}" for s, x in point.items())
 
 
-def _remainder(system: Equations, part: Expr) -> Equations:
+def _remainder(system: HamiltonEquations, part: Expr) -> HamiltonEquations:
     """Return the equations of H − H₀, which must be a function of q alone, from terms that do not cancel."""
     whole: Any = system.graph.to_sympy(system.hamiltonian)
     # Polynomials are multiplied out so that what H₀ holds goes away exactly.
@@ -164,7 +164,7 @@ def _remainder(system: Equations, part: Expr) -> Equations:
 # quadratic parts -----------------------------------------------------------------------------------
 
 
-def _quadratic_terms(system: Equations) -> list[Any]:
+def _quadratic_terms(system: HamiltonEquations) -> list[Any]:
     """Return the terms of second degree in (q, p), with H multiplied out as far as it is a polynomial."""
     whole: Any = system.graph.to_sympy(system.hamiltonian)
     spread = sp.Add(*(flat(term, system) for term in sp.Add.make_args(whole)))
@@ -176,7 +176,7 @@ def _quadratic_terms(system: Equations) -> list[Any]:
     ]
 
 
-def _quadratic(system: Equations, part: Any) -> Quadratic:
+def _quadratic(system: HamiltonEquations, part: Any) -> Quadratic:
     variables = (*system.q, *system.p)
     polynomial = sp.Poly(part, *variables)
     if any(sum(powers) != 2 for powers in polynomial.monoms()) or not all(
@@ -201,7 +201,7 @@ def _quadratic(system: Equations, part: Any) -> Quadratic:
 # Kepler's motion ------------------------------------------------------------------------------------
 
 
-def _centres(system: Equations, part: Any) -> Centres:
+def _centres(system: HamiltonEquations, part: Any) -> Centres:
     read = terms_of(system, part)
     if read.pairs or read.others or not read.centres:
         raise UnsolvableError(

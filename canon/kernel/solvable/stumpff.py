@@ -13,7 +13,7 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.formulas import Arithmetic
+from canon.kernel.llvm.formulas import LaneFormulas
 
 if TYPE_CHECKING:
     from canon.kernel.llvm.writer import Writer
@@ -29,7 +29,7 @@ _QUARTERINGS = 30
 
 def stumpff(w: Writer, v: Writer, beta: str, x: str) -> tuple[str, str]:
     """Write G₂ = X² c₂(βX²) and G₃ = X³ c₃(βX²) for any X."""
-    c = Arithmetic(v)
+    c = LaneFormulas(v)
     square = c.mul(x, x)
     argument, second, third, count = (v.array(1) for _ in range(4))
     v.store(c.mul(beta, square), argument, 0)
@@ -60,12 +60,12 @@ def stumpff(w: Writer, v: Writer, beta: str, x: str) -> tuple[str, str]:
     return c.mul(square, v.load(second, 0)), c.mul(c.mul(square, x), v.load(third, 0))
 
 
-def stumpff_series(c: Arithmetic, z: str) -> tuple[str, str]:
+def stumpff_series(c: LaneFormulas, z: str) -> tuple[str, str]:
     """Write c₂(z) and c₃(z) for |z| ≤ REACH."""
     return _series(c, z, 2), _series(c, z, 3)
 
 
-def _series(c: Arithmetic, z: str, first: int) -> str:
+def _series(c: LaneFormulas, z: str, first: int) -> str:
     """Write c_first(z), even and odd powers apart: two short chains instead of a long one.
 
     What the numbers lack of the first coefficients goes in too: always the same, it would make the energy drift.

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Witness", "far_from_principal", "witnesses"]
+__all__ = ["BranchPoint", "branch_points", "far_from_principal"]
 
 _BITS = 192
 
 
 @dataclass(frozen=True)
-class Witness:
+class BranchPoint:
     """An exact point, and what the new variables are there.
 
     Parameters
@@ -73,12 +73,12 @@ class Witness:
             return k if (ball.real - arb(int(k))).contains(0) else None
 
 
-def witnesses(
+def branch_points(
     symbols: set[Symbol], meaning: Mapping[Symbol, Expr], domain: Domain, count: int, seed: int = 7
-) -> Iterator[Witness]:
+) -> Iterator[BranchPoint]:
     """Yield points of the domain where the new variables have finite real values."""
     for point in domain.points(symbols, 6 * count, seed=seed):
-        witness = Witness(point, meaning)
+        witness = BranchPoint(point, meaning)
         if all(witness.number(f) is not None for f in meaning.values()):
             yield witness
             count -= 1
@@ -86,7 +86,7 @@ def witnesses(
                 return
 
 
-def far_from_principal(witness: Witness) -> float:
+def far_from_principal(witness: BranchPoint) -> float:
     """Rank points: values between 0 and 3/2 lie on the principal branch of every elementary function."""
     return sum(max(0.0, -float(x)) + max(0.0, float(x) - 1.5) for x in witness.point.values())
 

@@ -19,7 +19,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.mechanics.algebra.all_vanish import all_vanish
-from canon.mechanics.algebra.branch_point import Witness, witnesses
+from canon.mechanics.algebra.branch_point import BranchPoint, branch_points
 from canon.mechanics.algebra.named_integrals import quadratures
 from canon.mechanics.algebra.substitution import exchanged, size
 from canon.mechanics.algebra.table_integrals import table_integral
@@ -96,7 +96,7 @@ def _candidates(
     for basis in (hints, None, _antiderivatives(form, z, hints), _products(form, z, hints)):
         if basis is None:
             symbols = set(z).union(*(a.atoms(Symbol) for a in form))
-            points = list(witnesses(symbols, {}, domain, 2))
+            points = list(branch_points(symbols, {}, domain, 2))
             yield from ((candidate, candidate) for candidate in _by_scaling(form, z, points))
             continue
         fitted = _by_fitting(form, z, domain, list(basis.values()))
@@ -132,7 +132,7 @@ def _lowest_terms(a: Expr) -> Expr:
     return min((a, sp.cancel(sp.together(a))), key=size)
 
 
-def _by_scaling(form: Sequence[Expr], z: Sequence[Symbol], points: Sequence[Witness]) -> Iterator[Expr]:
+def _by_scaling(form: Sequence[Expr], z: Sequence[Symbol], points: Sequence[BranchPoint]) -> Iterator[Expr]:
     for weights in _weights(len(z)):
         total = sp.Add(*(w * s * a for w, s, a in zip(weights, z, form, strict=True)))
         degree = _common_ratio([total.diff(s) for s in z], form, points)
@@ -156,7 +156,7 @@ def _weights(size: int) -> Iterator[tuple[int, ...]]:
 
 
 def _common_ratio(
-    gradient: Sequence[Expr], form: Sequence[Expr], points: Sequence[Witness]
+    gradient: Sequence[Expr], form: Sequence[Expr], points: Sequence[BranchPoint]
 ) -> Fraction | None:
     """Return the simple k ≠ 0 with gradient = k · form at all points, or None."""
     ratio: Fraction | None = None
@@ -186,7 +186,7 @@ def _by_fitting(
     gradients = [[f.diff(s) for s in z] for f in basis]
     rows: list[list[float]] = []
     wanted = 2 + -(-(len(basis) + 4) // len(z))
-    for point in witnesses(symbols, {}, domain, 2 * wanted, seed=11):
+    for point in branch_points(symbols, {}, domain, 2 * wanted, seed=11):
         block = [
             [point.number(g) for g in (*(gradient[j] for gradient in gradients), form[j])]
             for j in range(len(z))

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
-    from canon.mechanics.algebra.branch_point import Witness
+    from canon.mechanics.algebra.branch_point import BranchPoint
 
 __all__ = ["Inversion", "isolate", "solve_system"]
 
@@ -92,7 +92,7 @@ class Inversion:
         When to give up, on the monotonic clock; equations too large for one step are not begun.
     """
 
-    witness: Witness
+    witness: BranchPoint
     conditions: list[Boolean] = field(default_factory=list)
     known: dict[Expr, Expr] = field(default_factory=dict)
     deadline: float = math.inf
@@ -201,9 +201,9 @@ def isolate(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | Non
     Examples
     --------
     >>> from sympy import symbols, cos
-    >>> from canon.mechanics.algebra.branch_point import Witness
+    >>> from canon.mechanics.algebra.branch_point import BranchPoint
     >>> x, y = symbols("x y", real=True)
-    >>> inversion = Inversion(Witness({x: sp.Integer(4)}, {y: cos(x)}))
+    >>> inversion = Inversion(BranchPoint({x: sp.Integer(4)}, {y: cos(x)}))
     >>> isolate(cos(x), y, x, inversion), inversion.conditions
     (-acos(y) + 2*pi, [x > pi, x < 2*pi])
     """

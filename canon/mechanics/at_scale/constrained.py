@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     Vector = NDArray[np.float64]
 
-__all__ = ["ConstrainedEquations", "Motion", "constrained", "constrained_motion"]
+__all__ = ["ConstrainedEquations", "ConstrainedMotion", "constrained", "constrained_motion"]
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def constrained(
 
 
 @dataclass(frozen=True)
-class Motion:
+class ConstrainedMotion:
     """Constrained motion in numbers.
 
     Parameters
@@ -148,7 +148,7 @@ class Motion:
 
 def constrained_motion(
     system: ConstrainedEquations, parameters: Mapping[Symbol, float], alpha: float = 0.0, beta: float = 0.0
-) -> Motion:
+) -> ConstrainedMotion:
     """Return constrained motion as functions of numbers.
 
     Parameters
@@ -213,7 +213,7 @@ def constrained_motion(
         _, (_, _, rate, values) = parts(q, v, t)
         return values, rate
 
-    return Motion(accelerations, projected, residual)
+    return ConstrainedMotion(accelerations, projected, residual)
 
 
 def _check_independent(

@@ -16,7 +16,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.user_input import given_kind
-from canon.mechanics.algebra.branch_point import far_from_principal, witnesses
+from canon.mechanics.algebra.branch_point import branch_points, far_from_principal
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from canon.mechanics.canonical.transformation import CanonicalTransformation
     from canon.proof.domain.verdict import Verdict
 
-__all__ = ["Recovery", "generating_function"]
+__all__ = ["GeneratingFunctionSearch", "generating_function"]
 
 
 @dataclass(frozen=True)
-class Recovery:
+class GeneratingFunctionSearch:
     """A map on its way to a generating function of given types.
 
     Parameters
@@ -129,7 +129,7 @@ class Recovery:
             yield self.converted, ()
             return
         symbols = set(self.map.variables).union(*(f.atoms(Symbol) for f in self.map.images))
-        points = sorted(witnesses(symbols, self.meaning, self.map.domain, 12), key=far_from_principal)
+        points = sorted(branch_points(symbols, self.meaning, self.map.domain, 12), key=far_from_principal)
         seen: set[Expr] = set()
         for witness in points[:3]:
             inversion = Inversion(witness, deadline=deadline)
@@ -199,7 +199,7 @@ def generating_function(
             f"the map is not canonical, so it has no generating function; {canonical.feedback}", canonical
         )
     Q, P = _new_symbols(transformation, new_q, new_p)
-    recovery = Recovery(transformation, kinds, Q, P)
+    recovery = GeneratingFunctionSearch(transformation, kinds, Q, P)
     exists = recovery.exists()
     if exists.fails:
         raise NoGeneratingFunctionError(

@@ -12,7 +12,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.user_input import given_kind
-from canon.mechanics.algebra.branch_point import far_from_principal, witnesses
+from canon.mechanics.algebra.branch_point import branch_points, far_from_principal
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import shortened, substitute
 from canon.mechanics.canonical.generating_function import GeneratingFunction, kinds_of
@@ -200,7 +200,7 @@ def _expressed(
     meaning = {s: graph[s] for s in given}
     symbols = set(own).union(F.F.atoms(Symbol))
     domain = Domain(_carried(domain.conditions, graph), domain.box)
-    for witness in sorted(witnesses(symbols, meaning, domain, 12), key=far_from_principal)[:3]:
+    for witness in sorted(branch_points(symbols, meaning, domain, 12), key=far_from_principal)[:3]:
         inversion = Inversion(witness)
         found = solve_system([(graph[s], s) for s in given], unknowns, inversion)
         if found is None:

@@ -8,7 +8,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbols.user_input import counted, given_kind, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish
-from canon.mechanics.algebra.branch_point import far_from_principal, witnesses
+from canon.mechanics.algebra.branch_point import branch_points, far_from_principal
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.canonical.transformation import CanonicalTransformation
@@ -64,7 +64,7 @@ def inverse_transformation(
     if len(set(meaning)) < 2 * len(T.q) or set(meaning) & set(T.variables):
         raise ValueError("the new variables need different symbols, none of them an old variable")
     symbols = set(T.variables).union(*(f.atoms(Symbol) for f in T.images))
-    for witness in sorted(witnesses(symbols, meaning, T.domain, 12), key=far_from_principal)[:3]:
+    for witness in sorted(branch_points(symbols, meaning, T.domain, 12), key=far_from_principal)[:3]:
         solved = solve_system([(f, s) for s, f in meaning.items()], T.variables, Inversion(witness))
         if solved is None:
             continue

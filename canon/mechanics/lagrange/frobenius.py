@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
     from canon.proof.domain.verdict import Verdict
 
-__all__ = ["Pfaffian", "curl", "integrals", "is_integrable", "pfaffian", "positional_freedom"]
+__all__ = ["Pfaffian", "exterior_derivative", "integrals", "is_integrable", "pfaffian", "positional_freedom"]
 
 Row = tuple[Expr, ...]
 
@@ -61,7 +61,12 @@ class Pfaffian:
         """For each pair of allowed displacements the values dωₐ(X, Y), one a constraint."""
         pairs = combinations(range(len(self.allowed)), 2)
         return tuple(
-            ((i, j), tuple(curl(form, self.z, self.allowed[i], self.allowed[j]) for form in self.forms))
+            (
+                (i, j),
+                tuple(
+                    exterior_derivative(form, self.z, self.allowed[i], self.allowed[j]) for form in self.forms
+                ),
+            )
             for i, j in pairs
         )
 
@@ -189,7 +194,7 @@ def positional_freedom(constrained: ConstrainedLagrangian, domain: Domain | None
     return len(constrained.lagrangian.q) - restricted
 
 
-def curl(form: Row, z: Sequence[Symbol], X: Row, Y: Row) -> Expr:
+def exterior_derivative(form: Row, z: Sequence[Symbol], X: Row, Y: Row) -> Expr:
     """Return dω(X, Y) = Σ (∂ᵢaⱼ − ∂ⱼaᵢ) Xᵢ Yⱼ.
 
     Examples
@@ -235,11 +240,11 @@ def _solved(part: Pfaffian) -> Iterator[Row]:
 def _integrating_factors(form: Row, part: Pfaffian) -> Iterator[Expr]:
     """Yield μ with d(μω) = 0: from dω = θ ∧ ω, θ = −dω(X, ·) for an X with ω(X) = 1, μ = exp(−∫θ) where θ is closed."""
     z = part.z
-    curl = sp.Matrix(len(z), len(z), lambda i, j: form[j].diff(z[i]) - form[i].diff(z[j]))
+    rotation = sp.Matrix(len(z), len(z), lambda i, j: form[j].diff(z[i]) - form[i].diff(z[j]))
     for p, a in enumerate(form):
         if a == 0:
             continue
-        theta = [sp.cancel(-entry(curl, p, j) / a) for j in range(len(z))]
+        theta = [sp.cancel(-entry(rotation, p, j) / a) for j in range(len(z))]
         h = potential(theta, z, part.domain)
         if h is not None:
             yield sp.exp(-h)

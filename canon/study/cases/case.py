@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
-__all__ = ["Case", "key_of", "method_from", "method_to", "parts_of", "versions"]
+__all__ = ["Case", "key_of", "method_from", "method_to", "part_count", "versions"]
 
 LIBRARIES = ("heyoka", "llvmlite", "numpy", "scipy", "sympy")
 """Libraries whose version may change a last digit."""
@@ -58,7 +58,7 @@ class Case:
     step, tolerance, precision
         As :func:`canon.flow.propagate.propagate` takes them.
     parts
-        Parts the run is made of, None for the usual number (:func:`parts_of`). Each begins anew from the exact
+        Parts the run is made of, None for the usual number (:func:`part_count`). Each begins anew from the exact
         state the last one ended with, be the run interrupted there or not.
     observables
         What is judged beside the energy: names of constants, and names with formulas
@@ -170,7 +170,7 @@ def key_of(case: Case) -> str:
     return hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()
 
 
-def parts_of(case: Case) -> int:
+def part_count(case: Case) -> int:
     """Return the number of parts a case is run in; it follows from the case alone.
 
     A part has at most a million steps of fixed size, or 128 samples of an adaptive method unless that made over 128

@@ -22,7 +22,7 @@ from canon.flow.method.method import FixedStep, TimeTransformed
 from canon.flow.propagate import propagate
 from canon.flow.run.observables_along import AccuracyWarning
 from canon.flow.run.sampling_plan import steps_over
-from canon.study.cases.case import parts_of
+from canon.study.cases.case import part_count
 from canon.study.cases.case_numbers import judged_energy, judged_observable
 from canon.study.cases.case_observables import followed
 from canon.study.drift.sample_times import is_resolved, scattered
@@ -169,7 +169,7 @@ def advance(case: Case, reached: Checkpoint | None = None, seconds: float = math
     >>> advance(case, second).numbers == advance(case).numbers
     True
     """
-    now, end = time.monotonic(), parts_of(case)
+    now, end = time.monotonic(), part_count(case)
     spent = 0.0 if reached is None else reached.seconds
     try:
         point = started(case) if reached is None else reached

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from canon.study.cases.case import Case, parts_of
+from canon.study.cases.case import Case, part_count
 from canon.study.cases.store import Store
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def results_of(store: Store | str | Path) -> list[Result]:
         written, record = json.loads(inputs), records.get(key)
         case, by = Case.from_dict(written), MappingProxyType(written.get("versions", {}))
         if record is None:
-            done = parts.get(key, 0) / parts_of(case)
+            done = parts.get(key, 0) / part_count(case)
             found.append(Result(key, case, State.PENDING, {}, done=done, versions=by))
         elif record.failure:
             found.append(Result(key, case, State.FAILED, {}, record.failure, record.seconds, versions=by))

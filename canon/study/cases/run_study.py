@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from canon.study.cases.case import Case, key_of, parts_of, versions
+from canon.study.cases.case import Case, key_of, part_count, versions
 from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance
 from canon.study.cases.store import Record, Store
 from canon.study.errors import StudyError
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from canon.study.cases.study import Study
 
-__all__ = ["Status", "resume", "run_study", "status_of"]
+__all__ = ["StudyStatus", "resume", "run_study", "status_of"]
 
 IN_FLIGHT = 256
 """Cases handed to an executor at a time where it is not known how many it can run."""
@@ -28,7 +28,7 @@ CHECKPOINT_SECONDS = 30.0
 
 
 @dataclass(frozen=True)
-class Status:
+class StudyStatus:
     """How far a study is; ``begun`` of the pending cases have a checkpoint, ``partly`` cases' worth is done of them.
 
     ``partly`` is known while a study runs, to whoever runs it.
@@ -54,10 +54,10 @@ def run_study(
     study: Study,
     store: Store | str | Path,
     executor: Executor | None = None,
-    progress: Callable[[Status], None] | None = None,
+    progress: Callable[[StudyStatus], None] | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
     in_flight: int | None = None,
-) -> Status:
+) -> StudyStatus:
     """Run the cases of a study that are not finished yet, and keep each one as soon as it is.
 
     Parameters
@@ -99,10 +99,10 @@ def run_study(
 def resume(
     store: Store | str | Path,
     executor: Executor | None = None,
-    progress: Callable[[Status], None] | None = None,
+    progress: Callable[[StudyStatus], None] | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
     in_flight: int | None = None,
-) -> Status:
+) -> StudyStatus:
     """Run the pending cases of a file; see :func:`run_study`."""
     kept = store if isinstance(store, Store) else Store(Path(store))
     cases = kept.cases()
@@ -121,12 +121,12 @@ def resume(
     return status_of(kept)
 
 
-def status_of(store: Store) -> Status:
+def status_of(store: Store) -> StudyStatus:
     """Return how many cases of a file finished, failed, and are pending."""
-    return Status(*store.counts())
+    return StudyStatus(*store.counts())
 
 
-def leg_of(key: str, case: Case, reached: Checkpoint | None, seconds: float) -> Checkpoint | Record:
+def continue_case(key: str, case: Case, reached: Checkpoint | None, seconds: float) -> Checkpoint | Record:
     """Run a case on and return its next checkpoint or its record; this is what workers do."""
     try:
         found = advance(case, reached, seconds)
@@ -141,7 +141,7 @@ def _run(
     cases: Mapping[str, Case],
     store: Store,
     executor: Executor | None,
-    progress: Callable[[Status], None] | None,
+    progress: Callable[[StudyStatus], None] | None,
     seconds: float,
     in_flight: int | None,
 ) -> None:
@@ -161,7 +161,7 @@ def _run(
             done.pop(key, None)
         else:
             store.save_checkpoint(key, found.part, found.to_text())
-            done[key] = found.part / parts_of(cases[key])
+            done[key] = found.part / part_count(cases[key])
         if progress is not None:
             progress(replace(status_of(store), partly=sum(done.values())))
 
@@ -178,10 +178,10 @@ def _here(
     pending: Iterator[tuple[str, Case, Checkpoint | None]], seconds: float
 ) -> Iterator[tuple[str, Checkpoint | Record]]:
     for key, case, reached in pending:
-        found = leg_of(key, case, reached, seconds)
+        found = continue_case(key, case, reached, seconds)
         while isinstance(found, Checkpoint):
             yield key, found
-            found = leg_of(key, case, found, seconds)
+            found = continue_case(key, case, found, seconds)
         yield key, found
 
 
@@ -203,7 +203,7 @@ def _on(
 
     def send(key: str, case: Case, reached: Checkpoint | None) -> None:
         try:
-            flying[executor.submit(leg_of, key, case, reached, seconds)] = key, case
+            flying[executor.submit(continue_case, key, case, reached, seconds)] = key, case
         except RuntimeError as error:  # BrokenExecutor among them: it takes no more work
             lost.append(f"{type(error).__name__}: {error}")
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from sympy import Pow
 
-from canon.flow.checked_request import system_of
+from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
 from canon.flow.propagate import is_separable
@@ -22,14 +22,14 @@ from canon.study.choose.pilot_run import Pilot, pilot, seconds_per_time
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
-    from canon.kernel.program.hamilton_equations import Equations
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = [
     "HOPELESS",
     "MARGIN",
     "PILOTS",
     "Candidate",
-    "Try",
+    "TriedSetting",
     "by_order",
     "candidate_methods",
     "candidate_of",
@@ -121,7 +121,7 @@ def _of_disturbed(question: Question) -> tuple[Method, ...]:
     alone, they are ordinary splittings.
     """
     try:
-        part = solvable_part(system_of(question.hamiltonian, question.values))
+        part = solvable_part(hamilton_equations_of(question.hamiltonian, question.values))
     except UnsolvableError:
         return ()
     if not isinstance(part, Planets) and all(force == part.rest.graph.zero for force in part.rest.force):
@@ -134,7 +134,7 @@ def _of_disturbed(question: Question) -> tuple[Method, ...]:
     return WisdomHolman(), WisdomHolman(corrector=7), SABA(4), SABA("8-6-4"), SABA("10-6-4")
 
 
-def _operations(system: Equations) -> int:
+def _operations(system: HamiltonEquations) -> int:
     """Return how many distinct quantities an evaluation of the force goes through."""
     return len(system.graph.reachable(system.force))
 
@@ -144,7 +144,7 @@ def _of_close_encounters(question: Question) -> tuple[Method, ...]:
 
     The sign is that at the start; where it changes on the way their pilots say so.
     """
-    system = system_of(question.hamiltonian, question.values)
+    system = hamilton_equations_of(question.hamiltonian, question.values)
     coordinates = set(system.q)
     below = {power.base for power in question.hamiltonian.H.atoms(Pow) if power.exp.is_negative}
     if not system.autonomous or not any(base.free_symbols & coordinates for base in below):
@@ -157,7 +157,7 @@ def _of_close_encounters(question: Question) -> tuple[Method, ...]:
 
 
 @dataclass(frozen=True)
-class Try:
+class TriedSetting:
     """A pilot run and what is expected of its setting over the whole span."""
 
     pilot: Pilot
@@ -170,20 +170,20 @@ class Try:
         return self.pilot.setting.knob
 
 
-def tried_with(question: Question, setting: Setting, duration: float) -> Try:
+def tried_with(question: Question, setting: Setting, duration: float) -> TriedSetting:
     """Return a setting after a pilot run of that duration."""
     found = pilot(question, setting, duration)
     if found.lost:
-        return Try(found, math.inf, question.span / duration * found.steps)
+        return TriedSetting(found, math.inf, question.span / duration * found.steps)
     error = expected_error(found, question.span, question.observable)
     try:
         rate = seconds_per_time(question, found.setting, duration)
     except NonFiniteStateError:  # with a step a little smaller, to divide another span
-        return Try(found, math.inf, math.inf)
-    return Try(found, error, rate * question.span)
+        return TriedSetting(found, math.inf, math.inf)
+    return TriedSetting(found, error, rate * question.span)
 
 
-def by_order(question: Question, tried: Try, accuracy: float) -> Candidate:
+def by_order(question: Question, tried: TriedSetting, accuracy: float) -> Candidate:
     """Return the candidate at the step that its order lets expect, which was not tried."""
     if math.isinf(tried.error):
         return nothing(tried.pilot.setting, tried.pilot.failure or "its error grows too fast")
@@ -205,7 +205,7 @@ def by_order(question: Question, tried: Try, accuracy: float) -> Candidate:
     )
 
 
-def candidate_of(question: Question, tried: Try, accuracy: float, note: str = "") -> Candidate:
+def candidate_of(question: Question, tried: TriedSetting, accuracy: float, note: str = "") -> Candidate:
     """Return a setting that was tried as a candidate."""
     setting, found = tried.pilot.setting, tried.pilot
     return Candidate(

@@ -12,7 +12,7 @@ from canon.study.choose.candidate import (
     MARGIN,
     PILOTS,
     Candidate,
-    Try,
+    TriedSetting,
     by_order,
     candidate_of,
     nothing,
@@ -89,8 +89,8 @@ def searched(
     error = accuracy if question.integral is None else 1.0
     first = _first_step(method, natural, error, duration)
     setting = Setting(method, step=first, precision=precision)
-    good: Try | None = None
-    bad: Try | None = None
+    good: TriedSetting | None = None
+    bad: TriedSetting | None = None
     ceiling = math.inf
     for _ in range(PILOTS):
         tried = tried_with(question, setting, duration)
@@ -123,7 +123,7 @@ def searched(
     return by_order(question, bad, accuracy) if bad is not None else nothing(setting, "")
 
 
-def _ceiling(tried: Try, natural: float) -> float:
+def _ceiling(tried: TriedSetting, natural: float) -> float:
     """Return the largest step that still shows the motion.
 
     Steps of one size that are too large lose it; Verlet's in a fictitious time keep Kepler's energy whatever their
@@ -135,7 +135,9 @@ def _ceiling(tried: Try, natural: float) -> float:
     return tried.knob * widest_step(method, natural) * tried.pilot.steps / tried.pilot.span
 
 
-def _still_larger(question: Question, good: Try, duration: float, accuracy: float, cheapest: float) -> Try:
+def _still_larger(
+    question: Question, good: TriedSetting, duration: float, accuracy: float, cheapest: float
+) -> TriedSetting:
     """Return a much larger step that keeps the accuracy too, where there is one: errors need not fall evenly."""
     for factor in LARGER:
         if good.cost / factor < cheapest:
@@ -145,7 +147,7 @@ def _still_larger(question: Question, good: Try, duration: float, accuracy: floa
     return good
 
 
-def _cost_at(tried: Try, step: float) -> float:
+def _cost_at(tried: TriedSetting, step: float) -> float:
     """Return what another step would cost."""
     return tried.cost * tried.knob / step
 
@@ -171,7 +173,9 @@ def widest_step(method: Stepped, natural: float) -> float:
     )
 
 
-def _next_knob(tried: Try, good: Try | None, bad: Try | None, accuracy: float) -> float:
+def _next_knob(
+    tried: TriedSetting, good: TriedSetting | None, bad: TriedSetting | None, accuracy: float
+) -> float:
     """Return the step whose error should be the one aimed at."""
     aim = MARGIN * accuracy
     if good is not None and bad is not None:
@@ -187,14 +191,14 @@ def _next_knob(tried: Try, good: Try | None, bad: Try | None, accuracy: float) -
     return min(max(_by_its_order(tried, accuracy), shortest), longest)
 
 
-def _by_its_order(tried: Try, accuracy: float) -> float:
+def _by_its_order(tried: TriedSetting, accuracy: float) -> float:
     """Return the step whose error should be the one aimed at, if it followed the order of the method."""
     if tried.error <= 0.0:
         return math.inf
     return tried.knob * (MARGIN * accuracy / tried.error) ** (1.0 / order_of(tried.pilot))
 
 
-def _is_floor(bad: Try | None, tried: Try) -> bool:
+def _is_floor(bad: TriedSetting | None, tried: TriedSetting) -> bool:
     """Tell whether a smaller step no longer brings a smaller error: round-off is all that is left."""
     if bad is None or math.isinf(bad.error) or tried.knob >= bad.knob:
         return False

@@ -9,7 +9,7 @@ from canon.study.choose.candidate import (
     HOPELESS,
     PILOTS,
     Candidate,
-    Try,
+    TriedSetting,
     by_order,
     candidate_of,
     nothing,
@@ -40,8 +40,8 @@ def searched_tolerance(
     duration *= dop853_share(method)
     aim = accuracy * ADAPTIVE_MARGIN if question.span > duration else accuracy
     last = last_rung(precision)
-    good: tuple[int, Try] | None = None
-    bad: tuple[int, Try] | None = None
+    good: tuple[int, TriedSetting] | None = None
+    bad: tuple[int, TriedSetting] | None = None
     rung = min(last, max(LOOSEST, round(-math.log(aim) / 2.0)))
     for _ in range(PILOTS):
         setting = Setting(method, tolerance=tolerance_at(rung), precision=precision)

@@ -10,8 +10,8 @@ from canon.study.drift.block_means import WIDTH, Blocks, block_means
 from canon.study.drift.drift_verdict import Drift, Growth
 from canon.study.drift.growth import (
     Exponent,
+    RandomWalk,
     Slope,
-    Walk,
     power_of_time,
     power_of_wandering,
     return_of,
@@ -126,7 +126,7 @@ def drift(
     breath = slope_of(blocks.amplitude, false_alarm / 2)
     walk = walk_of(blocks.mean)
     if not (walk.evidence > WALK_EVIDENCE and walk.size > resolution):
-        walk = Walk(walk.evidence, 0.0)
+        walk = RandomWalk(walk.evidence, 0.0)
     drifts = slope.probability < false_alarm / 2 and abs(slope.value) * BLOCKS > resolution
     change = breath.value * BLOCKS / max(float(np.median(blocks.amplitude)), resolution)
     widens = breath.probability < false_alarm / 2 and change > WIDENING
@@ -136,7 +136,7 @@ def drift(
         verdict, exponent, reason = _secular(blocks, slope, breath, drifts, widens)
     elif walk.size:
         verdict, exponent, reason = _wandering(times, values, blocks, walk, roundoff)
-        walk = Walk(walk.evidence, 0.0) if verdict is Growth.BOUNDED else walk
+        walk = RandomWalk(walk.evidence, 0.0) if verdict is Growth.BOUNDED else walk
     else:
         verdict, exponent, reason = _bounded(blocks)
     return Drift(
@@ -232,7 +232,7 @@ def _wandering(
     times: NDArray[np.float64],
     values: NDArray[np.float64],
     blocks: Blocks,
-    walk: Walk,
+    walk: RandomWalk,
     roundoff: float | None,
 ) -> tuple[Growth, Exponent, str]:
     means = blocks.mean

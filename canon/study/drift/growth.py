@@ -19,16 +19,24 @@ from scipy.optimize import root_scalar
 from scipy.special import stdtr
 
 from canon.study.drift.block_means import PLACES, WIDTH, bump, window_starts
-from canon.study.drift.noise_models import Family, Fit, fit, fractional, local_level, returning, wandering
+from canon.study.drift.noise_models import (
+    Fit,
+    NoiseFamily,
+    fit,
+    fractional,
+    local_level,
+    returning,
+    wandering,
+)
 
 if TYPE_CHECKING:
     from canon.array import Array
 
 __all__ = [
     "Exponent",
-    "Return",
+    "MeanReversion",
+    "RandomWalk",
     "Slope",
-    "Walk",
     "power_of_time",
     "power_of_wandering",
     "return_of",
@@ -60,7 +68,7 @@ class Slope:
 
 
 @dataclass(frozen=True)
-class Walk:
+class RandomWalk:
     """Twice the log-likelihood ratio for a walk, and the root-mean-square distance it covers over the run."""
 
     evidence: float
@@ -68,7 +76,7 @@ class Walk:
 
 
 @dataclass(frozen=True)
-class Return:
+class MeanReversion:
     """Twice the log-likelihood ratio for a return of the level to its mean, and the memory in blocks."""
 
     evidence: float
@@ -124,7 +132,7 @@ def _limit(found: Fit, posterior: Array, false_alarm: float) -> float:
     return exceeded_with(false_alarm / 4.0) + exceeded_with(1.0 - DETECTED)
 
 
-def walk_of(means: Array) -> Walk:
+def walk_of(means: Array) -> RandomWalk:
     """Return the evidence that the level of block means walks at random, beside scatter and a slope.
 
     Restricted likelihood ratio of the local level model against no walk. Without a walk the evidence follows
@@ -135,10 +143,10 @@ def walk_of(means: Array) -> Walk:
     best = int(found.log_likelihood.argmax())
     evidence = 2.0 * float(found.log_likelihood[best] - found.log_likelihood[0])
     share = 1.0 if np.isinf(family.ratio[best]) else family.ratio[best]
-    return Walk(evidence, float(np.sqrt(found.scale[best] * share * (means.size + WIDTH))))
+    return RandomWalk(evidence, float(np.sqrt(found.scale[best] * share * (means.size + WIDTH))))
 
 
-def return_of(means: Array) -> Return:
+def return_of(means: Array) -> MeanReversion:
     """Return the evidence that the level of block means comes back to its mean instead of walking away.
 
     Restricted likelihood ratio of a walk with a memory (Ornstein & Uhlenbeck's process) against the random
@@ -149,7 +157,7 @@ def return_of(means: Array) -> Return:
     walks = np.isinf(family.exponent)
     best = int(np.where(walks, -np.inf, found.log_likelihood).argmax())
     evidence = 2.0 * float(found.log_likelihood[best] - found.log_likelihood[walks].max())
-    return Return(evidence, float(family.exponent[best]))
+    return MeanReversion(evidence, float(family.exponent[best]))
 
 
 def power_of_wandering(means: Array, beside_scatter: bool) -> Exponent:
@@ -181,14 +189,14 @@ def power_of_time(means: Array) -> Exponent:
     return _interval(exponents, likelihood.max(axis=0), POWER_DROP)
 
 
-def _prior(family: Family) -> Array:
+def _prior(family: NoiseFamily) -> Array:
     """Return the prior weight of each ratio of walk to scatter of a local level model."""
     prior = np.full(family.ratio.size, (1.0 - PURE_WALK_WEIGHT) / (family.ratio.size - 1))
     prior[-1] = PURE_WALK_WEIGHT
     return prior
 
 
-def _fit(means: Array, family: Family) -> Fit:
+def _fit(means: Array, family: NoiseFamily) -> Fit:
     """Return the fit of a slope of one per block."""
     return fit(np.diff(means), family, _floor(means))
 

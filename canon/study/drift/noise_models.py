@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from canon.array import Array
 
 __all__ = [
-    "Family",
     "Fit",
+    "NoiseFamily",
     "fit",
     "fractional",
     "local_level",
@@ -37,7 +37,7 @@ __all__ = [
 
 
 @dataclass(frozen=True)
-class Family:
+class NoiseFamily:
     """Covariances of the K − 1 increments of K block means, each up to a factor.
 
     Parameters
@@ -84,7 +84,7 @@ class Fit:
     freedom: int
 
 
-def fit(increments: Array, family: Family, floor: float = 0.0) -> Fit:
+def fit(increments: Array, family: NoiseFamily, floor: float = 0.0) -> Fit:
     """Return the fit of one slope to increments of block means, for every member of a family.
 
     Parameters
@@ -108,21 +108,21 @@ def fit(increments: Array, family: Family, floor: float = 0.0) -> Fit:
 
 
 @lru_cache(maxsize=16)
-def local_level(windows: int) -> Family:
+def local_level(windows: int) -> NoiseFamily:
     """Return scatter about a level that walks at random, from no walk (first) to nothing but walk (last)."""
     ratios = np.concatenate([[0.0], np.geomspace(0.1 / windows**2, 30.0, 40), [np.inf]])
     return _family(np.full(ratios.size, 0.5), ratios, windows)
 
 
 @lru_cache(maxsize=16)
-def fractional(windows: int) -> Family:
+def fractional(windows: int) -> NoiseFamily:
     """Return fractional noise alone, from H = −0.45 (nearly independent) to 0.95 (nearly a trend)."""
     exponents = np.linspace(-0.45, 0.95, 57)
     return _family(exponents, np.full(exponents.size, np.inf), windows)
 
 
 @lru_cache(maxsize=16)
-def wandering(windows: int) -> Family:
+def wandering(windows: int) -> NoiseFamily:
     """Return scatter about a level that wanders as t^H, for a grid of H (slow index) and ratios."""
     exponents = np.linspace(0.05, 0.95, 19)
     ratios = np.concatenate([np.geomspace(1.0 / windows**2, 10.0, 13), [np.inf]])
@@ -130,7 +130,7 @@ def wandering(windows: int) -> Family:
 
 
 @lru_cache(maxsize=16)
-def returning(windows: int) -> Family:
+def returning(windows: int) -> NoiseFamily:
     """Return scatter about a level that walks but returns, with memories from one block to the whole run (and none).
 
     A grid of memories in blocks (slow index; the last one, ``inf``, is the random walk) and ratios.
@@ -147,7 +147,7 @@ def _family(
     ratios: Array,
     windows: int,
     covariance: Callable[[float, int], Array] = lambda h, windows: walk_covariance(h, windows),
-) -> Family:
+) -> NoiseFamily:
     walks = {float(h): covariance(float(h), windows) for h in np.unique(exponents)}
     scatter = scatter_covariance(windows)
     members = [
@@ -160,7 +160,7 @@ def _family(
     (invert,) = get_lapack_funcs(("trtri",), (factor[0],))
     whitener = np.stack([invert(each, lower=1)[0] for each in factor])
     line = whitener @ (np.diff(window_starts(windows)) / PLACES)
-    return Family(exponents, ratios, whitener, log_determinant, line)
+    return NoiseFamily(exponents, ratios, whitener, log_determinant, line)
 
 
 def scatter_covariance(windows: int) -> Array:
