@@ -1,4 +1,4 @@
-"""Many claims judged in their order, in several processes at once, equal ones only once."""
+"""Checking many claims in their order, in several processes, equal ones only once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An assertion for notebooks and tests: it passes where a claim is proved and says in one sentence why it is wrong."""
+"""Assertions for notebooks and tests: passed where a claim is proved, else one sentence says why it is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a claim to what a report says of it, and a sheet's claims one after the other."""
+"""Explained judgement: a claim judged with what a report says of it, and a sheet's claims in turn."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Claims judged: the kind says what must vanish, the proof room whether it does."""
+"""Judge of a claim: the kind says what must vanish, the proof room decides whether it does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Claims judged in a process of its own, which is killed when a claim's budget is spent.
+"""Judging process: a child process for claims, killed when a claim's budget is spent.
 
 Parent and worker exchange JSON. The worker answers each claim with its verdict first and with the feedback
 afterwards, so that a feedback that takes too long costs no verdict. A worker has at most 2 GB of memory (where the

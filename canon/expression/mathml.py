@@ -1,4 +1,4 @@
-"""Formulas as MathML, as they were written: from the syntax tree, so nothing is evaluated or reordered.
+"""MathML of formulas as they were written: from the syntax tree, so nothing is evaluated or reordered.
 
 The markup is a tree of elements, never text put together: whatever a formula says, it stays a formula.
 """

@@ -1,4 +1,4 @@
-"""The safe expression language: text to SymPy, parsed and never evaluated as code.
+"""Parser of the safe expression language: text to SymPy, never evaluated as code.
 
 The grammar is in :mod:`canon.expression.text.syntax`; here the tree gets its meaning within a :class:`Scope` of
 declared names. What SymPy would evaluate at ruinous cost (``9**9**9``) is refused before it is built.

@@ -1,4 +1,4 @@
-"""What the user says about a run, checked and made a task."""
+"""Checks of the arguments of a run, and the task made of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a computed motion is from the true one: a companion run, done more exactly, and how errors grow.
+"""Error estimate of a computed motion: its distance from a more exact companion run, and how errors grow.
 
 A method of fixed steps is repeated with half the step in wider numbers; every other one is compared with Taylor's
 method in wider numbers. The difference is the error of the motion, but for what the companion itself errs: a third of

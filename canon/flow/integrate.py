@@ -1,4 +1,4 @@
-"""A task carried out by the engine of its method, from the start or from what was done before."""
+"""Integration of a task by the engine of its method, from the start or from an earlier run's end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The motion between its samples."""
+"""Interpolation: states of a motion between its samples."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a Hamiltonian and a starting state to a trajectory."""
+"""Propagation: from a Hamiltonian and a starting state to a trajectory."""
 
 from __future__ import annotations
 

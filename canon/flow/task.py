@@ -1,4 +1,4 @@
-"""A task: what to integrate, how, and what to keep of it."""
+"""Tasks: what to integrate, with which method, and what to keep of it."""
 
 from __future__ import annotations
 

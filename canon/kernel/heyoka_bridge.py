@@ -1,4 +1,4 @@
-"""Graphs to heyoka expressions, and heyoka's adaptive Taylor integrator for Hamilton's equations."""
+"""heyoka's Taylor integrator for Hamilton's equations, and expression graphs as heyoka expressions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Energy errors along runs: their size against time, and the means that drifts are judged by."""
+"""Energy errors along runs: their size over time, and the block means that drifts are judged by."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ensembles: how the error spreads over many orbits."""
+"""Ensemble pictures: how the error spreads over many orbits."""
 
 from __future__ import annotations
 

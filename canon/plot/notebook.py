@@ -1,4 +1,4 @@
-"""Figures and axes that a notebook shows as pictures, whatever backend it uses."""
+"""Notebook figures: shown as pictures whatever backend the notebook uses."""
 
 from __future__ import annotations
 

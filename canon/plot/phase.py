@@ -1,4 +1,4 @@
-"""Motions in phase space: portraits and Poincaré sections."""
+"""Phase-space pictures: portraits and Poincaré sections."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures of scenes: a sketch of one state with the way it takes, and an animation written to a file.
+"""Scene pictures: a sketch of one state with the path it takes, and an animation written to a file.
 
 What a scene does not say of its looks is drawn as the point (q1, q2) of its configurations, or (q, p) for one
 coordinate. Places in space are seen from above and from the side, in parallel projection.

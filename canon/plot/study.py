@@ -1,4 +1,4 @@
-"""A study at a glance: every case a cell, what failed and what is pending included."""
+"""Study overview: every case a cell, failed and pending ones included."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study as one page of HTML with its figures inside: it needs no network and no other file."""
+"""Study page: one HTML file with its figures inside, which needs no network and no other file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How canon's pictures look: colours, lines, axes, names at the ends of lines."""
+"""Style of canon's pictures: colours, lines, axes, names at the ends of lines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What precision costs, and what the step does to the error."""
+"""Work-precision pictures: what precision costs, and how the error depends on the step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Questions asked off the kinks of moduli, maxima and pieces: a claim about mechanics is never wrong only there.
+"""Kinks of moduli, maxima and pieces, left out of questions: a claim about mechanics is never wrong only there.
 
 The derivative of |u| is sign(u) where u ≠ 0; where u = 0 it has none, though SymPy's sign(0) is 0. The set u = 0 may be
 left out of a domain only where it is thin, that is without inner points: |max(0, x)| has its kinks at all x ≤ 0 by that

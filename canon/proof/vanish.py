@@ -1,4 +1,4 @@
-"""Zero or not: proofs, certified refutations, and an honest "undecided".
+"""Zero test: an expression is proved zero, refuted with a certificate, or undecided.
 
 The ladder: a few balls, the normal form, then more balls at more precision. A verdict HOLDS only where
 the normal form is zero, and FAILS only where balls exclude zero at an exact point of the domain.

@@ -1,4 +1,4 @@
-"""What a scene says of itself, line by line: Lagrangian, equations, Hamiltonian, Routhian, integrals."""
+"""Description of a scene, line by line: Lagrangian, equations, Hamiltonian, Routhian, integrals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known of a scene held against what canon derives and integrates: every check with its bound.
+"""Known truths of a scene compared with what canon derives and integrates, each check with its bound.
 
 Symbolic checks are verdicts: dI/dt vanishes by the equations of motion. Along a run an integral's change is measured in
 long double and divided by its value at the start, or by the largest of its terms (the median along the run) where that

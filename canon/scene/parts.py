@@ -1,4 +1,4 @@
-"""What a scene consists of: parameters, starts, known integrals, and motions known beforehand."""
+"""Parts of a scene: parameters, starts, known integrals, and motions known beforehand."""
 
 from __future__ import annotations
 

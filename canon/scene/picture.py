@@ -1,4 +1,4 @@
-"""What a scene looks like, as functions of its coordinates: rods, springs, masses, and the ground they stand on."""
+"""Sketch of a scene as functions of its coordinates: rods, springs, masses, and the ground they stand on."""
 
 from __future__ import annotations
 

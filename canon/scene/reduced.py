@@ -1,4 +1,4 @@
-"""A scene with its ignorable coordinates taken out: Routh's function is the Lagrangian of the rest."""
+"""Routh reduction of a scene: its ignorable coordinates eliminated, with the Routhian as the new Lagrangian."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scenes in motion: carried by heyoka's Taylor method to round-off, sampled, or up to an event."""
+"""Motion of a scene by heyoka's Taylor method to round-off: sampled, or up to an event."""
 
 from __future__ import annotations
 

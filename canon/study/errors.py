@@ -1,4 +1,4 @@
-"""What a study that can't be run raises."""
+"""Study error: raised for a study that can't be run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Claims changed in one place and judged anew: what a person may have meant."""
+"""Changed claims: one place changed and judged again, to find what a person may have meant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Answers wrong as a whole: another sign convention, a common factor, a valence, a lost time derivative."""
+"""Conventions: answers wrong as a whole, by a sign convention, a common factor, a valence or a lost time derivative."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Answers that are judged by their derivatives, as components with their right values.
+"""Derived parts: answers judged by their derivatives, as components with their right values.
 
 K is right up to a function of time and I up to a constant; here one of the right ones is found, so that a
 claimed one can be compared with it term by term.

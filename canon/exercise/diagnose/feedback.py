@@ -1,4 +1,4 @@
-"""One sentence for a person: where and how an answer is wrong, and what would be right.
+"""Feedback for a person in one sentence: where and how an answer is wrong, and what would be right.
 
 A diagnosis is told only when the claim, with the repair it names put in, was judged to hold as a whole.
 """

@@ -1,4 +1,4 @@
-"""Products of powers found from values: what is lost in an answer, read off from how its residual scales.
+"""Lost factors: products of powers missing in an answer, found from how its residual scales.
 
 If a residual is c Π sᵉ times few functions, doubling one symbol multiplies it by 2ᵉ. What is found from values
 is a candidate, which is proved elsewhere.

@@ -1,4 +1,4 @@
-"""What must vanish for a claim to be right, as a test of its answers in the neighbourhood of a point.
+"""Screening tests by kind of claim: what must vanish near a point for the answers to be right.
 
 From values and slopes alone; the laws are those of the judges. A kind of claim names the function that makes its test.
 """

@@ -1,4 +1,4 @@
-"""Whether a claim with another answer could be right, as far as values and slopes at two points tell.
+"""Screening: could a claim with another answer be right, judged by values and slopes at two points?
 
 For the kinds whose claims are judged as a whole: the answer is differentiated there, so that a candidate would
 have to be differentiated, and its residual refuted, before it is dropped. Here each costs some evaluations.

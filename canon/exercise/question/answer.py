@@ -1,4 +1,4 @@
-"""The answer in a claim: the variables in which it may be written, and what it leaves open."""
+"""Answer of a claim: the variables in which it may be written, and what it leaves open."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where some expressions vanish: the constraint manifold, written as a graph over free variables.
+"""Constraint manifold: where some expressions vanish, written as a graph over free variables.
 
 Each constraint is solved for one symbol that it determines, a coordinate or a parameter (a claim is for
 every value of the parameters, so l = √(x² + y²) describes a circle of any radius without branches). The

@@ -1,4 +1,4 @@
-"""What is known by its derivatives alone: constants of the motion, generating functions, gauge terms, Casimirs.
+"""Continuity of answers known by derivatives only: constants of motion, generating functions, gauge terms, Casimirs.
 
 Such a function may have jumped from one constant to another, which no derivative shows: it must be continuous too.
 """

@@ -1,4 +1,4 @@
-"""Two systems of equations of motion compared, as the claim counts and calls them."""
+"""Systems of equations of motion, two of them compared as the claim numbers and names them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The right generating function of a map that a claim gives."""
+"""Generating function, the right one, of a map that a claim gives."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Maps given by equations that can't be solved in closed form: refuted at one certified point.
+"""Implicit maps, given by equations without a closed solution, refuted at one certified point.
 
 The old variables and the parameters are rational; the new ones near them are found by Newton's method and
 enclosed by the Krawczyk operator (R. Krawczyk, Computing 4 (1969) 187, doi:10.1007/BF02234767; S. M. Rump, Acta

@@ -1,4 +1,4 @@
-"""Values of parameters for which expressions vanish at every state: conditions at points, solved exactly.
+"""Parameter values for which expressions vanish at every state: conditions at points, solved exactly.
 
 What vanishes for all states vanishes with its derivatives at one state, so that each such value is a condition on the
 parameters alone. The conditions are necessary; what solves them is put in again, and more of them are asked for until

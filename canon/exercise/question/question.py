@@ -1,4 +1,4 @@
-"""What a claim comes down to: a few questions of proof, and their answers."""
+"""Questions of proof that a claim comes down to, and their answers."""
 
 from __future__ import annotations
 

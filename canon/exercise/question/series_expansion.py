@@ -1,4 +1,4 @@
-"""Functions analytic at a place, and the first terms of their expansions there.
+"""Series expansions: functions analytic at a place, and the first terms of their expansions there.
 
 Elliptic integrals at m = 0 and Lambert's W at 0 are analytic, though SymPy's formulas for their derivatives are
 quotients that are 0/0 there: their series are written down instead (M. Abramowitz and I. A. Stegun, Handbook of

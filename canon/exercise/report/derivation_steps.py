@@ -1,4 +1,4 @@
-"""How a claim was judged, step by step: what was derived from it, what was compared, how that was decided."""
+"""Derivation shown step by step: what was derived from a claim, what was compared, how that was decided."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A report as JUnit XML, which every CI can show: a claim is a test case."""
+"""JUnit XML of a report, which every CI can show: a claim is a test case."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A report as a page: formulas set, steps shown, all in one file without a script and without anything fetched.
+"""HTML page of a report: formulas set, steps shown, in one file without scripts or anything fetched.
 
 Everything a stranger wrote enters the tree of elements as text and leaves it escaped; besides, the page forbids its
 reader to run scripts or to fetch anything.

@@ -1,4 +1,4 @@
-"""How the page of a report looks; light and dark, on screen and on paper."""
+"""Style sheet of the report page: light and dark, on screen and on paper."""
 
 __all__ = ["PAGE_STYLE", "STYLE"]
 

@@ -1,4 +1,4 @@
-"""What a person or a program is told: a table, JSON lines, an exit status."""
+"""Reports of judged claims: a table, JSON lines, an exit status."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The form of a claim: its keys, their shapes and their sizes, before anything in it is read.
+"""Key shapes: the keys of a claim, their form and size, checked before anything in it is read.
 
 What is found here costs time in proportion to the sheet, whatever stands in it.
 """

@@ -1,4 +1,4 @@
-"""What a claim says: its names and expressions as SymPy objects, its domain."""
+"""Reading of a claim: its names and expressions as SymPy objects, its domain."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Expression trees with their types: what SymPy gives back untyped, said once."""
+"""SymPy's expression trees with static types."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The light algebra of the expression graph: equal terms and bases merged, short sums and products flattened.
+"""Algebra of the expression graph: equal terms and bases merged, short sums and products flattened.
 
 Only exact numbers are worked with, and nothing is expanded. Like SymPy, x·x⁻¹ becomes 1.
 """

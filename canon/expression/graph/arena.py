@@ -1,4 +1,4 @@
-"""Nodes of the expression graph: an arena that stores every distinct operation once.
+"""Node storage of the expression graph: an arena that holds every distinct operation once.
 
 Children have smaller numbers than their parents, so that a pass in rising order is a forward sweep, in falling order
 a reverse sweep, and nothing recurses.

@@ -1,4 +1,4 @@
-"""Graph nodes as SymPy expressions that share: what is used twice gets a symbol, as :func:`sympy.cse` does it."""
+"""Common subexpressions: nodes as SymPy expressions, a symbol for what is used twice, as in :func:`sympy.cse`."""
 
 from __future__ import annotations
 

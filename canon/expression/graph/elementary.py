@@ -1,4 +1,4 @@
-"""The elementary functions of the expression graph: their derivatives and what is known of them exactly."""
+"""Elementary functions of the expression graph: their derivatives and exact values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The number systems an expression graph can be evaluated in."""
+"""Number systems in which an expression graph can be evaluated."""
 
 from __future__ import annotations
 

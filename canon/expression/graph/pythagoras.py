@@ -1,4 +1,4 @@
-"""cos² x + sin² x = 1 in sums of products on an expression graph."""
+"""Pythagorean identity cos² x + sin² x = 1 applied to sums of products on an expression graph."""
 
 from __future__ import annotations
 

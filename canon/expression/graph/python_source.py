@@ -1,4 +1,4 @@
-"""Graph nodes as a Python function: callable a few milliseconds after the derivation, compiled by nobody.
+"""Python source of graph nodes: a function, callable a few milliseconds after the derivation without compiling.
 
 Where there are many nodes, the first calls walk over them, and Python's compiler is asked only when more calls show
 that it pays; both do the same operations in the same order, so the numbers are the same to the last bit. The text

@@ -1,4 +1,4 @@
-"""Many sums of the same terms on an expression graph, sharing what they have in common, signs taken out."""
+"""Sums of the same terms on an expression graph: common parts shared, signs taken out."""
 
 from __future__ import annotations
 

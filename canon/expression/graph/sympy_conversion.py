@@ -1,4 +1,4 @@
-"""SymPy expressions into graph nodes and back, without recursion."""
+"""Conversion of SymPy expressions into graph nodes and back, without recursion."""
 
 from __future__ import annotations
 

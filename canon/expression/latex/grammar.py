@@ -1,4 +1,4 @@
-r"""LaTeX formulas to the syntax tree of the expression language, each column that of the LaTeX text.
+r"""LaTeX grammar: formulas to the syntax tree of the expression language, with columns of the LaTeX text.
 
 Names are resolved while the text is cut into words (:mod:`canon.expression.latex.words`), an LALR(1) grammar
 finds the structure in linear time, and :mod:`canon.expression.latex.meaning` says what stands side by side means.

@@ -1,4 +1,4 @@
-r"""What LaTeX factors side by side mean: products, applied functions, derivatives.
+r"""Meaning of LaTeX factors side by side: products, applied functions, derivatives.
 
 The conventions are those of :mod:`canon.expression.latex.grammar`. Each piece is turned into a node once, so the work
 stays linear in the text.

@@ -1,4 +1,4 @@
-r"""The names of LaTeX: how ``\dot\theta_1``, ``mgl`` or ``p_{\varphi}`` become declared names.
+r"""LaTeX names: how ``\dot\theta_1``, ``mgl`` or ``p_{\varphi}`` become declared names.
 
 Only declared names are ever read. A run of letters is the name it spells as a whole; otherwise it is a
 product of declared names (``mgl`` is m g l), and a run that splits in two ways is refused.

@@ -1,4 +1,4 @@
-"""The pieces of a LaTeX formula: factors before it is known how they hang together."""
+"""Pieces of a LaTeX formula: factors before products, function calls and derivatives are told apart."""
 
 from __future__ import annotations
 

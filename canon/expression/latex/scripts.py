@@ -1,4 +1,4 @@
-r"""What hangs on a LaTeX name: subscripts, primes, and the braces of ``\dot{\theta_1}``."""
+r"""LaTeX subscripts, primes, and the braces of ``\dot{\theta_1}``."""
 
 from __future__ import annotations
 

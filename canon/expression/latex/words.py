@@ -1,4 +1,4 @@
-r"""LaTeX text to words: numbers, declared names, functions, signs and brackets, each with its column.
+r"""LaTeX tokens: numbers, declared names, functions, signs and brackets, each with its column.
 
 Every bound that keeps hostile text harmless is checked here, before the grammar sees a word: length, number of
 words, digits, nesting. Brackets are matched here too, so the grammar only ever sees matching ones.

@@ -1,4 +1,4 @@
-"""What users hand over in words: how many, of which kind. SymPy is not loaded for what needs none of it."""
+"""Words for what users hand over: how many, and of which kind, without loading SymPy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How large a number is, without computing it: what SymPy can't evaluate, compare or sort is known before it tries."""
+"""Magnitude bounds of numbers without computing them: too large for SymPy is known before SymPy tries."""
 
 from __future__ import annotations
 

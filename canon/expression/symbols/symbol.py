@@ -1,4 +1,4 @@
-"""Coordinates, velocities, momenta and parameters as SymPy symbols.
+"""Symbols of mechanics: coordinates, velocities, momenta and parameters as SymPy symbols.
 
 A coordinate is an ordinary SymPy symbol that knows the names of its rates and of its momentum, so
 ``m*theta.dot**2/2`` is an ordinary SymPy expression. Velocities are independent symbols, as in

@@ -1,4 +1,4 @@
-"""What users hand over, looked at before anything is made of it: the error names what it should have been."""
+"""Checks of user input: errors name what the input should have been."""
 
 from __future__ import annotations
 

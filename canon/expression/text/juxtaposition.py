@@ -1,4 +1,4 @@
-"""Factors side by side as a product, ``2 m g l (1 - cos(theta))``, where a sheet asks for it.
+"""Juxtaposition: factors side by side as a product, `2 m g l (1 - cos(theta))`, where a sheet asks for it.
 
 Only what can be read in one way is read. Refused, with what to write instead, are ``a/b c``, ``x**2y``, ``x 2``,
 ``2e3`` where ``e`` is declared, and a symbol before a bracket that could be its argument: ``f(x)`` with a bare name

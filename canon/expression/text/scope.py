@@ -1,4 +1,4 @@
-"""The names that an expression may use, and what each of them means."""
+"""Scope: the names that an expression may use, and what each of them means."""
 
 from __future__ import annotations
 

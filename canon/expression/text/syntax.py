@@ -1,4 +1,4 @@
-"""The grammar of the expression language: text in, syntax tree out, nothing evaluated.
+"""Syntax of the expression language: text in, syntax tree out, nothing evaluated.
 
 Every bound that keeps hostile text harmless is checked here, before anything is built: length, number of
 tokens, digits of a number, nesting.

@@ -1,4 +1,4 @@
-"""Text cut into numbers, names and signs, and the error that points at a column.
+"""Tokens of text: numbers, names and signs, and the error that points at a column.
 
 Greek letters and Newton's dots are spelled the plain way here: ``θ̇`` becomes ``theta`` with one prime.
 """

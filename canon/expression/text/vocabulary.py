@@ -1,4 +1,4 @@
-"""The words of the expression language: functions, constants, relations, and what else they are called."""
+"""Vocabulary of the expression language: functions, constants, relations, and their other spellings."""
 
 from __future__ import annotations
 

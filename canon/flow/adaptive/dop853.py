@@ -1,4 +1,4 @@
-"""SciPy's adaptive Runge–Kutta method DOP853 on the compiled right-hand side."""
+"""DOP853, SciPy's adaptive Runge–Kutta method, on the compiled right-hand side."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events as heyoka meets them."""
+"""Event location for the Taylor method: events as heyoka's own, and the crossings that it reports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One orbit under heyoka's integrator: from sample to sample, over events, to where it can't go on."""
+"""Taylor integration of one orbit: from sample to sample, through events, up to a singularity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Running a compiled loop: in slices, with progress, stopping where the motion stops being finite."""
+"""Running a compiled loop: in slices, with progress, up to the last finite state."""
 
 from __future__ import annotations
 

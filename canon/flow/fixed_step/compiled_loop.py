@@ -1,4 +1,4 @@
-"""The compiled loop of a method of fixed steps, kept for the next run, and the coefficients it reads."""
+"""Compiled loop of a fixed-step method: compiled once, then kept, with the coefficients that it reads."""
 
 from __future__ import annotations
 

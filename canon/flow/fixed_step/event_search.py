@@ -1,4 +1,4 @@
-"""Events on the way of a fixed-step method: noticed between steps, located by partial steps of the same method."""
+"""Event location for fixed-step methods: noticed between steps, located by partial steps of the same method."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs in steps of one size: the plan of a run, orbits on threads, samples on the way."""
+"""Fixed-step runs: the plan of steps, orbits on threads, samples."""
 
 from __future__ import annotations
 

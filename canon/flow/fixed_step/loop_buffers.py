@@ -1,4 +1,4 @@
-"""The memory of one run of a compiled loop: orbits in blocks of as many as the number type has lanes."""
+"""Buffers of a compiled loop: states, compensation and coefficients of orbits, in blocks of SIMD lanes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Single steps of any length from any state: between the steps of a run, for events and for states in between."""
+"""Partial steps: single steps of any length from any state, to locate events and to evaluate between samples."""
 
 from __future__ import annotations
 

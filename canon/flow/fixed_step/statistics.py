@@ -1,4 +1,4 @@
-"""Observables followed inside a loop of fixed steps, and the statistics of their changes."""
+"""Statistics of observables in a fixed-step run: the mean, least and greatest change between samples."""
 
 from __future__ import annotations
 

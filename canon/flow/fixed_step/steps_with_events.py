@@ -1,4 +1,4 @@
-"""Running a compiled loop with an eye on events."""
+"""Fixed steps with event location: compiled steps, stopped wherever an event may have happened."""
 
 from __future__ import annotations
 

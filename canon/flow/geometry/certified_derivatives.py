@@ -1,4 +1,4 @@
-"""Derivatives at exact points with their round-off: what brackets and rates miss there."""
+"""Derivatives at exact points with their round-off, and residuals of brackets and of rates made of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The geometry of what is computed: Jacobians of flows and of discrete maps, symplecticity, reversal."""
+"""Jacobians of flows and of discrete maps: symplecticity defect, reversal error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Jacobian of splittings by solvable parts: the product of the derivatives of their flows and kicks.
+"""Jacobian of splittings by solvable parts: the product of the derivatives of their flows and kicks.
 
 Kepler's flow has its derivative in closed form, a linear one is it itself, and a kick by W(q) turns δp by −∂²W δq. All
 are taken along the states of the motion, of very many steps at a time, in doubles, so that the Jacobian is symplectic

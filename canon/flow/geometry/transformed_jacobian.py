@@ -1,4 +1,4 @@
-"""The Jacobian of a time-transformed motion: from the section t = start of the extended phase space to others.
+"""Jacobian of a time-transformed motion: from the section t = start of the extended phase space to others.
 
 Variations are carried along by the method itself, through the extended equations of c K with c = 1: a step of these is
 the step of K and its exact derivative by the state and, through c, by its size. Steps are as many whatever the start,

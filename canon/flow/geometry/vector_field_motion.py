@@ -1,4 +1,4 @@
-"""Equations of motion and of its variations, carried by heyoka; what a function does along the motion."""
+"""Motion and variations of a vector field by heyoka, and how a function changes along the motion."""
 
 from __future__ import annotations
 

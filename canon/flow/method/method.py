@@ -1,4 +1,4 @@
-"""Methods of integration as values: what to use, not how it runs."""
+"""Integration methods as values: which to use with which settings, not how it runs."""
 
 from __future__ import annotations
 

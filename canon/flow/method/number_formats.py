@@ -1,4 +1,4 @@
-"""The precisions a motion can be computed in, by one keyword."""
+"""Number formats that a motion can be computed in, by the keyword ``precision``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Splittings by exactly solvable parts, as methods: Wisdom and Holman's map, SABA, SBAB and their kin."""
+"""Splittings by exactly solvable parts as methods: Wisdom–Holman, SABA, SBAB and their variants."""
 
 from __future__ import annotations
 

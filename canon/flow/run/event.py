@@ -1,4 +1,4 @@
-"""Events: what is to happen where a function of the state crosses zero."""
+"""Events: what happens where a function of the state crosses zero."""
 
 from __future__ import annotations
 

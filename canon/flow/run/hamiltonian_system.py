@@ -1,4 +1,4 @@
-"""What an integrator needs of a Hamiltonian."""
+"""Hamiltonian systems as integrators see them: the protocol of H, q, p and t."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The error of a motion that left the finite numbers."""
+"""Non-finite states: the error raised where a motion leaves the finite numbers."""
 
 from __future__ import annotations
 

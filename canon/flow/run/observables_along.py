@@ -1,4 +1,4 @@
-"""What functions of the state are along a motion, evaluated in higher precision than the state."""
+"""Observables along a motion, evaluated in higher precision than its states."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Starts whose numbers leave the range of doubles on the way: units in which nothing can be computed."""
+"""Range check of a start: units in which numbers would leave the range of doubles are refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sampled states: what an integrator hands back, joined to what came before, and statistics between samples."""
+"""Sampled states: what an integrator returns, how two runs are joined, and statistics between samples."""
 
 from __future__ import annotations
 

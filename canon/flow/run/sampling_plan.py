@@ -1,4 +1,4 @@
-"""When states are kept: evenly over the span, or at times the user names."""
+"""Sample times of a run: evenly over the span, or at the times the user names."""
 
 from __future__ import annotations
 

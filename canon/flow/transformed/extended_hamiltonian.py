@@ -1,4 +1,4 @@
-"""Time transformations: symplectic methods with steps that vary along the orbit, for close encounters.
+"""Extended Hamiltonian of a time transformation: symplectic steps that vary along the orbit, for close encounters.
 
 A step is taken in a fictitious time s with dt/ds = g. The extended Hamiltonian of (q, t; p, p_t), p_t = −H at
 the start, makes that a Hamiltonian motion again, so that symplectic methods stay symplectic: Poincaré's K =

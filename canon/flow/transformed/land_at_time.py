@@ -1,4 +1,4 @@
-"""The part of a step in a fictitious time that ends at a given time."""
+"""Landing at a given time: the part of a step in the fictitious time at whose end t has that value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Motions in a fictitious time: kept after evenly many steps, or at the times that are asked for."""
+"""Time-transformed motion: sampled after equal numbers of steps, or at the times that are asked for."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One orbit on its way in a fictitious time: steps until its time has come, and a part of one that ends there.
+"""Time-transformed integration of one orbit: whole steps in the fictitious time, then a part of one to a given t.
 
 Far from the wanted time many steps are taken in one go, half as many as would lead there if they stayed as long as
 the latest; should they pass it nevertheless they are taken back. Near it the compiled loop looks at the time after

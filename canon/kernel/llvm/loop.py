@@ -1,4 +1,4 @@
-"""The compiled loops: many steps of one method in one call, for one Hamiltonian.
+"""Compiled loops: many steps of one method in one call, for one Hamiltonian.
 
 Every loop has the signature ``advance(y, e, c, first, steps, blocks)``: ``y`` holds q then p, ``e`` what
 compensation carries (y + e is the state), ``c`` the numbers t0, h and then the method's coefficients times h,

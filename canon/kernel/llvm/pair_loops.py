@@ -1,4 +1,4 @@
-"""Forces of many bodies on each other, written as a loop over the sources around a loop over the targets.
+"""Pair forces of many bodies, written as a loop over the sources around a loop over the targets.
 
 No sum runs along the inner loop, so that nothing is reordered and compilers turn it into SIMD instructions.
 """

@@ -1,4 +1,4 @@
-"""Writing LLVM IR text: registers, memory, counted loops, and straight-line programs."""
+"""Writer of LLVM IR text: registers, memory, counted loops, and straight-line programs."""
 
 from __future__ import annotations
 

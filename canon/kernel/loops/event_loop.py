@@ -1,4 +1,4 @@
-"""Events inside the loop: step until a function of the state may have crossed zero."""
+"""Event loop: compiled steps until a function of the state may have crossed zero."""
 
 from __future__ import annotations
 

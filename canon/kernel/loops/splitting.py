@@ -1,4 +1,4 @@
-"""Loops of splittings: drifts q ← q + aᵢ h ∂H/∂p and kicks p ← p − bᵢ h ∂H/∂q of H = T(p, t) + V(q, t) in turn."""
+"""Splitting loops: drifts q ← q + aᵢ h ∂H/∂p and kicks p ← p − bᵢ h ∂H/∂q of H = T(p, t) + V(q, t) in turn."""
 
 from __future__ import annotations
 

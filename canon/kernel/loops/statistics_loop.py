@@ -1,4 +1,4 @@
-"""Observables inside the loop: every so many steps their change since the start, summed and bounded.
+"""Statistics loop: observables every so many compiled steps, their changes since the start summed and bounded.
 
 Between two samples of a long run lie millions of steps; what a sample misses, the sums and bounds hold. They are
 computed in wider numbers than the state's, so that they are the trajectory's and not the evaluation's.

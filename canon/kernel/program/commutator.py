@@ -1,4 +1,4 @@
-"""The commutator {H₁, {H₀, H₁}} of a perturbation H₁(q), a function of q that kicks can hold beside H₁.
+"""Commutator {H₁, {H₀, H₁}} of a perturbation H₁(q): a function of q, so that kicks can include it with H₁.
 
 With A = ∂²H₀/∂p² it is −Σ A_ij ∂_iH₁ ∂_jH₁; the kick by τH₁ + γτ³ {H₁, {H₀, H₁}} adds 2γτ³ Σ A_ij ∂_i∂_kH₁ ∂_jH₁ to
 −τ ∂_kH₁.

@@ -1,4 +1,4 @@
-"""What kind of Hamiltonian it is, and the programs of its equations of motion."""
+"""Hamilton's equations ready to compile: the kind of the Hamiltonian, and the programs of its right-hand sides."""
 
 from __future__ import annotations
 

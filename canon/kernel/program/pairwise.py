@@ -1,4 +1,4 @@
-"""Forces of many bodies on each other, recognised in H = Σ c_ij φ(x_i, x_j): one symmetric function of every pair.
+"""Pair forces recognised in H = Σ c_ij φ(x_i, x_j), one symmetric function of every pair of bodies.
 
 Written out, the force of fifty bodies takes seconds to compile and does not fit the processor's caches. Here it is a
 loop over the sources j around a loop over the targets i, F_i ← F_i − c_ij ∂φ/∂x_i, which compilers turn into SIMD

@@ -1,4 +1,4 @@
-"""Straight-line programs: what a graph computes, one machine operation after another.
+"""Straight-line programs: the machine operations that compute nodes of a graph, one after another.
 
 Powers are lowered (whole exponents to products, halves to square roots), quotients get one division, a
 reciprocal that several products share is computed once, and subexpressions without symbols become one exact

@@ -1,4 +1,4 @@
-"""Equations written with fewer products of two functions: parts of products and of sums shared, sums factored.
+"""Shared products: equations rewritten with fewer products of functions, sums factored and common parts reused.
 
 A Taylor coefficient of order k of a product of two functions is a sum of k products, that of a constant multiple
 one product: what a right-hand side costs is its number of products and quotients of functions. A product

@@ -1,4 +1,4 @@
-"""Sums of multiples of products: what equations are made of while parts of them are shared; see sharing.py."""
+"""Sums of multiples of products, the form of equations while their products are shared (see shared_products.py)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hamilton's equations together with the equations of their variations."""
+"""Variational equations: Hamilton's equations together with those of small deviations from a motion."""
 
 from __future__ import annotations
 

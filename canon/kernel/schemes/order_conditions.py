@@ -1,4 +1,4 @@
-"""Order conditions of splitting methods, exactly as they come from the algebra.
+"""Order conditions of splitting methods, exact, from the free Lie algebra of the two parts.
 
 The map exp(h a₁A) exp(h b₁B) … is a power series in the words of the two letters A (drift) and B (kick),
 which do not commute. The method has order p when its logarithm is h(A + B) up to words longer than p:

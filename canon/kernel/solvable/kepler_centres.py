@@ -1,4 +1,4 @@
-"""Bodies about centres at the origins of their own coordinates, with kicks by any function of the coordinates."""
+"""Kepler motion of bodies about fixed centres, with kicks by any function of the coordinates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The terms of a Hamiltonian that Kepler's problem is made of: p²/2m, −k/|q| and −k/|q − q′|, read off the sum."""
+"""Kepler terms of a Hamiltonian: p²/2m, −k/|q| and −k/|q − q′|, read off its sum."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The working state of bodies that move on Kepler's orbits: places and velocities, a SIMD lane for each body."""
+"""Positions and velocities of bodies on Kepler orbits, one SIMD lane for each body."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Planets about a star in SIMD lanes: Kepler's motion of each, and kicks by what they do to one another.
+"""Planets about a star in SIMD lanes: the Kepler motion of each, and kicks by their attractions on one another.
 
 Jacobi's coordinates: X_i is the place of body i from the centre of mass of the bodies before it, V_i its velocity;
 H₀ = Σ |P_i|²/2m'_i − k'_i/|X_i| with m'_i = m_i M_{i−1}/M_i, M_i = Σ_{j≤i} m_j, and k'_i = Σ_{j<i} k_ij; H₁ is the rest

@@ -1,4 +1,4 @@
-"""Compiled loops of splittings by exactly solvable parts: flows of H₀ and kicks by H₁ in turn.
+"""Compiled loops of splittings H = H₀ + H₁: the exact flow of a solvable H₀ and kicks by H₁ in turn.
 
 A call runs three tables of (kick, flow) pairs: once what leads into the loop, the steps, and once what leads out of it.
 So neighbouring flows of two steps are one, and a symplectic corrector is applied where a state is asked for

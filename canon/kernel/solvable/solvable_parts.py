@@ -1,4 +1,4 @@
-"""Parts of a Hamiltonian whose motion is known: Kepler's, quadratic ones, and planets about a star.
+"""Solvable parts of a Hamiltonian, found in it: Kepler problems, quadratic parts, planets about a star.
 
 What is found is read off the sum that H is: kinetic energies p²/2m, attractions −k/r of pairs and of centres.
 """

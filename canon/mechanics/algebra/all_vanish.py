@@ -1,4 +1,4 @@
-"""Claims that consist of many expressions, each of which must vanish."""
+"""Vanishing of many expressions at once, each of which must be zero for a claim to hold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A point of the domain that tells branches apart; what it suggests is proved afterwards."""
+"""Points of the domain that tell the branches of a solution apart; what they suggest is proved afterwards."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SymPy's dynamicsymbols at the door: theta(t), its derivatives and t become canon's symbols."""
+"""SymPy's dynamicsymbols converted: theta(t), its derivatives and t become canon's symbols."""
 
 from __future__ import annotations
 

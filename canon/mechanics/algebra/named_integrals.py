@@ -1,4 +1,4 @@
-"""Parts of a closed form whose potential is a quadrature: an integral that is named and left as it is.
+"""Named integrals: parts of a potential that are quadratures, given a name and left unevaluated.
 
 With an arbitrary function f the form f(u) du has the potential ∫ f(s) ds up to s = u, and a coefficient that depends on
 its own variable only has its integral, whether a table holds it or not.

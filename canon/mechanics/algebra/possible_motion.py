@@ -1,4 +1,4 @@
-"""Motions that are possible: real and continuous, and their velocities too, as there are no impacts.
+"""Possible motions: real and continuous, with continuous velocities, as there are no impacts.
 
 A coordinate that the equations know up to whole turns may be given so.
 """

@@ -1,4 +1,4 @@
-"""Integrating a closed form Σ aⱼ dzⱼ to a function of its variables.
+"""Potential of a closed form Σ aⱼ dzⱼ: a function of its variables, found by integration.
 
 Forms in mechanics are mostly homogeneous under some scaling; then Euler's theorem gives the potential
 without an integral: if scaling the variables with weights w multiplies the form by λᵏ, then

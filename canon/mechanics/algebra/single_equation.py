@@ -1,4 +1,4 @@
-"""Equations in which the unknown occurs several times, as polynomials in one of its functions.
+"""Single equations in which the unknown occurs several times, solved as polynomials in one of its functions.
 
 An equation in x, √x and the like, or in sin x and cos x, is a polynomial in those functions; the relations
 among them eliminate all but one, whose roots are found by factors that are linear, quadratic or binomial.

@@ -1,4 +1,4 @@
-"""Solving equations for variables on the branch that a witness point shows.
+"""Solving equations for variables on the branch that a given point shows.
 
 Every step peels one operation; where several inverses exist, the one that gives the true value at the
 witness is taken, and what it takes for granted is noted as a condition (cos y = x gives y = acos x where

@@ -1,4 +1,4 @@
-"""Substitution that is simultaneous, and careful with derivatives of arbitrary functions."""
+"""Simultaneous substitution, also in derivatives of arbitrary functions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Integrals of single terms that a table would hold, found quickly or not at all.
+"""Table integrals of single terms, found quickly or not at all.
 
 SymPy's rules may search for minutes where functions are nested, so they are only asked about products that are
 plain in the variable: one function of a linear argument, or an algebraic factor, times a power.

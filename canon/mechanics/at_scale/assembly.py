@@ -1,4 +1,4 @@
-"""Sums over channels: the mass matrix, projected forces and slopes of the kinetic energy, terms shared first."""
+"""Assembly of the equations of motion: mass matrix, projected forces, slopes of the kinetic energy as sums of terms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a system of bodies is to its kinetic energy: weighted velocities that are affine in q̇.
+"""Terms of the kinetic energy of a system of bodies: weighted velocities that are affine in q̇.
 
 T = ½ Σ w u² over channels u = Σ aᵢ(q, t) q̇ᵢ + a₀(q, t), on an expression graph. Each Cartesian component of a centre of
 mass is a channel with a = ∂x/∂q and the mass as weight, each component of an angular velocity one with a moment of

@@ -1,4 +1,4 @@
-"""M = L D Lᵀ on an expression graph: linear equations solved in n³/6 products, nothing expanded, nothing inverted."""
+"""LDLᵀ factorisation on an expression graph: linear equations solved in n³/6 products, nothing expanded or inverted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The laws of the brackets, as questions about the user's own functions.
+"""Laws of the brackets (bilinearity, Leibniz, Jacobi, invariance) as questions about the user's own functions.
 
 Poisson's bracket makes the functions of (q, p) a Lie algebra of derivations (V. I. Arnold, Mathematical
 Methods of Classical Mechanics, § 40); each law returns a Verdict whose residual is what failed to cancel.

@@ -1,4 +1,4 @@
-"""What must vanish for a map to be canonical, as Poisson, Lagrange, matrices, δ and d, and contact say it."""
+"""Canonicity tests: what must vanish by Poisson's, Lagrange's, the symplectic, bilinear or contact condition."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a canonical map to its generating functions.
+"""Finding the generating functions of a canonical map.
 
 The contact form p dq − P dQ is integrated in the old variables (q, p), where no inversion is needed; the
 four types differ from that function by ± Σ QP and ± Σ qp; only then the equations are solved for the

@@ -1,4 +1,4 @@
-"""From a generating function to its map, the inverse map, the new Hamiltonian, and the other types.
+"""Maps from generating functions: the map, its inverse, the new Hamiltonian, and the other types.
 
 The rules of a type give all 4n variables as functions of the 2n on which F depends; solving some of them for
 others, on the branch of a witness point, gives the map either way and Legendre's relations among the types.

@@ -1,4 +1,4 @@
-"""Maps given by equations between old and new variables, such as one step of an implicit integrator.
+"""Implicit canonical maps, given by equations between old and new variables, such as an implicit integrator's step.
 
 With E(z, Z, t) = 0, A = ∂E/∂z and B = ∂E/∂Z, the Jacobian is M = −B⁻¹A, and M J Mᵀ = c J says
 A J Aᵀ = c B J Bᵀ where E = 0: nothing has to be inverted (E. Hairer, C. Lubich, G. Wanner, Geometric

@@ -1,4 +1,4 @@
-"""One step of an integrator as a map (q, p) → (Q, P), to be asked whether it is canonical.
+"""Integrator step as a map (q, p) → (Q, P), to be asked whether it is canonical.
 
 Splitting steps compose drifts q → q + a h ∂T/∂p and kicks p → p − b h ∂V/∂q; Runge–Kutta steps evaluate
 Hamilton's vector field (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, II.5 and VI).

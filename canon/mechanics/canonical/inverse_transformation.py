@@ -1,4 +1,4 @@
-"""The inverse of a canonical transformation in closed form."""
+"""Inverse of a canonical transformation in closed form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Hamiltonian after a canonical transformation, K = c H + ∂F/∂t, without knowing F.
+"""New Hamiltonian of a canonical transformation, K = c H + ∂F/∂t, without knowing F.
 
 At fixed t let the explicit rates ∂Q/∂t, ∂P/∂t of the new variables be the vector field of a function R:
 ∂R/∂P = ∂Q/∂t, ∂R/∂Q = −∂P/∂t. Then K = c H + R. In the old variables

@@ -1,4 +1,4 @@
-"""Generating functions that are known only along their map."""
+"""Parametric generating functions: known as functions of (q, p, t) along their map only."""
 
 from __future__ import annotations
 

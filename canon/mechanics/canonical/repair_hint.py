@@ -1,4 +1,4 @@
-"""What would make a map canonical that is not: a factor, a sign, an exchange, a valence."""
+"""Repair hint for a map that is not canonical: the factor, sign, exchange or valence that would make it so."""
 
 from __future__ import annotations
 

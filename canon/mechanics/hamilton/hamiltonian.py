@@ -1,4 +1,4 @@
-"""Hamilton's equations, and Legendre's transformation both ways."""
+"""Hamiltonians: Hamilton's equations, and Legendre's transformation both ways."""
 
 from __future__ import annotations
 

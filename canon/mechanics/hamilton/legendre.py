@@ -1,4 +1,4 @@
-"""Eliminating velocities for momenta, or momenta for velocities, in f(x) ↦ Σ x y − f, y = ∂f/∂x."""
+"""Legendre's transformation f(x) ↦ Σ x y − f, y = ∂f/∂x: velocities eliminated for momenta, or vice versa."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pfaffian forms Σ aᵢ dxᵢ the way mechanics uses them: exactness and the bilinear covariant.
+"""Pfaffian forms Σ aᵢ dxᵢ: exactness, and the bilinear covariant.
 
 With two independent displacements d and δ, the bilinear covariant of Σ aᵢ dxᵢ is
 δ(a·dx) − d(a·δx) = Σ ∂aᵢ/∂xⱼ (δxⱼ dxᵢ − dxⱼ δxᵢ) (E. T. Whittaker, Analytical Dynamics, § 126 ff.).

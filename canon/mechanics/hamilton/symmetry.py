@@ -1,4 +1,4 @@
-"""Constants of motion, Noether's theorem, and Lagrangians that say the same.
+"""Symmetries and constants of motion: Noether's theorem, gauge terms, equivalent Lagrangians.
 
 A point symmetry q → q + ε ξ(q, t), t → t + ε τ(q, t) that changes L dt by dK has the constant of motion
 Σ p ξ − E τ − K, with p = ∂L/∂q̇ and E = Σ q̇ p − L (E. Noether 1918; sign conventions of

@@ -1,4 +1,4 @@
-"""Bodies given by where they are, how they are turned, and their mass: kinetic energy and its parts.
+"""Bodies by position, orientation and mass: kinetic energy and its parts.
 
 Positions and orientations are functions of the coordinates and of time. With q̇ it follows that
 T = ½ q̇ᵀA q̇ + b·q̇ + c; b and c vanish where nothing depends on time explicitly (L. A. Pars, Analytical Dynamics, § 3.4).

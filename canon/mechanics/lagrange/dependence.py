@@ -1,4 +1,4 @@
-"""Constraints that depend on one another: which rows, by which combination, and whether they contradict.
+"""Dependent constraints: which rows, by which combination, and whether they contradict each other.
 
 Rows aₐ·q̇ + a₀ₐ = 0 depend on one another where Σ cₐ aₐ = 0 for some c(q, t). Then either Σ cₐ a₀ₐ = 0 and a row is
 redundant, its multiplier undetermined, or the rows contradict one another. For f(q, t) = 0 the values decide.

@@ -1,4 +1,4 @@
-"""Is a constraint on velocities a constraint on positions in disguise?
+"""Frobenius's theorem: constraints on velocities that are integrable, that is, constraints on positions.
 
 Constraints ωₐ = aₐ·dq + a₀ₐ dt are integrable together exactly where dωₐ(X, Y) = 0 for all X, Y that satisfy them
 (F. G. Frobenius 1877). Of constraints that are not, some combinations still may be: those with

@@ -1,4 +1,4 @@
-"""Newton's and Euler's equations body by body, joint forces included: the route that knows no Lagrangian.
+"""Newton–Euler equations body by body, joint forces included, without a Lagrangian.
 
 m r̈ = Σ F for the centre of mass; I α = Σ M in a plane, I ω̇ + ω × I ω = Σ M along the body's axes in space. With
 positions and orientations as functions of q they are linear in q̈ and in the unknown reactions.

@@ -1,4 +1,4 @@
-"""Models made with SymPy's mechanics package, taken over into canon.
+"""SymPy mechanics models (LagrangesMethod, KanesMethod) converted to canon.
 
 SymPy's LagrangesMethod writes d/dt ∂L/∂q̇ − ∂L/∂q = Q − Σ λ a, canon (as most textbooks) + Σ λ a: the multipliers of
 the two differ in sign, the motions do not. A holonomic constraint stays f(q, t) = 0 in canon; SymPy keeps its rate.

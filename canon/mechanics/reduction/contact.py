@@ -1,4 +1,4 @@
-"""One-sided constraints f(q, t) ≥ 0: in contact f = 0, and the reaction λ ∂f/∂q only pushes.
+"""Contact: one-sided constraints f(q, t) ≥ 0; where f = 0 the reaction λ ∂f/∂q can push but not pull.
 
 With d/dt ∂L/∂q̇ − ∂L/∂q = Q + λ ∂f/∂q the contact needs λ ≥ 0; it ends where λ becomes negative.
 """

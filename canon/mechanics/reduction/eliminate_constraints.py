@@ -1,4 +1,4 @@
-"""Constraints eliminated: fewer coordinates that satisfy them whatever their values."""
+"""Elimination of constraints: fewer coordinates, which satisfy them whatever their values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Routh's function: a Lagrangian with its ignorable coordinates taken out.
+"""Routh's function: the Lagrangian after its ignorable coordinates are eliminated.
 
 The momenta of ignorable coordinates are constant. Routh's function R = L − Σ p q̇ over them, with their velocities
 eliminated for the constant momenta, is a Lagrangian of the other coordinates; the ignored ones follow by

@@ -1,4 +1,4 @@
-"""Lagrangians whose velocity Hessian is singular: what the momenta and the motion then have to satisfy.
+"""Singular Lagrangians, with a singular velocity Hessian: what momenta and motion then have to satisfy.
 
 Where M n = 0, the momenta p = ∂L/∂q̇ are bound by primary constraints, and Lagrange's equations hold no acceleration
 along n: n·(bias) = 0 restricts positions and velocities, or is an identity, and then the motion along n is arbitrary

@@ -1,4 +1,4 @@
-"""Places where two functions vanish together with independent differentials, so that their angle winds around."""
+"""Winding centres: places where two functions vanish together, so that the angle of the pair jumps around them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The domain a claim is about, and points of it.
+"""Domains of claims, and points of them.
 
 What a single symbol may be (positive, real, integer …) is said by the symbol's own SymPy assumptions; a
 :class:`Domain` adds conditions that tie symbols together and boxes from which points are usefully drawn.

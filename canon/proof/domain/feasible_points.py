@@ -1,4 +1,4 @@
-"""Points moved to where conditions hold, for domains so thin that no point drawn at random lies in them."""
+"""Feasible points of domains so thin that no point drawn at random lies in them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How large the arithmetic of a proof may become, and what is raised where it would become larger."""
+"""Limits on the arithmetic of a proof, and the error raised beyond them."""
 
 from __future__ import annotations
 

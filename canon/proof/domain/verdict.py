@@ -1,4 +1,4 @@
-"""What canon answers when asked whether something is so."""
+"""Verdicts: holds, fails with a counterexample, or undecided."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From SymPy expressions to fractions over a tower of generators.
+"""Normal form of SymPy expressions: fractions over a tower of generators.
 
 Every rewriting is an identity of principal branches that holds wherever its left side is defined; the
 docstring of each rule says why. Whatever has no rule becomes an opaque kernel, known only by its name and

@@ -1,4 +1,4 @@
-"""Points close to where formulas change: ends of the domain, kinks, poles and branch points of both sides.
+"""Corner points: points close to the ends of a domain, and to kinks, poles and branch points of both sides.
 
 A claim may be false on a tiny set only: |x − 10⁻⁷| = x − 10⁻⁷ for 0 < x < 10⁻⁷. Between two neighbouring places where a
 formula changes nothing changes, so one point between any two of them, and points very close to each, find such sets.

@@ -1,4 +1,4 @@
-"""Claims under equalities that rational numbers do not satisfy, such as a² = 2: refuted where a symbol is a root."""
+"""Root branches: a symbol that an equality such as a² = 2 makes irrational is replaced by a root to refute a claim."""
 
 from __future__ import annotations
 

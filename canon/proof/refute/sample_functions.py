@@ -1,4 +1,4 @@
-"""Examples of arbitrary functions, and derivatives carried out."""
+"""Sample functions in place of arbitrary ones, with derivatives carried out."""
 
 from __future__ import annotations
 

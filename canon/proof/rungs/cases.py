@@ -1,4 +1,4 @@
-"""Cases: Abs, sign, Max, Min and Piecewise go away when the domain is cut where they change."""
+"""Cases of Abs, sign, Max, Min and Piecewise: the domain is cut where they change."""
 
 from __future__ import annotations
 

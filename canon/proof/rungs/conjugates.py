@@ -1,4 +1,4 @@
-"""Nested radicals: a number among the roots of a polynomial is zero when it is too small to be another."""
+"""Conjugates of nested radicals: a number among a polynomial's roots is zero when too small to be another."""
 
 from __future__ import annotations
 

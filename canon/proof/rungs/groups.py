@@ -1,4 +1,4 @@
-"""Sums that cancel group by group: terms with the same radicals are looked at together.
+"""Groups of terms with the same radicals, each of which may cancel by itself.
 
 In the bracket of the angular momentum of N bodies every pair of bodies cancels for itself. Over one tower all
 distances would come to one denominator; a group knows only its own. Zero groups add up to zero, whatever

@@ -1,4 +1,4 @@
-"""The proving rungs, one after another, and the cases when none of them reaches."""
+"""Ladder of proofs: the proving rungs one after another, then cases where none of them decides."""
 
 from __future__ import annotations
 

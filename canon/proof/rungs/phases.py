@@ -1,4 +1,4 @@
-"""Relations between inverse functions and logarithms, by exponentiation.
+"""Phases: relations between inverse functions and logarithms, proved by exponentiation.
 
 Where w = i·Σ rₖ arcₖ + Σ sₖ log gₖ + … has e^w = 1 identically, w is a whole multiple of 2πi at every
 point. It is zero where the ranges of the arcs leave no other multiple, or where w is continuous on a

@@ -1,4 +1,4 @@
-"""Factors with and without a proven sign, which roots, logarithms and moduli take apart."""
+"""Factors with and without a proven sign, taken out of roots, logarithms and moduli."""
 
 from __future__ import annotations
 

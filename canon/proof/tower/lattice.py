@@ -1,4 +1,4 @@
-"""The lattice that the arguments of sines and cosines span, and a basis of it."""
+"""Lattice spanned by the arguments of sines and cosines, and a basis of it."""
 
 from __future__ import annotations
 

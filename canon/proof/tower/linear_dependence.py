@@ -1,4 +1,4 @@
-"""Fractions that depend linearly on others over the rationals.
+"""Linear dependence of fractions over the rationals.
 
 exp(x/(x − z)) and exp(−z/(x − z)) have arguments that differ by 1, and 1/(x(x + 1)) is 1/x − 1/(x + 1). A fraction
 that is a rational combination of earlier ones and a polynomial is written as such, so that its exponential, its

@@ -1,4 +1,4 @@
-"""What an expression consists of, every distinct part looked at once.
+"""Anatomy of expressions: their distinct parts, each looked at once.
 
 SymPy's ``free_symbols``, ``has`` and ``atoms`` walk the whole tree; composed maps share parts, and their
 trees are far larger than the number of distinct parts.

@@ -1,4 +1,4 @@
-"""Factors, of polynomials by FLINT: SymPy's own factorisation may take hours in several variables."""
+"""Polynomial factors by FLINT, as SymPy's own factorisation may take hours in several variables."""
 
 from __future__ import annotations
 

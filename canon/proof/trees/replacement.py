@@ -1,4 +1,4 @@
-"""Substitutions in expressions that SymPy may have no value for, every distinct part being rebuilt once."""
+"""Replacement in expressions that SymPy may have no value for, every distinct part rebuilt once."""
 
 from __future__ import annotations
 

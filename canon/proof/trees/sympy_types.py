@@ -1,4 +1,4 @@
-"""SymPy's parts with the types that they have in expressions."""
+"""SymPy's parts of expressions with their static types."""
 
 from __future__ import annotations
 

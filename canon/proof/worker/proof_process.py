@@ -1,4 +1,4 @@
-"""The process that heavy proofs run in; it can be killed at any time.
+"""Proof process: a child process for heavy proofs, which can be killed at any time.
 
 A message is a pickle of expressions, their domain and the seconds for the proof; so is its answer.
 """

@@ -1,4 +1,4 @@
-"""One case of a study: everything that determines a run, its key, and the system and state it starts from."""
+"""Case of a study: all that determines a run, its key, and the system and state it starts from."""
 
 from __future__ import annotations
 

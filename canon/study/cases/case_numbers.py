@@ -1,4 +1,4 @@
-"""What is kept of a finished case: how its energy, and what else was followed, drifted."""
+"""Numbers kept of a finished case: the drift of its energy and of the other observables."""
 
 from __future__ import annotations
 

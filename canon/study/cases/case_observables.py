@@ -1,4 +1,4 @@
-"""What a case follows beside the energy: constants by name, and functions of (q, p, t) as text."""
+"""Observables of a case besides the energy: constants by name, and functions of (q, p, t) as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run in parts: from one exact state to the next, so that it can stop anywhere and go on as if it had not.
+"""Checkpointed run: a case run in parts, from one exact state to the next, so that an interruption changes no bit.
 
 Every run of a study is made of parts, each of which begins anew with the exact state (high and low part) that the
 one before ended with. An uninterrupted run goes through the same parts; therefore a resumed one gives the same

@@ -1,4 +1,4 @@
-"""What a study's file says of each case: its inputs, its numbers or why there are none."""
+"""Results in a study's file: of each case its inputs, and its numbers or why there are none."""
 
 from __future__ import annotations
 

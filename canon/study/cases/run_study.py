@@ -1,4 +1,4 @@
-"""Running a study on any executor: what is finished is kept, what was interrupted goes on where it stopped."""
+"""Running a study on any executor: finished cases are kept, interrupted ones resumed."""
 
 from __future__ import annotations
 

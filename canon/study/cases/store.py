@@ -1,4 +1,4 @@
-"""One SQLite file that keeps what is finished and how far the rest is, each row written in one transaction.
+"""SQLite file of a study: finished cases and the checkpoints of the others, each row written in one transaction.
 
 The store knows no mechanics. A case is its key (a hash of everything that determines the result) and its
 inputs as text; a record is what came of it, as text too; a checkpoint is where a long run stands, and goes

@@ -1,4 +1,4 @@
-"""What a study is made of: systems × starts × parameters × methods × steps, from Python or a TOML file."""
+"""Studies: systems × starts × parameters × methods × steps, from Python or a TOML file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What may be chosen: the methods that apply, and one of them with what is expected of it over the whole span."""
+"""Candidates of a choice: the methods that apply, and what is expected of each over the whole span."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is to be kept over which motion, and the settings that are tried."""
+"""Question of a choice: which error to bound over which motion, and the settings that are tried."""
 
 from __future__ import annotations
 

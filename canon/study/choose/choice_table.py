@@ -1,4 +1,4 @@
-"""A choice as text, with the candidates it was chosen from."""
+"""Table of a choice: the answer in words, with the candidates it was chosen from."""
 
 from __future__ import annotations
 

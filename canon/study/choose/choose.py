@@ -1,4 +1,4 @@
-"""The cheapest method, step and precision for a wanted accuracy over a wanted time."""
+"""Choice of the cheapest method, step and precision for a wanted accuracy over a wanted time."""
 
 from __future__ import annotations
 

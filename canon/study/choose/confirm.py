@@ -1,4 +1,4 @@
-"""A last, longer look at the candidate that would be chosen, and whether plain doubles suffice."""
+"""Confirmation run of the candidate about to be chosen, and whether plain doubles suffice."""
 
 from __future__ import annotations
 

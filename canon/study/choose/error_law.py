@@ -1,4 +1,4 @@
-"""From a short run to a long one: how errors grow with time, and with the step.
+"""Error laws: how errors grow with time and with the step, to extrapolate from a short run to a long one.
 
 A symplectic method keeps a modified energy, so its energy error stays within a bound proportional to h^p
 for exponentially long times; that of other methods grows in proportion to t (Hairer, Lubich & Wanner,

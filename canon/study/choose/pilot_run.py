@@ -1,4 +1,4 @@
-"""Short runs that show what a setting of a method costs and how its error grows."""
+"""Pilot runs: short runs that show what a setting of a method costs and how its error grows."""
 
 from __future__ import annotations
 

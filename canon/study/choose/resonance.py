@@ -1,4 +1,4 @@
-"""Steps in resonance with a motion: their error stands out from that of their neighbours."""
+"""Resonant steps: step sizes in resonance with a motion, whose errors stand out from their neighbours'."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The largest error that is still good enough: the step or tolerance a method needs, and what it costs then."""
+"""Step search: the largest step or tolerance with which a method keeps an accuracy, and its cost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The largest tolerance of an adaptive method that is still good enough."""
+"""Tolerance search: the largest tolerance with which an adaptive method keeps an accuracy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Work against precision: what each digit of a motion costs with each method."""
+"""Work-precision measurement: what each digit of a motion costs with each method."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Window means of an error series: what is left of it once its oscillation is averaged away.
+"""Block means of an error series: what is left of it once its oscillation is averaged away.
 
 A plain mean over a window leaves a share A/(π c) of an oscillation of amplitude A that turns c times in
 it. With the weights of a weighted Birkhoff average the share falls faster than any power of c for quasi-

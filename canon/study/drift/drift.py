@@ -1,4 +1,4 @@
-"""Whether a conserved quantity stays bounded along a run, wanders as round-off does, or drifts."""
+"""Drift verdict of a conserved quantity: bounded along a run, wandering as round-off does, or drifting."""
 
 from __future__ import annotations
 

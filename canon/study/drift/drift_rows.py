@@ -1,4 +1,4 @@
-"""One method's run of one motion, and how each quantity that should stay constant drifted along it."""
+"""Rows of a drift study: one method's run, and how each quantity that should stay constant drifted."""
 
 from __future__ import annotations
 

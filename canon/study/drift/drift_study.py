@@ -1,4 +1,4 @@
-"""Methods side by side on one motion: what their errors do, and what they cost."""
+"""Drift study: methods side by side on one motion, how their errors grow and what they cost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A drift study as text: aligned columns, plain words."""
+"""Table of a drift study: aligned columns, plain words."""
 
 from __future__ import annotations
 

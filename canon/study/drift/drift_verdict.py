@@ -1,4 +1,4 @@
-"""What is known of the growth of an error along a run: the verdict, and the numbers behind it."""
+"""Kinds of error growth along a run, and the verdict with the numbers behind it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How large an error is along a run: its largest and median size in intervals of the logarithm of time."""
+"""Envelope of an error series: its largest and median size in intervals of the logarithm of time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests and estimates on block means: is there a slope, does the level wander, and with which power of time.
+"""Growth tests on block means: is there a slope, does the level wander, and with which power of time?
 
 Every estimate weighs the increments of the block means with a covariance that allows for a random walk,
 because a straight line fitted to a random walk by least squares is "significant" most of the time

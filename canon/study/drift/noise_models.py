@@ -1,4 +1,4 @@
-"""How the increments of block means scatter, for an error that oscillates, wanders, or does both.
+"""Noise models of block means: covariances of an error that oscillates, wanders, or does both.
 
 The block means of a bounded oscillation scatter independently about one value at worst (those of a quasi-
 periodic one less); those of accumulated round-off are a random walk. Both at once is the local level

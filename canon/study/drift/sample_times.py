@@ -1,4 +1,4 @@
-"""When to look at a run: evenly where the motion is seen that way, else at scattered times.
+"""Sample times of an error series: evenly spaced where that resolves the motion, else scattered.
 
 Even samples of an oscillation they do not resolve see it as a slow one (aliasing), and slow oscillations look like
 growth. One sample at a random place of each interval makes noise of it instead. Noise averages out far more slowly

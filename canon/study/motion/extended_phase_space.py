@@ -1,4 +1,4 @@
-"""Motions driven in time, as motions that conserve an energy: the time becomes a coordinate.
+"""Extended phase space: a motion driven in time as one that conserves an energy, the time being a coordinate.
 
 K = H(q, p, τ) + p_τ with τ̇ = ∂K/∂p_τ = 1 and ṗ_τ = −∂H/∂τ moves (q, p) as H does. Where p_τ = 0 at the start, −p_τ is
 the work done from outside, ∫ ∂H/∂t dt, so that K is the energy less that work and should stay what H was at the start.

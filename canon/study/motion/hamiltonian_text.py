@@ -1,4 +1,4 @@
-"""A Hamiltonian as text: a system of one's own that a file can hold, a key can be made of, a worker can be sent."""
+"""Hamiltonians as text: for study files, keys and workers."""
 
 from __future__ import annotations
 

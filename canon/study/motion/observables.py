@@ -1,4 +1,4 @@
-"""What should stay constant along a motion: energy, momenta, integrals, residuals, and the flow's symplecticity."""
+"""Observables that should stay constant along a motion: energy, momenta, integrals, residuals, symplecticity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a motion is asked for by: a scene and a start by name, or a Hamiltonian and numbers."""
+"""Motion that is studied, as it is asked for: a scene and a start by name, or a Hamiltonian and numbers."""
 
 from __future__ import annotations
 
