@@ -143,6 +143,7 @@ RETURNED = {
         "study.choose.work_precision.WorkRow",
         "study.cases.result.Result",
         "study.cases.result.State",
+        "study.cases.run_study.StudyStatus",
         "study.drift.drift_rows.DriftRow",
         "study.cases.store.StoreError",
     ),
