@@ -90,7 +90,7 @@ def scene_equations(scene: Scene) -> SceneEquations:
     Examples
     --------
     >>> from canon.scene import find
-    >>> found = equation_of(find("simple-pendulum"))
+    >>> found = scene_equations(find("simple-pendulum"))
     >>> found.field.x
     (theta, p_theta)
     """

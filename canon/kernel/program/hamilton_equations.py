@@ -205,7 +205,7 @@ def exact_number(value: Any, what: str) -> Fraction:
 
     Examples
     --------
-    >>> exact("0.1", "g"), exact(0.5, "g")
+    >>> exact_number("0.1", "g"), exact_number(0.5, "g")
     (Fraction(1, 10), Fraction(1, 2))
     """
     if isinstance(value, sp.Expr):

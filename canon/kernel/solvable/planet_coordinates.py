@@ -40,7 +40,7 @@ def jacobi_coordinates(m: Sequence[Fraction]) -> PlanetCoordinates:
 
     Examples
     --------
-    >>> chart = jacobi_chart([Fraction(3), Fraction(1), Fraction(1)])
+    >>> chart = jacobi_coordinates([Fraction(3), Fraction(1), Fraction(1)])
     >>> [[str(x) for x in row] for row in chart.places]
     [['-1', '1', '0'], ['-3/4', '-1/4', '1']]
     """
@@ -60,7 +60,7 @@ def heliocentric_coordinates(m: Sequence[Fraction]) -> PlanetCoordinates:
 
     Examples
     --------
-    >>> chart = democratic_chart([Fraction(3), Fraction(1), Fraction(1)])
+    >>> chart = heliocentric_coordinates([Fraction(3), Fraction(1), Fraction(1)])
     >>> [[str(x) for x in row] for row in chart.velocities]
     [['-3/5', '4/5', '-1/5'], ['-3/5', '-1/5', '4/5']]
     """

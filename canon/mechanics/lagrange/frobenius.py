@@ -200,7 +200,7 @@ def exterior_derivative(form: Row, z: Sequence[Symbol], X: Row, Y: Row) -> Expr:
     Examples
     --------
     >>> x, y = sp.symbols("x y")
-    >>> curl((-y, x), (x, y), (sp.S.One, sp.S.Zero), (sp.S.Zero, sp.S.One))
+    >>> exterior_derivative((-y, x), (x, y), (sp.S.One, sp.S.Zero), (sp.S.Zero, sp.S.One))
     2
     """
     pairs = combinations(range(len(z)), 2)

@@ -179,7 +179,7 @@ def part_count(case: Case) -> int:
     Examples
     --------
     >>> from canon import RK4, Taylor
-    >>> parts_of(Case("kepler", RK4(), span=1e6, step=0.01)), parts_of(Case("kepler", Taylor(), span=1e6))
+    >>> part_count(Case("kepler", RK4(), span=1e6, step=0.01)), part_count(Case("kepler", Taylor(), span=1e6))
     (96, 32)
     """
     if isinstance(case.method, TimeTransformed):
