@@ -12,7 +12,7 @@ from canon.mechanics.canonical.implicit_transformation import ImplicitTransforma
 from canon.mechanics.canonical.integrator_step import midpoint_step, runge_kutta_step, splitting_step
 from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError, inverse_transformation
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
-from canon.mechanics.canonical.repair_hint import constant_value, mending
+from canon.mechanics.canonical.repair_hint import constant_value, repair_hint
 from canon.mechanics.canonical.transformation import CanonicalTransformation, point_transformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.hamilton.pfaffian_form import (
@@ -95,15 +95,15 @@ def test_feedback_says_what_would_mend(T, words):
 
 
 def test_what_mends_a_map_is_a_value():
-    found = mending(CanonicalTransformation(q, p, 3 * q, p * m), sp.S.One)
+    found = repair_hint(CanonicalTransformation(q, p, 3 * q, p * m), sp.S.One)
     assert (found.valence, found.bracket, found.is_renumbering) == (3 * m, 3 * m, False)
-    found = mending(CanonicalTransformation(q, p, p, q), sp.S.One)
+    found = repair_hint(CanonicalTransformation(q, p, p, q), sp.S.One)
     assert (found.valence, found.bracket) == (None, -1)
-    found = mending(CanonicalTransformation((x, y), (px, py), (x, y), (py, px)), sp.S.One)
+    found = repair_hint(CanonicalTransformation((x, y), (px, py), (x, y), (py, px)), sp.S.One)
     assert (found.valence, found.partners, found.is_renumbering) == (None, (1, 0), True)
-    found = mending(CanonicalTransformation((x, y), (px, py), (x, y), (px, 2 * py)), sp.S.One)
+    found = repair_hint(CanonicalTransformation((x, y), (px, py), (x, y), (px, 2 * py)), sp.S.One)
     assert (found.valence, found.brackets) == (None, (1, 2))
-    assert mending(CanonicalTransformation(q, p, q**2, p), sp.S.One) is None
+    assert repair_hint(CanonicalTransformation(q, p, q**2, p), sp.S.One) is None
 
 
 def test_composition_and_inversion():

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from canon.exercise.diagnose.diagnosis import WrongAnswer
     from canon.exercise.question.question import Part
     from canon.exercise.sheet.reading import Reading
-    from canon.mechanics.canonical.repair_hint import Mending
+    from canon.mechanics.canonical.repair_hint import RepairHint
     from canon.proof.domain.domain import Domain
 
 __all__ = [
@@ -70,7 +70,7 @@ def variable_valence(wrong: WrongAnswer) -> Iterator[Diagnosis]:
         yield from _stated(str(mended))
 
 
-def _is_rarely_meant(mended: Mending) -> bool:
+def _is_rarely_meant(mended: RepairHint) -> bool:
     return mended.valence is not None and not mended.valence.is_Rational
 
 
@@ -117,7 +117,7 @@ def _valence(reading: Reading, parts: Sequence[Part], domain: Domain) -> Iterato
     yield Diagnosis(sentence, repaired)
 
 
-def _mended(reading: Reading) -> Mending | None:
+def _mended(reading: Reading) -> RepairHint | None:
     if not reading.has("Q"):
         return None
     q, p = reading.phase_space("q", "p")

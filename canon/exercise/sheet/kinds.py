@@ -1,4 +1,4 @@
-"""The kinds of claims: one value each, with everything that makes it a kind."""
+"""Kinds of claims: one value each, with everything that makes it a kind."""
 
 from __future__ import annotations
 

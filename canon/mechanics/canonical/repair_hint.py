@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from canon.mechanics.canonical.canonicity_tests import PhaseSpaceMap
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Mending", "constant_value", "mending"]
+__all__ = ["RepairHint", "constant_value", "repair_hint"]
 
 _PLACES = (sp.S.Zero, sp.S.One, sp.Rational(1, 2), sp.Rational(-1, 3))
 
@@ -67,7 +67,7 @@ def _arbitrary(f: Expr, moving: set[Symbol]) -> list[Expr]:
 
 
 @dataclass(frozen=True)
-class Mending:
+class RepairHint:
     """What makes a map canonical whose pairs of coordinate and momentum have constant brackets.
 
     Parameters
@@ -122,14 +122,14 @@ class Mending:
         )
 
 
-def mending(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> Mending | None:
+def repair_hint(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> RepairHint | None:
     """Return what would mend the map, None where that is not simple or takes too long."""
     if is_large(T.images):
         return None
     n, deadline = len(T.q), time.monotonic() + seconds
     if n == 1:
         value = constant_value(T.poisson_bracket_of(0, 1), T.variables, T.t, T.domain, seconds)
-        return None if value is None else Mending((value,), c)
+        return None if value is None else RepairHint((value,), c)
     for a, b in ((first + i, first + j) for first in (0, n) for i in range(n) for j in range(i)):
         if time.monotonic() > deadline or not _vanishes(T.poisson_bracket_of(a, b), T.domain):
             return None
@@ -148,7 +148,7 @@ def mending(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> Mending | None:
             return None
         found.append(value)
         partners += others
-    return Mending(tuple(found), c, tuple(partners))
+    return RepairHint(tuple(found), c, tuple(partners))
 
 
 def _vanishes(f: Expr, domain: Domain) -> bool:

@@ -30,7 +30,7 @@ from canon.mechanics.algebra.linear import solve
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.substitution import as_tuple, entry, substitute
 from canon.mechanics.canonical.canonicity_tests import TESTS, Test, disagreement, residuals
-from canon.mechanics.canonical.repair_hint import constant_value, mending
+from canon.mechanics.canonical.repair_hint import constant_value, repair_hint
 from canon.mechanics.hamilton.bracket import antisymmetric, lagrange_matrix
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict
@@ -202,7 +202,7 @@ class CanonicalTransformation:
         verdict = having_values(verdict, self._named_images, self.variables, self.domain)
         if verdict.fails and verdict.certificate != "definedness":
             left = deadline - clock.monotonic()
-            mended = mending(self, c, left)
+            mended = repair_hint(self, c, left)
             return verdict if mended is None else replace(verdict, feedback=str(mended))
         if verdict.holds and by == "contact":
             F = self.contact_function(c)
