@@ -41,6 +41,7 @@ from sympy import (
     sqrt,
     tan,
 )
+from sympy.core.facts import InconsistentAssumptions
 
 from canon.proof import Domain, equivalent_equations, vanishes
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
@@ -421,7 +422,9 @@ def judge(seed, count, budget):
     assert time.monotonic() - start < budget + 2.5, (claim, conditions)
     if verdict.holds:
         assert refutation(claim, conditions, chance, count) is None, (claim, conditions)
-    if verdict.fails:
+    if verdict.fails and verdict.certificate == "definedness":
+        assert without_value(claim, domain), (claim, conditions)
+    elif verdict.fails:
         point = {s: Rational(verdict.counterexample.point[s.name]) for s in claim.free_symbols}
         assert all(e.subs(point) == S.true for e in conditions if e.free_symbols <= set(point)), point
         sizes = sizes_by_sympy([claim, *sp.Add.make_args(claim)], point)
@@ -431,6 +434,20 @@ def judge(seed, count, budget):
             with precision(320):
                 assert not value(claim, point, {}).contains(0), (claim, point)
     return verdict.holds
+
+
+def without_value(claim, domain):
+    """Tell whether no value is found at points of the domain, isolated ones aside, on which 320 bits are spent."""
+    with precision(320):
+        for point in domain.points(claim.free_symbols, 25, seed=11):
+            if any(number in (0, 1, -1) for number in point.values()) and not domain.conditions:
+                continue
+            try:
+                value(claim, point, {})
+            except (NotDecided, Undefined, Unmodelled):
+                continue
+            return False
+    return True
 
 
 class TooLong(Exception):
@@ -447,7 +464,7 @@ def sizes_by_sympy(terms, point):
     signal.setitimer(signal.ITIMER_VIRTUAL, 5.0)
     try:
         sizes = [abs(sp.N(term.xreplace(point), 30)) for term in terms]
-    except TooLong:
+    except (TooLong, InconsistentAssumptions):  # the latter from SymPy itself, while it puts numbers in
         return []
     finally:
         signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)

@@ -51,13 +51,18 @@ BUDGET, PATIENCE = 3.0, 30.0
 
 
 def written(form: Form, answer: str, zeros: Sequence[str] = ZEROS) -> list[sp.Expr]:
-    """Return the answer so decorated; nothing where the language refuses what has no value."""
+    """Return the answer so decorated; nothing where the language refuses what has no value.
+
+    Nor where SymPy has made the bare answer of it, as of R·sign(1/Z)² with a number Z: only sheets know what was
+    written.
+    """
     right = Right("", {"answer": answer}, ("answer",), "", ("q", "q"), ("p", "p"))
     zero = random.Random(form.name + answer).choice(zeros)
     try:
-        return [parse_expression(form.written(right, zero)[0], SCOPE)]
+        made = parse_expression(form.written(right, zero)[0], SCOPE)
     except LanguageError:
         return []
+    return [made] if made != parse_expression(answer, SCOPE) else []
 
 
 def beside(form: Form, answer: str) -> list[sp.Expr]:
