@@ -27,7 +27,8 @@ FREE = {"q": "theta", "equations": ["theta_ddot"], "parameters": {"w": "positive
 GAUGE = {"q": "x", "L1": "x_dot**2/2", "L2": "x_dot**2/2 + x*x_dot", "relation": "gauge"}
 PARTICLE = {"q": "x", "bodies": [{"m": "m", "r": ["x"]}], "parameters": {"m": "positive"}}
 STEPS = ("sign({})", "atan(1/{0}) + atan({0})", "{0} - atan(tan(pi*{0}))/pi", "log({0}) - log(-{0})", "Max({0}, 0)/{0}",
-         "Piecewise((1, {0} > 0), (2, True))", "atan2(sin({0}), cos({0})) - {0}")  # fmt: skip
+         "Piecewise((1, {0} > 0), (2, True))", "atan2(sin({0}), cos({0})) - {0}",
+         "atan2(0, {0})")  # fmt: skip
 
 
 def said(kind, **keys):
@@ -82,6 +83,8 @@ RIGHT = [
     ("constant-of-motion", {"q": "q", "p": "p", "H": "p**2/2 + Abs(q)", "I": "p**2/2 + Abs(q)"}),
     ("constant-of-motion", {"q": "q", "p": "p", "H": "p**2/2 + sign(q)", "I": "p**2/2 + sign(q)"}),
     ("constant-of-motion", {**OSCILLATOR, "I": f"({ENERGY})*Abs(q)/q", "domain": ["q < 0"]}),
+    ("constant-of-motion", {**OSCILLATOR, "I": f"{ENERGY} + atan2(0, 1 + q**2)"}),
+    ("constant-of-motion", {**OSCILLATOR, "I": f"{ENERGY} + atan2(0, q)", "domain": ["q > 0"]}),
     ("generating-F1", {**ANGLE, "F": "m*w*q**2*cot(Q)/2"}),
     ("generating-F2", {
         **ANGLE, "parameters": POSITIVE | {"p": "positive", "P": "positive"},
@@ -190,6 +193,29 @@ def test_motions_that_end_are_claimed_where_they_are_real():
     assert verdict.holds
     assert "where it is real" in verdict.assumed[0]
     assert said("solution", **circle, solution={"x": "sqrt(-1 - t**2)"}).fails
+
+
+SPRING = {
+    "q": "x",
+    "equations": ["m*x_ddot + k*x"],
+    "parameters": {"m": "positive", "k": "positive", "C": "real"},
+}
+IMAGINARY = ["I*x*sqrt(k/m)", "sqrt(-x**2*k/m)", "x*sqrt(-k/m)", "sqrt(-2*C**2 - k*x**2)/sqrt(m)"]
+
+
+@pytest.mark.parametrize("rate", IMAGINARY)
+def test_velocities_are_real(rate):
+    verdict = said("solution", **SPRING, rates={"x": rate})
+    assert verdict.fails
+    assert "not real" in verdict.feedback
+
+
+def test_velocities_may_be_real_on_a_part():
+    verdict = said("solution", **SPRING, rates={"x": "sqrt(2*C - k*x**2)/sqrt(m)"})
+    assert verdict.holds
+    assert "where it is real" in verdict.assumed[0]
+    runaway = {**SPRING, "equations": ["m*x_ddot - k*x"]}
+    assert said("solution", **runaway, rates={"x": "-I*I*x*sqrt(k/m)"}).holds
 
 
 def test_velocities_by_quadrature_do_not_jump():

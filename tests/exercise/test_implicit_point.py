@@ -88,3 +88,38 @@ def test_no_box_around_a_double_root_or_a_jump():
         (root,) = enclosed([x**3 - 2], [x], {}, [sp.Integer(1)])
         assert (root**3).contains(2)
         assert root.rad() < 1e-25
+
+
+WITHOUT_SOLUTION = [
+    ["Abs(Q - q) = -1", "Abs(P - p) = -1"],
+    ["Q = q", "Abs(P - p) = -1"],
+    ["(Q - q)**2 = -1", "P = p"],
+    ["exp(Q - q) = -1", "P = p"],
+    ["cosh(Q - q) = 0", "P = p"],
+    ["Max(Q - q, 0) = -1", "P = p"],
+]
+
+
+@pytest.mark.parametrize("equations", WITHOUT_SOLUTION)
+def test_equations_without_a_solution_define_no_map(equations):
+    verdict = judged(equations)
+    assert verdict.fails
+    assert "no real solution" in verdict.feedback
+
+
+@pytest.mark.parametrize("first", ["sqrt(Q - q) = -1", "sin(Q - q) = 2", "Q = q + I", "Abs(Q - q)**4 = 0"])
+def test_equations_of_which_no_solution_is_found_are_no_ground_to_hold(first):
+    assert not judged([first, "P = p"]).holds
+
+
+@pytest.mark.parametrize(
+    "first", ["Q = q", "Q = q + 1", "exp(Q) = exp(q)", "Q + Q**3 = q + q**3 + Q**3 - q**3"]
+)
+def test_equations_with_a_solution_still_define_one(first):
+    assert judged([first, "P = p"]).holds
+
+
+def test_arbitrary_functions_stand_in_equations_too():
+    step = ["Q = q + h*P", "P = p - h*Derivative(V(q), q)"]
+    assert judged(step, functions={"V": ["q"]}).holds
+    assert not judged(["Q = q", "P = p + sqrt(-1 - V(q)**2)"], functions={"V": ["q"]}).holds

@@ -171,3 +171,37 @@ def test_systems_of_other_forms():
         families([sp.cos(a) * x - x], [a], [], Domain(), after)
     with pytest.raises(Undecided):
         families([sp.sqrt(x - a) - sp.sqrt(x - 2)], [a], [], Domain(), after)
+
+
+SCALED = {
+    "of": "canonicity", "q": ["q"], "p": ["p"], "Q": ["(a + b)*q"], "P": ["p"],
+    "parameters": {"a": "real", "b": "real"}, "find": ["a", "b"],
+}  # fmt: skip
+ON_A_PART = [
+    "1 - a + Piecewise((0, a < 0))",
+    "Piecewise((1 - a, a < 10**9))",
+    "1 - a + 0*log((a + 1)**2 - a**2 - 2*a - 1)",
+    "1 - a + 0/(a - a)",
+]
+EVERYWHERE = [
+    "1 - a",
+    "1 - a + Piecewise((0, a < 0), (0, True))",
+    "1 - a + 0/a",
+    "Piecewise((1 - a, Ne(a, 0)))",
+]
+
+
+def test_values_are_defined_for_all_that_is_left_open():
+    for value in ON_A_PART:
+        verdict = judge(Claim("a", "parameters", {**SCALED, "values": [{"b": value}]}))
+        assert verdict.fails, value
+        assert "value" in verdict.feedback
+    for value in EVERYWHERE:
+        assert judge(Claim("a", "parameters", {**SCALED, "values": [{"b": value}]})).holds, value
+
+
+def test_values_may_be_narrower_than_the_plane_where_the_domain_is():
+    negative = {**SCALED, "domain": ["a < -1"], "values": [{"b": ON_A_PART[0]}]}
+    assert judge(Claim("a", "parameters", negative)).holds
+    parts = [{"b": "Piecewise((1 - a, a < 0))"}, {"b": "Piecewise((1 - a, a > 5))"}]
+    assert not judge(Claim("a", "parameters", {**SCALED, "values": parts})).holds

@@ -238,6 +238,14 @@ def test_an_empty_answer_is_invalid(kind, keys):
     assert (status, "nothing is claimed: the answer is empty" in told) == ("invalid", True)
 
 
+def test_an_empty_table_beside_an_answer_is_invalid():
+    right = {**FIXED, "force": ["0", "m*g"]}
+    assert judged("reaction", **right)[0] == "holds"
+    assert judged("reaction", **right, values={"a": "0", "b": "m*g"})[0] == "holds"
+    status, told, _ = judged("reaction", **right, values={})
+    assert (status, "the table is empty" in told) == ("invalid", True)
+
+
 def test_trivial_parts_beside_others_do_no_harm():
     rate = "x*x_ddot + x_dot**2 + y*y_ddot + y_dot**2"
     for trivial in ("0 = 0", "lam = lam", "x**2 + y**2 = l**2", rate):

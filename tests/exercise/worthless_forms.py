@@ -122,6 +122,12 @@ NOWHERE = (
         r"R + Z\tan(\frac\pi2 + Z)",
         beside="R + Z*tan(pi/4 + Z)",
     ),
+    Form(
+        "angle at the origin",
+        "R + Z*atan2(Z, Z)",
+        r"R + Z\operatorname{atan2}(Z, Z)",
+        beside="R + Z*atan2(Z, 1 + U**2)",
+    ),
     Form("cotangent of zero", "R + Z*cot(Z)", r"R + Z\cot Z", beside="R + Z*cot(1 + Z)"),
     Form(
         "artanh of one", "R + Z*atanh(1 + Z)", r"R + Z\operatorname{artanh}(1 + Z)", beside="R + Z*atanh(Z)"
@@ -227,6 +233,9 @@ JUMPS = (
         "R + log(U) - log(-U)",
         r"R + \ln(U) - \ln(-U)",
         beside="R + log(1 + U**2) - log(-(-1 - U**2))",
+    ),
+    Form(
+        "half a turn", "R + atan2(0, U)", r"R + \operatorname{atan2}(0, U)", beside="R + atan2(0, 1 + U**2)"
     ),
     Form("step", "R + Piecewise((0, U < 0), (1, True))", beside="R + Piecewise((0, U < 0), (0, True))"),
     Form(

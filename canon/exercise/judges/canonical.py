@@ -10,16 +10,24 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.question.answer import open_brackets
-from canon.exercise.question.constraint_manifold import on_manifold, transported
+from canon.exercise.question.constraint_manifold import EmptyDomainError, inhabited, on_manifold, transported
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.generating_answer import generating_function_of
-from canon.exercise.question.implicit_point import refuted_at_a_point
-from canon.exercise.question.question import Determines, Part, Question, Regular, Same, wrong_variables
+from canon.exercise.question.implicit_point import refuted_at_a_point, solved_somewhere
+from canon.exercise.question.question import (
+    Determines,
+    Part,
+    Question,
+    Regular,
+    Same,
+    fails,
+    wrong_variables,
+)
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.bracket import lagrange_bracket, lie_bracket, poisson_bracket, symplectic_unit
 from canon.mechanics.hamilton.pfaffian_form import bilinear_covariant, displacements
-from canon.proof.domain.verdict import Status, Undecided, Verdict
+from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -133,10 +141,11 @@ def _implicit_canonicity(
     J = symplectic_unit(len(q))
     difference = B * J * B.T - valence * A * J * A.T
     entries: list[Expr] = [difference[i, j] for i, j in combinations(range(2 * len(q)), 2)]
+    keep = set(reading.scope.names.values()) - {*old, *new} | {reading.time}
+    yield _defines_a_map(equations, old, new, tuple(keep), reading.domain)
     if all(sp.expand(entry) == 0 for entry in entries):
         yield Regular(A, "∂(equations)/∂(new variables)", reading.domain)
         return
-    keep = set(reading.scope.names.values()) - {*old, *new} | {reading.time}
     try:
         branches = on_manifold(equations, reading.domain, keep=tuple(keep), prefer=(*new, *old))
     except Undecided:
@@ -152,6 +161,27 @@ def _implicit_canonicity(
         yield Same(
             tuple(Part("M J Mᵀ − c J", entry, through=branch.values) for entry in entries), branch.domain
         )
+
+
+def _defines_a_map(
+    equations: Sequence[Expr],
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    keep: Sequence[Symbol],
+    domain: Domain,
+) -> Verdict:
+    """Tell whether equations have a regular solution at all: without one they are no map, canonical or not."""
+    question = "the equations define a map"
+    if solved_somewhere(equations, old, new, domain):
+        return Verdict(Status.HOLDS, question, "ball")
+    try:
+        inhabited(on_manifold(equations, domain, keep=keep, prefer=(*new, *old)))
+    except EmptyDomainError:
+        return fails(question, "these equations define no map: they have no real solution")
+    except Undecided:
+        pass
+    open_ = "it was not shown that the equations have a real solution, and thus define a map"
+    return Verdict(Status.UNDECIDED, question, evidence=(Evidence("open", open_),))
 
 
 def bilinear(reading: Reading) -> Iterator[Question]:

@@ -17,7 +17,6 @@ from canon.exercise.question.answer import stay_open
 from canon.exercise.question.constraint_manifold import transported
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, fails
-from canon.exercise.sheet.sympy_trees import arguments
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.linear import is_regular
@@ -25,7 +24,6 @@ from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
-from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -81,23 +79,22 @@ def _laws(reading: Reading) -> list[Expr]:
 
 
 def _check_smooth(value: Expr, t: Symbol, domain: Domain) -> None:
-    """Refuse motions with a kink, such as √(t² − 2t + 1): beside it they may satisfy equations, at it they do not."""
+    """Refuse roots with a kink, such as √(t² − 2t + 1): beside it they may satisfy equations, at it they do not.
+
+    Of moduli and pieces it is asked before whether the motion and its velocity are continuous.
+    """
     for part in sp.preorder_traversal(value):
-        if not isinstance(part, Expr) or not part.has(t):
-            continue
-        kink = isinstance(part, PIECED)
-        if isinstance(part, sp.Abs):
-            kink = proved_sign(arguments(part)[0], domain) not in ("+", "-")
-        elif isinstance(part, sp.Pow) and part.exp.is_integer is not True and part.base.has(t):
-            kink = _touches_zero(part.base, t, domain)
-        if kink:
+        if (
+            isinstance(part, sp.Pow)
+            and part.exp.is_integer is not True
+            and _touches_zero(part.base, t, domain)
+        ):
             raise Undecided(f"{part} may have a kink, where no motion satisfies equations; narrow the domain")
 
 
 def _touches_zero(base: Expr, t: Symbol, domain: Domain) -> bool:
     """Whether a radicand may come down to zero and rise again, as 1 − cos t does."""
-    sign = proved_sign(base, domain)
-    if sign == "+":
+    if not base.has(t) or (sign := proved_sign(base, domain)) == "+":
         return False
     try:
         factors = sp.Poly(base, *base.free_symbols, domain="QQ").factor_list()[1]
@@ -116,6 +113,7 @@ def _of_rates(reading: Reading) -> Iterator[Question]:
     for x, value in rates.items():
         if value.has(*v, *(acceleration(y) for y in q)):
             reading.fault(f"rates.{x}", "should depend on coordinates, time, parameters and constants only")
+    yield from motion_is_real({velocity(x): r for x, r in rates.items()}, reading.domain)
     motion: dict[Symbol, Expr] = {velocity(x): r for x, r in rates.items()}
     motion |= {acceleration(x): substitute(time_derivative(r, q, t), motion) for x, r in rates.items()}
     domain = transported(reading.domain, motion)

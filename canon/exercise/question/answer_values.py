@@ -31,7 +31,8 @@ SHARE = 0.4
 """Part of the time of a claim that may be spent here."""
 
 _EXPRESSIONS = (
-    Shape.TEXT, Shape.TEXTS, Shape.EXPRESSIONS, Shape.LISTS, Shape.BRACKETS, Shape.BODIES, Shape.FORCES
+    Shape.TEXT, Shape.TEXTS, Shape.EXPRESSIONS, Shape.LISTS, Shape.BRACKETS, Shape.BODIES, Shape.FORCES,
+    Shape.VALUES,
 )  # fmt: skip
 
 
@@ -51,8 +52,7 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
     written = dict(_written(reading))
     for key, expression in written.items():
         if lack := lack_of_value(expression, reading.domain, until):
-            open_ = Verdict(Status.UNDECIDED, evidence=(Evidence("open", lack.sentence(key)),))
-            yield _fails(lack, key) if lack.proved else open_
+            yield _fails(lack, key) if lack.proved else _open(lack, key)
     following = _following(reading)
     answers = {key: f for key, f in written.items() if _is_answer(reading, key)}
     given = [_seen(f, following) for key, f in written.items() if key not in answers]
@@ -62,7 +62,7 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
         )
         lack = lack_beside(_seen(answer, following), [*given, *other], reading.domain, until)
         if lack is not None:
-            yield _fails(lack, key)
+            yield _open(lack, key) if _is_one_of_several(reading) else _fails(lack, key)
 
 
 def _seen(f: Expr, following: Mapping[Symbol, Expr]) -> Expr:
@@ -80,6 +80,15 @@ def _fails(lack: Lack, key: str) -> Verdict:
         counterexample=lack.counterexample,
         feedback=lack.sentence(key),
     )
+
+
+def _open(lack: Lack, key: str) -> Verdict:
+    return Verdict(Status.UNDECIDED, evidence=(Evidence("open", lack.sentence(key)),))
+
+
+def _is_one_of_several(reading: Reading) -> bool:
+    """Whether what one answer leaves out may be said by another one, as values of parameters case by case."""
+    return reading.claim.kind == "parameters" and len(reading.claim.keys["values"]) > 1
 
 
 def _is_answer(reading: Reading, key: str) -> bool:

@@ -8,24 +8,29 @@ the box: where its ball keeps away from zero the claim is false. Nothing is ever
 
 from __future__ import annotations
 
+import random
+import time
 from typing import TYPE_CHECKING
 
+import sympy as sp
 from flint import acb, arb, arb_mat
 from sympy import Symbol
+from sympy.core.function import AppliedUndef
 
 from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Counterexample, Status, Verdict
 from canon.proof.kinks import off_kinks
+from canon.proof.refute.sample_functions import with_example_functions
+from canon.proof.trees.sympy_types import rational
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    import sympy as sp
     from sympy import Expr
 
-__all__ = ["enclosed", "refuted_at_a_point"]
+__all__ = ["enclosed", "refuted_at_a_point", "solved_somewhere"]
 
 PRECISION = 192
 POINTS = 8
@@ -33,6 +38,10 @@ ITERATIONS = 40
 RADIUS = arb(2) ** -100
 """Half the width of the box around the solution that Newton's method found."""
 DIGITS = 15
+EXAMPLES = 3
+"""Choices of arbitrary functions with which a solution is looked for."""
+SECONDS = 1.0
+_ONE = rational(sp.Rational(1))
 
 
 def refuted_at_a_point(
@@ -64,10 +73,10 @@ def refuted_at_a_point(
     P
     """
     domain = off_kinks((*equations, *should_vanish.values()), domain).strictly
-    named = {s for condition in domain.conditions for s in condition.free_symbols if isinstance(s, Symbol)}
-    given = [s for s in symbols_of(*equations, *should_vanish.values(), *old, *named) if s not in new]
-    conditions = [c for c in domain.conditions if c.free_symbols <= set(given)]
-    drawn = Domain(tuple(conditions), {s: ends for s, ends in domain.box.items() if s in given})
+    given = [
+        s for s in symbols_of(*equations, *should_vanish.values(), *old, *_named(domain)) if s not in new
+    ]
+    drawn = _of_given(domain, given)
     with precision(PRECISION):
         for point in drawn.points(given, POINTS, seed=7):
             try:
@@ -83,6 +92,60 @@ def refuted_at_a_point(
             except Unmodelled:
                 return None
     return None
+
+
+def solved_somewhere(
+    equations: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol], domain: Domain
+) -> bool:
+    """Tell whether equations certainly have a regular real solution at some point of a domain.
+
+    Arbitrary functions are looked at by examples.
+
+    Parameters
+    ----------
+    equations, old, new, domain
+        As for :func:`refuted_at_a_point`.
+
+    Examples
+    --------
+    >>> import sympy as sp
+    >>> q, p, Q, P = sp.symbols("q p Q P", real=True)
+    >>> [solved_somewhere([first, P - p], (q, p), (Q, P), Domain()) for first in (Q - q, (Q - q)**2 + 1)]
+    [True, False]
+    """
+    until = time.monotonic() + SECONDS
+    arbitrary = any(equation.has(AppliedUndef) for equation in equations)
+    for seed in range(EXAMPLES if arbitrary else 1):
+        shown = with_example_functions(equations, random.Random(seed))[0]
+        off = off_kinks(shown, domain)
+        there = [off.seen(equation) for equation in shown]
+        given = [s for s in symbols_of(*there, *old, *_named(off.strictly)) if s not in new]
+        drawn = _of_given(off.strictly, given)
+        with precision(PRECISION):
+            for point in (
+                *drawn.points(given, POINTS, seed=seed),
+                *drawn.points(given, POINTS, in_box=False),
+            ):
+                for start in ([point[s] for s in old], [_ONE] * len(new)):
+                    if time.monotonic() > until:
+                        return False
+                    try:
+                        box = enclosed(there, new, point, start)
+                        if box is not None and _allowed(off.strictly, new, point, box):
+                            return True
+                    except (NotDecided, Undefined, Unmodelled):
+                        continue
+    return False
+
+
+def _named(domain: Domain) -> set[Symbol]:
+    return {s for condition in domain.conditions for s in condition.free_symbols if isinstance(s, Symbol)}
+
+
+def _of_given(domain: Domain, given: Sequence[Symbol]) -> Domain:
+    """Return the conditions and ranges that concern what is given alone."""
+    conditions = tuple(c for c in domain.conditions if c.free_symbols <= set(given))
+    return Domain(conditions, {s: ends for s, ends in domain.box.items() if s in given})
 
 
 def enclosed(

@@ -66,6 +66,8 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     given = [key for key in wanted.answer if key in keys and known[key] is not Shape.VALUES]
     if given and all(keys[key] in ([], {}) and _fits(keys[key], known[key]) for key in given):
         yield given[0], "nothing is claimed: the answer is empty"
+    elif empty := [key for key in given if keys[key] == {}]:
+        yield empty[0], "nothing is claimed here: the table is empty; leave it out, or say what is in it"
     for key, value in keys.items():
         if key not in known:
             close = difflib.get_close_matches(key[:60], known, n=1, cutoff=0.6)

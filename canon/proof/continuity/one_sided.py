@@ -2,7 +2,7 @@
 
 Each function that may jump has a gap, an expression that changes its sign there, and on either side a continuation
 that is analytic across the surface: atan(N/D) is ±π/2 − atan(D/N) where D ≷ 0 (with the sign of N), acot(N/D) is
-±π/2 − atan(N/D) where N ≷ 0, atan2(y, x) is ±π + atan(y/x) where x < 0 and y ≷ 0.
+±π/2 − atan(N/D) where N ≷ 0, atan2(y, x) is ±π + atan(y/x) where x < 0 and y ≷ 0, and atan2(0, x) is 0 or π.
 """
 
 from __future__ import annotations
@@ -98,13 +98,20 @@ def _cuts(part: Expr) -> Iterator[Cut]:
         case sp.atan() | sp.acot():
             yield from _arcs(part)
         case sp.atan2():
-            y, x = arguments(part)
-            turn, flat = sp.pi * sp.Heaviside(-x), sp.atan(y / x)
-            yield Cut(part, y, flat + turn, flat - turn, (y, x), beyond=x)
+            yield _angle(part)
         case sp.Pow():
             yield from _roots(part)
         case _:
             pass
+
+
+def _angle(part: sp.atan2) -> Cut:
+    """Return the cut of atan2(y, x): the half-line y = 0 > x; of atan2(0, x), which is 0 or π, the place x = 0."""
+    y, x = arguments(part)
+    if anatomy([y]).tree <= LARGE and sp.expand(y) == 0:
+        return Cut(part, x, sp.S.Zero, sp.pi)
+    turn, flat = sp.pi * sp.Heaviside(-x), sp.atan(y / x)
+    return Cut(part, y, flat + turn, flat - turn, (y, x), beyond=x)
 
 
 def _extremes(part: sp.Max | sp.Min) -> Iterator[Cut]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import combinations
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -11,6 +10,7 @@ from flint import fmpq
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.functions.angles import combination, cos_sin, divided, imaginary_split, phase_of_pi
 from canon.proof.functions.large_powers import power
+from canon.proof.functions.nested_roots import denested
 from canon.proof.functions.number_logs import is_number, log_by_relations, primes_below, turns_of_number
 from canon.proof.tower.algebraic_numbers import root_in_field
 from canon.proof.tower.factors import apart, factors_of, modulus_of_polynomial, primes, split_signs
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from canon.proof.tower.forms import Forms
 
 __all__ = ["exponential", "learn_zero", "logarithm", "modulus", "root"]
-
-MOST_ROOTS_MULTIPLIED = 3
-MOST_ROOTS_KNOWN = 7
 
 
 # -- exponentials --------------------------------------------------------------------------------------
@@ -168,7 +165,7 @@ def _root_kernel(n: Forms, radicand: Fraction, r: fmpq, sign: str) -> Fraction:
             return t.times(outside, _root_of_fraction(n, radicand, m, int((part * m).p)))
         if m > 2 and sign == "+" and (alpha := _root_of_number(n, radicand, m)) is not None:
             return t.times(outside, t.power(alpha, int((part * m).p)))
-        if m == 2 and sign and (known := n.known_roots.get(key) or _denested(n, radicand.num)):
+        if m == 2 and sign and (known := n.known_roots.get(key) or denested(n, radicand.num)):
             n.known_roots[key] = known
             return t.times(outside, known)
         n.arguments[kernel] = radicand
@@ -204,83 +201,6 @@ def _root_of_number(n: Forms, radicand: Fraction, m: int) -> Fraction | None:
             return None
         alpha = root_in_field(n.tower, radicand.num, m, size)
     return Fraction(alpha) if alpha is not None and n.signs.of(alpha) == "+" else None
-
-
-def _denested(n: Forms, p: fmpq_mpoly) -> Fraction | None:
-    """Return √p, p ≥ 0, through square roots that are there already, or through simpler ones."""
-    return _by_products(n, p) or _by_conjugate(n, p)
-
-
-def _by_products(n: Forms, p: fmpq_mpoly) -> Fraction | None:
-    """Return √p = |S|·Πρⱼ/ΠRⱼ where p·ΠRⱼ = S² for known roots ρⱼ = √Rⱼ with Rⱼ > 0 proven."""
-    t = n.tower
-    roots = [
-        (kernel, n.arguments[kernel].num)
-        for kernel in t.generators
-        if kernel[0] == "root" and kernel[2] == 2 and not n.arguments[kernel].num.is_constant()
-    ]
-    if len(roots) > MOST_ROOTS_KNOWN or p.is_constant():
-        return None
-    for size in range(MOST_ROOTS_MULTIPLIED + 1):
-        for chosen in combinations(roots, size):
-            product = p
-            for _, radicand in chosen:
-                product = t.product(product, radicand)
-            square = _square_root(n, product)
-            if square is None or any(n.signs.of(radicand) != "+" for _, radicand in chosen):
-                continue
-            result = square
-            for kernel, radicand in chosen:
-                rho = Fraction(t.monomial(t.generator(kernel)))
-                result = t.times(result, rho, t.reciprocal(Fraction(radicand)))
-            return result
-    return None
-
-
-def _square_root(n: Forms, p: fmpq_mpoly) -> Fraction | None:
-    """Return √p = |S| for p = S², also with 1 − c² = s², or of a positive rational p."""
-    if p.is_constant() and p.leading_coefficient() > 0:
-        return root(n, Fraction(p), fmpq(1, 2))
-    square = n.tower.square_root(p)
-    if square is not None:
-        return modulus(n, Fraction(square))
-    if not any(n.tower.generators[k][0] == "cos" for k in n.tower.used(p)):
-        return None
-    unit, factors = factors_of(n, p)
-    outside = n.tower.square_root(n.tower.constant(unit)) if unit > 0 else None
-    if outside is None or any(e % 2 for _, e in factors):
-        return None
-    parts = (n.tower.power(modulus(n, Fraction(q)), e // 2) for q, e in factors)
-    return n.tower.times(Fraction(outside), *parts)
-
-
-def _by_conjugate(n: Forms, p: fmpq_mpoly) -> Fraction | None:
-    """Return √(A + Bρ) = √((A+D)/2) ± √((A−D)/2), the sign that of B, where A² − B²R = D², D ≥ 0.
-
-    With p ≥ 0 and p·(A − Bρ) = D² ≥ 0 (and p > 0) also A − Bρ ≥ 0, so A ≥ 0 and A ± D ≥ 0 because
-    (A + D)(A − D) = B²R ≥ 0; the square of the right side is A + |B|ρ·sign B.
-    """
-    t = n.tower
-    if n.signs.of(p) != "+":
-        return None
-    for k in reversed(t.used(p)):
-        relation = t.relation(k)
-        if relation is None or relation[0] != 2 or not n.signs.declared(k).endswith("+"):
-            continue
-        parts = t.coefficients(p, k)
-        if len(parts) != 2:
-            continue
-        a, b = parts
-        sign_b = n.signs.of(b)
-        d = t.square_root(t.reduce(t.product(a, a) - t.product(t.product(b, b), relation[1])))
-        if d is None or not sign_b:
-            continue
-        d = modulus(n, Fraction(d))
-        half = fmpq(1, 2)
-        larger = root(n, n.scaled(half, t.sum([Fraction(a), d])), half)
-        smaller = root(n, n.scaled(half, n.minus(Fraction(a), d)), half)
-        return t.sum([larger, smaller if sign_b.endswith("+") else n.negative(smaller)])
-    return None
 
 
 # -- logarithms ----------------------------------------------------------------------------------------

@@ -56,6 +56,7 @@ class Forms(ABC):
         self.moduli: list[tuple[Fraction, tuple[Fraction, Fraction]]] = []
         self.integrals: dict[Hashable, tuple[Fraction, Fraction]] = {}
         self.known_roots: dict[Hashable, Fraction] = {}
+        self.inside_root = False
         self.independent: dict[Hashable, Fraction] = {}
         self.gammas: list[tuple[Fraction, Fraction]] = []
         self.polygammas: dict[int, list[tuple[Fraction, Fraction]]] = {}
