@@ -8,8 +8,9 @@ rule, and at x = 0 in truth.
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
+from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -24,12 +25,12 @@ from canon.proof.refute.refute import look_for_counterexample
 from canon.proof.refute.sample_functions import evaluated
 from canon.proof.rungs.ladder import REFUSALS, is_empty, prove_zero
 from canon.proof.trees.anatomy import Anatomy, anatomy
-from canon.proof.trees.replacement import KINKED, NoValue, replaced
+from canon.proof.trees.replacement import KINKED, NoValue, defined_nowhere, replaced
 from canon.proof.trees.sympy_types import arguments
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
@@ -68,18 +69,24 @@ class OffKinks:
         The domain without the kinks that are certainly thin.
     strictly
         The domain without those either of which it is not known.
-    impulses
-        The derivatives of jumps, which vanish off the kinks.
+    known
+        What is known off the kinks: derivatives of jumps vanish, equalities that hold there only are false.
     """
 
     whole: Domain
     domain: Domain
     strictly: Domain
-    impulses: tuple[Expr, ...] = ()
+    known: Mapping[sp.Basic, sp.Basic] = field(default_factory=lambda: MappingProxyType({}))
 
     def seen(self, f: Expr) -> Expr:
-        """Return an expression as it is off the kinks."""
-        return replaced(f, dict.fromkeys(self.impulses, sp.Integer(0))) if self.impulses else f
+        """Return an expression as it is off the kinks; as it stands where it has no value there."""
+        if not self.known:
+            return f
+        try:
+            found = replaced(f, self.known)
+        except NoValue:
+            return f
+        return f if defined_nowhere(found) else found
 
     def ask(self, question: Callable[[Domain], Verdict], by_point: Status = Status.FAILS) -> Verdict:
         """Return the answer to a question off the kinks.
@@ -137,7 +144,7 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
     thin: dict[Boolean, None] = {}
     doubtful: dict[Boolean, None] = {}
     settled: dict[Expr, bool | None] = {}
-    impulses: list[Expr] = []
+    off: dict[sp.Basic, sp.Basic] = {}
     for part, gap in _gaps(found):
         if not gap.free_symbols <= found.symbols or not _varies(gap):
             continue
@@ -153,10 +160,12 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
                 doubtful[condition] = None
             known = known and settled[factor] is True
         if known and isinstance(part, sp.DiracDelta):
-            impulses.append(part)
+            off[part] = sp.Integer(0)
+        elif known and touching and isinstance(part, sp.Eq | sp.Ne) and _are_asked(variants or []):
+            off[part] = sp.true if isinstance(part, sp.Ne) else sp.false
     narrowed = Domain((*domain.conditions, *thin), domain.box) if thin else domain
     strictly = Domain((*narrowed.conditions, *doubtful), domain.box) if doubtful else narrowed
-    return OffKinks(domain, narrowed, strictly, tuple(impulses))
+    return OffKinks(domain, narrowed, strictly, off)
 
 
 def vanishes_off_kinks(expr: Expr | sp.MatrixBase, domain: Domain, budget: float = 10.0) -> Verdict:
@@ -176,14 +185,14 @@ def vanishes_off_kinks(expr: Expr | sp.MatrixBase, domain: Domain, budget: float
     return off.ask(lambda narrowed: vanishes(seen, narrowed, max(0.05, deadline - time.monotonic())))
 
 
-def _gaps(found: Anatomy) -> Iterator[tuple[Expr, Expr]]:
-    """Yield each function with kinks, and what vanishes at them."""
+def _gaps(found: Anatomy) -> Iterator[tuple[sp.Basic, Expr]]:
+    """Yield each function with kinks, or bound of a piece, and what vanishes at them."""
     for part in found.of(*WITH_PIECES):
         if isinstance(part, sp.Max | sp.Min):
             yield from ((part, a - b) for a, b in combinations(arguments(part), 2))
         elif isinstance(part, sp.Piecewise):
             bounds = sorted(part.atoms(Relational), key=sp.default_sort_key)
-            yield from ((part, cast("Expr", c.lhs) - cast("Expr", c.rhs)) for c in bounds)
+            yield from ((c, cast("Expr", c.lhs) - cast("Expr", c.rhs)) for c in bounds)
         else:
             yield part, arguments(part)[0]
 
@@ -240,6 +249,12 @@ def _factors(variants: list[Expr], *, touching: bool) -> Iterator[Expr]:
             base, exponent = factor.as_base_exp()
             if _varies(base) and not base.is_nonzero and (touching or not exponent.is_even):
                 yield base
+
+
+def _are_asked(variants: Sequence[Expr]) -> bool:
+    """Tell whether all factors that might vanish are among those that are looked at."""
+    bases = (factor.as_base_exp()[0] for variant in variants for factor in sp.Mul.make_args(variant))
+    return all(_varies(base) or base.is_nonzero for base in bases)
 
 
 def _is_thin(f: Expr, domain: Domain) -> bool | None:

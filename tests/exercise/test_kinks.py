@@ -5,7 +5,7 @@ import sympy as sp
 
 from canon import Hamiltonian, Lagrangian, coordinates, vanishes
 from canon.exercise.diagnose.feedback import corrected
-from canon.exercise.judge import JUDGES, examine
+from canon.exercise.judge import JUDGES, examine, judge
 from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.hamilton.symmetry import have_same_equations
@@ -305,3 +305,55 @@ def test_an_equation_that_is_zero_in_disguise_defines_no_map():
             Claim("a", "canonicity", {**keys, "implicit": [first, "P - p + h*(q + Q)/2"]})
         ).verdict
         assert (verdict.holds, verdict.fails) == (right, not right)
+
+
+OFF_A_POINT = [
+    ("euler-lagrange", {"q": "x", "L": "x_dot**2/2 - x**2/2"}, "claim", "x_ddot + x", "x_ddot - x"),
+    ("dissipative", {"q": "x", "L": "x_dot**2/2", "F": "x_dot**2/2"}, "claim", "x_ddot + x_dot", "x_ddot - x_dot"),
+    ("lagrangian-equivalence", {"q": "x", "L1": "x_dot**2/2", "relation": "equations"}, "L2",
+     "x_dot**2/2 + x*x_dot", "x_dot**2/2 + x**2"),
+    ("first-order", {"exact": "1/(1 + eps*x)", "small": "eps"}, "claim", "1 - eps*x", "1 + eps*x"),
+]  # fmt: skip
+LEFT_OUT = (
+    "Piecewise(({0}, Ne(x, 0)))",
+    "Piecewise(({0}, Ne(x, 0)), (7, True))",
+    "Piecewise((7, x == 0), ({0}, True))",
+    "Piecewise(({0}, Ne(x**3 - x, 0)))",
+)
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys", "key", "right", "wrong"), OFF_A_POINT, ids=[o[0] for o in OFF_A_POINT]
+)
+def test_what_is_said_off_a_point_holds_as_it_does_everywhere(kind, keys, key, right, wrong):
+    keys = {**keys, "parameters": {"x": "real", "eps": "real"} if kind == "first-order" else {}}
+    for form in LEFT_OUT:
+        assert judge(Claim("a", kind, {**keys, key: form.format(right)})).holds, form
+        assert judge(Claim("a", kind, {**keys, key: form.format(wrong)})).fails, form
+    for half in ("Piecewise(({0}, x > 0))", "Piecewise(({0}, x == 0))", "Piecewise(({0}, Max(x, 0) == 0))"):
+        assert judge(Claim("a", kind, {**keys, key: half.format(right)})).fails, half
+    spoilt = f"Piecewise(({right}, Ne(Max(x, 0), 0)), (7, True))"
+    assert not judge(Claim("a", kind, {**keys, key: spoilt})).holds
+
+
+def test_motions_may_be_written_with_kinks_that_cancel():
+    free = {"q": "x", "equations": ["x_ddot"]}
+    for motion in ("t + Max(t, 0) - (t + Abs(t))/2", "t + t*sign(t) - Abs(t)", "Piecewise((t, Ne(t, 0)))"):
+        assert judge(Claim("a", "solution", {**free, "solution": {"x": motion}})).holds, motion
+    for motion in (
+        "t + Max(t, 0) - t/2",
+        "t + t*sign(t)",
+        "Abs(t - 10**9)",
+        "Max(cos(t), -cos(t))",
+        "sqrt(1 - cos(t)**2)",
+    ):
+        assert not judge(Claim("a", "solution", {**free, "solution": {"x": motion}})).holds, motion
+    folded = {"q": "x", "equations": ["x_ddot + x"]}
+    for motion in (
+        "Abs(cos(t))",
+        "Max(cos(t), -cos(t))",
+        "sqrt(1 - cos(t)**2)",
+        "Piecewise((cos(t), cos(t) > 0), (0, True))",
+    ):
+        assert not judge(Claim("a", "solution", {**folded, "solution": {"x": motion}})).holds, motion
+    assert judge(Claim("a", "solution", {**folded, "solution": {"x": "Max(cos(t), cos(t))"}})).holds

@@ -33,7 +33,7 @@ from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
-from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.kinks import off_kinks, vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -64,6 +64,7 @@ def first_order(reading: Reading) -> Iterator[Question]:
     verdicts: list[Verdict] = []
     for i, (f, g) in enumerate(zip(exact, claimed, strict=True)):
         name = f"claim {i + 1}, to {_ordinal(order)} order in {names}"
+        f, g = map(off_kinks((f, g), reading.domain).seen, (f, g))
         verdict, at = _same_to_order(f, g, small, order, reading.domain, deadline)
         if verdict.fails:
             yield Stated(

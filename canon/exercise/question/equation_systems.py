@@ -10,7 +10,7 @@ import sympy as sp
 from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.proof.domain.verdict import Status, Undecided, Verdict
 from canon.proof.equivalence import NotAffineError, Stray, not_affine, systems_compared, without_solution
-from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.kinks import off_kinks, vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -41,6 +41,8 @@ def same_equations(
     The claim counts its equations from the one after the first ``before``. A verdict that turned on an equation
     that is not affine answers the question ``AFFINE``.
     """
+    off = off_kinks((*claimed, *right), domain)
+    claimed, right = (tuple(map(off.seen, system)) for system in (claimed, right))
     for i, equation in enumerate(claimed, 1 - before):
         slopes = sp.Matrix([[equation.diff(a).diff(b) for b in unknowns] for a in unknowns])
         affine = vanishes_off_kinks(slopes, domain, deadline.left)

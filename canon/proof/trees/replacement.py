@@ -51,7 +51,7 @@ class NoValue(Exception):
     """SymPy gives no value to an expression after a substitution, or one too long to write out."""
 
 
-def replaced(expr: _B, by: Mapping[sp.Basic, Expr]) -> _B:
+def replaced(expr: _B, by: Mapping[sp.Basic, Expr] | Mapping[sp.Basic, sp.Basic]) -> _B:
     """Return ``expr`` after a substitution, every distinct part being rebuilt once.
 
     Raises
