@@ -59,6 +59,14 @@ whole = st.integers(-3, 3)
 # what jumps, and a neighbour that does not
 FAULTS = [
     (sign(q), Abs(q)),
+    (atan2(0, q), atan2(0, 1 + q**2)),
+    (atan2(q, q), atan2(q, 1 + q**2)),
+    (atan2(q**2, q) - atan(q), atan2(q**2, 1 + q**2)),
+    (atan2(Abs(q), q), atan2(Abs(q), 1)),
+    (atan2(q, Abs(q)), atan2(q, 1 + Abs(q))),
+    (atan2(q - 1, q**2 - 1), atan2(1, q + 1)),
+    (atan2(q**2, sp.sinh(q)) - atan(q**2 / sp.sinh(q)), atan2(1 + q**2, sp.sinh(q))),
+    (atan2(Max(q, -q), q), atan2(sqrt(1 + q**2), q)),
     (H + sign(q), H + q * sign(q)),
     (p * sign(q), p * q * sign(q)),
     (Heaviside(q), q * Heaviside(q)),

@@ -178,10 +178,22 @@ def _open_cuts(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Cut]:
         sign = found.get(cut.gap)
         if sign is None:
             sign = found[cut.gap] = proved_sign(cut.gap, domain)
-        nowhere = cut.beyond is not None and proved_sign(cut.beyond, domain).endswith("+")
-        if not sign and not nowhere:
+        beyond = "" if cut.beyond is None else proved_sign(cut.beyond, domain)
+        apart = sign in ("+", "-") or beyond == "+"
+        touched = not apart and (sign != "" or beyond == "0+")
+        if not (apart or touched) or (touched and _vanish_on_a_surface(cut, moving, domain)):
             left.append(cut)
     return left
+
+
+def _vanish_on_a_surface(cut: Cut, moving: Sequence[Symbol], domain: Domain) -> bool:
+    """Tell whether y ≥ 0 and x of atan2(y, x) may vanish together on a whole surface, as |q| and q do."""
+    if cut.around is None or cut.beyond is None:
+        return False
+    present = [s for s in moving if any(side.has(s) for side in cut.around)]
+    if proved_sign(sp.expand(sp.Add(*(side**2 for side in cut.around))), domain) == "+":
+        return False
+    return len(present) == 1 or any(inner.bends for side in cut.around for inner in cuts_of(side, moving))
 
 
 def _touching_roots(term: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Expr]:

@@ -2,7 +2,8 @@
 
 Each function that may jump has a gap, an expression that changes its sign there, and on either side a continuation
 that is analytic across the surface: atan(N/D) is ±π/2 − atan(D/N) where D ≷ 0 (with the sign of N), acot(N/D) is
-±π/2 − atan(N/D) where N ≷ 0, atan2(y, x) is ±π + atan(y/x) where x < 0 and y ≷ 0, and atan2(0, x) is 0 or π.
+±π/2 − atan(N/D) where N ≷ 0, atan2(y, x) is ±π + atan(y/x) where x < 0 and y ≷ 0, and atan2(gy, gx) is atan2(±y, ±x)
+where g ≷ 0.
 """
 
 from __future__ import annotations
@@ -98,20 +99,38 @@ def _cuts(part: Expr) -> Iterator[Cut]:
         case sp.atan() | sp.acot():
             yield from _arcs(part)
         case sp.atan2():
-            yield _angle(part)
+            yield from _angles(part)
         case sp.Pow():
             yield from _roots(part)
         case _:
             pass
 
 
-def _angle(part: sp.atan2) -> Cut:
-    """Return the cut of atan2(y, x): the half-line y = 0 > x; of atan2(0, x), which is 0 or π, the place x = 0."""
+def _angles(part: sp.atan2) -> Iterator[Cut]:
+    """Yield the cuts of atan2(y, x) = atan2(g n, g d): the half-lines n = 0 > x, and where g changes its sign.
+
+    With y = 0, where the angle is 0 or π, g is x.
+    """
     y, x = arguments(part)
-    if anatomy([y]).tree <= LARGE and sp.expand(y) == 0:
-        return Cut(part, x, sp.S.Zero, sp.pi)
-    turn, flat = sp.pi * sp.Heaviside(-x), sp.atan(y / x)
-    return Cut(part, y, flat + turn, flat - turn, (y, x), beyond=x)
+    n, d = _in_ratio(y, x)
+    common = sp.cancel(x / d)
+    if n.free_symbols:
+        turn, flat = (
+            sp.pi * sp.Heaviside(-x) * (sp.sign(common) if common.free_symbols else 1),
+            sp.atan(y / x),
+        )
+        yield Cut(part, n if common.free_symbols else y, flat + turn, flat - turn, (y, x), beyond=x)
+    if common.free_symbols:
+        yield Cut(part, common, sp.atan2(n, d), sp.atan2(-n, -d))
+
+
+def _in_ratio(y: Expr, x: Expr) -> tuple[Expr, Expr]:
+    """Return two expressions without a common factor in the ratio of two others."""
+    if anatomy([y, x]).tree > LARGE:
+        return y, x
+    if sp.expand(y) == 0:
+        return sp.S.Zero, sp.S.One
+    return sp.fraction(sp.cancel(y / x))
 
 
 def _extremes(part: sp.Max | sp.Min) -> Iterator[Cut]:
