@@ -193,3 +193,40 @@ def test_zeros_of_denominators_are_no_part_of_an_implicit_map(below, second, hol
         Claim("a", "canonicity", {**keys, "implicit": [f"(Q - q - h*(p + P)/2)/({below})", second]})
     )
     assert verdict.holds if holds else verdict.fails
+
+
+CIRCLE = {
+    "q": ["x", "y"], "L": "m*(x_dot**2 + y_dot**2)/2 - m*g*y", "constraints": ["x**2 + y**2 - l**2"],
+    "multipliers": ["lam"], "parameters": {"m": "positive", "g": "positive", "l": "positive"},
+}  # fmt: skip
+SPHERE = {
+    "q": ["r", "th"], "L": "m*(r_dot**2 + r**2*th_dot**2)/2 - m*g*r*cos(th)", "contact": "r - a",
+    "integrals": ["m*a**2*th_dot**2/2 + m*g*a*cos(th) - m*g*a"],
+    "parameters": {"m": "positive", "g": "positive", "a": "positive"},
+}  # fmt: skip
+LAMBDA = "(m*g*y - m*(x_dot**2 + y_dot**2))/(2*l**2)"
+EQUATION = "2*l**2*lam + m*(x_dot**2 + y_dot**2) - m*g*y"
+HELD = [
+    ("reaction", CIRCLE, lambda f: {"values": {"lam": f}}, LAMBDA, ("x**2 + y**2 - l**2", "x*x_dot + y*y_dot"), "x"),
+    ("multiplier-holonomic", CIRCLE, lambda f: {"claim": [f]}, EQUATION, ("x**2 + y**2 - l**2",), "y"),
+    ("leaving-condition", SPHERE, lambda f: {"leaves": f}, "3*cos(th) - 2", ("r - a", "r_dot"), "r"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "keys", "answer", "right", "held", "free"), HELD, ids=[h[0] for h in HELD])
+def test_what_has_no_value_where_the_constraints_hold_fails(kind, keys, answer, right, held, free):
+    forms = ("({r})*({h})/({h})", "({r})/({h})", "{r} + 0*log({h})", "{r} + ({h})*atan2({h}, {h})")
+    for form in forms:
+        for zero in held:
+            verdict = judge(Claim("a", kind, {**keys, **answer(form.format(r=right, h=zero))}))
+            assert verdict.fails, (form, zero)
+            assert "where the constraints hold, has a value nowhere" in verdict.feedback
+    for form in ("({r})*{v}/{v}", "{r} + ({h})/(1 + ({h})**2)", "({r})*(1 + {h})/(1 + 2*({h}))"):
+        honest = form.format(r=right, v=free, h=held[0])
+        assert judge(Claim("a", kind, {**keys, **answer(honest)})).holds, form
+
+
+def test_a_constant_where_something_vanishes_has_a_value_there():
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + q**2/2", "restrict": ["p - 1"]}
+    assert not judge(Claim("a", "constant-of-motion", {**keys, "I": "(p**2 + q**2)*(p - 1)/(p - 1)"})).holds
+    assert judge(Claim("a", "constant-of-motion", {**keys, "I": "(p**2 + q**2)*p/p"})).holds

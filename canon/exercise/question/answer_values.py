@@ -6,15 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.exercise.question.constraint_manifold import EmptyDomainError, inhabited, on_manifold
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import KINDS
 from canon.expression.as_written import as_written
-from canon.expression.symbols.symbol import Coordinate, velocity
+from canon.expression.symbols.symbol import Coordinate, time_derivative, velocity
 from canon.expression.text.tokens import LanguageError
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.definedness.definedness import lack_beside, lack_of_value
 from canon.proof.definedness.formula_around import put_in
-from canon.proof.domain.verdict import Evidence, Status, Verdict
+from canon.proof.definedness.hazards import hazards
+from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
+from canon.proof.trees.anatomy import anatomy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -34,6 +37,10 @@ _EXPRESSIONS = (
     Shape.TEXT, Shape.TEXTS, Shape.EXPRESSIONS, Shape.LISTS, Shape.BRACKETS, Shape.BODIES, Shape.FORCES,
     Shape.VALUES,
 )  # fmt: skip
+
+
+_CONSTRAINTS = ("constraints", "contact")
+"""Keys of what vanishes on every motion that has reactions."""
 
 
 def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
@@ -63,6 +70,37 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
         lack = lack_beside(_seen(answer, following), [*given, *other], reading.domain, until)
         if lack is not None:
             yield _open(lack, key) if _is_one_of_several(reading) else _fails(lack, key)
+    yield from _without_value_on_motions(reading, answers, until)
+
+
+def _without_value_on_motions(
+    reading: Reading, answers: Mapping[str, Expr], until: float
+) -> Iterator[Verdict]:
+    """Yield FAILS for answers that have a value nowhere on the motions that satisfy the constraints."""
+    risky = {key: f for key, f in answers.items() if hazards(anatomy([f]).parts)}
+    held = _held(reading) if risky else []
+    if not held:
+        return
+    velocities = [velocity(x) for x in reading.symbols("q")] if reading.has("q") else []
+    try:
+        branches = inhabited(on_manifold(held, reading.domain, keep=(reading.time,), prefer=velocities))
+    except (Undecided, EmptyDomainError):  # the judge of the kind says so
+        return
+    for key, f in risky.items():
+        lacks = [lack_of_value(_seen(f, b.values), b.domain, until) for b in branches]
+        nowhere = [lack for lack in lacks if lack is not None and lack.proved]
+        if len(nowhere) == len(branches):
+            yield _fails(nowhere[0], f"{key}, where the constraints hold,")
+
+
+def _held(reading: Reading) -> list[Expr]:
+    """Return what vanishes on the motions that a claim is about, the rates of constraints included."""
+    found: list[Expr] = []
+    if reading.has("multipliers") or reading.has("contact"):
+        found += [f for key in _CONSTRAINTS if reading.has(key) for f in reading.equations(key)]
+        q, velocities = reading.symbols("q"), [velocity(x) for x in reading.symbols("q")]
+        found += [time_derivative(f, q, reading.time) for f in found if not f.has(*velocities)]
+    return found + (list(reading.equations("restrict")) if reading.has("restrict") else [])
 
 
 def _seen(f: Expr, following: Mapping[Symbol, Expr]) -> Expr:
