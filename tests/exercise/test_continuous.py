@@ -187,6 +187,14 @@ def test_whole_turns_of_an_angle_do_not_count():
     assert said("hamilton-equations", **keys, solution=half).fails
 
 
+def test_half_turns_of_an_angle_count():
+    for step in ("atan2(t**2, t) - atan(t)", "atan2(Abs(t), t)", "atan2(t, t)"):
+        assert said("solution", **FREE, solution={"theta": f"t + {step}"}).fails, step
+    assert said(
+        "solution", **FREE, solution={"theta": "t + atan2(t**2, 1 + t**2) - atan(t**2/(1 + t**2))"}
+    ).holds
+
+
 def test_motions_that_end_are_claimed_where_they_are_real():
     circle = {"q": "x", "equations": ["x*x_dot + t"]}
     verdict = said("solution", **circle, solution={"x": "sqrt(1 - t**2)"})

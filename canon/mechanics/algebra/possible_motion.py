@@ -13,6 +13,7 @@ import sympy as sp
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.jumps import shown
+from canon.proof.continuity.one_sided import cuts_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Counterexample, Status, Verdict
@@ -112,8 +113,9 @@ def _without_turns(
 
 def _jumps_by_turns(term: Expr) -> bool:
     factor, angle = term.as_coeff_Mul()
-    if isinstance(angle, sp.atan2):
-        return factor.is_integer is True
+    if isinstance(angle, sp.atan2):  # through the origin it jumps by half a turn
+        around = all(cut.beyond is not None for cut in cuts_of(angle, sorted(free_symbols(angle), key=str)))
+        return factor.is_integer is True and around
     return isinstance(angle, sp.atan) and factor.is_even is True and bool(arguments(angle)[0].has(sp.tan))
 
 
