@@ -195,6 +195,13 @@ def test_half_turns_of_an_angle_count():
     ).holds
 
 
+def test_an_angle_that_passes_the_origin_does_not_hold():
+    """Sine and cosine of 2 t and t vanish together at π/2; t² and sinh t at 0, where no factor shows it."""
+    for y, x in (("t**2", "sinh(t)"), ("sin(2*t)", "2*cos(t)")):
+        step = f"t + atan2({y}, {x}) - atan(({y})/({x}))"
+        assert not said("solution", **FREE, solution={"theta": step}).holds, step
+
+
 def test_motions_that_end_are_claimed_where_they_are_real():
     circle = {"q": "x", "equations": ["x*x_dot + t"]}
     verdict = said("solution", **circle, solution={"x": "sqrt(1 - t**2)"})

@@ -24,6 +24,7 @@ from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
+from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
             reading.fault(f"solution.{x}", f"should depend on {t}, parameters and constants only")
     yield from motion_is_real(table, reading.domain)
     laws = _laws(reading)
-    bound = any(law.has(*map(acceleration, table)) for law in laws)
+    bound = _velocities_are_continuous(reading, laws, table)
     yield from motion_is_continuous(table, t, transported(reading.domain, table), laws, velocities=bound)
     motion: dict[Symbol, Expr] = {}
     for x, value in table.items():
@@ -69,6 +70,13 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
         yield from _general(reading, values, domain)
     else:
         yield Determines(lambda: _not_fixed(reading, _ordered(state)))
+
+
+def _velocities_are_continuous(reading: Reading, laws: Sequence[Expr], table: Mapping[Symbol, Expr]) -> bool:
+    """Tell whether the equations leave no place for a velocity that jumps: they do where they have jumps themselves."""
+    if any(law.has(*map(acceleration, table)) for law in laws):
+        return True
+    return _second_order(reading) and not any(law.has(*PIECED) for law in laws)
 
 
 def _laws(reading: Reading) -> list[Expr]:

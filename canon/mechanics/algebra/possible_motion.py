@@ -5,6 +5,7 @@ A coordinate that the equations know up to whole turns may be given so.
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,8 @@ from canon.proof.continuity.jumps import shown
 from canon.proof.continuity.one_sided import cuts_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import Domain
-from canon.proof.domain.verdict import Counterexample, Status, Verdict
+from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
+from canon.proof.rungs.ladder import is_empty
 from canon.proof.trees.sympy_types import arguments, free_symbols
 from canon.proof.vanish import vanishes
 
@@ -29,6 +31,9 @@ __all__ = ["motion_is_continuous", "motion_is_real"]
 
 POINTS = 40
 """Points at which a motion is looked at."""
+
+SECONDS = 0.5
+"""Time for the proof that an angle keeps away from the origin."""
 
 
 def motion_is_real(motion: Mapping[Symbol, Expr], domain: Domain) -> Iterator[Verdict]:
@@ -60,6 +65,8 @@ def motion_is_continuous(
         rest, turns = _without_turns(place, x, t, domain, laws)
         verdict = continuity(rest, [t], domain, name=f"{x} = {place}")
         yield replace(verdict, assumed=(*verdict.assumed, *turns))
+        if turns:
+            yield from _beside_the_origin(place - rest, domain)
         if velocities:
             yield continuity(place.diff(t), [t], domain, name=f"the velocity of {x} = {place}")
 
@@ -109,6 +116,18 @@ def _without_turns(
     if not turning or not all(_knows_no_turns(e, x) for e in laws):
         return place, ()
     return place - sp.Add(*turning), (f"{x} is an angle of which whole turns do not count",)
+
+
+def _beside_the_origin(turning: Expr, domain: Domain) -> Iterator[Verdict]:
+    """Yield UNDECIDED for angles that may pass the origin, where they jump by half a turn."""
+    for angle in turning.atoms(sp.atan2):
+        y, x = arguments(angle)
+        at_origin = Domain((*domain.conditions, sp.Eq(y, 0), sp.Eq(x, 0)), domain.box)
+        if not is_empty(at_origin, time.monotonic() + SECONDS):
+            open_ = (
+                f"whether {y} and {x} vanish together, where {angle} jumps by half a turn, was not decided"
+            )
+            yield Verdict(Status.UNDECIDED, "the motion is continuous", evidence=(Evidence("open", open_),))
 
 
 def _jumps_by_turns(term: Expr) -> bool:
