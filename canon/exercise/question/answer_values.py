@@ -126,7 +126,8 @@ def _open(lack: Lack, key: str) -> Verdict:
 
 def _is_one_of_several(reading: Reading) -> bool:
     """Whether what one answer leaves out may be said by another one, as values of parameters case by case."""
-    return reading.claim.kind == "parameters" and len(reading.claim.keys["values"]) > 1
+    kind, keys = KINDS[reading.claim.kind], reading.claim.keys
+    return any(kind.shapes[key] is Shape.VALUES and len(keys[key]) > 1 for key in kind.answer if key in keys)
 
 
 def _is_answer(reading: Reading, key: str) -> bool:
