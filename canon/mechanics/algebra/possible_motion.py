@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from sympy import Expr, Symbol
+    from sympy.logic.boolalg import Boolean
 
 __all__ = ["motion_is_continuous", "motion_is_real"]
 
@@ -122,7 +123,8 @@ def _beside_the_origin(turning: Expr, domain: Domain) -> Iterator[Verdict]:
     """Yield UNDECIDED for angles that may pass the origin, where they jump by half a turn."""
     for angle in turning.atoms(sp.atan2):
         y, x = arguments(angle)
-        at_origin = Domain((*domain.conditions, sp.Eq(y, 0), sp.Eq(x, 0)), domain.box)
+        zeros = (cast("Boolean", sp.Eq(y, 0)), cast("Boolean", sp.Eq(x, 0)))
+        at_origin = Domain((*domain.conditions, *zeros), domain.box)
         if not is_empty(at_origin, time.monotonic() + SECONDS):
             open_ = (
                 f"whether {y} and {x} vanish together, where {angle} jumps by half a turn, was not decided"
