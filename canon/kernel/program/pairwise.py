@@ -1,9 +1,9 @@
 """Pair forces recognised in H = Σ c_ij φ(x_i, x_j), one symmetric function of every pair of bodies.
 
-Written out, the force of fifty bodies takes seconds to compile and does not fit the processor's caches. Here it is a
-loop over the sources j around a loop over the targets i, F_i ← F_i − c_ij ∂φ/∂x_i, which compilers turn into SIMD
-instructions: no sum runs along the inner loop, so nothing is reordered. Every pair is computed twice, which costs
-less than taking the reactions from the first time would.
+Written out, the force of fifty bodies takes seconds to compile and does not fit the processor's caches. What
+is recognised here, :mod:`canon.kernel.llvm.pair_loops` writes as a loop over the sources j around a loop over the
+targets i, F_i ← F_i − c_ij ∂φ/∂x_i. Every pair is computed twice, which costs less than taking the reactions from the
+first time would.
 """
 
 from __future__ import annotations
