@@ -18,6 +18,7 @@ from canon.expression.symbols.user_input import given_kind
 from canon.expression.text import syntax
 from canon.expression.text.juxtaposition import parse_juxtaposed
 from canon.expression.text.scope import Scope
+from canon.expression.text.statement import Side, Statement, plain_statements
 from canon.expression.text.syntax import LanguageError, parse_syntax
 from canon.expression.text.units import without_units
 from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, MAX_CHOICES, RELATIONS
@@ -28,7 +29,15 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["LanguageError", "Scope", "parse_condition", "parse_equation", "parse_expression", "syntax_of"]
+__all__ = [
+    "LanguageError",
+    "Scope",
+    "parse_condition",
+    "parse_equation",
+    "parse_expression",
+    "statements_of",
+    "syntax_of",
+]
 
 MAX_EXPONENT = 1_000
 MAX_BITS = 14_000
@@ -116,6 +125,26 @@ def syntax_of(text: str, scope: Scope) -> syntax.Node:
     if scope.implicit:
         return _in_place(text, without_units(text, scope), lambda blanked: parse_juxtaposed(blanked, scope))
     return _in_place(text, without_units(text, scope), parse_syntax)
+
+
+def statements_of(text: str, scope: Scope) -> tuple[Statement, ...]:
+    """Return the statements of one field, in whatever notation it is written; nothing in them is read yet.
+
+    Raises
+    ------
+    LanguageError
+        With the column, the reason and a remedy.
+
+    Examples
+    --------
+    >>> [side.said for side in statements_of("H = p**2/2", Scope())[0].sides]
+    ['H', 'p**2/2']
+    """
+    given_kind(text, str, "an expression of the language")
+    given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
+    if text.lstrip().startswith("$"):
+        return (Statement((Side(text),)),)
+    return plain_statements(text)
 
 
 def _in_place(text: str, blanked: str, parse: Callable[[str], syntax.Node]) -> syntax.Node:

@@ -1,0 +1,129 @@
+"""Statements: what stands in one field, taken apart at its equality signs before anything in it is read.
+
+``H = T + V = p**2/(2*m) + k*x**2/2`` is one statement of three sides; ``x' = p/m; p' = -k*x`` are two statements.
+Every notation is taken apart into these values, each side still in the notation it was written in and at its column.
+Only the question can tell what a side is: the name of the answer, a definition from a book, or a part of the answer.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect
+from dataclasses import dataclass
+from itertools import pairwise
+
+from canon.expression.text.tokens import LanguageError
+
+__all__ = ["Side", "Statement", "plain_statements"]
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One side of an equation as it was written.
+
+    Parameters
+    ----------
+    text
+        The whole field with blanks in place of all but this side, so that every column stays where it was; a side in
+        LaTeX has ``$`` in the place of the sign before it.
+    said
+        The side in plain spelling without blanks, as far as it can be a name: ``H``, ``H(q,p)``, ``F_2``, ``p_r'``,
+        ``dp/dt``, ``{L_z,x}``, ``T+V``; empty where it can't be one.
+    """
+
+    text: str
+    said: str = ""
+
+    @property
+    def column(self) -> int:
+        """Where the side begins in the field, counted from 1."""
+        return len(self.text) - len(self.text.lstrip()) + 1
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """An equation, a chain ``a = b = c`` of them, or one expression: sides with ``=`` between neighbours."""
+
+    sides: tuple[Side, ...]
+
+
+_OPEN, _CLOSE = "([{⟨", ")]}⟩"
+_EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡)(?![=>])")
+_ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)and(?=\s)")
+MAX_SIDES = 100
+"""Most sides in one field."""
+
+
+def plain_statements(text: str) -> tuple[Statement, ...]:
+    """Return the statements of a text that is no LaTeX.
+
+    They are parted by ``;``, new lines, ``and``, ``⇒``, and by commas between equations; never inside brackets.
+
+    Raises
+    ------
+    LanguageError
+        Where there are more than anyone writes in one field.
+
+    Examples
+    --------
+    >>> [[side.text.strip() for side in s.sides] for s in plain_statements("x' = p/m, p' = -k*x = F")]
+    [["x'", 'p/m'], ["p'", '-k*x', 'F']]
+    >>> plain_statements("H(q, p) = p**2/2")[0].sides[0].said
+    'H(q,p)'
+    """
+    depths = _depths(text)
+    if depths is None:  # brackets that do not close: the parser says where
+        return (Statement((_side(text, 0, len(text)),)),)
+    signs = [m for m in _EQUALS.finditer(text) if depths[m.start()] == 0]
+    parts = _parts(text, depths, [m.start() for m in signs])
+    if len(signs) + len(parts) > MAX_SIDES:
+        reason = (
+            f"{len(signs) + len(parts)} sides of equations, and at most {MAX_SIDES} are read in one field"
+        )
+        raise LanguageError(text, 1, reason, "split the claim")
+    found: list[Statement] = []
+    for start, end in parts:
+        equals = [m for m in signs if start <= m.start() < end]
+        starts = [start, *(m.end() for m in equals)]
+        ends = [*(m.start() for m in equals), end]
+        sides = tuple(_side(text, a, b) for a, b in zip(starts, ends, strict=True))
+        if len(sides) > 1 or text[start:end].strip():
+            found.append(Statement(sides))
+    return tuple(found) or (Statement((_side(text, 0, len(text)),)),)
+
+
+def _depths(text: str) -> list[int] | None:
+    """Return how many brackets are open at each character; None where they do not close."""
+    depths: list[int] = []
+    depth = 0
+    for character in text:
+        if character in _CLOSE:
+            depth -= 1
+        if depth < 0:
+            return None
+        depths.append(depth)
+        if character in _OPEN:
+            depth += 1
+    return depths if depth == 0 else None
+
+
+def _parts(text: str, depths: list[int], signs: list[int]) -> list[tuple[int, int]]:
+    """Return where each statement begins and ends; a comma ends one where an equation stands on both sides of it."""
+    ends = [m for m in _ENDS.finditer(text) if depths[m.start()] == 0]
+    parts: list[tuple[int, int]] = []
+    start = 0
+    for stop, after in [*((m.start(), m.end()) for m in ends), (len(text), len(text))]:
+        inside = signs[bisect(signs, start - 1) : bisect(signs, stop - 1)]
+        for left, right in pairwise(inside):
+            comma = text.rfind(",", left, right)
+            if comma > 0 and depths[comma] == 0:
+                parts.append((start, comma))
+                start = comma + 1
+        parts.append((start, stop))
+        start = after
+    return parts
+
+
+def _side(text: str, start: int, end: int) -> Side:
+    piece = text[start:end]
+    return Side(re.sub(r"\S", " ", text[:start]) + piece.rstrip(), re.sub(r"\s+", "", piece))

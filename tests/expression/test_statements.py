@@ -1,0 +1,63 @@
+"""Statements: one field taken apart at its equality signs, every column kept."""
+
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from canon.expression.parse import LanguageError, Scope, statements_of
+
+
+def said(text):
+    return [[side.said for side in statement.sides] for statement in statements_of(text, Scope())]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("x**2", [["x**2"]]),
+        ("H = p**2/2", [["H", "p**2/2"]]),
+        ("L = T - V = x'**2/2", [["L", "T-V", "x'**2/2"]]),
+        ("x' = p/m; p' = -k*x", [["x'", "p/m"], ["p'", "-k*x"]]),
+        ("x' = p/m, p' = -k*x", [["x'", "p/m"], ["p'", "-k*x"]]),
+        ("x' = p/m and p' = -k*x\n", [["x'", "p/m"], ["p'", "-k*x"]]),
+        ("p = m*v ⇒ H = p**2/2", [["p", "m*v"], ["H", "p**2/2"]]),
+        ("{L_z, x} = y", [["{L_z,x}", "y"]]),
+        ("F_2(q, P) = q*P", [["F_2(q,P)", "q*P"]]),
+        ("x == 1", [["x", "1"]]),
+        ("0 < x <= 1", [["0<x<=1"]]),
+        ("x != 1", [["x!=1"]]),
+        ("atan2(x = 1, y)", [["atan2(x=1,y)"]]),
+        ("land = 1", [["land", "1"]]),
+        ("(x = 1", [["(x=1"]]),
+        ("", [[""]]),
+    ],
+)
+def test_taken_apart(text, expected):
+    assert said(text) == expected
+
+
+@given(st.text("ab=;, \n(){}'and", max_size=60))
+def test_nothing_is_lost_and_every_column_stays(text):
+    statements = statements_of(text, Scope())
+    at = 0
+    for statement in statements:
+        for side in statement.sides:
+            piece = side.text.strip()
+            assert text[side.column - 1 :].startswith(piece)
+            assert side.column - 1 >= at or not piece
+            at = max(at, len(side.text))
+    shown = "".join(side.text.strip() for s in statements for side in s.sides)
+    assert [c for c in shown if c in "b("] == [c for c in text if c in "b("]
+
+
+@pytest.mark.parametrize("text", ["=" * 50_000, "x=1," * 12_000, "x=1;" * 12_000, "," * 50_000, "(" * 50_000])
+def test_what_nobody_writes_costs_no_time(text):
+    start = time.process_time()
+    try:
+        found = len(statements_of(text, Scope()))
+    except LanguageError:
+        found = 0
+    assert found <= 100
+    assert time.process_time() - start < 2.0
