@@ -24,15 +24,16 @@ from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import HamiltonEquations, equations, exact_number, exact_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     import numpy.typing as npt
     from sympy import Expr
 
     from canon.array import Array
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
-__all__ = ["hamilton_equations_of", "task_of"]
+__all__ = ["hamilton_equations_of", "parted_by_orbit", "task_of", "task_with"]
 
 _KEPT = 64
 """Systems kept for the next call."""
@@ -56,16 +57,48 @@ def task_of(
     dense: bool = False,
 ) -> Task:
     """Return the task of :func:`canon.flow.propagate.propagate`, which documents the arguments and errors."""
+    fixed, varying = parted_by_orbit(parameters or {})
+    system = hamilton_equations_of(hamiltonian, fixed, tuple(varying))
+    given, single = _with_parameters(y0, len(hamiltonian.q), varying)
+
+    def in_fictitious_time(method: TimeTransformed) -> ExtendedSystem:
+        larger = extended(hamiltonian, method)
+        equations = hamilton_equations_of(larger, fixed, tuple(varying))
+        return extended_system(larger, equations, hamiltonian, Fraction(step or 0))
+
+    return task_with(
+        system, given, t_span, single=single, method=method, step=step, tolerance=tolerance, precision=precision,
+        samples=samples, times=times, observables=observables, cadence=cadence, events=events, dense=dense,
+        in_fictitious_time=in_fictitious_time,
+    )  # fmt: skip
+
+
+def task_with(
+    system: HamiltonEquations,
+    given: tuple[Array, Array],
+    t_span: tuple[float, float],
+    *,
+    single: bool,
+    method: Method | None,
+    step: float | None,
+    tolerance: float | None,
+    precision: str | int | None,
+    samples: int | None,
+    times: npt.ArrayLike | None,
+    observables: Mapping[str, Expr] | None,
+    cadence: int | None,
+    events: Sequence[Event],
+    dense: bool,
+    in_fictitious_time: Callable[[TimeTransformed], ExtendedSystem] | None = None,
+) -> Task:
+    """Return the task of equations with starting states, each of shape (2n, orbits), all arguments checked."""
     method = _with_tolerance(Taylor() if method is None else method, tolerance)
     extra = dict(observables or {})
     if "energy" in extra:
         raise ValueError(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
-    fixed, varying = _by_orbit(parameters or {})
-    system = hamilton_equations_of(hamiltonian, fixed, tuple(varying))
     nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
-    given, single = _with_parameters(y0, len(hamiltonian.q), varying)
     start, end = (exact_number(t, "t_span") for t in t_span)
     wanted = sampling((start, end), samples, times)
     _check_start(system, given, start, precision)
@@ -75,10 +108,8 @@ def task_of(
         plan = planned(wanted, step, method)
     elif isinstance(method, TimeTransformed):
         _check_transformed(method, step, cadence)
-        larger = extended(hamiltonian, method)
-        frame = extended_system(
-            larger, hamilton_equations_of(larger, fixed, tuple(varying)), hamiltonian, Fraction(step or 0)
-        )
+        assert in_fictitious_time is not None
+        frame = in_fictitious_time(method)
         plan = fictitious_plan(wanted, named=times is not None or not single)
     else:
         _check_adaptive(method, step, cadence, precision)
@@ -154,7 +185,7 @@ def _kept_system(
     return equations(H, q, p, t, dict(parameters), [known[name] for name in varying])
 
 
-def _by_orbit(
+def parted_by_orbit(
     parameters: Mapping[Symbol | str, Any],
 ) -> tuple[dict[Symbol | str, Any], dict[str, npt.NDArray[Any]]]:
     """Part parameters into those with one value and those with one for each orbit."""

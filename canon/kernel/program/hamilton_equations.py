@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -46,6 +47,15 @@ class HamiltonEquations:
     varying
         How many parameters differ from orbit to orbit: the last so many of q, which keep their values, and of
         p, where each has a twin for the velocities to read.
+    canonical
+        Whether they are Hamilton's equations. Equations of other origin (:mod:`canon.flow.system`) stand here too, as
+        every engine but the splittings takes any: ``velocity`` and ``force`` are the rates of the first and the second
+        half of their state, ``hamiltonian`` is what the motion conserves, or 0, and the last ``varying`` of both
+        halves are what is integrated along unseen.
+    spare
+        How many of p before those only fill up the second half, at rate 0.
+    named
+        The nodes of further symbols that functions along the motion may hold, such as multipliers.
     """
 
     graph: Graph
@@ -60,12 +70,15 @@ class HamiltonEquations:
     quadratic_kinetic: bool
     autonomous: bool
     varying: int = 0
+    canonical: bool = True
+    spare: int = 0
+    named: Mapping[Symbol, int] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def rows(self) -> list[int]:
         """The components of a state that are coordinates and momenta rather than parameters."""
         n = len(self.q) - self.varying
-        return [*range(n), *range(len(self.q), len(self.q) + n)]
+        return [*range(n), *range(len(self.q), len(self.q) + n - self.spare)]
 
     @property
     def inputs(self) -> tuple[Symbol, ...]:
@@ -83,7 +96,12 @@ class HamiltonEquations:
 
     def node(self, expression: Expr, what: str) -> int:
         """Return the node of a function of (q, p, t) and the parameters; ``what`` names it in errors."""
-        return _with_numbers(self.graph, expression, self.inputs, self.parameters, what)
+        if not self.named:
+            return _with_numbers(self.graph, expression, self.inputs, self.parameters, what)
+        both = (*self.inputs, *self.named)
+        node = _with_numbers(self.graph, expression, both, self.parameters, what)
+        known = {self.graph.symbol(symbol): value for symbol, value in self.named.items()}
+        return self.graph.substitute([node], known)[0]
 
 
 def equations(
