@@ -48,7 +48,8 @@ from .mechanics.hamilton.bracket import lagrange_bracket as lagrange_bracket
 from .mechanics.hamilton.bracket import lie_bracket as lie_bracket
 from .mechanics.hamilton.bracket import poisson_bracket as poisson_bracket
 from .mechanics.hamilton.hamiltonian import Hamiltonian as Hamiltonian
-from .mechanics.hamilton.hamiltonian import legendre as legendre
+from .mechanics.hamilton.hamiltonian import hamiltonian as hamiltonian
+from .mechanics.hamilton.hamiltonian import lagrangian as lagrangian
 from .mechanics.hamilton.pfaffian_form import bilinear_covariant as bilinear_covariant
 from .mechanics.hamilton.symmetry import is_constant_of_motion as is_constant_of_motion
 from .mechanics.hamilton.symmetry import is_gauge_equivalent as is_gauge_equivalent
@@ -60,7 +61,7 @@ from .mechanics.lagrange.body import PlanarBody as PlanarBody
 from .mechanics.lagrange.body import RigidBody as RigidBody
 from .mechanics.lagrange.body import kinetic_energy as kinetic_energy
 from .mechanics.lagrange.constraint import ConstrainedLagrangian as ConstrainedLagrangian
-from .mechanics.lagrange.force import lagrangian_of as lagrangian_of
+from .mechanics.lagrange.force import lagrangian_of_bodies as lagrangian_of_bodies
 from .mechanics.lagrange.lagrangian import Lagrangian as Lagrangian
 from .mechanics.lagrange.sympy_bridge import from_sympy_mechanics as from_sympy_mechanics
 from .mechanics.reduction.routh import routhian as routhian

@@ -101,5 +101,5 @@ def test_systems_are_shown_as_formulas():
         r"$\displaystyle \begin{aligned}S &= \frac{m \ddot{r}^{2}}{2} \\ "
         r"\partial S/\partial \ddot{r} &= - g m\end{aligned}$"
     )
-    turned = canon.CanonicalTransformation([r], [r.momentum], Q=[r.momentum], P=[-r])
+    turned = canon.CanonicalTransformation([r], [r.momentum], new_q=[r.momentum], new_p=[-r])
     assert turned._repr_latex_() == r"$\displaystyle \begin{aligned}Q &= p_{r} \\ P &= - r\end{aligned}$"

@@ -45,8 +45,10 @@ from .hamilton.bracket import poisson_matrix as poisson_matrix
 from .hamilton.bracket import symplectic_unit as symplectic_unit
 from .hamilton.hamiltonian import Hamiltonian as Hamiltonian
 from .hamilton.hamiltonian import LegendreError as LegendreError
+from .hamilton.hamiltonian import hamiltonian as hamiltonian
 from .hamilton.hamiltonian import has_hamiltonian as has_hamiltonian
 from .hamilton.hamiltonian import is_hamiltonian_of as is_hamiltonian_of
+from .hamilton.hamiltonian import lagrangian as lagrangian
 from .hamilton.pfaffian_form import bilinear_covariant as bilinear_covariant
 from .hamilton.pfaffian_form import canonical_covariant as canonical_covariant
 from .hamilton.pfaffian_form import displacements as displacements
@@ -77,7 +79,7 @@ from .lagrange.force import generalized_forces as generalized_forces
 from .lagrange.force import generalized_moments as generalized_moments
 from .lagrange.force import generalized_torques as generalized_torques
 from .lagrange.force import gravity as gravity
-from .lagrange.force import lagrangian_of as lagrangian_of
+from .lagrange.force import lagrangian_of_bodies as lagrangian_of_bodies
 from .lagrange.force import magnetic_field as magnetic_field
 from .lagrange.force import rayleigh_forces as rayleigh_forces
 from .lagrange.force import spring as spring

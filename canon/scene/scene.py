@@ -168,15 +168,17 @@ class Scene:
         if self.L_of is not None:
             return Lagrangian(self.L_of(self.symbols), self.q, forces=forces)
         if self.bodies_of is None:
-            return self.hamiltonian.lagrangian()
-        from canon.mechanics.lagrange.force import lagrangian_of
+            from canon.mechanics.hamilton.hamiltonian import lagrangian
+
+            return lagrangian(self.hamiltonian)
+        from canon.mechanics.lagrange.force import lagrangian_of_bodies
 
         V = self.V_of(self.symbols) if self.V_of else None
         bodies = self.bodies_of(self.symbols)
         return (
-            lagrangian_of(bodies, self.q, forces=forces)
+            lagrangian_of_bodies(bodies, self.q, forces=forces)
             if V is None
-            else lagrangian_of(bodies, self.q, V, forces)
+            else lagrangian_of_bodies(bodies, self.q, V, forces)
         )
 
     @cached_property
@@ -203,10 +205,10 @@ class Scene:
                 f"{self.name} has constraints or forces without potential, so no Hamiltonian says how it moves; "
                 "take its lagrangian, or run it by canon.scene.scene_motion.run"
             )
-        if self.H_of is None:
-            return self.lagrangian.hamiltonian(self.p)
-        from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+        from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian
 
+        if self.H_of is None:
+            return hamiltonian(self.lagrangian, self.p)
         return Hamiltonian(self.H_of(self.symbols), self.q, self.p)
 
     @property

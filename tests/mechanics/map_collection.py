@@ -42,7 +42,7 @@ def single(Q, P, kinds, *twins, old=q, momentum=p, domain=None):
 def lifted(old, momenta, new, kinds, domain=None):
     """A point transformation; its twin has one momentum doubled."""
     T = point_transformation(old, momenta, new, domain=domain)
-    twin = CanonicalTransformation(T.q, T.p, T.Q, (2 * T.P[0], *T.P[1:]), domain=domain)
+    twin = CanonicalTransformation(T.q, T.p, T.new_q, (2 * T.new_p[0], *T.new_p[1:]), domain=domain)
     return Case(T, frozenset(kinds), (twin,))
 
 

@@ -7,7 +7,7 @@ from canon.expression.symbols.symbol import acceleration, coordinates, parameter
 from canon.mechanics.lagrange.appell import GibbsAppell
 from canon.mechanics.lagrange.body import Particle, PlanarBody, RigidBody, euler_rotation
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-from canon.mechanics.lagrange.force import gravity, lagrangian_of
+from canon.mechanics.lagrange.force import gravity, lagrangian_of_bodies
 from canon.mechanics.lagrange.quasi_velocity import maggi_accelerations
 from canon.proof.domain.domain import Domain
 from canon.proof.equivalence import equivalent_equations
@@ -42,7 +42,7 @@ def test_appell_agrees_with_lagrange(system):
     bodies, q = system()
     V = gravity(bodies, (0, 0, -g) if len(bodies[0].r) == 3 else (0, -g))
     appell = GibbsAppell(bodies, q, V)
-    lagrange = lagrangian_of(bodies, q, V)
+    lagrange = lagrangian_of_bodies(bodies, q, V)
     for ours, theirs in zip(appell.equations, lagrange.equations, strict=True):
         assert vanishes(ours - theirs).holds
     upside_down = GibbsAppell(bodies, q, -V)
@@ -112,7 +112,7 @@ def test_chaplygin_sleigh():
 
 
 def knife(body):
-    L = lagrangian_of([body], [x, y, theta])
+    L = lagrangian_of_bodies([body], [x, y, theta])
     return ConstrainedLagrangian(L, nonholonomic=[x.dot * sin(theta) - y.dot * cos(theta)])
 
 
@@ -136,7 +136,7 @@ def test_leaning_disc_against_maggi_and_the_classical_equations():
     V = m * g * R * sin(theta)
     appell = GibbsAppell([disc], q, V, u=free, q_dot=[*rolling, *free])
     constrained = ConstrainedLagrangian(
-        lagrangian_of([disc], q, V), nonholonomic=[x.dot - rolling[0], y.dot - rolling[1]]
+        lagrangian_of_bodies([disc], q, V), nonholonomic=[x.dot - rolling[0], y.dot - rolling[1]]
     )
     assert appell.kinematics.satisfy(constrained).holds
     from canon.mechanics.lagrange.quasi_velocity import maggi_equations
@@ -164,7 +164,7 @@ def test_rolling_disc_by_appell_agrees_with_multipliers():
     rolling = [R * cos(phi) * psi.dot, R * sin(phi) * psi.dot]
     appell = GibbsAppell(disc, q, -m * g * x, u=[phi.dot, psi.dot], q_dot=[*rolling, phi.dot, psi.dot])
     constrained = ConstrainedLagrangian(
-        lagrangian_of(disc, q, -m * g * x), nonholonomic=[x.dot - rolling[0], y.dot - rolling[1]]
+        lagrangian_of_bodies(disc, q, -m * g * x), nonholonomic=[x.dot - rolling[0], y.dot - rolling[1]]
     )
     through = dict(appell.kinematics.through)
     for ours, theirs in zip(appell.quasi_accelerations, constrained.accelerations[2:], strict=True):

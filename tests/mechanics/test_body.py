@@ -4,6 +4,7 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbols.symbol import coordinates, parameters, time, time_derivative
+from canon.mechanics.hamilton.hamiltonian import hamiltonian
 from canon.mechanics.hamilton.symmetry import have_same_equations
 from canon.mechanics.lagrange.body import (
     Particle,
@@ -22,7 +23,7 @@ from canon.mechanics.lagrange.force import (
     generalized_forces,
     generalized_torques,
     gravity,
-    lagrangian_of,
+    lagrangian_of_bodies,
     magnetic_field,
     spring,
 )
@@ -162,9 +163,9 @@ def test_block_in_a_pipe():
     different(Q[1], -d * y)
     swing = m * y**2 * theta.ddot + 2 * m * y * y.dot * theta.dot + m * g * y * sin(theta)
     slide = m * y.ddot - m * y * theta.dot**2 - m * g * cos(theta) + k * (y - y0) + d * y.dot
-    block = lagrangian_of([Particle(m, place)], q, V, forces=Q)
+    block = lagrangian_of_bodies([Particle(m, place)], q, V, forces=Q)
     agrees(block, [swing, slide], [swing, slide - 2 * d * y.dot])
-    by_rayleigh = lagrangian_of([Particle(m, place)], q, V, dissipation=damper(d, place, (0, 0), q))
+    by_rayleigh = lagrangian_of_bodies([Particle(m, place)], q, V, dissipation=damper(d, place, (0, 0), q))
     agrees(by_rayleigh, [swing, slide], [swing, slide + m * g * cos(theta)])
 
 
@@ -174,14 +175,14 @@ def test_inertia_wheel_pendulum():
     Q = generalized_torques([tau], [q2], [q1, q2])
     assert (0, tau) == Q
     turning = [PlanarBody(0, (), J1, q1), PlanarBody(0, (), J2, q1 + q2)]
-    wheel = lagrangian_of(turning, [q1, q2], U, forces=Q)
+    wheel = lagrangian_of_bodies(turning, [q1, q2], U, forces=Q)
     both = J2 * (q1.ddot + q2.ddot)
     agrees(wheel, [J1 * q1.ddot + both + U.diff(q1), both - tau], [J1 * q1.ddot + U.diff(q1), both - tau])
 
 
 def test_mass_spring_with_actuator():
     (q,) = coordinates("q")
-    driven = lagrangian_of([Particle(m, (q,))], [q], k * (q - y0) ** 2 / 2, forces=[tau])
+    driven = lagrangian_of_bodies([Particle(m, (q,))], [q], k * (q - y0) ** 2 / 2, forces=[tau])
     agrees(driven, [m * q.ddot + k * (q - y0) - tau], [m * q.dot + k * (q - y0) - tau])
 
 
@@ -191,7 +192,7 @@ def test_robotic_manipulator():
     first = PlanarBody(m1, (c1 * cos(q1), c1 * sin(q1)), I1, q1)
     second = PlanarBody(m2, (elbow[0] + c2 * cos(q1 + q2), elbow[1] + c2 * sin(q1 + q2)), I3, q1 + q2)
     torques = generalized_torques([tau1, tau2], [q1, q2], [q1, q2])
-    arm = lagrangian_of([first, second], [q1, q2], gravity([first, second], (0, -g)), forces=torques)
+    arm = lagrangian_of_bodies([first, second], [q1, q2], gravity([first, second], (0, -g)), forces=torques)
     T = m1 * c1**2 * q1.dot**2 / 2 + I1 * q1.dot**2 / 2 + I3 * (q1.dot + q2.dot) ** 2 / 2
     T += m2 * (L1**2 * q1.dot**2 + c2**2 * (q1.dot + q2.dot) ** 2) / 2
     T += m2 * L1 * c2 * cos(q2) * q1.dot * (q1.dot + q2.dot)
@@ -208,11 +209,11 @@ def test_robotic_manipulator():
 def test_bead_on_a_turning_hoop():
     """The notes' second quiz: m a² φ̈ = m a² ω² sin φ cos φ − m g a sin φ."""
     place = (a * sin(phi) * cos(w * time), a * sin(phi) * sin(w * time), a - a * cos(phi))
-    bead = lagrangian_of([Particle(m, place)], [phi], gravity([Particle(m, place)], (0, 0, -g)))
+    bead = lagrangian_of_bodies([Particle(m, place)], [phi], gravity([Particle(m, place)], (0, 0, -g)))
     equation = a * phi.ddot - a * w**2 * sin(phi) * cos(phi) + g * sin(phi)
     agrees(bead, [equation], [equation + 2 * a * w**2 * sin(phi) * cos(phi)])
     same(
-        bead.hamiltonian().H,
+        hamiltonian(bead).H,
         phi.momentum**2 / (2 * m * a**2) - m * a**2 * w**2 * sin(phi) ** 2 / 2 + m * g * a * (1 - cos(phi)),
     )
 
@@ -225,7 +226,7 @@ def test_foucault_pendulum():
     tilt = sp.Matrix([[sin(beta), 0, cos(beta)], [0, 1, 0], [-cos(beta), 0, sin(beta)]])
     local = sp.Matrix([x, y, 0])  # south, east, up; the height is of second order
     place = tuple(turn * tilt * local)
-    swing = lagrangian_of([Particle(m, place)], [x, y], m * w**2 * (x**2 + y**2) / 2)
+    swing = lagrangian_of_bodies([Particle(m, place)], [x, y], m * w**2 * (x**2 + y**2) / 2)
     first_order = [f.subs(Omega, 0) + Omega * f.diff(Omega).subs(Omega, 0) for f in swing.accelerations]
     same(first_order[0], -(w**2) * x + 2 * Omega * sin(beta) * y.dot)
     same(first_order[1], -(w**2) * y - 2 * Omega * sin(beta) * x.dot)
@@ -237,7 +238,7 @@ def test_charge_in_electric_and_magnetic_fields():
     r = (x, y, z)
     A = tuple(sp.Function(f"A{i}")(x, y, z, time) for i in range(3))
     V = sp.Function("phi")(x, y, z, time)
-    charge = lagrangian_of([Particle(m, r)], r, -charge_term(e, r, r, A, V))
+    charge = lagrangian_of_bodies([Particle(m, r)], r, -charge_term(e, r, r, A, V))
     E, B = electric_field(A, V, r), magnetic_field(A, r)
     v = [s.dot for s in r]
     for i in range(3):
@@ -251,7 +252,7 @@ def test_the_printed_y_for_z_of_the_quiz_is_seen():
     r = (x, y, z)
     A = tuple(sp.Function(name)(x, y, z) for name in "ABC")
     V = sp.Function("V")(x, y, z)
-    charge = lagrangian_of([Particle(m, r)], r, -charge_term(sp.S.One, r, r, A, V))
+    charge = lagrangian_of_bodies([Particle(m, r)], r, -charge_term(sp.S.One, r, r, A, V))
     right = (
         m * x.ddot + (A[0].diff(y) - A[1].diff(x)) * y.dot + (A[0].diff(z) - A[2].diff(x)) * z.dot + V.diff(x)
     )
@@ -271,7 +272,7 @@ def test_springs_and_dampers_between_moving_points():
 
 def test_quadratic_drag_by_rayleigh():
     speed = sp.sqrt(x.dot**2 + y.dot**2)
-    falling = lagrangian_of([Particle(m, (x, y))], [x, y], m * g * y, dissipation=k * speed**3 / 3)
+    falling = lagrangian_of_bodies([Particle(m, (x, y))], [x, y], m * g * y, dissipation=k * speed**3 / 3)
     right = [m * x.ddot + k * speed * x.dot, m * y.ddot + m * g + k * speed * y.dot]
     agrees(falling, right, [right[0], right[1] - 2 * k * speed * y.dot])
 

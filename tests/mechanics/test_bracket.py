@@ -99,7 +99,7 @@ def test_brackets_are_not_invariant_under_others():
 def test_lagranges_brackets_invert_poissons(T):
     inverse = inverse_transformation(T, (Q1, Q2), (P1, P2))
     assert law.lagrange_inverts_poisson(T, inverse).holds
-    transposed = CanonicalTransformation(inverse.q, inverse.p, inverse.P, inverse.Q)
+    transposed = CanonicalTransformation(inverse.q, inverse.p, inverse.new_p, inverse.new_q)
     assert law.lagrange_inverts_poisson(T, transposed).fails
 
 

@@ -10,7 +10,7 @@ from canon.mechanics.at_scale.second_order import derivation
 from canon.mechanics.lagrange.body import Particle, PlanarBody
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.dependence import DependentConstraintsError
-from canon.mechanics.lagrange.force import gravity, lagrangian_of
+from canon.mechanics.lagrange.force import gravity, lagrangian_of_bodies
 
 m, M, l, g, a, J, w = parameters("m M l g a J w", positive=True)
 x, y, u, v, theta = coordinates("x y u v theta")
@@ -45,7 +45,7 @@ def motion_of(system, **rates):
 def test_agrees_with_symbolic_multipliers(system):
     bodies, q, holonomic, nonholonomic = system()
     _, values, motion = motion_of(system)
-    L = lagrangian_of(bodies, q, gravity(bodies, (0, -g)))
+    L = lagrangian_of_bodies(bodies, q, gravity(bodies, (0, -g)))
     symbolic = ConstrainedLagrangian(L, holonomic, nonholonomic)
     chance = np.random.default_rng(4)
     place, speed = chance.uniform(0.3, 1, len(q)), chance.uniform(-1, 1, len(q))

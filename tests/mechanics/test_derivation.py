@@ -21,7 +21,7 @@ from canon.mechanics.at_scale.numeric_functions import (
 )
 from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
 from canon.mechanics.lagrange.body import Particle, PlanarBody, kinetic_energy
-from canon.mechanics.lagrange.force import gravity, lagrangian_of
+from canon.mechanics.lagrange.force import gravity, lagrangian_of_bodies
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.vanish import vanishes
 
@@ -196,7 +196,7 @@ def test_a_long_chain_conserves_its_energy():
 def test_potentials_and_forces_enter():
     bodies, q, V = spring_chain(4)
     equations = derivation(bodies, q, V, forces=[-c * q[0].dot, 0, 0, 0])
-    expected = lagrangian_of(bodies, q, V, forces=[-c * q[0].dot, 0, 0, 0])
+    expected = lagrangian_of_bodies(bodies, q, V, forces=[-c * q[0].dot, 0, 0, 0])
     for node, bias in zip(equations.f, expected.bias, strict=True):
         assert vanishes(equations.graph.to_sympy(node) + bias).holds
     assert vanishes(equations.graph.to_sympy(equations.f[0]) - expected.bias[0]).fails

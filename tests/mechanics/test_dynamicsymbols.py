@@ -9,7 +9,7 @@ from canon.mechanics.algebra.dynamicsymbols import plain
 from canon.mechanics.at_scale.constrained import constrained
 from canon.mechanics.at_scale.first_order import canonical_derivation
 from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
-from canon.mechanics.hamilton.hamiltonian import Hamiltonian, is_hamiltonian_of, legendre
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian, is_hamiltonian_of
 from canon.mechanics.hamilton.symmetry import (
     is_constant_of_motion,
     is_gauge_equivalent,
@@ -34,7 +34,7 @@ from canon.mechanics.lagrange.force import (
     generalized_forces,
     generalized_moments,
     generalized_torques,
-    lagrangian_of,
+    lagrangian_of_bodies,
     rayleigh_forces,
 )
 from canon.mechanics.lagrange.frobenius import integrals, is_integrable, positional_freedom
@@ -183,7 +183,7 @@ DOORS = {
     "damper": lambda n: damper(c, (n.x, n.y), (0, 0), [n.x, n.y]),
     "rayleigh": lambda n: rayleigh_forces(c * n.dot(n.x) ** 2 / 2, [n.x]),
     "charge": lambda n: charge_term(e, (n.x, n.y), [n.x, n.y], (0, B * n.x), e * n.y),
-    "lagrangian of bodies": lambda n: lagrangian_of(
+    "lagrangian of bodies": lambda n: lagrangian_of_bodies(
         [bob(n)], [n.theta], k * n.theta, dissipation=n.dot(n.theta) ** 2
     ),
     "kinetic energy and its form": lambda n: (
@@ -210,7 +210,7 @@ DOORS = {
     "gauge": lambda n: (
         is_gauge_equivalent(plane(n), Lagrangian(plane(n).L, plane(n).q), F=n.x * n.y * 0).status
     ),
-    "legendre": lambda n: legendre(plane(n), [n.momentum(n.x), n.momentum(n.y)]),
+    "hamiltonian of L": lambda n: hamiltonian(plane(n), [n.momentum(n.x), n.momentum(n.y)]),
     "is hamiltonian of": lambda n: (
         is_hamiltonian_of(
             Lagrangian(n.dot(n.x) ** 2 / 2 - n.x**2, [n.x]),

@@ -6,7 +6,7 @@ import sympy as sp
 from canon.expression.symbols.symbol import coordinates, parameters
 from canon.mechanics.lagrange.body import Particle, PlanarBody, RigidBody, euler_rotation
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-from canon.mechanics.lagrange.force import gravity, lagrangian_of
+from canon.mechanics.lagrange.force import gravity, lagrangian_of_bodies
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler, joint, weights
 from canon.proof.vanish import vanishes
@@ -25,7 +25,7 @@ def test_pendulum_three_ways():
     bob = Particle(m, (l * sin(theta), -l * cos(theta)))
     string = Load(0, (-S * sin(theta), S * cos(theta)))
     fixed = NewtonEuler([bob], [theta], [*weights([bob], (0, -g)), string], [S])
-    lagrange = lagrangian_of([bob], [theta], gravity([bob], (0, -g)))
+    lagrange = lagrangian_of_bodies([bob], [theta], gravity([bob], (0, -g)))
     assert fixed.agrees_with(lagrange.equations).holds
     assert fixed.agrees_with([theta.ddot - g / l * sin(theta)]).fails
     right, up = fixed.balances
@@ -56,7 +56,7 @@ def cart_and_rod():
 def test_cart_pendulum():
     bodies, loads, reactions = cart_and_rod()
     route = NewtonEuler(bodies, [x, theta], loads, reactions)
-    lagrange = lagrangian_of(bodies, [x, theta], gravity(bodies, (0, -g)), forces=[tau, 0])
+    lagrange = lagrangian_of_bodies(bodies, [x, theta], gravity(bodies, (0, -g)), forces=[tau, 0])
     assert route.agrees_with(lagrange.equations).holds
     first = (
         (m0 + m1) * x.ddot

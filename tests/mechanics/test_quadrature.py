@@ -15,7 +15,7 @@ R = sp.sqrt(PLANE[0][0] ** 2 + PLANE[0][1] ** 2)
 def kicked(gradient):
     """Return the map p → p + f(q) with a closed form f dq."""
     q, p = PLANE if len(gradient) == 2 else tuple((z,) for z in REAL)
-    return CanonicalTransformation(q, p, q, [b + f for b, f in zip(p, gradient, strict=True)], TIME)
+    return CanonicalTransformation(q, p, q, [b + f for b, f in zip(p, gradient, strict=True)], t=TIME)
 
 
 KICKS = {

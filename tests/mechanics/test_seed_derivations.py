@@ -4,10 +4,10 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbols.symbol import coordinates, parameters, time, time_derivative
-from canon.mechanics.hamilton.hamiltonian import legendre
+from canon.mechanics.hamilton.hamiltonian import hamiltonian
 from canon.mechanics.lagrange.body import Particle
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-from canon.mechanics.lagrange.force import do_no_work, generalized_forces, lagrangian_of
+from canon.mechanics.lagrange.force import do_no_work, generalized_forces, lagrangian_of_bodies
 from canon.mechanics.lagrange.frobenius import integrals, is_integrable
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian
@@ -82,7 +82,7 @@ def test_dalemberts_principle_projects_newton():
     inertia = [F + N - m * A for F, N, A in zip(applied, normal, r_ddot, strict=True)]
     (projected,) = generalized_forces([inertia], [place], [theta])
     Q = generalized_forces([applied], [place], [theta])
-    bob = lagrangian_of([Particle(m, place)], [theta], forces=Q)
+    bob = lagrangian_of_bodies([Particle(m, place)], [theta], forces=Q)
     same(projected, -bob.equations[0])
     different(projected, bob.equations[0])
 
@@ -91,10 +91,12 @@ def test_generalized_force_of_a_potential():
     """Q = −∂U/∂q + τ on either side of d/dt ∂T/∂q̇ − ∂T/∂q, for any r(q)."""
     r, tau = [sp.Function(f"r{i}")(x) for i in range(2)], sp.Symbol("tau", real=True)
     potential = k * r[0] ** 2 * r[1] + sp.Function("U")(x)
-    with_potential = lagrangian_of([Particle(m, r)], [x], potential, forces=[tau])
-    as_force = lagrangian_of([Particle(m, r)], [x], forces=[tau - potential.diff(x)])
+    with_potential = lagrangian_of_bodies([Particle(m, r)], [x], potential, forces=[tau])
+    as_force = lagrangian_of_bodies([Particle(m, r)], [x], forces=[tau - potential.diff(x)])
     same(with_potential.equations[0], as_force.equations[0])
-    different(with_potential.equations[0], lagrangian_of([Particle(m, r)], [x], forces=[tau]).equations[0])
+    different(
+        with_potential.equations[0], lagrangian_of_bodies([Particle(m, r)], [x], forces=[tau]).equations[0]
+    )
 
 
 def test_rouths_equations():
@@ -118,7 +120,7 @@ def test_hamiltons_equations():
     """H = Σ p q̇ − L, q̇ = ∂H/∂p, ṗ = −∂H/∂q with coefficients free in x."""
     A, D, V = (sp.Function(name)(x) for name in "ADV")
     L = Lagrangian(A * x.dot**2 / 2 + D * x.dot - V, [x])
-    H = legendre(L)
+    H = hamiltonian(L)
     there = dict(zip(H.p, L.momenta, strict=True))
     same(H.H.xreplace(there), x.dot * L.momenta[0] - L.L)
     same(H.q_dot[0].xreplace(there), x.dot)

@@ -7,7 +7,12 @@ from canon.expression.symbols.symbol import coordinates, parameters, time, time_
 from canon.mechanics.hamilton.symmetry import is_constant_of_motion
 from canon.mechanics.lagrange.body import Particle, PlanarBody, kinetic_energy, kinetic_form
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-from canon.mechanics.lagrange.force import generalized_forces, generalized_torques, gravity, lagrangian_of
+from canon.mechanics.lagrange.force import (
+    generalized_forces,
+    generalized_torques,
+    gravity,
+    lagrangian_of_bodies,
+)
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.eliminate_constraints import embedded
 from canon.proof.domain.domain import Domain
@@ -74,7 +79,7 @@ def test_piston_elimination_agrees_with_its_parts():
     s_, x1, y1, x2, y2 = coordinates("s x1 y1 x2 y2")
     bodies = [PlanarBody(m1, (x1, y1), J1, theta), PlanarBody(m2, (x2, y2), J2, phi), Particle(m3, (s_,))]
     q = [x1, y1, x2, y2, theta, phi, s_]
-    whole = lagrangian_of(bodies, q, forces=[0, 0, 0, 0, -MT, 0, -P])
+    whole = lagrangian_of_bodies(bodies, q, forces=[0, 0, 0, 0, -MT, 0, -P])
     root = sp.sqrt(1 - (R * sin(theta) / L) ** 2)
     rod = R * sin(theta) / L
     places = {
@@ -116,7 +121,7 @@ def test_double_pendulum_of_rods():
     different(energy, middle)
     V = gravity([first, second], (0, -g))
     same(V, -g * l1 * (m2 + m1 / 2) * cos(t1) - g * l2 * m2 / 2 * cos(t2))
-    rods = lagrangian_of([first, second], [t1, t2], V)
+    rods = lagrangian_of_bodies([first, second], [t1, t2], V)
     same(rods.momenta[1], m2 / 3 * l2**2 * t2.dot + m2 / 2 * l1 * l2 * cos(t1 - t2) * t1.dot)
     same(rods.L.diff(t2), -m2 * l1 * l2 * sin(t2 - t1) * t1.dot * t2.dot / 2 - g * l2 * m2 / 2 * sin(t2))
 
@@ -132,7 +137,7 @@ def test_double_pendulum_of_points():
         2 * theta.ddot + phi.ddot * cos(theta - phi) + phi.dot**2 * sin(theta - phi) + 2 * g / a * sin(theta)
     )
     second = phi.ddot + theta.ddot * cos(theta - phi) - theta.dot**2 * sin(theta - phi) + g / a * sin(phi)
-    pendulum = lagrangian_of(bodies, [theta, phi], V)
+    pendulum = lagrangian_of_bodies(bodies, [theta, phi], V)
     agrees(pendulum, [first, second], [first, second - 2 * g / a * sin(phi)])
     middle = 2 * m * a**2 * theta.ddot + m * a**2 * phi.ddot * cos(theta - phi) + 2 * m * g * a * sin(theta)
     middle += -m * a**2 * phi.dot * sin(theta - phi) * (theta.dot - phi.dot)
@@ -143,7 +148,7 @@ def test_double_pendulum_of_points():
 
 def test_spherical_pendulum():
     place = (a * sin(theta) * cos(phi), a * sin(theta) * sin(phi), -a * cos(theta))
-    pendulum = lagrangian_of([Particle(m, place)], [theta, phi], -m * g * a * cos(theta))
+    pendulum = lagrangian_of_bodies([Particle(m, place)], [theta, phi], -m * g * a * cos(theta))
     polar = theta.ddot + g / a * sin(theta) - phi.dot**2 * sin(theta) * cos(theta)
     same(pendulum.equations[0], m * a**2 * polar)
     assert is_constant_of_motion(phi.dot * sin(theta) ** 2, pendulum).holds
@@ -151,7 +156,7 @@ def test_spherical_pendulum():
 
 
 def test_projectile_and_its_trajectory():
-    flight = lagrangian_of([Particle(m, (x, y))], [x, y], m * g * y)
+    flight = lagrangian_of_bodies([Particle(m, (x, y))], [x, y], m * g * y)
     motion = {x: v0 * cos(alpha) * time, y: v0 * sin(alpha) * time - g * time**2 / 2}
     for equation, q in zip(flight.equations, (x, y), strict=True):
         same(equation.xreplace({q.ddot: motion[q].diff(time, 2)}), 0)
@@ -162,7 +167,7 @@ def test_projectile_and_its_trajectory():
 
 def test_particle_in_a_vertical_plane():
     place = (r * cos(theta), r * sin(theta))
-    free = lagrangian_of([Particle(m, place)], [r, theta], m * g * r * sin(theta))
+    free = lagrangian_of_bodies([Particle(m, place)], [r, theta], m * g * r * sin(theta))
     radial = m * r.ddot - m * r * theta.dot**2 + m * g * sin(theta)
     angular = r**2 * theta.ddot + 2 * r * r.dot * theta.dot + g * r * cos(theta)
     agrees(free, [radial, angular], [radial, angular - 2 * r * r.dot * theta.dot])
@@ -171,7 +176,7 @@ def test_particle_in_a_vertical_plane():
 def test_cylindrical_coordinates():
     """The notes print p_φ = m ρ φ̇, and V_φ where V_φ/ρ is meant."""
     V = sp.Function("V")(rho, phi, z)
-    free = lagrangian_of([Particle(m, (rho * cos(phi), rho * sin(phi), z))], [rho, phi, z], V)
+    free = lagrangian_of_bodies([Particle(m, (rho * cos(phi), rho * sin(phi), z))], [rho, phi, z], V)
     angular = m * (rho * phi.ddot + 2 * rho.dot * phi.dot) + V.diff(phi) / rho
     right = [m * (rho.ddot - rho * phi.dot**2) + V.diff(rho), angular, m * z.ddot + V.diff(z)]
     agrees(free, right, [right[0], angular + V.diff(phi) - V.diff(phi) / rho, right[2]])
@@ -237,7 +242,7 @@ def test_energy_is_conserved_only_by_constraints_at_rest(moving):
     """T + V is constant where time is not explicit; on the turning hoop it is not, Jacobi's energy is."""
     w = parameters("omega")[0] if moving else sp.S.Zero
     place = (a * sin(phi) * cos(w * time), a * sin(phi) * sin(w * time), -a * cos(phi))
-    bead = lagrangian_of([Particle(m, place)], [phi], -m * g * a * cos(phi))
+    bead = lagrangian_of_bodies([Particle(m, place)], [phi], -m * g * a * cos(phi))
     total = kinetic_energy([Particle(m, place)], [phi]) - m * g * a * cos(phi)
     assert is_constant_of_motion(total, bead).holds is not moving
     assert is_constant_of_motion(bead.jacobi_energy, bead).holds

@@ -124,7 +124,7 @@ def _mended(reading: Reading) -> RepairHint | None:
     Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
     if any(f.has(AppliedUndef) for f in (*Q, *P)):
         return None  # arbitrary functions have no values at which a bracket could be looked at
-    map_ = CanonicalTransformation(q, p, Q, P, reading.time, reading.domain)
+    map_ = CanonicalTransformation(q, p, Q, P, reading.domain, reading.time)
     return repair_hint(map_, reading.expression("valence", sp.S.One))
 
 

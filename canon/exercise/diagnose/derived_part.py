@@ -49,7 +49,7 @@ def new_hamiltonian_part(reading: Reading) -> Iterator[Part]:
         old, new = new, old
     (q, p), names = reading.phase_space(*old), [s for key in new for s in reading.symbols(key)]
     images, n = [there[s] for s in names], len(q)
-    map_ = CanonicalTransformation(q, p, images[:n], images[n:], t, domain)
+    map_ = CanonicalTransformation(q, p, images[:n], images[n:], domain, t)
     form = rate_form(map_)
     R = _integrated(form, map_.variables, domain)
     if R is None:

@@ -89,7 +89,7 @@ def motion_of(reading: Reading) -> dict[Symbol, Expr]:
     if reading.has("L"):
         q = reading.symbols("q")
         forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
-        lagrangian = Lagrangian(reading.expression("L"), q, reading.time, forces)
+        lagrangian = Lagrangian(reading.expression("L"), q, forces, reading.time)
         rates: dict[Symbol, Expr] = {x: velocity(x) for x in q}
         return rates | dict(zip(lagrangian.velocities, lagrangian.accelerations, strict=True))
     if not reading.has("X"):

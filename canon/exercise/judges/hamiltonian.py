@@ -16,7 +16,7 @@ from canon.exercise.question.question import Determines, Part, Question, Regular
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
 from canon.mechanics.algebra.substitution import substitute
-from canon.mechanics.hamilton.hamiltonian import Hamiltonian, legendre
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -36,7 +36,7 @@ def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
         yield from wrong_variables(reading.expression("H"), lagrangian.velocities, "H", "q, p and t")
         through = dict(zip(p, lagrangian.momenta, strict=True))
         part = Part("H", reading.expression("H"), lagrangian.jacobi_energy, through, "H")
-        yield Same((part,), transported(domain, through), lambda: legendre(lagrangian, p, domain).H)
+        yield Same((part,), transported(domain, through), lambda: hamiltonian(lagrangian, p, domain).H)
     else:
         yield Determines(lambda: stay_open(["H"]))
 
@@ -75,7 +75,7 @@ def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
         Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
     )
     yield Same(tuple(parts), domain)
-    yield from motion_is_continuous(motion, system.t, domain, [system.H], velocities=False)
+    yield from motion_is_continuous(motion, domain, [system.H], system.t, velocities=False)
 
 
 def constant_of_motion(reading: Reading) -> Iterator[Question]:

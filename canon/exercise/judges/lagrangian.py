@@ -126,7 +126,7 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
     if relation == "equations":
         if reading.has("F"):
             reading.fault("F", "stands beside the relation gauge only; leave it out, or write gauge")
-        systems = [Lagrangian(L, q, t).equations for L in (second, first)]
+        systems = [Lagrangian(L, q, t=t).equations for L in (second, first)]
         yield SameEquations(systems[0], systems[1], tuple(acceleration(x) for x in q), reading.domain)
         yield from _no_steps(first, second, q, reading)
     elif relation != "gauge":
@@ -167,7 +167,7 @@ def lagrangian_of(reading: Reading, key: str = "L", forces: Sequence[Expr] | Non
     L, q = reading.expression(key), reading.symbols("q")
     if L.has(*(acceleration(x) for x in q)):
         reading.fault(key, "a Lagrangian depends on coordinates, velocities and time only")
-    return Lagrangian(L, q, reading.time, forces)
+    return Lagrangian(L, q, forces, reading.time)
 
 
 def same_motion(reading: Reading, lagrangian: Lagrangian) -> Iterator[Question]:

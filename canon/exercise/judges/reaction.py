@@ -145,7 +145,7 @@ def _system(
     held = [f if f.has(*v) else time_derivative(f, q, t) for f in constraints]
     directions = sp.Matrix([[g.diff(u) for u in v] for g in held])
     forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
-    lagrangian = Lagrangian(reading.expression("L"), q, t, forces)
+    lagrangian = Lagrangian(reading.expression("L"), q, forces, t)
     reactions = directions.T * sp.Matrix(multipliers)
     system = [e - r for e, r in zip(lagrangian.equations, reactions, strict=True)]
     return directions, system + [time_derivative(g, q, t) for g in held], held

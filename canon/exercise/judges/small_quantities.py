@@ -113,7 +113,7 @@ def linearisation(reading: Reading) -> Iterator[Question]:
     if any(value.has(*q, reading.time) for value in place.values()):
         reading.fault("equilibrium", "should be given by parameters only")
     forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
-    equations = Lagrangian(reading.expression("L"), q, reading.time, forces).equations
+    equations = Lagrangian(reading.expression("L"), q, forces, reading.time).equations
     moving = tuple(r(x) for x in q for r in (velocity, acceleration))
     given = Domain(tuple(c for c in reading.domain.conditions if not c.has(*moving)), reading.domain.box)
     domain = transported(given, place)  # the place satisfies what is assumed of the coordinates

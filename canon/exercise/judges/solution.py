@@ -54,7 +54,7 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
     yield from motion_is_real(table, reading.domain)
     laws = _laws(reading)
     bound = _velocities_are_continuous(reading, laws, table)
-    yield from motion_is_continuous(table, t, transported(reading.domain, table), laws, velocities=bound)
+    yield from motion_is_continuous(table, transported(reading.domain, table), laws, t, velocities=bound)
     motion: dict[Symbol, Expr] = {}
     for x, value in table.items():
         _check_smooth(value, t, reading.domain)
@@ -174,7 +174,7 @@ def _equations(reading: Reading, motion: Mapping[Symbol, Expr]) -> list[tuple[st
         forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
         if not reading.has("L"):
             reading.fault("L", "missing; give L, or equations")
-        lagrangian = Lagrangian(reading.expression("L"), q, reading.time, forces)
+        lagrangian = Lagrangian(reading.expression("L"), q, forces, reading.time)
         return [(f"the equation of {x}", e) for x, e in zip(q, lagrangian.equations, strict=True)]
     t = reading.time
     return [(f"the equation of {x}", motion[x].diff(t) - rate) for x, rate in motion_of(reading).items()]

@@ -31,11 +31,11 @@ def generating_function_of(reading: Reading, kind: int) -> Expr | None:
     q, p, Q, P = (reading.symbols(key) for key in ("q", "p", "new_q", "new_p"))
     if reading.has("map"):
         new_q, new_p = reading.lists("map", {"Q": "new_q", "P": "new_p"})
-        map_ = CanonicalTransformation(q, p, new_q, new_p, reading.time, reading.domain)
+        map_ = CanonicalTransformation(q, p, new_q, new_p, reading.domain, reading.time)
         found, sign = generating_function(map_, kind, Q, P, budget=SECONDS), 1
     else:
         old_q, old_p = reading.lists("inverse_map", {"q": "q", "p": "p"})
-        map_ = CanonicalTransformation(Q, P, old_q, old_p, reading.time, reading.domain)
+        map_ = CanonicalTransformation(Q, P, old_q, old_p, reading.domain, reading.time)
         found, sign = generating_function(map_, _OF_INVERSE[kind], q, p, budget=SECONDS), -1
     if not isinstance(found, GeneratingFunction):
         return None

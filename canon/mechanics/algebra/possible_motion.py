@@ -45,7 +45,7 @@ def motion_is_real(motion: Mapping[Symbol, Expr], domain: Domain) -> Iterator[Ve
 
 
 def motion_is_continuous(
-    motion: Mapping[Symbol, Expr], t: Symbol, domain: Domain, laws: Sequence[Expr], *, velocities: bool
+    motion: Mapping[Symbol, Expr], domain: Domain, laws: Sequence[Expr], t: Symbol, *, velocities: bool
 ) -> Iterator[Verdict]:
     """Yield whether x(t) is continuous, and its velocity too where that is part of the state.
 
@@ -53,17 +53,17 @@ def motion_is_continuous(
     ----------
     motion
         The claimed functions of time.
-    t
-        The time.
     domain
         Where they are claimed, with their constants and parameters.
     laws
         Expressions in the coordinates that make the equations of motion.
+    t
+        The time.
     velocities
         Whether velocities must be continuous beside the places.
     """
     for x, place in motion.items():
-        rest, turns = _without_turns(place, x, t, domain, laws)
+        rest, turns = _without_turns(place, x, domain, laws, t)
         verdict = continuity(rest, [t], domain, name=f"{x} = {place}")
         yield replace(verdict, assumed=(*verdict.assumed, *turns))
         if turns:
@@ -106,7 +106,7 @@ def _may_be_complex(place: Expr) -> bool:
 
 
 def _without_turns(
-    place: Expr, x: Symbol, t: Symbol, domain: Domain, laws: Sequence[Expr]
+    place: Expr, x: Symbol, domain: Domain, laws: Sequence[Expr], t: Symbol
 ) -> tuple[Expr, tuple[str, ...]]:
     """Leave out angles that jump by whole turns where the equations do not know of turns; say so.
 

@@ -39,8 +39,8 @@ class CanonicalEquations:
     ----------
     graph
         The graph that the numbers below are nodes of.
-    q, t
-        Coordinates and time.
+    q
+        The coordinates.
     M
         Lower triangle of the symmetric mass matrix: row i has i + 1 nodes.
     drift
@@ -49,15 +49,17 @@ class CanonicalEquations:
         ∂L/∂q + Q as a function of q, q̇, t, n nodes.
     potential
         V − T₀, so that H = ½ q̇·(p − b) + V − T₀.
+    t
+        The time.
     """
 
     graph: Graph
     q: tuple[Symbol, ...]
-    t: Symbol
     M: tuple[tuple[int, ...], ...]
     drift: tuple[int, ...]
     p_dot: tuple[int, ...]
     potential: int
+    t: Symbol
 
     @cached_property
     def p(self) -> tuple[Symbol, ...]:
@@ -150,6 +152,6 @@ def canonical_derivation(
         if c.rest is not None:
             energies.append(mul((graph.number(Fraction(-1, 2)), w, c.rest)))
     return CanonicalEquations(
-        graph, reader.q, t, assembly.mass_matrix(), tuple(assembly.projected(still)),
-        tuple(graph.plain_add(terms) for terms in p_dot), graph.plain_add(energies),
+        graph, reader.q, assembly.mass_matrix(), tuple(assembly.projected(still)),
+        tuple(graph.plain_add(terms) for terms in p_dot), graph.plain_add(energies), t,
     )  # fmt: skip

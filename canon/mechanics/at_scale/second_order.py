@@ -41,19 +41,21 @@ class SecondOrderEquations:
     ----------
     graph
         The graph that the numbers below are nodes of.
-    q, t
-        Coordinates and time.
+    q
+        The coordinates.
     M
         Lower triangle of the symmetric mass matrix: row i has i + 1 nodes.
     f
         The right-hand side f(q, q̇, t), n nodes.
+    t
+        The time.
     """
 
     graph: Graph
     q: tuple[Symbol, ...]
-    t: Symbol
     M: tuple[tuple[int, ...], ...]
     f: tuple[int, ...]
+    t: Symbol
 
     @cached_property
     def velocities(self) -> tuple[Symbol, ...]:
@@ -149,7 +151,7 @@ def derivation(
             terms[i].append(term)
     _add_given(terms, reader, V, forces)
     return SecondOrderEquations(
-        graph, reader.q, t, assembly.mass_matrix(), tuple(map(graph.plain_add, terms))
+        graph, reader.q, assembly.mass_matrix(), tuple(map(graph.plain_add, terms)), t
     )
 
 
@@ -196,4 +198,4 @@ def derivation_of_lagrangian(lagrangian: Lagrangian) -> SecondOrderEquations:
         left = [graph.negative(term) for term in (*drift, graph.derivative(p, t))]
         Q = [graph.from_sympy(lagrangian.forces[i])] if lagrangian.forces else []
         f.append(graph.add((both[i], *Q, *left)))
-    return SecondOrderEquations(graph, q, t, tuple(M), tuple(f))
+    return SecondOrderEquations(graph, q, tuple(M), tuple(f), t)

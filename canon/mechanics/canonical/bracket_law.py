@@ -110,8 +110,8 @@ def time_rule(
     g: Expr,
     q: Sequence[Symbol],
     p: Sequence[Symbol],
-    t: Symbol = time,
     domain: Domain | None = None,
+    t: Symbol = time,
 ) -> Verdict:
     """Tell whether ∂{f, g}/∂t = {∂f/∂t, g} + {f, ∂g/∂t}."""
     residual = (
@@ -123,8 +123,8 @@ def time_rule(
 
 
 def fundamental_brackets(
-    Q: Sequence[Expr],
-    P: Sequence[Expr],
+    new_q: Sequence[Expr],
+    new_p: Sequence[Expr],
     q: Sequence[Symbol],
     p: Sequence[Symbol],
     domain: Domain | None = None,
@@ -140,7 +140,7 @@ def fundamental_brackets(
     >>> fundamental_brackets([p], [q], [q], [p]).status.name
     'FAILS'
     """
-    difference = poisson_matrix([*Q, *P], q, p) - symplectic_unit(len(q))
+    difference = poisson_matrix([*new_q, *new_p], q, p) - symplectic_unit(len(q))
     names = [*(f"Q{i + 1}" for i in range(len(q))), *(f"P{i + 1}" for i in range(len(p)))]
     claims = [
         (f"{{{names[i]}, {names[j]}}} = {int(j == i + len(q))}", entry(difference, i, j))
@@ -165,7 +165,7 @@ def lagrange_inverts_poisson(
         Where it is asked; the map's domain unless given.
     """
     here = dict(zip(inverse.variables, transformation.images, strict=True))
-    lagrange = lagrange_matrix(inverse.variables, inverse.Q, inverse.P)
+    lagrange = lagrange_matrix(inverse.variables, inverse.new_q, inverse.new_p)
     poisson = transformation.poisson_brackets
     size = poisson.rows
     claims = [

@@ -51,12 +51,12 @@ class PhaseSpaceMap(Protocol):
         ...
 
     @property
-    def Q(self) -> tuple[Expr, ...]:
+    def new_q(self) -> tuple[Expr, ...]:
         """The new coordinates."""
         ...
 
     @property
-    def P(self) -> tuple[Expr, ...]:
+    def new_p(self) -> tuple[Expr, ...]:
         """The new momenta."""
         ...
 
@@ -146,7 +146,7 @@ def _coefficients(T: PhaseSpaceMap, c: Expr) -> Iterator[tuple[str, Expr]]:
     """Yield the coefficients of δa db in Σ(δP dQ − dP δQ) − c Σ(δp dq − dp δq)."""
     d, delta = displacements(T.variables)
     n = len(T.q)
-    covariant = canonical_covariant(T.Q, T.P, T.variables)
+    covariant = canonical_covariant(T.new_q, T.new_p, T.variables)
     for i in range(2 * n):
         for j in range(i + 1, 2 * n):
             due = c if j == i + n else sp.S.Zero

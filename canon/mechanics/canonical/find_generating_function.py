@@ -211,7 +211,7 @@ def generating_function(
     end = clock.monotonic() + budget
     for F, conditions in recovery.closed_forms(clock.monotonic() + 0.3 * budget):
         for domain in _narrowed(T.domain, conditions):
-            found = GeneratingFunction(kinds, F, T.q, T.p, Q, P, T.t, domain)
+            found = GeneratingFunction(kinds, F, T.q, T.p, Q, P, domain, T.t)
             left = end - clock.monotonic()
             if left > 0 and found.generates(T, domain, left).holds:
                 return found

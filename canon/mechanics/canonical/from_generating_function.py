@@ -92,7 +92,7 @@ def implicit_map(F: GeneratingFunction) -> ImplicitTransformation:
     'HOLDS'
     """
     equations = tuple(rule.variable - rule.value for rule in F.rules)
-    return ImplicitTransformation(F.q, F.p, F.new_q, F.new_p, equations, F.t, F.domain)
+    return ImplicitTransformation(F.q, F.p, F.new_q, F.new_p, equations, F.domain, F.t)
 
 
 def generated_hamiltonian(F: GeneratingFunction, H: Expr, domain: Domain | None = None) -> Hamiltonian:
@@ -122,7 +122,7 @@ def generated_hamiltonian(F: GeneratingFunction, H: Expr, domain: Domain | None 
     """
     back = generated_inverse(F, domain)
     old = dict(zip((*F.q, *F.p), back.images, strict=True))
-    return Hamiltonian(substitute(F.new_hamiltonian(H), old), F.new_q, F.new_p, F.t)
+    return Hamiltonian(substitute(sp.sympify(H, strict=True) + F.F.diff(F.t), old), F.new_q, F.new_p, F.t)
 
 
 def of_kind(
@@ -150,10 +150,10 @@ def of_kind(
     for i, (old, new) in enumerate(zip(F.kind, kinds, strict=True)):
         total += F.new_q[i] * F.new_p[i] * ((new in (2, 4)) - (old in (2, 4)))
         total -= F.q[i] * F.p[i] * ((new in (3, 4)) - (old in (3, 4)))
-    empty = GeneratingFunction(kinds, sp.S.Zero, F.q, F.p, F.new_q, F.new_p, F.t)
+    empty = GeneratingFunction(kinds, sp.S.Zero, F.q, F.p, F.new_q, F.new_p, t=F.t)
     for solved, narrowed in _expressed(F, (*empty.old, *empty.new), domain or F.domain):
         found = GeneratingFunction(
-            kinds, shortened(substitute(total, solved)), F.q, F.p, F.new_q, F.new_p, F.t
+            kinds, shortened(substitute(total, solved)), F.q, F.p, F.new_q, F.new_p, t=F.t
         )
         if found.holds_on(_graph(F), narrowed).holds:
             return found
@@ -178,7 +178,7 @@ def _solved(
             here = Domain(_carried(conditions, solved), domain.box)
             if F.holds_on(solved, here).holds:
                 images = [solved[s] for s in target]
-                return CanonicalTransformation(start[:n], start[n:], images[:n], images[n:], F.t, here)
+                return CanonicalTransformation(start[:n], start[n:], images[:n], images[n:], here, F.t)
     raise NoClosedInverseError(
         f"the rules could not be solved for {target} in closed form; give conditions that choose a branch"
     )

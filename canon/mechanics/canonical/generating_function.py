@@ -83,10 +83,10 @@ class GeneratingFunction:
         Symbols of the old variables.
     new_q, new_p
         Symbols of the new variables.
-    t
-        The time.
     domain
         Where the function is meant: its branch.
+    t
+        The time.
 
     Examples
     --------
@@ -104,8 +104,8 @@ class GeneratingFunction:
     p: tuple[Symbol, ...]
     new_q: tuple[Symbol, ...]
     new_p: tuple[Symbol, ...]
-    t: Symbol = time
     domain: Domain = field(default_factory=Domain)
+    t: Symbol = time
 
     def __init__(
         self,
@@ -115,15 +115,15 @@ class GeneratingFunction:
         p: Sequence[Symbol] | Symbol,
         new_q: Sequence[Symbol] | Symbol,
         new_p: Sequence[Symbol] | Symbol,
-        t: Symbol = time,
         domain: Domain | None = None,
+        t: Symbol = time,
     ) -> None:
         for name, given in (("q", q), ("p", p), ("new_q", new_q), ("new_p", new_p)):
             object.__setattr__(self, name, given_symbols(given, name))
         n = len(self.q)
         object.__setattr__(self, "kind", kinds_of(kind, n))
         object.__setattr__(self, "F", given_expression(F, "F"))
-        object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "give the domain as domain=…"))
+        object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "the domain comes before it"))
         object.__setattr__(self, "domain", as_domain(domain))
         variables = (*self.q, *self.p, *self.new_q, *self.new_p)
         if len(variables) != 4 * n or len(set(variables)) < 4 * n:
@@ -243,10 +243,6 @@ class GeneratingFunction:
                 yield continuity(on_the_map, variables, domain, name="F", given=there.values())
 
         return all_hold(verdicts(), f"F of type {self._named_kind} generates the map")
-
-    def new_hamiltonian(self, H: Expr) -> Expr:
-        """Return K = H + ∂F/∂t, still in the variables of H and of F."""
-        return sp.sympify(H, strict=True) + self.F.diff(self.t)
 
     def _on(self, T: CanonicalTransformation) -> dict[Symbol, Expr]:
         """Return what the dependent variables are on the map, by symbol."""

@@ -39,11 +39,11 @@ class ImplicitTransformation:
         Symbols of the old and of the new variables.
     equations
         2n expressions in all of them, each = 0.
-    t
-        The time.
     domain
         Where the equations are meant; its box marks the step sizes for which the solution near the identity
         is meant.
+    t
+        The time.
 
     Examples
     --------
@@ -62,8 +62,8 @@ class ImplicitTransformation:
     new_q: tuple[Symbol, ...]
     new_p: tuple[Symbol, ...]
     equations: tuple[Expr, ...]
-    t: Symbol = time
     domain: Domain = field(default_factory=Domain)
+    t: Symbol = time
 
     def __post_init__(self) -> None:
         for name in ("q", "p", "new_q", "new_p"):

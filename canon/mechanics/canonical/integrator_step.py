@@ -70,7 +70,7 @@ def splitting_step(
         if i < len(drifts):
             there = dict(zip(H.p, p, strict=True))
             q = [old + drifts[i] * h * substitute(rate, there) for old, rate in zip(q, H.q_dot, strict=True)]
-    return CanonicalTransformation(H.q, H.p, q, p, H.t)
+    return CanonicalTransformation(H.q, H.p, q, p, t=H.t)
 
 
 def runge_kutta_step(
@@ -109,7 +109,7 @@ def runge_kutta_step(
         stages.append([substitute(f, dict(zip(z, moved, strict=True))) for f in H.vector_field])
     new = _moved(z, h, b, stages)
     n = len(H.q)
-    return CanonicalTransformation(H.q, H.p, new[:n], new[n:], H.t)
+    return CanonicalTransformation(H.q, H.p, new[:n], new[n:], t=H.t)
 
 
 def midpoint_step(
@@ -131,7 +131,7 @@ def midpoint_step(
     equations = tuple(
         b - a - h * substitute(f, middle) for a, b, f in zip(old, new, H.vector_field, strict=True)
     )
-    return ImplicitTransformation(H.q, H.p, tuple(new_q), tuple(new_p), equations, H.t)
+    return ImplicitTransformation(H.q, H.p, tuple(new_q), tuple(new_p), equations, t=H.t)
 
 
 def _moved(

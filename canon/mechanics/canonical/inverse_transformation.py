@@ -77,7 +77,7 @@ def inverse_transformation(
             conditions = tuple(cast("Boolean", c.xreplace(solved)) for c in T.domain.conditions)
             images: list[Expr] = [solved[z] for z in T.variables]
             n = len(T.q)
-            return CanonicalTransformation(new_q, new_p, images[:n], images[n:], T.t, Domain(conditions))
+            return CanonicalTransformation(new_q, new_p, images[:n], images[n:], Domain(conditions), T.t)
     raise NoClosedInverseError(
         "the map could not be inverted in closed form on its whole domain; narrow the domain to one branch "
         "with conditions such as p > 0"

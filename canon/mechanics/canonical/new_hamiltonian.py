@@ -44,7 +44,12 @@ def rate_form(transformation: CanonicalTransformation) -> tuple[Expr, ...]:
     """
     T = transformation
     return tuple(
-        sp.Add(*(Q.diff(T.t) * P.diff(z) - P.diff(T.t) * Q.diff(z) for Q, P in zip(T.Q, T.P, strict=True)))
+        sp.Add(
+            *(
+                Q.diff(T.t) * P.diff(z) - P.diff(T.t) * Q.diff(z)
+                for Q, P in zip(T.new_q, T.new_p, strict=True)
+            )
+        )
         for z in T.variables
     )
 

@@ -56,7 +56,7 @@ class ParametricGeneratingFunction:
             return Verdict(Status.UNDECIDED, question, feedback="F was not found in closed form")
 
         def due(z: Symbol) -> Expr:
-            pairs = zip(self.kind, T.q, T.p, T.Q, T.P, strict=True)
+            pairs = zip(self.kind, T.q, T.p, T.new_q, T.new_p, strict=True)
             return sp.Add(
                 *(
                     (p * q.diff(z) if k in (1, 2) else -q * p.diff(z))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+import time as clock
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, cast
@@ -11,6 +11,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.expression.symbols.symbol import time
 from canon.mechanics.algebra.jacobian import is_large
 from canon.mechanics.algebra.substitution import exchanged
 from canon.proof.kinks import vanishes_off_kinks
@@ -27,7 +28,7 @@ _PLACES = (sp.S.Zero, sp.S.One, sp.Rational(1, 2), sp.Rational(-1, 3))
 
 
 def constant_value(
-    f: Expr, variables: Sequence[Symbol], t: Symbol, domain: Domain, budget: float = 10.0
+    f: Expr, variables: Sequence[Symbol], domain: Domain, budget: float = 10.0, t: Symbol = time
 ) -> Expr | None:
     """Return the constant that f equals on the domain, free of the variables and of t; None if there is none.
 
@@ -38,7 +39,7 @@ def constant_value(
     >>> from sympy import sin, cos, symbols
     >>> from canon.proof.domain.domain import Domain
     >>> q, m, t = symbols("q m t", real=True)
-    >>> constant_value(m*sin(q)**2 + m*cos(q)**2, [q], t, Domain())
+    >>> constant_value(m*sin(q)**2 + m*cos(q)**2, [q], Domain(), t=t)
     m
     """
     moving = f.free_symbols & {*variables, t}
@@ -47,14 +48,14 @@ def constant_value(
     free = {u: sp.Dummy(real=True) for u in _arbitrary(f, {*variables, t})}
     plain = exchanged(f, free)
     tried: set[Expr] = set()
-    deadline = time.monotonic() + budget
+    deadline = clock.monotonic() + budget
     for place in _PLACES:
         candidate = exchanged(plain, dict.fromkeys((*moving, *free.values()), place))
         if candidate.has(sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity) or candidate in tried:
             continue
         tried.add(candidate)
         candidate = _short(candidate)
-        verdict = vanishes_off_kinks(f - candidate, domain, min(10.0, deadline - time.monotonic()))
+        verdict = vanishes_off_kinks(f - candidate, domain, min(10.0, deadline - clock.monotonic()))
         if verdict.holds:
             return candidate
     return None
@@ -126,19 +127,19 @@ def repair_hint(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> RepairHint 
     """Return what would mend the map, None where that is not simple or takes too long."""
     if is_large(T.images):
         return None
-    n, deadline = len(T.q), time.monotonic() + seconds
+    n, deadline = len(T.q), clock.monotonic() + seconds
     if n == 1:
-        value = constant_value(T.poisson_bracket_of(0, 1), T.variables, T.t, T.domain, seconds)
+        value = constant_value(T.poisson_bracket_of(0, 1), T.variables, T.domain, seconds, T.t)
         return None if value is None else RepairHint((value,), c)
     for a, b in ((first + i, first + j) for first in (0, n) for i in range(n) for j in range(i)):
-        if time.monotonic() > deadline or not _vanishes(T.poisson_bracket_of(a, b), T.domain):
+        if clock.monotonic() > deadline or not _vanishes(T.poisson_bracket_of(a, b), T.domain):
             return None
     constants: dict[tuple[int, int], Expr | None] = {}
     for i, j in product(range(n), repeat=2):
-        left = deadline - time.monotonic()
+        left = deadline - clock.monotonic()
         if left < 0:
             return None
-        constants[i, j] = constant_value(T.poisson_bracket_of(i, n + j), T.variables, T.t, T.domain, left)
+        constants[i, j] = constant_value(T.poisson_bracket_of(i, n + j), T.variables, T.domain, left, T.t)
     found: list[Expr] = []
     partners: list[int] = []
     for i in range(n):

@@ -49,12 +49,12 @@ class CanonicalTransformation:
     ----------
     q, p
         The old coordinates and momenta, symbols.
-    Q, P
+    new_q, new_p
         The new ones as expressions in the old ones and t.
-    t
-        The time.
     domain
         Where the map is meant.
+    t
+        The time.
 
     Examples
     --------
@@ -70,30 +70,31 @@ class CanonicalTransformation:
 
     q: tuple[Symbol, ...]
     p: tuple[Symbol, ...]
-    Q: tuple[Expr, ...]
-    P: tuple[Expr, ...]
-    t: Symbol = time
+    new_q: tuple[Expr, ...]
+    new_p: tuple[Expr, ...]
     domain: Domain = field(default_factory=Domain)
+    t: Symbol = time
 
     def __init__(
         self,
         q: Sequence[Symbol] | Symbol,
         p: Sequence[Symbol] | Symbol,
-        Q: Sequence[Expr] | Expr,
-        P: Sequence[Expr] | Expr,
-        t: Symbol = time,
+        new_q: Sequence[Expr] | Expr,
+        new_p: Sequence[Expr] | Expr,
         domain: Domain | None = None,
+        t: Symbol = time,
     ) -> None:
         for name, given in (("q", q), ("p", p)):
             object.__setattr__(self, name, given_symbols(given, name))
-        for name, given in (("Q", Q), ("P", P)):
+        for name, given in (("new_q", new_q), ("new_p", new_p)):
             object.__setattr__(self, name, as_tuple(given))
-        object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "give the domain as domain=…"))
+        object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "the domain comes before it"))
         object.__setattr__(self, "domain", as_domain(domain))
-        lengths = {len(self.q), len(self.p), len(self.Q), len(self.P)}
+        lengths = {len(self.q), len(self.p), len(self.new_q), len(self.new_p)}
         if len(lengths) > 1:
             raise ValueError(
-                f"{len(self.q)} q, {len(self.p)} p, {len(self.Q)} Q, {len(self.P)} P; give as many of each"
+                f"{len(self.q)} q, {len(self.p)} p, {len(self.new_q)} new_q, {len(self.new_p)} new_p; "
+                "give as many of each"
             )
         if len({*self.q, *self.p}) < 2 * len(self.q):
             raise ValueError(f"the variables {(*self.q, *self.p)} are not all different")
@@ -106,7 +107,7 @@ class CanonicalTransformation:
     @property
     def images(self) -> tuple[Expr, ...]:
         """The new variables (Q, P) as expressions, of length 2n."""
-        return (*self.Q, *self.P)
+        return (*self.new_q, *self.new_p)
 
     @cached_property
     def jacobian(self) -> sp.ImmutableDenseMatrix:
@@ -128,7 +129,7 @@ class CanonicalTransformation:
     @cached_property
     def lagrange_brackets(self) -> sp.ImmutableDenseMatrix:
         """Lagrange's brackets of the old variables, [q, p] = Mᵀ J M, of shape (2n, 2n)."""
-        return sp.ImmutableDenseMatrix(lagrange_matrix(self.variables, self.Q, self.P))
+        return sp.ImmutableDenseMatrix(lagrange_matrix(self.variables, self.new_q, self.new_p))
 
     @cached_property
     def valence(self) -> Expr | None:
@@ -136,7 +137,9 @@ class CanonicalTransformation:
 
         :meth:`is_canonical` with ``valence=None`` tells whether the map is canonical with it.
         """
-        c = constant_value(entry(self.poisson_brackets, 0, len(self.q)), self.variables, self.t, self.domain)
+        c = constant_value(
+            entry(self.poisson_brackets, 0, len(self.q)), self.variables, self.domain, t=self.t
+        )
         return c if c is not None and c != 0 else None
 
     def contact_form(self, valence: Expr = sp.S.One) -> tuple[Expr, ...]:
@@ -144,7 +147,7 @@ class CanonicalTransformation:
         return tuple(
             sp.Add(
                 valence * self.p[i] if i < len(self.q) else sp.S.Zero,
-                *(-P * Q.diff(z) for Q, P in zip(self.Q, self.P, strict=True)),
+                *(-P * Q.diff(z) for Q, P in zip(self.new_q, self.new_p, strict=True)),
             )
             for i, z in enumerate(self.variables)
         )
@@ -161,7 +164,7 @@ class CanonicalTransformation:
         p*q/2
         """
         hints = {q * p: q * p for q, p in zip(self.q, self.p, strict=True)}
-        hints |= {Q * P: Q * P for Q, P in zip(self.Q, self.P, strict=True)}
+        hints |= {Q * P: Q * P for Q, P in zip(self.new_q, self.new_p, strict=True)}
         return potential(self.contact_form(valence), self.variables, self.domain, hints)
 
     def is_canonical(
@@ -255,16 +258,16 @@ class CanonicalTransformation:
         return CanonicalTransformation(
             self.q,
             self.p,
-            [substitute(f, here) for f in following.Q],
-            [substitute(f, here) for f in following.P],
-            self.t,
+            [substitute(f, here) for f in following.new_q],
+            [substitute(f, here) for f in following.new_p],
             self.domain,
+            self.t,
         )
 
     def _repr_latex_(self) -> str:
         rows = [
             rf"{letter}{f'_{{{i + 1}}}' if len(self.q) > 1 else ''} &= {sp.latex(f)}"
-            for letter, images in (("Q", self.Q), ("P", self.P))
+            for letter, images in (("Q", self.new_q), ("P", self.new_p))
             for i, f in enumerate(images)
         ]
         return "$\\displaystyle \\begin{aligned}" + r" \\ ".join(rows) + "\\end{aligned}$"
@@ -273,9 +276,9 @@ class CanonicalTransformation:
 def point_transformation(
     q: Sequence[Symbol] | Symbol,
     p: Sequence[Symbol] | Symbol,
-    Q: Sequence[Expr] | Expr,
-    t: Symbol = time,
+    new_q: Sequence[Expr] | Expr,
     domain: Domain | None = None,
+    t: Symbol = time,
 ) -> CanonicalTransformation:
     """Lift new coordinates Q(q, t) to a canonical transformation, with P = (∂Q/∂q)⁻ᵀ p.
 
@@ -283,12 +286,12 @@ def point_transformation(
     ----------
     q, p
         The old coordinates and momenta.
-    Q
+    new_q
         The new coordinates as functions of the old ones and t.
-    t
-        The time.
     domain
         Where the new coordinates are regular.
+    t
+        The time.
 
     Raises
     ------
@@ -299,10 +302,10 @@ def point_transformation(
     --------
     >>> from sympy import symbols
     >>> q = symbols("q", positive=True); p = symbols("p", real=True)
-    >>> point_transformation(q, p, q**2).P
+    >>> point_transformation(q, p, q**2).new_p
     (p/(2*q),)
     """
-    old, momenta, new = given_symbols(q, "q"), given_symbols(p, "p"), as_tuple(Q)
+    old, momenta, new = given_symbols(q, "q"), given_symbols(p, "p"), as_tuple(new_q)
     if not len(old) == len(momenta) == len(new):
         raise ValueError(
             f"{counted(len(old), 'coordinate')}, {counted(len(momenta), 'momentum', 'momenta')}, "
@@ -312,7 +315,8 @@ def point_transformation(
         raise ValueError("the new coordinates of a point transformation depend on q and t only, not on p")
     transposed = sp.Matrix([[f.diff(x) for f in new] for x in old])
     P = solve(transposed, sp.Matrix(momenta), domain, "the Jacobian of the new coordinates")
-    return CanonicalTransformation(old, momenta, new, [entry(P, i, 0) for i in range(len(old))], t, domain)
+    new_p = [entry(P, i, 0) for i in range(len(old))]
+    return CanonicalTransformation(old, momenta, new, new_p, domain, t)
 
 
 def _as_valence(valence: Expr | int, moving: Sequence[Symbol]) -> Expr:

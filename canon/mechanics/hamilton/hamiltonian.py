@@ -27,7 +27,14 @@ from canon.proof.kinks import vanishes_off_kinks
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-__all__ = ["Hamiltonian", "LegendreError", "has_hamiltonian", "is_hamiltonian_of", "legendre"]
+__all__ = [
+    "Hamiltonian",
+    "LegendreError",
+    "hamiltonian",
+    "has_hamiltonian",
+    "is_hamiltonian_of",
+    "lagrangian",
+]
 
 
 @dataclass(frozen=True)
@@ -159,33 +166,14 @@ class Hamiltonian:
         if not verdict.holds:
             return verdict
         real = motion_is_real(motion, domain)
-        continuous = motion_is_continuous(motion, self.t, domain, [self.H], velocities=False)
+        continuous = motion_is_continuous(motion, domain, [self.H], self.t, velocities=False)
         return all_hold(chain([verdict], real, continuous), question)
-
-    def lagrangian(self, domain: Domain | None = None) -> Lagrangian:
-        """Return L = Σ p q̇ − H with the momenta eliminated.
-
-        Raises
-        ------
-        LegendreError
-            Where ∂²H/∂p² is singular, or p cannot be found as a function of q̇ in closed form.
-
-        Examples
-        --------
-        >>> from canon import coordinates
-        >>> (x,) = coordinates("x")
-        >>> Hamiltonian(x.momentum**2/6, x, x.momentum).lagrangian().L
-        3*x_dot**2/2
-        """
-        velocities = tuple(velocity(q) for q in self.q)
-        L = eliminate_velocities(self.H, self.p, velocities, as_domain(domain), "H", "momenta")
-        return Lagrangian(L, self.q, self.t)
 
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle H = {sp.latex(self.H)}$"
 
 
-def legendre(
+def hamiltonian(
     lagrangian: Lagrangian, p: Sequence[Symbol] | None = None, domain: Domain | None = None
 ) -> Hamiltonian:
     """Return H(q, p, t) = Σ p q̇ − L with the velocities eliminated.
@@ -213,10 +201,10 @@ def legendre(
     >>> from canon import coordinates, parameters
     >>> (r, phi) = coordinates("r phi")
     >>> (m,) = parameters("m", positive=True)
-    >>> legendre(Lagrangian(m*(r.dot**2 + r**2*phi.dot**2)/2, [r, phi])).H
+    >>> hamiltonian(Lagrangian(m*(r.dot**2 + r**2*phi.dot**2)/2, [r, phi])).H
     p_phi**2/(2*m*r**2) + p_r**2/(2*m)
     """
-    given_kind(lagrangian, Lagrangian, "what legendre() transforms", "a Hamiltonian has .lagrangian()")
+    given_kind(lagrangian, Lagrangian, "what hamiltonian() transforms", "lagrangian() goes the other way")
     if any(Q != 0 for Q in lagrangian.forces):
         raise LegendreError(
             "the system has forces without a potential; Hamilton's equations of H alone would miss them. "
@@ -232,6 +220,34 @@ def legendre(
         lagrangian.L, lagrangian.velocities, momenta, as_domain(domain), "L", "velocities"
     )
     return Hamiltonian(H, lagrangian.q, momenta, lagrangian.t)
+
+
+def lagrangian(hamiltonian: Hamiltonian, domain: Domain | None = None) -> Lagrangian:
+    """Return L(q, q̇, t) = Σ p q̇ − H with the momenta eliminated.
+
+    Parameters
+    ----------
+    hamiltonian
+        A Hamiltonian, regular in its momenta.
+    domain
+        Conditions on q, p and t that choose the branch.
+
+    Raises
+    ------
+    LegendreError
+        Where ∂²H/∂p² is singular, or p cannot be found as a function of q̇ in closed form.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> (x,) = coordinates("x")
+    >>> lagrangian(Hamiltonian(x.momentum**2/6, x, x.momentum)).L
+    3*x_dot**2/2
+    """
+    given_kind(hamiltonian, Hamiltonian, "what lagrangian() transforms", "hamiltonian() goes the other way")
+    H, velocities = hamiltonian, tuple(velocity(q) for q in hamiltonian.q)
+    L = eliminate_velocities(H.H, H.p, velocities, as_domain(domain), "H", "momenta")
+    return Lagrangian(L, H.q, t=H.t)
 
 
 def has_hamiltonian(lagrangian: Lagrangian, domain: Domain | None = None) -> Verdict:

@@ -73,7 +73,7 @@ def bilinear_covariant(
     )
 
 
-def canonical_covariant(Q: Sequence[Expr], P: Sequence[Expr], z: Sequence[Symbol]) -> Expr:
+def canonical_covariant(new_q: Sequence[Expr], new_p: Sequence[Expr], z: Sequence[Symbol]) -> Expr:
     """Return Σ (δP dQ − dP δQ) in the displacements of the variables z on which Q and P depend.
 
     Examples
@@ -91,7 +91,7 @@ def canonical_covariant(Q: Sequence[Expr], P: Sequence[Expr], z: Sequence[Symbol
     return sp.Add(
         *(
             along(P_, delta) * along(Q_, d) - along(P_, d) * along(Q_, delta)
-            for Q_, P_ in zip(Q, P, strict=True)
+            for Q_, P_ in zip(new_q, new_p, strict=True)
         )
     )
 

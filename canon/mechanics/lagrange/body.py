@@ -292,7 +292,7 @@ def kinetic_form(T: Expr, q: Sequence[Symbol]) -> KineticForm:
 
 
 def is_scleronomic(
-    bodies: Sequence[Body], t: Symbol = time, domain: Domain | None = None, q: Sequence[Symbol] = ()
+    bodies: Sequence[Body], q: Sequence[Symbol] = (), domain: Domain | None = None, t: Symbol = time
 ) -> Verdict:
     """Tell whether positions and orientations do not depend on time explicitly (else they are rheonomic).
 
@@ -300,12 +300,12 @@ def is_scleronomic(
     ----------
     bodies
         Particles and rigid bodies.
-    t
-        The time.
-    domain
-        Where the claim is meant.
     q
         The coordinates, to be named only where positions are written in SymPy's dynamicsymbols.
+    domain
+        Where the claim is meant.
+    t
+        The time.
 
     Examples
     --------

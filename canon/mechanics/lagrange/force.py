@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = [
     "charge_term", "damper", "do_no_work", "electric_field", "generalized_forces", "generalized_moments",
     "generalized_torques", "gravity",
-    "lagrangian_of", "magnetic_field", "rayleigh_forces", "spring",
+    "lagrangian_of_bodies", "magnetic_field", "rayleigh_forces", "spring",
 ]  # fmt: skip
 
 
@@ -235,7 +235,7 @@ def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, 
     )
 
 
-def lagrangian_of(
+def lagrangian_of_bodies(
     bodies: Sequence[Body],
     q: Sequence[Symbol],
     V: Expr = sp.S.Zero,
@@ -266,7 +266,7 @@ def lagrangian_of(
     >>> from canon.mechanics.lagrange.body import Particle
     >>> (x,) = coordinates("x")
     >>> m, k, c = parameters("m k c", positive=True)
-    >>> lagrangian_of([Particle(m, (x,))], [x], k*x**2/2, dissipation=c*x.dot**2/2).equations
+    >>> lagrangian_of_bodies([Particle(m, (x,))], [x], k*x**2/2, dissipation=c*x.dot**2/2).equations
     (c*x_dot + k*x + m*x_ddot,)
     """
     from canon.mechanics.lagrange.body import kinetic_energy
@@ -276,4 +276,4 @@ def lagrangian_of(
     given = plain_all(forces or (sp.S.Zero,) * len(q), q, t)
     Q = [a + b for a, b in zip(given, damping, strict=True)]
     L = kinetic_energy(bodies, q, t) - plain(V, q, t)
-    return Lagrangian(L, q, t, Q if any(f != 0 for f in Q) else None)
+    return Lagrangian(L, q, Q if any(f != 0 for f in Q) else None, t)

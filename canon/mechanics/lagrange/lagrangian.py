@@ -18,8 +18,6 @@ from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-
 __all__ = ["Lagrangian"]
 
 
@@ -36,10 +34,10 @@ class Lagrangian:
         The Lagrangian.
     q
         The generalized coordinates, independent of one another.
-    t
-        The time.
     forces
         The generalized forces Q(q, q̇, t), one a coordinate, or nothing.
+    t
+        The time.
 
     Raises
     ------
@@ -61,11 +59,11 @@ class Lagrangian:
 
     L: Expr
     q: tuple[Symbol, ...]
-    t: Symbol = time
     forces: tuple[Expr, ...] = ()
+    t: Symbol = time
 
     def __init__(
-        self, L: Expr, q: Sequence[Expr] | Expr, t: Symbol = time, forces: Sequence[Expr] | None = None
+        self, L: Expr, q: Sequence[Expr] | Expr, forces: Sequence[Expr] | None = None, t: Symbol = time
     ) -> None:
         symbols = coordinate_symbols(q)
         if not symbols:
@@ -148,12 +146,6 @@ class Lagrangian:
     def jacobi_energy(self) -> Expr:
         """Jacobi's energy Σ q̇ ∂L/∂q̇ − L; on the motion its rate is −∂L/∂t + Σ Q q̇."""
         return sp.Add(*(v * p for v, p in zip(self.velocities, self.momenta, strict=True)), -self.L)
-
-    def hamiltonian(self, p: Sequence[Symbol] | None = None) -> Hamiltonian:
-        """Return the Hamiltonian, velocities eliminated; see :func:`canon.mechanics.hamilton.hamiltonian.legendre`."""
-        from canon.mechanics.hamilton.hamiltonian import legendre
-
-        return legendre(self, p)
 
     @property
     def _all_forces(self) -> tuple[Expr, ...]:

@@ -64,7 +64,7 @@ def embedded(lagrangian: Lagrangian, places: Mapping[Symbol, Expr], q: Sequence[
     L = substitute(lagrangian.L, through)
     forces = [substitute(Q, through) for Q in lagrangian.forces]
     pulled = [sp.Add(*(Q * entry(jacobian, i, j) for i, Q in enumerate(forces))) for j in range(len(q))]
-    return Lagrangian(L, q, lagrangian.t, pulled if forces else None)
+    return Lagrangian(L, q, pulled if forces else None, lagrangian.t)
 
 
 def satisfies(

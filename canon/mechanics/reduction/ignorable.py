@@ -141,7 +141,7 @@ def adapted(lagrangian: Lagrangian, domain: Domain | None = None) -> Adapted:
     projected = [
         sp.Add(*(Q * shares[s].diff(x) for s, Q in zip(lagrangian.q, forces, strict=False))) for x in new
     ]
-    return Adapted(Lagrangian(L, new, lagrangian.t, projected if forces else None), shares, ignored)
+    return Adapted(Lagrangian(L, new, projected if forces else None, lagrangian.t), shares, ignored)
 
 
 def _kept(direction: tuple[Expr, ...], directions: Sequence[tuple[Expr, ...]]) -> int:

@@ -15,7 +15,7 @@ import numpy as np
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.symbol import momentum, velocity
+from canon.expression.symbols.symbol import momentum, time, velocity
 from canon.expression.symbols.user_input import counted, given_kind
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.algebra.substitution import exchanged, substitute
@@ -47,21 +47,21 @@ class Routhian:
         The coordinates that remain.
     ignorable, momenta
         The ignorable coordinates and their constant momenta.
-    t
-        The time.
     convention
         ``"L-pq"`` or ``"pq-L"``.
     forces
         Generalized forces on the remaining coordinates.
+    t
+        The time.
     """
 
     R: Expr
     q: tuple[Symbol, ...]
     ignorable: tuple[Symbol, ...]
     momenta: tuple[Symbol, ...]
-    t: Symbol
     convention: Convention = "L-pq"
     forces: tuple[Expr, ...] = ()
+    t: Symbol = time
 
     @property
     def note(self) -> str:
@@ -79,7 +79,7 @@ class Routhian:
     @cached_property
     def lagrangian(self) -> Lagrangian:
         """L − Σ p q̇ as the Lagrangian of the remaining coordinates, at constant momenta."""
-        return Lagrangian(self._sign * self.R, self.q, self.t, self.forces or None)
+        return Lagrangian(self._sign * self.R, self.q, self.forces or None, self.t)
 
     @property
     def equations(self) -> tuple[Expr, ...]:
@@ -236,7 +236,7 @@ def routhian(
     forces = tuple(pairs[s] for s in rest) if pairs else ()
     if not ignored:
         same = lagrangian.L if convention == "L-pq" else -lagrangian.L
-        return Routhian(same, rest, (), (), lagrangian.t, convention, forces)
+        return Routhian(same, rest, (), (), convention, forces, lagrangian.t)
     velocities = [velocity(s) for s in ignored]
     # The shortest diagonal entry of the Hessian first: the pivots after it stay short.
     order = sorted(range(len(ignored)), key=lambda i: int(sp.count_ops(lagrangian.L.diff(velocities[i], 2))))
@@ -252,7 +252,7 @@ def routhian(
     if forces:
         through = dict(zip(velocities, (negative.diff(x) for x in p), strict=True))
         forces = tuple(exchanged(Q, through) for Q in forces)
-    return Routhian(R, rest, ignored, p, lagrangian.t, convention, forces)
+    return Routhian(R, rest, ignored, p, convention, forces, lagrangian.t)
 
 
 def _integral_from_zero(f: Expr, t: Symbol) -> Expr:
@@ -261,7 +261,7 @@ def _integral_from_zero(f: Expr, t: Symbol) -> Expr:
     from sympy.simplify.fu import TR8  # products of sines and cosines into sums
 
     named: dict[Expr, Expr] = {}
-    waves = sp.expand(TR8(_constants_named(cast("Expr", sp.expand(f)), t, named)))
+    waves = sp.expand(TR8(_constants_named(cast("Expr", sp.expand(f)), named, t)))
     found = sp.Add(*(manualintegrate(term, t) for term in sp.Add.make_args(waves)))
     if found.has(sp.Integral, sp.Piecewise):
         s = sp.Dummy("s", real=True)
@@ -270,10 +270,10 @@ def _integral_from_zero(f: Expr, t: Symbol) -> Expr:
     return exchanged(found - exchanged(found, {t: sp.S.Zero}), values)
 
 
-def _constants_named(f: Expr, t: Symbol, named: dict[Expr, Expr]) -> Expr:
+def _constants_named(f: Expr, named: dict[Expr, Expr], t: Symbol) -> Expr:
     """Exchange compound constants for symbols, so that the tables do not ask whether they vanish."""
     if not f.has(t):
         return f if f.is_number else named.setdefault(f, sp.Dummy(real=True, nonzero=True))
     if f == t:
         return f
-    return f.func(*(_constants_named(cast("Expr", part), t, named) for part in f.args))
+    return f.func(*(_constants_named(cast("Expr", part), named, t) for part in f.args))

@@ -52,7 +52,7 @@ class Singularity:
         The coordinates.
     hamiltonian
         The canonical Hamiltonian Σ p q̇ − L on the primary constraints; None where L is regular
-        (:func:`canon.mechanics.hamilton.hamiltonian.legendre` gives it then) or it was not found in closed form.
+        (:func:`canon.mechanics.hamilton.hamiltonian.hamiltonian` gives it then) or it was not found in closed form.
     """
 
     rank: int
@@ -111,7 +111,7 @@ def singularity(
     >>> from canon.proof.domain.domain import Domain
     >>> t, x = coordinates("t x")
     >>> m, c = parameters("m c", positive=True)
-    >>> free = Lagrangian(-m*c*sp.sqrt(c**2*t.dot**2 - x.dot**2), [t, x], sp.Symbol("tau", real=True))
+    >>> free = Lagrangian(-m*c*sp.sqrt(c**2*t.dot**2 - x.dot**2), [t, x], t=sp.Symbol("tau", real=True))
     >>> print(singularity(free, domain=Domain((t.dot > 0, c*t.dot > x.dot, c*t.dot > -x.dot))))
     L is singular: its Hessian has the rank 1 for 2 coordinates
       primary constraint: c*sqrt(c**2*m**2 + p_x**2) + p_t = 0
