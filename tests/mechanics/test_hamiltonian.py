@@ -75,7 +75,7 @@ def test_round_trip_of_generated_lagrangians(n):
     system = Lagrangian(L, [x, y])
     H = hamiltonian(system)
     assert vanishes(lagrangian(H).L - L).holds
-    assert is_hamiltonian_of(lagrangian, H.H, H.p).holds
+    assert is_hamiltonian_of(system, H.H, H.p).holds
 
 
 def test_relativistic_hamiltonian_of_two_degrees():
