@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.exercise.diagnose.feedback import corrected, feedback
+from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS
+from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.judge import InvalidClaim, examine
 from canon.exercise.report.derivation_steps import steps
 from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid
+from canon.exercise.report.sentences import feedback
 from canon.expression.symbols.magnitude import written
 from canon.proof.rungs.ladder import REFUSALS, refusal
 
@@ -22,9 +24,6 @@ if TYPE_CHECKING:
     from canon.proof.domain.verdict import Verdict
 
 __all__ = ["judgements"]
-
-FEEDBACK_SECONDS = 1.4
-"""Wall time for the search of a diagnosis, so that a false claim is answered within two seconds."""
 
 
 def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
@@ -64,7 +63,7 @@ def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Itera
         left = finding.left_open() if finding.verdict.holds else ()
         yield replace(judgement, warnings=(*judgement.warnings, *left)), True
         return
-    left = min(FEEDBACK_SECONDS, claim.budget - judgement.seconds)
+    left = min(OUTER_SECONDS, claim.budget - judgement.seconds)
     if left <= 0.1:
         yield judgement, True
         return

@@ -31,8 +31,8 @@ START = 60.0
 """Seconds that a worker may take to start, on a slow or busy machine."""
 GRACE = 0.35
 """Seconds beyond its budget that a judgement may take to come to its own end before it is killed."""
-FEEDBACK = 1.8
-"""Seconds after the verdict for which its feedback is waited for."""
+FEEDBACK = 12.0
+"""Seconds after the verdict for which its feedback is waited for, an outer limit: most takes some hundredths."""
 
 
 class Worker:

@@ -126,8 +126,9 @@ def judged_row(claim: dict[str, Any], section: str, judgement: Any) -> str:
 
 def at_leisure(claim: Any, judgement: Any) -> Any:
     """Return a judgement whose feedback and right answer were not cut off, as they can be on a busy machine."""
-    from canon.exercise.diagnose.feedback import corrected, feedback
+    from canon.exercise.diagnose.right_answer import corrected
     from canon.exercise.judge import examine
+    from canon.exercise.report.sentences import feedback
 
     if judgement.status != "fails" or (judgement.feedback and judgement.corrected):
         return judgement

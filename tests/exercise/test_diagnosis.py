@@ -7,10 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import judged_to_hold
-from canon.exercise.diagnose.feedback import corrected, diagnosis
+from canon.exercise.diagnose.diagnosis_search import diagnosis
+from canon.exercise.diagnose.effort import Effort
+from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.explained_judgement import judgements
 from canon.exercise.judge import examine
+from canon.exercise.report import sentences
 from canon.exercise.sheet.sheet import Claim, read_sheet
 
 ROOT = Path(__file__).parents[2]
@@ -46,9 +50,10 @@ STATEMENTS = (
 ORDERS = ("zeroth", "first", "second", "third", "fourth", "fifth", "sixth")
 
 
-def told(claim, seconds=1.0):
+def told(claim):
     finding = examine(claim)
-    return diagnosis(finding, seconds) if finding.verdict.fails else None
+    found = diagnosis(finding) if finding.verdict.fails else None
+    return None if found is None else sentences.sentence(found)
 
 
 def changed(claim, /, **keys):
@@ -140,15 +145,16 @@ def is_so(claim, sentence):
 def break_of_the_law(claim):
     """Return what was told of a claim although it does not hold with that put in, or is not so."""
     finding = examine(claim)
-    found = diagnosis(finding, 1.0) if finding.verdict.fails else None
+    found = diagnosis(finding) if finding.verdict.fails else None
     if found is None:
         return None
     if found.repaired is None:
-        own = found.sentence == finding.verdict.feedback and finding.verdict.certificate
-        stated = is_so(claim, found.sentence) if own else any(text in found.sentence for text in STATEMENTS)
-        return None if stated else found.sentence
+        told = sentences.sentence(found)
+        own = found.changes[0].mistake is Mistake.AS_JUDGED and finding.verdict.certificate
+        stated = is_so(claim, told) if own else any(text in told for text in STATEMENTS)
+        return None if stated else told
     assert found.repaired.claim.id == claim.id
-    return None if judged_to_hold(found.repaired, 10.0) else found.sentence
+    return None if judged_to_hold(found.repaired, Effort(60.0)) else sentences.sentence(found)
 
 
 def test_an_equation_that_doubles_another_one_is_no_repair():
@@ -211,12 +217,12 @@ def test_a_slip_behind_a_derivative_is_passed_over():
 
 def test_routhian_feedback_speaks_of_momenta():
     """The slips stand in the student's momenta, not in the velocities of the ignorable coordinates."""
-    assert told(SEED["routh-cylindrical-eom-r-read-as"], 6.0).sentence == (
+    assert told(SEED["routh-cylindrical-eom-r-read-as"]) == (
         "in equation 1 the sign of P0**2/(m*r**3) is wrong"
     )
     keys = dict(SEED["routh-cylindrical-eom-r-read-as"].keys)
     lost = Claim("lost", "routhian", {**keys, "claim": ["m*r_ddot", "z_ddot + g"]})
-    assert told(lost, 6.0).sentence == "in equation 1 the term -P0**2/(m*r**3) is missing"
+    assert told(lost) == "in equation 1 the term -P0**2/(m*r**3) is missing"
     assert "theta" not in corrected(examine(lost))
     assert "P0**2" in corrected(examine(lost))
 

@@ -13,8 +13,10 @@ import pytest
 import canon.exercise
 from canon.exercise import judge as judging
 from canon.exercise.diagnose import rereadings, screen_tests
-from canon.exercise.diagnose.feedback import feedback
+from canon.exercise.diagnose.change import Mistake
+from canon.exercise.diagnose.diagnosis import Proof
 from canon.exercise.question import answer_values
+from canon.exercise.report.sentences import OF_A_COMPONENT, SENTENCES, feedback
 from canon.exercise.sheet import key_shapes, kind, kinds
 from canon.exercise.sheet.kind import Kind, named_function
 from canon.exercise.sheet.kinds import KINDS
@@ -80,6 +82,26 @@ def test_no_sentence_is_read_again():
             ), path
 
 
+def test_sentences_are_made_in_one_module():
+    """A diagnosis is a value: nothing in the room that makes it says in words what is wrong."""
+    for path, source in SOURCES.items():
+        if path.startswith("diagnose/"):
+            tree = ast.parse(source)
+            inside = {
+                id(node.value)
+                for node in ast.walk(tree)
+                if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+            }
+            texts = [
+                node.value
+                for node in ast.walk(tree)
+                if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in inside
+            ]
+            enumerated = {proof.value for proof in Proof}
+            assert not [text for text in texts if text.count(" ") > 2 and text not in enumerated], path
+    assert set(Mistake) == {*SENTENCES, *OF_A_COMPONENT}
+
+
 def imported(name, source, folder, monkeypatch):
     path = folder / f"{name.rpartition('.')[2]}.py"
     path.write_text(source, "utf-8")
@@ -117,7 +139,7 @@ def test_the_kind_that_the_page_adds_is_judged_as_the_page_says(with_the_kind_of
     assert [finding.verdict.status.value for finding in findings] == said
     assert findings[1].verdict.feedback == "the force along theta does not vanish there"
     with_the_kind_of_the_page(repaired=("at",))
-    told = feedback(judging.examine(claims[1]), 4.0)
+    told = feedback(judging.examine(claims[1]))
     assert f"*{told}*" in PAGE.read_text("utf-8")
 
 

@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from canon import Hamiltonian, Lagrangian, coordinates, vanishes
-from canon.exercise.diagnose.feedback import corrected
+from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.judge import JUDGES, examine, judge
 from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.algebra.linear import is_regular

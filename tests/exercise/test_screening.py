@@ -10,12 +10,14 @@ from hypothesis import strategies as st
 
 from canon.exercise.diagnose.changed_claims import _answers
 from canon.exercise.diagnose.diagnosis import judged_to_hold
-from canon.exercise.diagnose.feedback import diagnosis, feedback
+from canon.exercise.diagnose.diagnosis_search import diagnosis
+from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.point_derivatives import BITS, Examples, Neighbourhood
 from canon.exercise.diagnose.repair import repair
 from canon.exercise.diagnose.screening import screening
 from canon.exercise.judge import examine
 from canon.exercise.question.question import Part
+from canon.exercise.report.sentences import feedback, sentence
 from canon.exercise.sheet.reading import Reading
 from canon.exercise.sheet.sheet import Claim, read_sheet
 from canon.proof.domain.balls import precision
@@ -37,12 +39,11 @@ KINDS = (
     "hamilton-equations",
     "equality-only",
 )
-SECONDS = 6.0
 
 
 def told(kind, **keys):
     finding = examine(Claim("a", kind, keys))
-    return feedback(finding, SECONDS) if finding.verdict.fails else "holds"
+    return feedback(finding) if finding.verdict.fails else "holds"
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -80,14 +81,14 @@ def test_a_lost_product_of_powers_is_found(powers, factor, with_sine):
     m, l, g, theta = sp.symbols("m l g theta", positive=True)
     term = factor * m ** powers[0] * l ** powers[1] * g ** powers[2] * (sp.sin(theta) if with_sine else 1)
     rest = sp.cos(theta) * m + sp.exp(l) * g**2
-    found = repair(Part("a", rest, rest + term), Domain(), SECONDS)
+    found = repair(Part("a", rest, rest + term), Domain(), Effort(60.0))
     assert found is not None
     assert sp.expand(found.right - rest - term) == 0
 
 
 def test_a_residual_that_is_no_product_of_powers_is_not_called_one():
     m, l = sp.symbols("m l", positive=True)
-    assert repair(Part("a", m * sp.exp(l), m * sp.exp(l) + m**2 + l**3 + 1), Domain(), 2.0) is None
+    assert repair(Part("a", m * sp.exp(l), m * sp.exp(l) + m**2 + l**3 + 1), Domain(), Effort(60.0)) is None
 
 
 FRAME = {
@@ -147,6 +148,6 @@ def test_every_repair_told_is_judged_as_a_whole():
         "q": ["q"], "p": ["p"], "new_q": ["Q"], "new_p": ["P"], "F": "q**3*P", "parameters": {"q": "positive"},
         "map": {"Q": ["q**3"], "P": ["p/q**2"]},
     }))  # fmt: skip
-    found = diagnosis(finding, SECONDS)
-    assert found.sentence == "map.P[0] should be 1/3 times what it is"
-    assert judged_to_hold(found.repaired, SECONDS)
+    found = diagnosis(finding)
+    assert sentence(found) == "map.P[0] should be 1/3 times what it is"
+    assert judged_to_hold(found.repaired, Effort(60.0))

@@ -2,18 +2,17 @@
 
 import pytest
 
-from canon.exercise.diagnose.feedback import corrected, feedback
+from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.judge import examine
+from canon.exercise.report.sentences import feedback
 from canon.exercise.sheet.reading import InvalidClaim
 from canon.exercise.sheet.sheet import Claim, claim_from
-
-SECONDS = 6.0
 
 
 def told(kind, **keys):
     finding = examine(Claim("a", kind, keys))
     assert finding.verdict.fails
-    return feedback(finding, SECONDS) or finding.verdict.feedback, corrected(finding)
+    return feedback(finding) or finding.verdict.feedback, corrected(finding)
 
 
 def reason(kind, **keys):

@@ -1,2 +1,4 @@
+from .change import Change as Change
+from .change import Mistake as Mistake
 from .diagnosis import Diagnosis as Diagnosis
-from .feedback import corrected as corrected
+from .right_answer import corrected as corrected

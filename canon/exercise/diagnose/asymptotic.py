@@ -6,14 +6,15 @@ The order is read off from the values of the residual at ε and ε/2, and proved
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis
+from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.expression.symbols.symbol import Coordinate, Rate
 from canon.mechanics.algebra.substitution import substitute
@@ -33,8 +34,9 @@ __all__ = ["right_to_an_order"]
 BITS = 512
 POINTS = 2
 MOST_ORDERS = 4
+LIMIT_STEPS = 1_000
+"""Steps for one thing that may be small."""
 MOST_OPERATIONS = 400
-_ORDINALS = ("zeroth", "first", "second", "third")
 _KINKED = (*PIECED, sp.atan2)
 
 
@@ -55,7 +57,7 @@ def right_to_an_order(wrong: WrongAnswer) -> Iterator[Diagnosis]:
         return
     epsilon = sp.Dummy("epsilon", positive=True)
     for limit in _limits([r for r, _ in residuals], epsilon):
-        if time.monotonic() > wrong.deadline:
+        if not wrong.effort.spend(LIMIT_STEPS):
             return
         scaled = [(substitute(r, limit.values), substitute(c, limit.values)) for r, c in residuals]
         orders = [_order(r, c, epsilon, domain) for r, c in scaled]
@@ -66,8 +68,7 @@ def right_to_an_order(wrong: WrongAnswer) -> Iterator[Diagnosis]:
             and 2 <= order <= MOST_ORDERS
             and all(_vanishes_to(r, epsilon, order, _without(domain, limit)) for r, _ in scaled)
         ):
-            sentence = f"right only for small {limit.name}, to {_ORDINALS[order - 1]} order"
-            yield Diagnosis(sentence, only_fault=True)
+            yield Diagnosis.stated(Mistake.ONLY_SMALL, limit.name, order - 1)
 
 
 def _of_first_order(part: Part) -> Expr:
@@ -143,6 +144,6 @@ def _vanishes_to(f: Expr, epsilon: Symbol, order: int, domain: Domain) -> bool:
         coefficient = f.diff(epsilon, k).subs(epsilon, 0)
         if coefficient.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
             return False
-        if coefficient != 0 and not vanishes_off_kinks(coefficient, domain, budget=0.3).holds:
+        if coefficient != 0 and not vanishes_off_kinks(coefficient, domain, budget=PROOF_SECONDS).holds:
             return False
     return True

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from dataclasses import replace
 from itertools import chain, groupby
@@ -11,14 +10,15 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.diagnose.repair import is_wrong
 from canon.exercise.diagnose.rereadings import read_anew
 from canon.exercise.diagnose.screening import screening
-from canon.exercise.diagnose.slips import Change, common_slips, slipped, times, variants
+from canon.exercise.diagnose.slips import common_slips, slipped, variants
 from canon.exercise.sheet.kind import Shape, named_function
 from canon.exercise.sheet.reading import InvalidClaim
-from canon.exercise.sheet.sympy_trees import arguments, symbols_of
+from canon.exercise.sheet.sympy_trees import arguments, size, symbols_of
 from canon.expression.symbols.symbol import velocity
 
 if TYPE_CHECKING:
@@ -39,7 +39,8 @@ __all__ = [
     "staggered_step",
 ]
 
-TRIAL_SECONDS = 0.25
+SCREEN_STEPS = 500
+"""Steps for values of a changed claim at some points, which is read anew."""
 MOST_DIVIDING = 16
 _BOUNDS = (sp.exp(-1), 1, -1, 3 * sp.pi / 2, sp.pi, sp.pi / 2, -sp.pi / 2, -sp.pi)
 
@@ -51,9 +52,9 @@ def another_reading(wrong: WrongAnswer) -> Iterator[Diagnosis]:
         for name in wrong.reading.kind.rereadings
         for trial in named_function("canon.exercise.diagnose.rereadings", name)(wrong.reading)
     ]
-    for trial, sentence in trials:
-        if time.monotonic() < wrong.deadline and _could_hold(trial) and _holds(trial, wrong.deadline):
-            yield Diagnosis(sentence, trial)
+    for trial, change in trials:
+        if wrong.effort.spend(SCREEN_STEPS) and _could_hold(trial) and judged_to_hold(trial, wrong.effort):
+            yield Diagnosis((change,), trial)
 
 
 def another_gauge(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -62,8 +63,8 @@ def another_gauge(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     if not reading.has("F"):
         return
     trial = read_anew(reading, {key: value for key, value in reading.claim.keys.items() if key != "F"})
-    if _holds(trial, wrong.deadline):
-        yield Diagnosis("L2 − L1 is dF/dt of some F(q, t), but not of this one", trial)
+    if judged_to_hold(trial, wrong.effort):
+        yield Diagnosis.of(Mistake.OTHER_GAUGE, repaired=trial)
 
 
 def only_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -71,7 +72,7 @@ def only_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
 
     It may hold for more: that it holds only there is not proved, and not said.
     """
-    reading, deadline = wrong.reading, wrong.deadline
+    reading, effort = wrong.reading, wrong.effort
     keys = reading.claim.keys
     assumed = dict(keys.get("parameters", {}))
     following = {name for key in _following(reading) for name in _names(keys.get(key))}
@@ -82,37 +83,37 @@ def only_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     ]
     for symbol in free[:6]:
         for word, sign in (("positive", ">"), ("negative", "<")):
-            if time.monotonic() > deadline:
+            if not effort.spend(SCREEN_STEPS):
                 return
             trial = read_anew(reading, {**keys, "parameters": {**assumed, symbol.name: word}})
-            if _is_somewhere(trial) and _could_hold(trial) and _holds(trial, deadline):
-                yield Diagnosis(f"right for {symbol} {sign} 0, but not on the whole domain", trial)
+            if _is_somewhere(trial) and _could_hold(trial) and judged_to_hold(trial, effort):
+                yield Diagnosis.of(Mistake.ONLY_WHERE, symbol, sign, repaired=trial)
     variables = {
         name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
     }
     if reading.kind.two_sided and len(assumed) < 2:
         return  # at one point two functions may meet by chance
     for name in [n for n in assumed if n not in variables and n in reading.scope.names][:8]:
-        if time.monotonic() > deadline:
+        if not effort.spend(SCREEN_STEPS):
             return
         trial = replace(reading, at=MappingProxyType({reading.scope.names[name]: sp.S.One}))
-        if _could_hold(trial) and _holds(trial, deadline):
-            yield Diagnosis(f"right for {name} = 1, but not in general", trial)
+        if _could_hold(trial) and judged_to_hold(trial, effort):
+            yield Diagnosis.of(Mistake.ONLY_FOR, name, sp.S.One, repaired=trial)
 
 
 def right_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield a condition under which the claim does hold: the sign of a denominator, of a difference, a bound."""
-    reading, deadline = wrong.reading, wrong.deadline
+    reading, effort = wrong.reading, wrong.effort
     expressions = [f for _, f in _answers(reading)]
     for g in _dividing(expressions):
         for sign in (">", "<"):
-            if time.monotonic() > deadline:
+            if not effort.spend(SCREEN_STEPS):
                 return
             domain = reading.claim.keys.get("domain", [])
             conditions = [*(domain if isinstance(domain, list) else [domain]), f"{g} {sign} 0"]
             trial = read_anew(reading, {**reading.claim.keys, "domain": conditions})
-            if _is_somewhere(trial) and _could_hold(trial) and _holds(trial, deadline):
-                yield Diagnosis(f"right where {g} {sign} 0, but not on the whole domain", trial)
+            if _is_somewhere(trial) and _could_hold(trial) and judged_to_hold(trial, effort):
+                yield Diagnosis.of(Mistake.ONLY_WHERE, g, sign, repaired=trial)
 
 
 def _is_somewhere(reading: Reading) -> bool:
@@ -162,16 +163,17 @@ def one_change_of_two(wrong: WrongAnswer) -> Iterator[Diagnosis]:
 
 
 def _one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
-    reading, deadline, suspects = wrong.reading, wrong.deadline, _suspects(wrong)
+    reading, effort, suspects = wrong.reading, wrong.effort, _suspects(wrong)
     answers = sorted(_answers(reading), key=lambda answer: _rank(answer[0], suspects))
     screen = screening(reading, dict(answers))
+    cost = sum(size(f) for _, f in answers)
     symbols = tuple(reading.scope.names.values())
     groups = groupby(sorted(answers, key=lambda a: _outer(a[0])), key=lambda a: _outer(a[0]))
     for key, group in groups:
         items = list(group)
         if len(items) > 1:
             for slip, change in common_slips([e for _, e in items], symbols):
-                if time.monotonic() > deadline:
+                if not effort.spend(cost):
                     return
                 slipped_all = {name: slipped(expression, slip) for name, expression in items}
                 changed = {name: new for name, new in slipped_all.items() if new is not None}
@@ -180,19 +182,18 @@ def _one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
                 trial = reading
                 for name, new in changed.items():
                     trial = trial.with_instead(name, new)
-                if _holds(trial, deadline):
-                    yield Diagnosis(f"in {key} {change}", trial)
+                if judged_to_hold(trial, effort):
+                    yield Diagnosis((change.at(key),), trial)
     for number, (key, expression) in enumerate(answers, 1):
-        left = deadline - time.monotonic()
-        until = deadline if number == len(answers) else deadline - left / 2
+        share = effort.share(1.0 if number == len(answers) else 0.5)
         for new, change in chain(_rescaled(key, expression), _named(key, variants(expression, symbols))):
-            if time.monotonic() > until:
+            if not share.spend(cost):
                 break
             if _trivial(key, new, reading) or (screen is not None and not screen.passes({key: new})):
                 continue
             trial = reading.with_instead(key, new)
-            if _holds(trial, deadline, wrong.finding.held if key == "K" else 0):
-                yield Diagnosis(str(change), trial)
+            if judged_to_hold(trial, share, wrong.finding.held if key == "K" else 0):
+                yield Diagnosis((change,), trial)
 
 
 def _suspects(wrong: WrongAnswer) -> list[str]:
@@ -211,16 +212,16 @@ def staggered_step(wrong: WrongAnswer) -> Iterator[Diagnosis]:
         return
     answers = dict(_answers(reading))
     screen = screening(reading, answers)
-    for changed, sentence in _staggered(reading, answers):
+    for changed, change in _staggered(reading, answers):
         if screen is None or screen.passes(changed):
             trial = reading
             for name, new in changed.items():
                 trial = trial.with_instead(name, new)
-            if _holds(trial, wrong.deadline):
-                yield Diagnosis(sentence, trial)
+            if judged_to_hold(trial, wrong.effort):
+                yield Diagnosis((change,), trial)
 
 
-def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[Mapping[str, Expr], str]]:
+def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[Mapping[str, Expr], Change]]:
     """Yield maps with new momenta or coordinates where the old ones stand: a step of one after that of the other."""
     for here, there, letter in (("Q", "P", "p"), ("P", "Q", "q")):
         old = reading.symbols(letter)
@@ -229,11 +230,11 @@ def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[
         staggered = {
             key: f.subs(list(step.items()), simultaneous=True) for key, f in images.items() if f.has(*old)
         }
-        names = "the new momenta P" if letter == "p" else "the new coordinates Q"
+        new = Change.of(Mistake.NEW_FOR_OLD, there)
         for key in staggered if len(images) > 1 else ():
-            yield {key: staggered[key]}, f"in {key} {names} belong in place of the old ones"
+            yield {key: staggered[key]}, new.at(key)
         if staggered:
-            yield staggered, f"in {here} {names} belong in place of the old ones"
+            yield staggered, new.at(here)
 
 
 def _outer(key: str) -> str:
@@ -251,14 +252,14 @@ def _rank(key: str, suspects: Sequence[str]) -> int:
 
 
 def _rescaled(key: str, expression: Expr) -> Iterator[tuple[Expr, Change]]:
-    yield -expression, Change("{} has the wrong sign", key)
+    yield -expression, Change.of(Mistake.WRONG_SIGN, place=key)
     simple = map(sp.Rational, ("1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2"))
     for factor in (*simple, 2 * sp.pi, 1 / (2 * sp.pi)):
-        yield factor * expression, Change("{} should be {} what it is", key, times(factor))
+        yield factor * expression, Change.of(Mistake.WRONG_FACTOR, factor, place=key)
 
 
 def _named(key: str, found: Iterator[tuple[Expr, Change]]) -> Iterator[tuple[Expr, Change]]:
-    return ((new, Change("in {} {}", key, change)) for new, change in found)
+    return ((new, change.at(key)) for new, change in found)
 
 
 def _answers(reading: Reading) -> Iterator[tuple[str, Expr]]:
@@ -293,11 +294,6 @@ def _trivial(key: str, answer: Expr, reading: Reading) -> bool:
     variables = {s for key in ("q", "p", "x") if reading.is_names(key) for s in reading.symbols(key)}
     rates = {velocity(s) for s in variables}
     return key in reading.kind.varying and not answer.free_symbols & (variables | rates)
-
-
-def _holds(reading: Reading, deadline: float, held: int = 0) -> bool:
-    """Whether a changed claim holds; the first ``held`` questions are known to and hardly touched by the change."""
-    return judged_to_hold(reading, min(TRIAL_SECONDS, max(0.05, deadline - time.monotonic())), held)
 
 
 def _could_hold(reading: Reading) -> bool:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from itertools import islice
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.derived_part import new_hamiltonian_part, second_lagrangian_part
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis
+from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.diagnose.repair import is_wrong, repairs
 from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.question import Part, SameEquations
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.exercise.diagnose.diagnosis import WrongAnswer
+    from canon.exercise.diagnose.effort import Effort
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
@@ -123,37 +125,35 @@ def _part_by_part(
     wrong = [(part, hint) for part, hint in zip(parts, hints, strict=True) if is_wrong(part, domain)]
     if not wrong:
         if all(
-            part.through and vanishes_off_kinks(part.residual, domain, budget=0.5).holds for part in parts
+            part.through and vanishes_off_kinks(part.residual, domain, budget=PROOF_SECONDS).holds
+            for part in parts
         ):
-            yield Diagnosis(
-                "each equation is right, but together they do not determine the motion: an equation is missing"
-            )
+            yield Diagnosis.stated(Mistake.EQUATION_MISSING, only_fault=False)
         return
     if all(part.key for part, _ in wrong):
-        yield from _repaired(answer.reading, wrong, domain, answer.deadline)
+        yield from _repaired(answer.reading, wrong, domain, answer.effort)
 
 
 def _repaired(
     reading: Reading,
     wrong: Sequence[tuple[Part, tuple[Expr, ...]]],
     domain: Domain,
-    deadline: float,
-    said: tuple[str, ...] = (),
+    effort: Effort,
+    said: tuple[tuple[Change, ...], ...] = (),
 ) -> Iterator[Diagnosis]:
     """Yield the claim with one wrong component after the other repaired, and what was changed."""
     if not wrong:
         more = len(said) - MOST_SENTENCES
-        told = said[:MOST_SENTENCES] + ((f"{more} more components are wrong",) if more > 0 else ())
-        yield Diagnosis("; ".join(told), reading)
+        told = sum(said[:MOST_SENTENCES], ())
+        yield Diagnosis((*told, Change.of(Mistake.MORE_WRONG, more)) if more > 0 else told, reading)
         return
     part, hint = wrong[0]
     if len(said) >= MOST_SENTENCES and not part.through:  # it is not told what to change here
-        yield from _repaired(_with(reading, part, part.right), wrong[1:], domain, deadline, (*said, ""))
+        yield from _repaired(_with(reading, part, part.right), wrong[1:], domain, effort, (*said, ()))
         return
-    seconds = (deadline - time.monotonic()) / len(wrong)
-    for found in islice(repairs(part, domain, seconds, hint), MOST_TRIALS):
+    for found in islice(repairs(part, domain, effort.share(1 / len(wrong)), hint), MOST_TRIALS):
         here = _with(reading, part, found.right)
-        yield from _repaired(here, wrong[1:], domain, deadline, (*said, str(found.change)))
+        yield from _repaired(here, wrong[1:], domain, effort, (*said, found.changes))
 
 
 def _with(reading: Reading, part: Part, right: Expr) -> Reading:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, scaled
+from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.diagnose.repair import common_ratio
-from canon.exercise.diagnose.slips import times
 from canon.mechanics.canonical.repair_hint import repair_hint
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.proof.kinks import vanishes_off_kinks
@@ -33,14 +34,13 @@ __all__ = [
     "variable_valence",
 ]
 
-PROOF_SECONDS = 0.5
-
 
 def opposite_sign(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield that all components have the opposite sign, where that is another convention."""
     reading, parts = wrong.reading, wrong.parts
     if reading.kind.opposite and _proved_factor(parts, wrong.domain) == -1:
-        yield Diagnosis(reading.kind.opposite, scaled(reading, parts, sp.S.NegativeOne), only_fault=True)
+        opposite = Change.of(Mistake.OPPOSITE_CONVENTION, reading.kind.opposite)
+        yield Diagnosis((opposite,), scaled(reading, parts, sp.S.NegativeOne), only_fault=True)
 
 
 def factor(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -51,8 +51,8 @@ def factor(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     ratio = _proved_factor(wrong.parts, wrong.domain)
     found = wrong.parts[0].right if ratio is None else ratio * claimed
     if not found.has(*reading.symbols("q"), *reading.symbols("p")):
-        sentence = f"the factor is {found}, not {claimed}"
-        yield Diagnosis(sentence, reading.with_instead("factor", found))
+        repaired = reading.with_instead("factor", found)
+        yield Diagnosis.of(Mistake.FACTOR_OF_COVARIANT, found, claimed, repaired=repaired)
 
 
 def valence(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -60,23 +60,18 @@ def valence(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     yield from _valence(wrong.reading, wrong.parts, wrong.domain)
     mended = _mended(wrong.reading)
     if mended is not None and not _is_rarely_meant(mended):
-        yield from _stated(str(mended))
+        yield Diagnosis.stated(Mistake.MAP_MENDED, mended)
 
 
 def variable_valence(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield that a map is canonical with a valence that depends on parameters, a thing rarely meant."""
     mended = _mended(wrong.reading)
     if mended is not None and _is_rarely_meant(mended):
-        yield from _stated(str(mended))
+        yield Diagnosis.stated(Mistake.MAP_MENDED, mended)
 
 
 def _is_rarely_meant(mended: RepairHint) -> bool:
     return mended.valence is not None and not mended.valence.is_Rational
-
-
-def _stated(sentence: str) -> Iterator[Diagnosis]:
-    """Yield a sentence that was proved of the question on which the claim turned."""
-    yield Diagnosis(sentence, only_fault=True)
 
 
 def _proved_factor(parts: Sequence[Part], domain: Domain) -> sp.Expr | None:
@@ -97,8 +92,9 @@ def rescaled(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield that a generating function has a wrong factor."""
     reading, ratio = wrong.reading, _proved_factor(wrong.parts, wrong.domain)
     if ratio is not None:
-        sentence = "F has the wrong sign" if ratio == -1 else f"F should be {times(ratio)} what it is"
-        yield Diagnosis(sentence, reading.with_instead("F", ratio * reading.expression("F")))
+        mistake, items = (Mistake.WRONG_SIGN, ()) if ratio == -1 else (Mistake.WRONG_FACTOR, (ratio,))
+        repaired = reading.with_instead("F", ratio * reading.expression("F"))
+        yield Diagnosis.of(mistake, *items, repaired=repaired, place="F")
 
 
 def _valence(reading: Reading, parts: Sequence[Part], domain: Domain) -> Iterator[Diagnosis]:
@@ -108,13 +104,13 @@ def _valence(reading: Reading, parts: Sequence[Part], domain: Domain) -> Iterato
     wanted, found = parts[0].right, parts[0].right / factor
     name = parts[0].name
     if factor == -1:
-        sentence = f"{name} = {found}, not {wanted}: exchange Q and P, or change the sign of one of them"
+        change = Change.of(Mistake.BRACKET_OPPOSITE, name, found, wanted)
     else:
-        sentence = f"canonical with valence {found}, not {wanted}: {name} = {found}; multiply P by {factor}"
+        change = Change.of(Mistake.VALENCE, name, found, wanted, factor)
     repaired = reading
     for i, P in enumerate(reading.expressions("P")):
         repaired = repaired.with_instead(f"P[{i}]", factor * P)
-    yield Diagnosis(sentence, repaired)
+    yield Diagnosis((change,), repaired)
 
 
 def _mended(reading: Reading) -> RepairHint | None:
@@ -134,13 +130,13 @@ def lost_time_derivative(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     if parts[0].bracket_of:
         return  # the map itself is not canonical
     if _proved_factor(parts, domain) == -1:
-        yield from _stated("the sign of ∂F/∂t in K is wrong: K = H + ∂F/∂t")
+        yield Diagnosis.stated(Mistake.TIME_DERIVATIVE_SIGN)
         return
     if _proved([part for part in parts if part.right != 0], sp.S.Zero, domain):
         return
     still = (part.seen(part.claimed) for part in parts)
     if all(f == 0 or vanishes_off_kinks(f, domain, budget=PROOF_SECONDS).holds for f in still):
-        yield from _stated("K is H in the new variables; ∂F/∂t is missing: K = H + ∂F/∂t")
+        yield Diagnosis.stated(Mistake.TIME_DERIVATIVE_MISSING)
 
 
 def one_rule(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -149,6 +145,5 @@ def one_rule(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     half = len(parts) // 2
     for right, other in ((parts[:half], parts[half:]), (parts[half:], parts[:half])):
         if _proved(right, sp.S.One, domain) and _proved(other, sp.S.NegativeOne, domain):
-            names = " and ".join(part.name for part in other)
-            yield from _stated(f"right under the opposite sign of a rule: here {names}")
+            yield Diagnosis.stated(Mistake.RULE_OPPOSITE, tuple(part.name for part in other))
             return

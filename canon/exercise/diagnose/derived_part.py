@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
+from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.question.affine_systems import solved
@@ -33,8 +35,6 @@ if TYPE_CHECKING:
     from canon.proof.domain.domain import Domain
 
 __all__ = ["new_hamiltonian_part", "second_lagrangian_part", "time_term"]
-
-SECONDS = 0.4
 
 
 def new_hamiltonian_part(reading: Reading) -> Iterator[Part]:
@@ -71,7 +71,7 @@ def _all(reading: Reading) -> list[Symbol]:
 
 def _integrated(form: Sequence[Expr], z: Sequence[Symbol], domain: Domain) -> Expr | None:
     found = _of_polynomials(form, z)
-    return potential(form, z, domain, budget=SECONDS) if found is None else found
+    return potential(form, z, domain, budget=PROOF_SECONDS) if found is None else found
 
 
 def _of_polynomials(form: Sequence[Expr], z: Sequence[Symbol]) -> Expr | None:
@@ -125,7 +125,5 @@ def time_term(wrong: WrongAnswer) -> Iterator[Diagnosis]:
         return
     growth = sp.cancel(growth) if sp.count_ops(growth) < 60 else growth
     repaired = reading.with_instead("I", I - growth * t)
-    if judged_to_hold(repaired, SECONDS):
-        yield Diagnosis(
-            f"I grows at the constant rate {growth}: in I the term {-growth * t} is missing", repaired
-        )
+    if judged_to_hold(repaired, wrong.effort):
+        yield Diagnosis.of(Mistake.TIME_TERM_MISSING, growth, -growth * t, repaired=repaired, place="I")

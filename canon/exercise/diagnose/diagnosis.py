@@ -1,16 +1,17 @@
 """A diagnosis of a wrong answer, the claim repaired as it says, and the judgement on the whole of the repaired claim.
 
-The law of feedback: what a sentence proposes is put into the claim, and the claim is judged anew from its first
-question to its last. A sentence whose claim does not hold then is not told.
+The law of feedback: what a diagnosis proposes is put into the claim, and the claim is judged anew from its first
+question to its last. A diagnosis whose claim does not hold then is not told.
 """
 
 from __future__ import annotations
 
-import time
+import enum
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from canon.exercise.diagnose.change import Change
 from canon.exercise.judge import questions
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, decide
@@ -22,34 +23,63 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
+    from canon.exercise.diagnose.change import Mistake
+    from canon.exercise.diagnose.effort import Effort
     from canon.exercise.judge import Finding
     from canon.exercise.question.question import Part
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
-__all__ = ["MOST_SENTENCES", "Diagnosis", "WrongAnswer", "judged_to_hold", "scaled"]
+__all__ = ["MOST_SENTENCES", "Diagnosis", "Proof", "WrongAnswer", "judged_to_hold", "scaled"]
 
 MOST_SENTENCES = 3
 """Components that a person is told of at once."""
 
 
+class Proof(enum.Enum):
+    """How a diagnosis is known to be right."""
+
+    REPAIRED = "the claim with the changes undone is judged to hold"
+    COMPARED = "proved of what was compared where the claim failed, and all else in the claim holds"
+    JUDGED = "the judgement itself found it"
+
+
 @dataclass(frozen=True)
 class Diagnosis:
-    """What a person is told, and the claim with that put in.
+    """What is wrong with a claim, and the claim with that put right.
 
     Parameters
     ----------
-    sentence
-        Where and how the claim is wrong.
+    changes
+        Where and how the claim is wrong, one thing after the other.
     repaired
-        The claim repaired; None where the sentence states what is so and proposes nothing to put in.
+        The claim repaired; None where the changes state what is so and propose nothing to put in.
     only_fault
-        Whether the sentence is to be told only where all other questions of the claim hold.
+        Whether they are to be told only where all other questions of the claim hold.
     """
 
-    sentence: str
+    changes: tuple[Change, ...]
     repaired: Reading | None = None
     only_fault: bool = False
+
+    @classmethod
+    def of(
+        cls, mistake: Mistake, *items: object, repaired: Reading | None = None, place: str = ""
+    ) -> Diagnosis:
+        """Return the diagnosis of one mistake, with the claim repaired."""
+        return cls((Change(mistake, items, place),), repaired)
+
+    @classmethod
+    def stated(cls, mistake: Mistake, *items: object, only_fault: bool = True) -> Diagnosis:
+        """Return what was proved of the question on which a claim turned, with nothing to put into it."""
+        return cls((Change(mistake, items),), only_fault=only_fault)
+
+    @property
+    def proof(self) -> Proof:
+        """How it is known."""
+        if self.repaired is not None:
+            return Proof.REPAIRED
+        return Proof.COMPARED if self.only_fault else Proof.JUDGED
 
 
 @dataclass(frozen=True)
@@ -62,14 +92,14 @@ class WrongAnswer:
         The judgement with the question on which it turned.
     parts, domain
         The components that were compared, and where they are meant.
-    deadline
-        When to stop looking for what is wrong.
+    effort
+        What may be spent on looking for what is wrong.
     """
 
     finding: Finding
     parts: tuple[Part, ...]
     domain: Domain
-    deadline: float
+    effort: Effort
 
     @property
     def reading(self) -> Reading:
@@ -77,26 +107,25 @@ class WrongAnswer:
         return self.finding.reading
 
     def within(self, share: float) -> WrongAnswer:
-        """Return the same with a share of the time that is left, so that some is left to what comes after."""
-        now = time.monotonic()
-        return replace(self, deadline=now + share * (self.deadline - now))
+        """Return the same with a share of the effort that is left, so that some is left to what comes after."""
+        return replace(self, effort=self.effort.share(share))
 
 
-def judged_to_hold(reading: Reading, seconds: float, held: int = 0, but: int | None = None) -> bool:
+def judged_to_hold(reading: Reading, effort: Effort, held: int = 0, but: int | None = None) -> bool:
     """Whether a claim is judged to hold.
 
     Parameters
     ----------
     reading
         The claim.
-    seconds
-        Time for all its questions together.
+    effort
+        Of what the judgement is spent; it is the outer limit of the time for all its questions together.
     held
         How many questions at the beginning are passed over: a screen only, never the last word.
     but
         The number of a question that was answered otherwise.
     """
-    deadline = Deadline.after(seconds)
+    deadline = Deadline.after(effort.for_a_proof())
     try:
         asked = (question for i, question in islice(enumerate(questions(reading)), held, None) if i != but)
         return all(

@@ -8,7 +8,6 @@ anyone is told.
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -20,15 +19,17 @@ from flint import acb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.lost_factor import Monomials
-from canon.exercise.diagnose.slips import Change, of_one_coefficient, times, variants
-from canon.exercise.sheet.sympy_trees import symbols_of
+from canon.exercise.diagnose.slips import of_one_coefficient, variants
+from canon.exercise.sheet.sympy_trees import size, symbols_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from canon.exercise.diagnose.effort import Effort
     from canon.exercise.question.question import Part
     from canon.proof.domain.domain import Domain
 
@@ -37,24 +38,29 @@ __all__ = ["Repair", "Screen", "common_ratio", "is_wrong", "repair", "repairs"]
 POINTS = 3
 PRECISION = 128
 MOST_VARIANTS = 3_000
-PROOF_SECONDS = 0.5
 MOST_TERMS = 6
 
 
 @dataclass(frozen=True)
 class Repair:
-    """A right expression in place of a wrong one, and the change in words."""
+    """A right expression in place of a wrong one, and what was changed."""
 
     right: Expr
     change: Change
+    besides: Change | None = None
+
+    @property
+    def changes(self) -> tuple[Change, ...]:
+        """What was changed, one thing after the other."""
+        return (self.change,) if self.besides is None else (self.change, self.besides)
 
 
-def repair(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = ()) -> Repair | None:
+def repair(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = ()) -> Repair | None:
     """Return the simplest change that makes one component of an answer right, if one is found and proved."""
-    return next(repairs(part, domain, seconds, hints), None)
+    return next(repairs(part, domain, effort, hints), None)
 
 
-def repairs(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = ()) -> Iterator[Repair]:
+def repairs(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = ()) -> Iterator[Repair]:
     """Yield changes that make one component of an answer right, the simplest first, each of them proved.
 
     A system whose equations are right one by one can still lack one, so that the whole claim is to be judged
@@ -66,23 +72,23 @@ def repairs(part: Part, domain: Domain, seconds: float, hints: Sequence[Expr] = 
         The component that is wrong.
     domain
         Where it is meant.
-    seconds
-        How long may be looked.
+    effort
+        What may be spent on looking.
     hints
         Terms that the right answer has, one of which may be missing.
     """
-    deadline = time.monotonic() + seconds
     screen = Screen(part, domain)
     if not screen.points:
         return
+    cost = size(part.claimed)
     for candidate in _candidates(part, screen, hints):
-        if time.monotonic() > deadline:
+        if not effort.spend(cost):
             return
         if (
             _says_something(part, candidate.right)
             and screen.passes(candidate.right)
             and not _says_only_zeros(part, candidate.right, screen)
-            and _is_right(part, candidate.right, domain)
+            and _is_right(part, candidate.right, domain, effort)
         ):
             yield candidate
 
@@ -103,8 +109,9 @@ def is_wrong(part: Part, domain: Domain) -> bool:
     return not Screen(part, domain).passes(part.claimed)
 
 
-def _is_right(part: Part, expression: Expr, domain: Domain) -> bool:
-    return vanishes_off_kinks(replace(part, claimed=expression).residual, domain, budget=PROOF_SECONDS).holds
+def _is_right(part: Part, expression: Expr, domain: Domain, effort: Effort) -> bool:
+    residual = replace(part, claimed=expression).residual
+    return vanishes_off_kinks(residual, domain, budget=effort.for_a_proof()).holds
 
 
 def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Repair]:
@@ -112,10 +119,10 @@ def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[R
     if part.right != 0:
         factor = screen.ratio(part.right, claimed)
         if factor == -1:
-            yield Repair(-claimed, Change("{} has the wrong sign", name))
+            yield Repair(-claimed, Change.of(Mistake.WRONG_SIGN, place=name))
         elif factor is not None and factor != 0:
             right = sp.Rational(factor.numerator, factor.denominator) * claimed
-            yield Repair(right, Change("{} should be {} what it is", name, times(factor)))
+            yield Repair(right, Change.of(Mistake.WRONG_FACTOR, factor, place=name))
     yield from _terms_rescaled(part, screen)
     yield from _terms_missing(part, screen, hints)
     yield from _monomials(part, screen)
@@ -124,10 +131,10 @@ def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[R
         variants(claimed, symbols_of(claimed, part.right, *part.through)), MOST_VARIANTS
     ):
         slips.append((new, change))
-        yield Repair(new, Change("in {} {}", name, change))
+        yield Repair(new, change.at(name))
     for term in hints:  # a slip, and a term is missing besides
         for new, change in slips:
-            yield Repair(new + term, Change("in {} the term {} is missing, and {}", name, term, change))
+            yield Repair(new + term, Change.of(Mistake.TERM_MISSING, term, place=name), change.at(name))
 
 
 def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -143,11 +150,11 @@ def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
                 continue
             factor, right = 1 - share, claimed - sp.Rational(share.numerator, share.denominator) * term
             if factor == 0:
-                yield Repair(right, Change("in {} the term {} does not belong", name, term))
+                yield Repair(right, Change.of(Mistake.TERM_SUPERFLUOUS, term, place=name))
             elif factor == -1:
-                yield Repair(right, Change("in {} the sign of {} is wrong", name, term))
+                yield Repair(right, Change.of(Mistake.TERM_SIGN, term, place=name))
             else:
-                yield Repair(right, Change("in {} the term {} should be {} that", name, term, times(factor)))
+                yield Repair(right, Change.of(Mistake.TERM_FACTOR, term, factor, place=name))
 
 
 def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Repair]:
@@ -157,7 +164,7 @@ def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterato
         share = screen.share_of_residual(term)
         if share is not None and share != 0:
             missing = -sp.Rational(share.numerator, share.denominator) * term
-            yield Repair(part.claimed + missing, Change("in {} the term {} is missing", part.name, missing))
+            yield Repair(part.claimed + missing, Change.of(Mistake.TERM_MISSING, missing, place=part.name))
 
 
 def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -169,10 +176,10 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
         terms = sorted(sp.Add.make_args(claimed), key=lambda term: term.has(*part.determined))
         factors = [(t, list(found.of_share(t))) for t in terms] if len(terms) <= MOST_TERMS else []
     for term in missing:
-        yield Repair(claimed - term, Change("in {} the term {} is missing", name, -term))
+        yield Repair(claimed - term, Change.of(Mistake.TERM_MISSING, -term, place=name))
     for term, products in factors:
         for factor in products:
-            lacks = Change("in {} the term {} lacks the factor {}", name, term, factor)
+            lacks = Change.of(Mistake.FACTOR_MISSING, term, factor, place=name)
             yield Repair(claimed - term + factor * term, lacks)
 
 

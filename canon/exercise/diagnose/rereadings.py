@@ -6,6 +6,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.reading import Reading
 from canon.exercise.sheet.sympy_trees import replaced
@@ -23,8 +24,8 @@ __all__ = [
     "same_equations_of_motion",
 ]
 
-Trial: TypeAlias = "tuple[Reading, str]"
-"""Another claim, and what is told where it holds."""
+Trial: TypeAlias = "tuple[Reading, Change]"
+"""Another claim, and what is wrong with the one that was made where it holds."""
 
 
 def read_anew(reading: Reading, keys: Mapping[str, Any], kind: str = "") -> Reading:
@@ -44,7 +45,7 @@ def inverse_map(reading: Reading) -> Iterator[Trial]:
     for part, name in (("Q", "q"), ("P", "p")):
         for i, f in enumerate(reading.inside(f"map.{part}", reading.claim.keys["map"][part])):
             inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", replaced(f, swap))
-    yield inverted, "what is given as the map is its inverse"
+    yield inverted, Change.of(Mistake.INVERSE_MAP)
 
 
 def exchanged_map(reading: Reading) -> Iterator[Trial]:
@@ -52,10 +53,8 @@ def exchanged_map(reading: Reading) -> Iterator[Trial]:
     if reading.has("map"):
         given = reading.claim.keys["map"]
         exchanged = {"Q": given.get("P"), "P": given.get("Q")}
-        yield (
-            read_anew(reading, {**reading.claim.keys, "map": exchanged}),
-            "Q and P are exchanged in the map",
-        )
+        trial = read_anew(reading, {**reading.claim.keys, "map": exchanged})
+        yield trial, Change.of(Mistake.MAP_EXCHANGED)
 
 
 def other_type(reading: Reading) -> Iterator[Trial]:
@@ -64,8 +63,7 @@ def other_type(reading: Reading) -> Iterator[Trial]:
     for name, kind in KINDS.items():
         number = kind.implied.get("type", own)
         if number != own:
-            sentence = f"F generates this map as a function of type {number}, not {own}"
-            yield read_anew(reading, reading.claim.keys, name), sentence
+            yield read_anew(reading, reading.claim.keys, name), Change.of(Mistake.OTHER_TYPE, number, own)
 
 
 def exchanged_equations(reading: Reading) -> Iterator[Trial]:
@@ -73,18 +71,18 @@ def exchanged_equations(reading: Reading) -> Iterator[Trial]:
     keys = reading.claim.keys
     if reading.has("q_dot"):
         exchanged = {"q_dot": keys["p_dot"], "p_dot": keys["q_dot"]}
-        yield read_anew(reading, {**keys, **exchanged}), "the equations of q and p are exchanged"
+        yield read_anew(reading, {**keys, **exchanged}), Change.of(Mistake.EQUATIONS_EXCHANGED)
 
 
 def same_equations_of_motion(reading: Reading) -> Iterator[Trial]:
     """Yield the claim that two Lagrangians have the same equations, where they are said to differ by dF/dt."""
     if reading.word("relation") == "gauge" and not reading.has("F"):
-        sentence = "L1 and L2 have the same equations of motion, but L2 − L1 is not dF/dt of any F(q, t)"
-        yield read_anew(reading, {**reading.claim.keys, "relation": "equations"}), sentence
+        trial = read_anew(reading, {**reading.claim.keys, "relation": "equations"})
+        yield trial, Change.of(Mistake.ONLY_EQUATIONS)
 
 
 def other_convention(reading: Reading) -> Iterator[Trial]:
     """Yield the claim with the Routhian of the other sign."""
     other = {"L-pq": "pq-L", "pq-L": "L-pq"}[reading.word("convention")]
     trial = read_anew(reading, {**reading.claim.keys, "convention": other})
-    yield trial, f"right under the other convention, {other}"
+    yield trial, Change.of(Mistake.OTHER_ROUTHIAN, other)

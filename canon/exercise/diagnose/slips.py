@@ -1,21 +1,21 @@
-"""Expressions that differ from a given one by one slip: a sign, a factor, a function, an exponent, a symbol."""
+"""Slips: expressions that differ from a given one in one place, by a sign, factor, function, exponent or symbol."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import chain, combinations
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.sheet.sympy_trees import arguments, replaced, shown, symbols_of
+from canon.exercise.diagnose.change import Change, Mistake
+from canon.exercise.sheet.sympy_trees import arguments, replaced, symbols_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
-    from fractions import Fraction
 
-__all__ = ["Change", "common_slips", "of_one_coefficient", "slipped", "times", "variants"]
+__all__ = ["common_slips", "of_one_coefficient", "slipped", "variants"]
 
 _FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
 _FAMILIES = (
@@ -30,19 +30,11 @@ _SHIFTS = (sp.S.One, sp.S.NegativeOne)
 _CONSTANTS = (sp.pi, -sp.pi, sp.pi / 2, -sp.pi / 2)
 
 
-@dataclass(frozen=True, slots=True)
-class Change:
-    """A change in words, put together only when someone wants to read it."""
+_of = Change.of
 
-    pattern: str
-    items: tuple[object, ...]
 
-    def __init__(self, pattern: str, *items: object) -> None:
-        object.__setattr__(self, "pattern", pattern)
-        object.__setattr__(self, "items", items)
-
-    def __str__(self) -> str:
-        return self.pattern.format(*map(shown, self.items))
+def _everywhere_of(mistake: Mistake, *items: object) -> Change:
+    return Change(mistake, items, everywhere=True)
 
 
 def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple[Expr, Change]]:
@@ -58,8 +50,8 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     Examples
     --------
     >>> x, y = sp.symbols("x y")
-    >>> [str(new) for new, change in variants(sp.sin(x) - y) if "sin" in str(change)][:3]
-    ['-y - sin(x)', '-y + cos(x)', '-y - sin(x)']
+    >>> [(str(new), change.mistake.name) for new, change in variants(sp.sin(x) - y)][:3]
+    [('y + sin(x)', 'TERM_SIGN'), ('-y - sin(x)', 'TERM_SIGN'), ('-y + cos(x)', 'FUNCTION')]
     """
 
     def exchanged(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -78,8 +70,8 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
         yield from _one_place(expression, edits)
     if not expression.is_Add:
         for symbol in symbols:
-            yield expression * symbol, Change("{} lacks the factor {}", expression, symbol)
-            yield expression / symbol, Change("{} should be divided by {}", expression, symbol)
+            yield expression * symbol, _of(Mistake.FACTOR_MISSING, expression, symbol)
+            yield expression / symbol, _of(Mistake.DIVISOR_MISSING, expression, symbol)
     yield from _everywhere(expression, symbols)
 
 
@@ -89,20 +81,20 @@ def common_slips(
     """Yield substitutions that a person may have got wrong in all components of an answer alike."""
     own = symbols_of(*expressions)
     for symbol in own:
-        yield {symbol: -symbol}, Change("the sign of {} is wrong everywhere", symbol)
+        yield {symbol: -symbol}, _everywhere_of(Mistake.SIGN_OF, symbol)
     functions = sorted({f for e in expressions for f in e.atoms(sp.Function)}, key=str)
     for f in functions:
-        yield {f: -f}, Change("the sign of {} is wrong everywhere", f)
+        yield {f: -f}, _everywhere_of(Mistake.SIGN_OF, f)
         for twin in _twins(f):
-            yield {f: twin(*arguments(f))}, Change("{} should be {} everywhere", f, twin(*arguments(f)))
+            yield {f: twin(*arguments(f))}, _everywhere_of(Mistake.FUNCTION, f, twin(*arguments(f)))
     for a, b in combinations(own, 2) if len(expressions) > 1 else ():
-        yield {a: b, b: a}, Change("{} and {} should be exchanged everywhere", a, b)
+        yield {a: b, b: a}, _everywhere_of(Mistake.SYMBOLS_EXCHANGED, None, a, b)
     for node in _repeated(expressions):
         for new, change in chain(_signs(node), _factors(node)):
-            yield {node: new}, Change("in {} {}, everywhere", node, change)
+            yield {node: new}, replace(change, everywhere=True, inside=node)
     for symbol in own:
         for factor in (*_FACTORS[:2], *(power for s in symbols if s != symbol for power in (s, 1 / s))):
-            yield {symbol: factor * symbol}, Change("{} should be {} everywhere", symbol, factor * symbol)
+            yield {symbol: factor * symbol}, _everywhere_of(Mistake.SYMBOL, symbol, factor * symbol)
 
 
 def slipped(expression: Expr, slip: Mapping[Expr, Expr]) -> Expr | None:
@@ -118,17 +110,6 @@ def slipped(expression: Expr, slip: Mapping[Expr, Expr]) -> Expr | None:
         return replaced(expression, dict(slip))
     except (TypeError, ValueError):  # such as a derivative by −x, or a comparison with i
         return None
-
-
-def times(factor: Fraction | Expr) -> str:
-    """Return a factor in words: half, twice, 3/2 times.
-
-    Examples
-    --------
-    >>> times(sp.Rational(1, 2)), times(sp.Rational(3, 2))
-    ('half', '3/2 times')
-    """
-    return {"1/2": "half", "2": "twice", "-1": "minus"}.get(str(factor), f"{factor} times")
 
 
 def _twins(f: Expr) -> tuple[Callable[..., Expr], ...]:
@@ -157,22 +138,22 @@ def _one_place(
 def _signs(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
         for term in arguments(node):
-            yield node - 2 * term, Change("the sign of {} is wrong", term)
+            yield node - 2 * term, _of(Mistake.TERM_SIGN, term)
 
 
 def _factors(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
         for term in arguments(node):
             for factor in _FACTORS:
-                yield node + (factor - 1) * term, Change("the term {} should be {} that", term, times(factor))
+                yield node + (factor - 1) * term, _of(Mistake.TERM_FACTOR, term, factor)
 
 
 def _together(node: Expr) -> Iterator[tuple[Expr, Change]]:
     """The terms that share a coefficient, which were one bracket: SymPy distributes numbers over sums."""
     for terms in of_one_coefficient(node):
-        yield node - 2 * terms, Change("the sign of {} is wrong", terms)
+        yield node - 2 * terms, _of(Mistake.TERM_SIGN, terms)
         for factor in _FACTORS:
-            yield node + (factor - 1) * terms, Change("the term {} should be {} that", terms, times(factor))
+            yield node + (factor - 1) * terms, _of(Mistake.TERM_FACTOR, terms, factor)
 
 
 def of_one_coefficient(f: Expr) -> Iterator[Expr]:
@@ -196,40 +177,40 @@ def of_one_coefficient(f: Expr) -> Iterator[Expr]:
 
 def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
     for twin in _twins(node):
-        yield twin(*arguments(node)), Change("{} should be {}", node, twin(*arguments(node)))
+        yield twin(*arguments(node)), _of(Mistake.FUNCTION, node, twin(*arguments(node)))
     if _twins(node) or isinstance(node, sp.exp):
         for factor in (sp.S.NegativeOne, sp.Rational(2), sp.Rational(1, 2)):
             new = node.func(factor * arguments(node)[0])
-            yield new, Change("{} should be {}", node, new)
+            yield new, _of(Mistake.ARGUMENT, node, new)
 
 
 def _exponents(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add or node.is_Mul or node.is_Number:
         if node.is_Add:
-            yield node**2, Change("{} should be squared", node)
+            yield node**2, _of(Mistake.SQUARE, node)
         return
     base, exponent = node.as_base_exp()
     if exponent.is_Rational:
         for other in dict.fromkeys((2 * exponent, exponent / 2, exponent + 1, exponent - 1, -exponent)):
             if other != 0:
-                yield base**other, Change("{} should be {}", node, base**other)
+                yield base**other, _of(Mistake.EXPONENT, node, base**other)
     if exponent == 2:
-        yield base * sp.Abs(base), Change("{} should be {}", node, base * sp.Abs(base))
+        yield base * sp.Abs(base), _of(Mistake.FUNCTION, node, base * sp.Abs(base))
     if node.is_Symbol and not node.is_positive:
-        yield sp.Abs(node), Change("{} should be Abs({})", node, node)
+        yield sp.Abs(node), _of(Mistake.FUNCTION, node, sp.Abs(node))
 
 
 def _superfluous(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
         for term in arguments(node):
-            yield node - term, Change("the term {} does not belong", term)
+            yield node - term, _of(Mistake.TERM_SUPERFLUOUS, term)
 
 
 def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Mul:
         for factor in arguments(node):
             if not factor.is_Number:
-                yield node / factor, Change("the factor {} of {} does not belong", factor, node)
+                yield node / factor, _of(Mistake.FACTOR_SUPERFLUOUS, factor, node)
 
 
 def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
@@ -245,7 +226,7 @@ def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Ch
                         if place != node
                         else changed
                     )
-                    yield rest, Change("{} should be {}", place, changed)
+                    yield rest, _of(Mistake.SYMBOL, place, changed)
 
 
 def _by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -255,7 +236,7 @@ def _by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
         for other in symbols_of(*(a for a in arguments(f) if a.is_Symbol)):
             if other != node.variables[0]:
                 right = sp.Derivative(f, other)
-                yield right, Change("{} should be {}", node, right)
+                yield right, _of(Mistake.VARIABLE_OF_DERIVATIVE, node, right)
 
 
 def _swapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -264,7 +245,7 @@ def _swapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
         for a, b in combinations(symbols_of(node)[:MOST_SWAPPED], 2):
             new = slipped(node, {a: b, b: a})
             if new is not None and new != node:
-                yield new, Change("in {} the symbols {} and {} should be exchanged", node, a, b)
+                yield new, _of(Mistake.SYMBOLS_EXCHANGED, node, a, b)
 
 
 def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -272,16 +253,16 @@ def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Function and len(arguments(node)) == 1:
         for number in _SHIFTS:
             new = node.func(arguments(node)[0] + number)
-            yield new, Change("{} should be {}", node, new)
-            yield node + number, Change("{} should be {}", node, node + number)
+            yield new, _of(Mistake.ARGUMENT, node, new)
+            yield node + number, _of(Mistake.NUMBER, node, node + number)
 
 
 def _multiplied(node: Expr, symbols: Sequence[Expr]) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add:
         for term in arguments(node):
             for symbol in symbols:
-                yield node - term + term * symbol, Change("the term {} lacks the factor {}", term, symbol)
-                yield node - term + term / symbol, Change("the term {} should be divided by {}", term, symbol)
+                yield node - term + term * symbol, _of(Mistake.FACTOR_MISSING, term, symbol)
+                yield node - term + term / symbol, _of(Mistake.DIVISOR_MISSING, term, symbol)
 
 
 def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
@@ -294,15 +275,15 @@ def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[E
     for a, b in combinations(own, 2):
         exchanged = slipped(expression, {a: b, b: a})
         if exchanged is not None:
-            yield exchanged, Change("{} and {} should be exchanged", a, b)
+            yield exchanged, _of(Mistake.SYMBOLS_EXCHANGED, None, a, b)
     for old in own:
         for new in symbols:
             renamed = slipped(expression, {old: new}) if new != old else None
             if renamed is not None:
-                yield renamed, Change("{} should be {} everywhere", old, new)
+                yield renamed, _everywhere_of(Mistake.SYMBOL, old, new)
     if expression.has(*_TWINS):
         for angle in _CONSTANTS:
-            yield expression + angle, Change("the term {} is missing", angle)
+            yield expression + angle, _of(Mistake.TERM_MISSING, angle)
 
 
 def _repeated(expressions: Sequence[Expr]) -> list[Expr]:

@@ -111,7 +111,7 @@ class Kind:
     rereadings
         Other claims of the same formulas that may have been meant, in :mod:`canon.exercise.diagnose.rereadings`.
     opposite
-        What is told where every component has the opposite sign, as under another convention.
+        The sign convention of the kind; every component has the opposite sign under another one.
     diagnoses
         What is tried on a wrong answer, one after the other: modules and functions in :mod:`canon.exercise.diagnose`.
     """

@@ -119,7 +119,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             answer=("R", "claim"),
             unknowns="R, or the accelerations of the other coordinates",
             rereadings=("other_convention",),
-            opposite="right under the opposite convention: R has the other sign here",
+            opposite="the one that `convention` says",
         ),
         "gibbs-appell": Kind(
             "gibbs_appell.gibbs_appell",
@@ -138,7 +138,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             unknowns="the bracket of each f with each g in the list",
             repaired=("pairs",),
             screen="poisson_brackets",
-            opposite="right under the opposite sign convention; the convention here is {q, p} = +1",
+            opposite="{q, p} = +1",
         ),
         "lagrange-bracket": Kind(
             "canonical.lagrange_brackets",
@@ -147,15 +147,14 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             unknowns="the brackets of all pairs of variables",
             repaired=("p", "q"),
             screen="lagrange_brackets",
-            opposite="right under the opposite sign convention; the convention here is "
-            "[u, v] = Σ (∂q/∂u ∂p/∂v − ∂q/∂v ∂p/∂u)",
+            opposite="[u, v] = Σ (∂q/∂u ∂p/∂v − ∂q/∂v ∂p/∂u)",
         ),
         "lie-bracket": Kind(
             "canonical.lie_brackets",
             {"x": _N, "X": _TS, "Y": _TS, "claim": _TS},
             answer=("claim",),
             unknowns="all components",
-            opposite="right under the opposite sign convention; the convention here is [X, Y] = X·∇Y − Y·∇X",
+            opposite="[X, Y] = X·∇Y − Y·∇X",
         ),
         "canonicity": _CANONICITY,
         "canonicity-time-dependent": _CANONICITY,

@@ -12,7 +12,7 @@ from canon.expression.symbols.magnitude import written
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["arguments", "replaced", "shown", "symbols_of"]
+__all__ = ["arguments", "replaced", "shown", "size", "symbols_of"]
 
 
 def arguments(f: Expr) -> tuple[Expr, ...]:
@@ -60,6 +60,18 @@ def _by_a_symbol(there: sp.Subs) -> Expr:
             if abs(slope) == 1 and not derivative.expr.has(s):
                 return slope * sp.Derivative(derivative.expr.xreplace({places.args[0]: place}), s)
     return there
+
+
+def size(f: Expr) -> int:
+    """Return the number of nodes of an expression, equal ones counted again.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x")
+    >>> size(2 * x + x**2)
+    7
+    """
+    return sum(1 for _ in sp.preorder_traversal(f))
 
 
 def symbols_of(*expressions: Expr) -> list[Symbol]:

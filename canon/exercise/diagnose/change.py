@@ -1,0 +1,101 @@
+"""Changes of an answer: which part, which mistake, with what; values, which a report puts into words."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, replace
+
+__all__ = ["Change", "Mistake"]
+
+
+class Mistake(enum.Enum):
+    """What is wrong with a part of an answer; beside each the items that a change of that kind holds."""
+
+    # a whole component
+    WRONG_SIGN = enum.auto()
+    WRONG_FACTOR = enum.auto()  # the factor that would be right
+    # one of its terms
+    TERM_SIGN = enum.auto()  # the term
+    TERM_FACTOR = enum.auto()  # the term, what to multiply it with
+    TERM_MISSING = enum.auto()  # the term
+    TERM_SUPERFLUOUS = enum.auto()  # the term
+    FACTOR_MISSING = enum.auto()  # where, the factor
+    DIVISOR_MISSING = enum.auto()  # where, the divisor
+    FACTOR_SUPERFLUOUS = enum.auto()  # the factor, where
+    # what stands in a term: what was written, what is right
+    FUNCTION = enum.auto()
+    FUNCTION_MISSING = enum.auto()
+    ARGUMENT = enum.auto()
+    EXPONENT = enum.auto()
+    BRANCH = enum.auto()
+    SYMBOL = enum.auto()
+    NUMBER = enum.auto()
+    SQUARE = enum.auto()  # what should be squared
+    VARIABLE_OF_DERIVATIVE = enum.auto()
+    SIGN_OF = enum.auto()  # a symbol or function whose sign is wrong
+    SYMBOLS_EXCHANGED = enum.auto()  # where, one, the other
+    # how the answer was derived
+    DERIVATIVE_NOT_TOTAL = enum.auto()  # the terms that are missing
+    INNER_DERIVATIVE_MISSING = enum.auto()  # the term, the factor
+    TIME_TERM_MISSING = enum.auto()  # the rate, the term
+    TIME_DERIVATIVE_MISSING = enum.auto()
+    TIME_DERIVATIVE_SIGN = enum.auto()
+    MULTIPLIERS_OPPOSITE = enum.auto()  # the multipliers
+    RULE_OPPOSITE = enum.auto()  # the rules
+    NEW_FOR_OLD = enum.auto()  # the new variables
+    OPPOSITE_CONVENTION = enum.auto()  # the convention here
+    # what it is right for
+    ONLY_FOR = enum.auto()  # the parameter, its value
+    ONLY_WHERE = enum.auto()  # the expression, the relation to 0
+    ONLY_SMALL = enum.auto()  # what is small, the order
+    # other claims that were meant
+    OTHER_TYPE = enum.auto()  # the type, the one that was said
+    OTHER_ROUTHIAN = enum.auto()  # the convention
+    INVERSE_MAP = enum.auto()
+    MAP_EXCHANGED = enum.auto()
+    EQUATIONS_EXCHANGED = enum.auto()
+    OTHER_GAUGE = enum.auto()
+    ONLY_EQUATIONS = enum.auto()
+    # statements about the claim as a whole
+    EQUATION_MISSING = enum.auto()
+    FACTOR_OF_COVARIANT = enum.auto()  # the right one, the claimed one
+    BRACKET_OPPOSITE = enum.auto()  # its name, its value, the wanted one
+    VALENCE = enum.auto()  # the bracket's name, its value, the wanted one, what to multiply P with
+    MAP_MENDED = enum.auto()  # the repair hint
+    DIMENSION = enum.auto()  # the term, another one
+    MORE_WRONG = enum.auto()  # how many
+    AS_JUDGED = enum.auto()  # what the judge said when it refuted the claim
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One thing that is wrong.
+
+    Parameters
+    ----------
+    mistake
+        What kind of thing.
+    items
+        What it is about, as :class:`Mistake` lists it.
+    place
+        The component in which it is; empty where the claim as a whole is meant.
+    everywhere
+        Whether it is so in every place of the component.
+    inside
+        The part of the component in which it is, where that is not the whole.
+    """
+
+    mistake: Mistake
+    items: tuple[object, ...] = ()
+    place: str = ""
+    everywhere: bool = False
+    inside: object = None
+
+    @classmethod
+    def of(cls, mistake: Mistake, *items: object, place: str = "") -> Change:
+        """Return a change with its items one by one."""
+        return cls(mistake, items, place)
+
+    def at(self, place: str) -> Change:
+        """Return the change as one of a component."""
+        return replace(self, place=place)

@@ -1,0 +1,74 @@
+"""Search for the diagnosis of a claim that failed: what a kind names is tried in turn, and confirmed.
+
+A diagnosis is told only when the claim, with the repair it names put in, was judged to hold as a whole.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from canon.exercise.diagnose.change import Mistake
+from canon.exercise.diagnose.changed_claims import another_reading
+from canon.exercise.diagnose.components import on_the_motion
+from canon.exercise.diagnose.diagnosis import Diagnosis, WrongAnswer, judged_to_hold
+from canon.exercise.diagnose.effort import Effort
+from canon.exercise.question.equation_systems import AFFINE
+from canon.exercise.question.question import Same, SameEquations
+from canon.exercise.sheet.kind import named_function
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.exercise.judge import Finding
+
+__all__ = ["OUTER_SECONDS", "diagnosis"]
+
+OUTER_SECONDS = 8.0
+"""Outer limit of a search; its steps end it long before on a machine that is not overloaded."""
+
+
+def diagnosis(finding: Finding, seconds: float = OUTER_SECONDS) -> Diagnosis | None:
+    """Return what is wrong with a claim, and the claim repaired accordingly, which was judged to hold.
+
+    Parameters
+    ----------
+    finding
+        A failed judgement with the question on which it turned.
+    seconds
+        The outer limit; what is looked for is limited by a count of steps.
+    """
+    effort = Effort(seconds)
+    for found in _diagnoses(finding, effort):
+        if _confirmed(found, finding, effort):
+            return found
+        if effort.spent:
+            return None
+    return None
+
+
+def _confirmed(found: Diagnosis, finding: Finding, effort: Effort) -> bool:
+    """Whether the repaired claim holds; where nothing is repaired, whether all else in the claim does."""
+    if found.repaired is not None:
+        return judged_to_hold(found.repaired, effort)
+    return not found.only_fault or judged_to_hold(finding.reading, effort, but=finding.held)
+
+
+def _diagnoses(finding: Finding, effort: Effort) -> Iterator[Diagnosis]:
+    question, told = finding.question, finding.verdict.feedback
+    as_judged = Diagnosis.stated(Mistake.AS_JUDGED, told, only_fault=False)
+    if isinstance(question, SameEquations):
+        if finding.verdict.question == AFFINE:
+            yield as_judged
+            return
+        parts, domain = on_the_motion(question), question.domain
+    elif isinstance(question, Same):
+        parts, domain = question.parts, question.domain
+    else:
+        if told:
+            yield as_judged
+        else:
+            yield from another_reading(WrongAnswer(finding, (), finding.reading.domain, effort))
+        return
+    for name in finding.reading.kind.diagnoses:
+        tried = named_function("canon.exercise.diagnose", name)
+        yield from tried(WrongAnswer(finding, parts, domain, effort))

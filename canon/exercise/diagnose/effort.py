@@ -1,0 +1,65 @@
+"""Effort for a diagnosis: counted in steps, so that a claim gets the same diagnosis on any machine at any time.
+
+A step is about one symbol or operation evaluated at the points of a screen. The seconds are an outer limit only, far
+beyond what the steps take on an idle machine; what a proof costs is counted as a fixed number of steps.
+"""
+
+from __future__ import annotations
+
+import time
+
+__all__ = ["PROOF_SECONDS", "PROOF_STEPS", "STEPS", "Effort"]
+
+STEPS = 600_000
+"""Steps for one diagnosis, which take a second or two where nothing is found."""
+PROOF_STEPS = 6_000
+"""Steps that a proof or a judgement on a changed claim counts for."""
+PROOF_SECONDS = 3.0
+"""Outer limit of one proof or judgement; most take some milliseconds."""
+
+
+class Effort:
+    """What may still be spent on the search for a diagnosis.
+
+    Parameters
+    ----------
+    seconds
+        The outer limit, from now.
+    steps
+        How many steps.
+
+    Examples
+    --------
+    >>> effort = Effort(10.0, steps=100)
+    >>> half = effort.share(0.5)
+    >>> half.spend(30), half.spend(30), effort.steps
+    (True, False, 40)
+    """
+
+    def __init__(self, seconds: float, steps: int = STEPS) -> None:
+        self.until = time.monotonic() + seconds
+        self.steps = steps
+        self._whole: Effort | None = None
+
+    def share(self, part: float) -> Effort:
+        """Return a share of what is left; what is spent of it is spent of the whole."""
+        found = Effort(0.0, int(part * self.steps))
+        found.until, found._whole = self.until, self
+        return found
+
+    def spend(self, steps: int) -> bool:
+        """Spend some steps; return whether there were any left."""
+        self.steps -= steps
+        if self._whole is not None:
+            self._whole.spend(steps)
+        return not self.spent
+
+    @property
+    def spent(self) -> bool:
+        """Whether nothing is left."""
+        return self.steps < 0 or time.monotonic() > self.until
+
+    def for_a_proof(self) -> float:
+        """Spend the steps of a proof; return the seconds that it may take at most."""
+        self.spend(PROOF_STEPS)
+        return max(0.05, min(PROOF_SECONDS, self.until - time.monotonic()))

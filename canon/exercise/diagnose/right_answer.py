@@ -1,0 +1,48 @@
+"""Right answer of a claim that failed, as a sheet writes it, where canon has it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, judged_to_hold
+from canon.exercise.diagnose.effort import Effort
+from canon.exercise.question.question import Same, SameEquations, Stated
+from canon.exercise.sheet.sympy_trees import shown
+from canon.proof.domain.verdict import Undecided
+
+if TYPE_CHECKING:
+    from sympy import Expr
+
+    from canon.exercise.judge import Finding
+
+__all__ = ["corrected"]
+
+OUTER_SECONDS = 2.0
+
+
+def corrected(finding: Finding) -> str:
+    """Return the right answer as text, where canon has it."""
+    question = finding.question
+    if not isinstance(question, Same | SameEquations | Stated):
+        return ""
+    if question.answer is None:
+        parts = (
+            [p for p in question.parts if not p.through and p.residual != 0]
+            if isinstance(question, Same)
+            else []
+        )
+        derived = finding.reading.kind.derived or finding.reading.has("solution")
+        parts = [] if derived or (isinstance(question, Same) and question.said) else parts
+        return "; ".join(f"{p.name} = {shown(p.right)}" for p in parts[:MOST_SENTENCES])
+    try:
+        answer = question.answer()
+    except (ValueError, Undecided):
+        return ""
+    if answer is None:
+        return ""
+    if isinstance(question, Same) and question.answers:
+        repaired = finding.reading.with_instead(question.answers, cast("Expr", answer))
+        if not judged_to_hold(repaired, Effort(OUTER_SECONDS)):
+            return ""
+    ending = " = 0" if isinstance(question, SameEquations) else ""
+    return "; ".join(f"{shown(e)}{ending}" for e in (answer if isinstance(answer, tuple) else (answer,)))

@@ -1,0 +1,165 @@
+"""Sentences about wrong answers: each kind of mistake in a teacher's words, made once, when a report is made."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, TypeAlias
+
+from canon.exercise.diagnose.change import Mistake
+from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS, diagnosis
+from canon.exercise.sheet.sympy_trees import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from canon.exercise.diagnose.change import Change
+    from canon.exercise.diagnose.diagnosis import Diagnosis
+    from canon.exercise.judge import Finding
+
+__all__ = ["SENTENCES", "feedback", "sentence", "times"]
+
+Pattern: TypeAlias = "str | Callable[..., str]"
+"""What is said, the items in place of the braces; or a function that says it, where that depends on an item."""
+_ORDINALS = ("zeroth", "first", "second", "third")
+
+
+def times(factor: object) -> str:
+    """Return a factor in words: half, twice, 3/2 times.
+
+    Examples
+    --------
+    >>> from sympy import Rational
+    >>> times(Rational(1, 2)), times(Rational(3, 2))
+    ('half', '3/2 times')
+    """
+    return {"1/2": "half", "2": "twice", "-1": "minus"}.get(str(factor), f"{factor} times")
+
+
+def _only_where(item: object, relation: str) -> str:
+    """Say that a claim holds for a symbol of one sign, or where an expression has it."""
+    word = "for" if getattr(item, "is_Symbol", False) else "where"
+    return f"right {word} {shown(item)} {relation} 0, but not on the whole domain"
+
+
+OF_A_COMPONENT: Mapping[Mistake, Pattern] = MappingProxyType(
+    {
+        Mistake.WRONG_SIGN: "{place} has the wrong sign",
+        Mistake.WRONG_FACTOR: lambda factor: f"{{place}} should be {times(factor)} what it is",
+        Mistake.TIME_TERM_MISSING: "{place} grows at the constant rate {}: in {place} the term {} is missing",
+    }
+)
+"""What is said of a component as a whole."""
+
+SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
+    {
+        Mistake.TERM_SIGN: "the sign of {} is wrong",
+        Mistake.TERM_FACTOR: lambda term, factor: f"the term {shown(term)} should be {times(factor)} that",
+        Mistake.TERM_MISSING: "the term {} is missing",
+        Mistake.TERM_SUPERFLUOUS: "the term {} does not belong",
+        Mistake.FACTOR_MISSING: "the term {} lacks the factor {}",
+        Mistake.DIVISOR_MISSING: "the term {} should be divided by {}",
+        Mistake.FACTOR_SUPERFLUOUS: "the factor {} of {} does not belong",
+        Mistake.FUNCTION: "{} should be {}",
+        Mistake.FUNCTION_MISSING: "{} should be {}",
+        Mistake.ARGUMENT: "{} should be {}",
+        Mistake.EXPONENT: "{} should be {}",
+        Mistake.BRANCH: "{} should be {}: the other branch",
+        Mistake.SYMBOL: "{} should be {}",
+        Mistake.NUMBER: "{} should be {}",
+        Mistake.SQUARE: "{} should be squared",
+        Mistake.VARIABLE_OF_DERIVATIVE: "{} should be {}",
+        Mistake.SIGN_OF: "the sign of {} is wrong",
+        Mistake.SYMBOLS_EXCHANGED: lambda node, a, b: (
+            f"{f'in {shown(node)} the symbols ' if node is not None else ''}{a} and {b} should be exchanged"
+        ),
+        Mistake.DERIVATIVE_NOT_TOTAL: "d/dt is a total derivative: the terms {} are missing",
+        Mistake.INNER_DERIVATIVE_MISSING: "the term {} lacks the inner derivative {}",
+        Mistake.TIME_DERIVATIVE_MISSING: "K is H in the new variables; ∂F/∂t is missing: K = H + ∂F/∂t",
+        Mistake.TIME_DERIVATIVE_SIGN: "the sign of ∂F/∂t in K is wrong: K = H + ∂F/∂t",
+        Mistake.MULTIPLIERS_OPPOSITE: "right with the opposite sign of {}; the convention here is "
+        "d/dt ∂L/∂q̇ − ∂L/∂q = Σ λ ∂f/∂q",
+        Mistake.RULE_OPPOSITE: lambda rules: (
+            f"right under the opposite sign of a rule: here {' and '.join(map(str, rules))}"
+        ),
+        Mistake.NEW_FOR_OLD: lambda letter: (
+            f"the new {'momenta' if letter == 'P' else 'coordinates'} {letter} belong in place of the old ones"
+        ),
+        Mistake.OPPOSITE_CONVENTION: "right under the opposite sign convention; the convention here is {}",
+        Mistake.ONLY_FOR: "right for {} = {}, but not in general",
+        Mistake.ONLY_WHERE: _only_where,
+        Mistake.ONLY_SMALL: lambda name, order: f"right only for small {name}, to {_ORDINALS[order]} order",
+        Mistake.OTHER_TYPE: "F generates this map as a function of type {}, not {}",
+        Mistake.OTHER_ROUTHIAN: "right under the other convention, {}",
+        Mistake.INVERSE_MAP: "what is given as the map is its inverse",
+        Mistake.MAP_EXCHANGED: "Q and P are exchanged in the map",
+        Mistake.EQUATIONS_EXCHANGED: "the equations of q and p are exchanged",
+        Mistake.OTHER_GAUGE: "L2 − L1 is dF/dt of some F(q, t), but not of this one",
+        Mistake.ONLY_EQUATIONS: "L1 and L2 have the same equations of motion, "
+        "but L2 − L1 is not dF/dt of any F(q, t)",
+        Mistake.EQUATION_MISSING: "each equation is right, but together they do not determine the motion: "
+        "an equation is missing",
+        Mistake.FACTOR_OF_COVARIANT: "the factor is {}, not {}",
+        Mistake.BRACKET_OPPOSITE: "{} = {}, not {}: exchange Q and P, or change the sign of one of them",
+        Mistake.VALENCE: "canonical with valence {1}, not {2}: {0} = {1}; multiply P by {3}",
+        Mistake.MAP_MENDED: "{}",
+        Mistake.DIMENSION: "the terms {} and {} do not have the same dimension",
+        Mistake.MORE_WRONG: "{} more components are wrong",
+        Mistake.AS_JUDGED: "{}",
+    }
+)
+"""What is said of a mistake; where it is in a component, ``in equation 1`` stands before it."""
+
+
+def sentence(found: Diagnosis) -> str:
+    """Return what a person is told of a wrong answer.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> from canon.exercise.diagnose.change import Change
+    >>> from canon.exercise.diagnose.diagnosis import Diagnosis
+    >>> x = Symbol("x")
+    >>> sentence(Diagnosis((Change.of(Mistake.TERM_SIGN, x**2, place="H"),)))
+    'in H the sign of x**2 is wrong'
+    """
+    said: list[str] = []
+    places: list[str] = []
+    for change in found.changes:
+        if said and change.place and places[-1] == change.place and change.mistake in SENTENCES:
+            said[-1] += f", and {_said(change)}"
+            continue
+        said.append(_of_a_place(change))
+        places.append(change.place)
+    return "; ".join(said)
+
+
+def _of_a_place(change: Change) -> str:
+    if change.mistake in OF_A_COMPONENT:
+        return _said(change)
+    return f"in {change.place} {_said(change)}" if change.place else _said(change)
+
+
+def _said(change: Change) -> str:
+    pattern = OF_A_COMPONENT.get(change.mistake) or SENTENCES[change.mistake]
+    if callable(pattern):
+        said = pattern(*change.items)
+        said = said.replace("{place}", change.place)
+    else:
+        said = pattern.format(*map(shown, change.items), place=change.place)
+    if change.inside is not None:
+        return f"in {shown(change.inside)} {said}, everywhere"
+    return f"{said} everywhere" if change.everywhere else said
+
+
+def feedback(finding: Finding, seconds: float = OUTER_SECONDS) -> str:
+    """Return in words what is wrong with a claim, or nothing.
+
+    Parameters
+    ----------
+    finding
+        A failed judgement with the question on which it turned.
+    seconds
+        The outer limit of the search; its steps are counted.
+    """
+    found = diagnosis(finding, seconds)
+    return "" if found is None else sentence(found)
