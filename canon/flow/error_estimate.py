@@ -179,7 +179,8 @@ def error_estimate(
         away = away + its_own
         if told:
             break
-    if task.system.autonomous and not any(met.after is not None for met in samples.crossings):
+    judged = task.system.autonomous and task.system.canonical
+    if judged and not any(met.after is not None for met in samples.crossings):
         change = energy_change.reshape(len(samples.t), -1)[:, chosen]
         deluded = _contradicted_by_energy(
             task.system, replace(samples, y=samples.y[:, :, chosen]), change, away / scale, scale
@@ -245,7 +246,7 @@ def _growth(apart: Array) -> Array:
 def _sizes(y: Array) -> Array:
     """Return what each coordinate and momentum is measured by, shape (2n, 1, orbits)."""
     largest = abs(y).max(axis=1, keepdims=True)
-    halves = np.split(largest, 2)
+    halves = np.array_split(largest, 2)
     blocks = np.concatenate([np.broadcast_to(half.max(axis=0), half.shape) for half in halves])
     sizes = np.maximum(largest, _SMALLEST_PART * blocks)
     return np.where(sizes > 0, sizes, 1.0)

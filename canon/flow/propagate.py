@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from canon.flow.checked_request import hamilton_equations_of, task_of
 from canon.flow.run.hamiltonian_system import HamiltonianSystem
 from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.system_request import is_hamiltonian, system_task
 from canon.flow.trajectory import Interrupted, Trajectory, carried_out
 from canon.progress import reporting
 
@@ -129,6 +130,14 @@ def propagate(
     >>> motion.steps, bool(abs(motion.energy_error).max() < 1e-8)
     (10000, True)
     """
+    if not is_hamiltonian(hamiltonian):
+        task, moving = system_task(
+            hamiltonian, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
+            parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,
+            events=events, dense=dense,
+        )  # fmt: skip
+        with reporting(progress) as report:
+            return carried_out(task, report, moving=moving)
     task = task_of(
         hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,

@@ -5,16 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from canon.expression.symbols.symbol import momentum, velocity
 from canon.expression.symbols.user_input import counted
 from canon.flow.error_estimate import ErrorEstimate, error_estimate
 from canon.flow.integrate import integrate, silently
 from canon.flow.interpolation import states_at
 from canon.flow.run.observables_along import measured, warn_of_jumps
 from canon.flow.run.samples import Samples, Statistics
+from canon.flow.system.left_out import check_left_out
+from canon.flow.system.named_values import node_along, variables_of
 from canon.kernel.program.hamilton_equations import exact_number
 from canon.progress import reporting
 
@@ -22,13 +25,23 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     import numpy.typing as npt
+    from sympy import Expr, Symbol
 
     from canon.array import Array
     from canon.flow.method.method import Method
     from canon.flow.run.event import Crossing
+    from canon.flow.system.first_order_motion import MovingSystem
     from canon.flow.task import Task
 
 __all__ = ["Interrupted", "Trajectory", "carried_out"]
+
+
+class Energies(NamedTuple):
+    """The energy along a motion, its change, and what the change exceeds the work done by, each of shape (times,)."""
+
+    values: Array
+    change: Array
+    defect: Array
 
 
 @dataclass(frozen=True)
@@ -44,10 +57,9 @@ class Trajectory:
     carried
         What the states are beyond doubles (compensation, or the digits of a higher precision): the state is
         y + carried, shape (2n, times).
-    energy
-        H at the samples, evaluated in higher precision than the states and then rounded, shape (times,).
-    energy_change
-        H − H(start), subtracted before rounding, shape (times,).
+    energies
+        The energy at the samples and its change, evaluated in higher precision than the states; None of a system
+        of which no energy is known.
     method
         The method that was used.
     precision
@@ -70,13 +82,14 @@ class Trajectory:
         The events met, in their order.
     task, samples
         What was to be done, and what came out in full: what :meth:`resume` goes on from.
+    moving
+        Of other systems than Hamiltonians: what their states, energies and constraints are.
     """
 
     t: Array
     y: Array
     carried: Array
-    energy: Array
-    energy_change: Array
+    energies: Energies | None
     method: Method
     precision: str
     step: float | None
@@ -91,23 +104,171 @@ class Trajectory:
     events: tuple[Crossing, ...] = ()
     task: Task | None = field(default=None, repr=False, compare=False)
     samples: Samples | None = field(default=None, repr=False, compare=False)
+    moving: MovingSystem | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return (
-            f"Trajectory({counted(len(self.q), 'degree')} of freedom, t = {self.t[0]:g} … {self.t[-1]:g}, "
+            f"Trajectory({self._size}, t = {self.t[0]:g} … {self.t[-1]:g}, "
             f"{counted(len(self.t), 'sample')}, {self.method}, "
             f"{counted(self.steps, 'step')}, {self.cpu_seconds:.3g} s)"
         )
 
     @property
+    def _size(self) -> str:
+        if self.moving is None:
+            return f"{counted(len(self.q), 'degree')} of freedom"
+        return f"{self.moving.kind} in {', '.join(s.name for s in self.moving.state)}"
+
+    @property
     def q(self) -> Array:
         """Coordinates, shape (n, times)."""
-        return self.y[: len(self.y) // 2]
+        return self.y[: len(self.y) // 2 if self.moving is None else len(self.moving.q)]
 
     @property
     def p(self) -> Array:
-        """Momenta, shape (n, times)."""
-        return self.y[len(self.y) // 2 :]
+        """Momenta, shape (n, times): of the state, or ∂L/∂q̇ of a motion whose state is (q, q̇)."""
+        if self.moving is None:
+            return self.y[len(self.y) // 2 :]
+        return self._of_each(momentum, "momenta")
+
+    @property
+    def v(self) -> Array:
+        """Velocities q̇, shape (n, times)."""
+        if self.moving is not None and self.moving.letter == "v":
+            return self.y[len(self.moving.q) :]
+        return self._of_each(velocity, "velocities")
+
+    @property
+    def u(self) -> Array:
+        """Quasi-velocities, shape (quasi-velocities, times).
+
+        Raises
+        ------
+        AttributeError
+            The state of the system has none.
+        """
+        if self.moving is None or self.moving.letter not in ("u", "v"):
+            raise AttributeError("the state of this system has no quasi-velocities")
+        return self.y[len(self.moving.q) :]
+
+    @property
+    def multipliers(self) -> Array:
+        """The multipliers λ of the constraints, d/dt ∂L/∂q̇ − ∂L/∂q = Q + Σ λ a, shape (constraints, times).
+
+        That of a constraint which depends on others is 0: only the forces of constraint are determined then.
+        """
+        return self._read("multipliers", () if self.moving is None else self.moving.multipliers)
+
+    @property
+    def reactions(self) -> Array:
+        """The generalized forces of constraint Σ λ a, shape (n, times)."""
+        return self._read("reactions", () if self.moving is None else self.moving.reactions)
+
+    @property
+    def residuals(self) -> Array:
+        """What the constraints f and the rates A q̇ + a₀ are along the motion, where they should be 0."""
+        kept = () if self.moving is None else tuple(each.node for each in self.moving.residuals)
+        return self._read("residuals", kept)
+
+    def __getitem__(self, what: str | Expr) -> Array:
+        """Return a variable, velocity, momentum, multiplier or observable by name, or any function of them.
+
+        Parameters
+        ----------
+        what
+            ``"theta"``, ``"theta_dot"``, ``"p_theta"``, ``"lambda_1"``, ``"t"``, ``"energy"``, ``"work"``, an
+            observable's name; or a SymPy expression in what moves, the time and the parameters.
+
+        Returns
+        -------
+        ndarray
+            Of shape (times,), or (times, orbits).
+
+        Raises
+        ------
+        KeyError
+            Nothing is called so.
+
+        Examples
+        --------
+        >>> from canon import Lagrangian, coordinates, propagate
+        >>> (x,) = coordinates("x")
+        >>> motion = propagate(Lagrangian(x.dot**2 / 2 - x**2 / 2, [x]), {"x": 1, "x_dot": 0}, (0, 1), samples=2)
+        >>> motion["x"].round(6), motion[x**2 + x.dot**2].round(6)
+        (array([1.      , 0.877583, 0.540302]), array([1., 1., 1.]))
+        """
+        if isinstance(what, str):
+            if what in self.observables:
+                return self.observables[what]
+            if what in ("t", "energy", "work"):
+                return {"t": lambda: self.t, "energy": lambda: self.energy, "work": lambda: self.work}[what]()
+        task, _ = self.origin
+        for row, symbol in enumerate(variables_of(task.system)):
+            if what in (symbol, symbol.name):
+                return self.y[row]
+        return self._values([node_along(task.system, what)])[0]
+
+    @property
+    def energy(self) -> Array:
+        """The energy at the samples: H; T + V or Jacobi's function of other systems; shape (times,).
+
+        Raises
+        ------
+        AttributeError
+            No energy is known of the system.
+        """
+        return self._energies.values
+
+    @property
+    def energy_change(self) -> Array:
+        """The energy less that at the start, subtracted before rounding, shape (times,)."""
+        return self._energies.change
+
+    @property
+    def work(self) -> Array:
+        """The work done on the system since the start, by forces and by what depends on time, shape (times,).
+
+        It was integrated along as a further variable; 0 where the energy is conserved.
+        """
+        if self.moving is None:
+            raise AttributeError("the work done on a Hamiltonian system is its energy_change")
+        node = self.moving.work
+        return np.zeros_like(self.energy) if node is None else self._values([node])[0]
+
+    @property
+    def _energies(self) -> Energies:
+        if self.energies is None:
+            kind = "system" if self.moving is None else self.moving.kind
+            raise AttributeError(
+                f"no energy is known of a {kind}: give it as an observable, observables={{name: expression}}"
+            )
+        return self.energies
+
+    def _of_each(self, made: Callable[[Symbol], Symbol], what: str) -> Array:
+        """Return what belongs to each coordinate."""
+        task, _ = self.origin
+        q = (
+            task.system.q[: len(task.system.q) - task.system.varying]
+            if self.moving is None
+            else self.moving.q
+        )
+        try:
+            return np.array([self[made(s).name] for s in q])
+        except KeyError:
+            raise AttributeError(
+                f"{what} are not known of this system: its variables are {', '.join(map(str, q))}"
+            ) from None
+
+    def _read(self, what: str, nodes: Sequence[int]) -> Array:
+        if not nodes:
+            raise AttributeError(f"the system has no constraints, so the motion has no {what}")
+        return np.array(self._values(nodes))
+
+    def _values(self, nodes: Sequence[int]) -> list[Array]:
+        """Return nodes at the samples, evaluated in higher precision than the states."""
+        task, samples = self.origin
+        found = _single(samples) if task.single else samples
+        return [value for value, _ in measured(task.system, nodes, found, task.precision_name)]
 
     @property
     def final(self) -> Array:
@@ -123,14 +284,18 @@ class Trajectory:
     def energy_error(self) -> Array:
         """Relative error of the energy, (H − H₀)/abs(H₀), or H − H₀ where H₀ = H(start) is zero; shape (times,).
 
+        Where forces or what depends on time do work on a system, the defect of its energy balance,
+        E(t) − E(0) − W(t) with W = ∫ power dt, takes the place of H − H₀.
+
         Raises
         ------
         ValueError
             H depends on time, so that its change is no error; see ``energy_change``.
         """
-        if not self.autonomous:
+        if self.moving is None and not self.autonomous:
             raise ValueError("H depends on t, so its change is no error; energy_change has it")
-        return self.energy_change / abs(self.energy[0]) if self.relative else self.energy_change
+        defect = self._energies.defect
+        return defect / abs(self.energy[0]) if self.relative else defect
 
     def error_estimate(self, orbits: Sequence[int] | None = None) -> ErrorEstimate:
         """Return how far this motion is from the true one, by a companion run that is more exact.
@@ -161,7 +326,8 @@ class Trajectory:
         (True, None, None)
         """
         task, samples = self.origin
-        return error_estimate(task, samples, self.energy_change, orbits)
+        change = np.zeros(self.y.shape[1:]) if self.energies is None else self.energies.defect
+        return error_estimate(task, samples, change, orbits)
 
     @property
     def stopped(self) -> bool:
@@ -239,7 +405,7 @@ class Trajectory:
         elif task.arrived(kept):
             raise ValueError(f"the motion has arrived at t = {self.t[-1]:g}: say how far to go on, until=")
         with reporting(progress) as report:
-            return carried_out(task, report, kept)
+            return carried_out(task, report, kept, self.moving)
 
     @property
     def origin(self) -> tuple[Task, Samples]:
@@ -266,7 +432,10 @@ class Interrupted(KeyboardInterrupt):
 
 
 def carried_out(
-    task: Task, progress: Callable[[float], None] = silently, so_far: Samples | None = None
+    task: Task,
+    progress: Callable[[float], None] = silently,
+    so_far: Samples | None = None,
+    moving: MovingSystem | None = None,
 ) -> Trajectory:
     """Carry a task out, from the start or from what was done before.
 
@@ -276,32 +445,42 @@ def carried_out(
         Ctrl-C; the error has the motion as far as it came.
     NonFiniteStateError
         The motion can't be continued.
+    ValueError
+        A constraint that was left out, as others imply it at the start, is violated on the way.
     """
     found = integrate(task, progress, so_far)
-    made = _trajectory_of(task, found)
+    made = _trajectory_of(task, found, moving)
     if not (task.arrived(found) or made.stopped):
         raise Interrupted(made)
     return made
 
 
-def _trajectory_of(task: Task, found: Samples) -> Trajectory:
+def _single(samples: Samples) -> Samples:
+    """Return the samples of one orbit without the axis of the orbits."""
+    return replace(samples, y=samples.y[:, :, 0], carried=samples.carried[:, :, 0])
+
+
+def _trajectory_of(task: Task, found: Samples, moving: MovingSystem | None) -> Trajectory:
     """Return what samples say, with the energy and the observables along them."""
     watched, kept = found.watched, found
     if task.single:
         watched = None if watched is None else watched[..., 0]
-        found = replace(found, y=found.y[:, :, 0], carried=found.carried[:, :, 0])
-    (energy, change), *rest = measured(task.system, task.nodes, found, task.precision_name)
+        found = _single(found)
+    extra = () if moving is None or moving.energy is None else (moving.energy,)
+    (value, defect), *rest = measured(task.system, (*task.nodes, *extra), found, task.precision_name)
+    energy, change = rest.pop() if extra else (value, defect)
     rows, names = task.system.rows, ("energy", *task.names)
     all_rows = len(rows) == len(found.y)
     changed = any(met.after is not None for met in found.crossings)
     if task.system.autonomous and not changed:
-        warn_of_jumps(task.system, kept, change.reshape(len(change), -1))
+        warn_of_jumps(task.system, kept, defect.reshape(len(defect), -1))
+    if moving is not None:
+        check_left_out(moving, kept)
     return Trajectory(
         t=found.t,
         y=found.y if all_rows else found.y[rows],
         carried=found.carried if all_rows else found.carried[rows],
-        energy=energy,
-        energy_change=change,
+        energies=None if moving is not None and not extra else Energies(energy, change, defect),
         method=task.method,
         precision=task.precision_name,
         step=found.step,
@@ -318,4 +497,5 @@ def _trajectory_of(task: Task, found: Samples) -> Trajectory:
         events=found.crossings,
         task=task.ended(found),
         samples=kept,
+        moving=moving,
     )

@@ -173,6 +173,10 @@ def _reflected(
     system: HamiltonEquations, event: Event, normal: Sequence[int], value: int, rate: int
 ) -> tuple[int, ...]:
     graph, p = system.graph, frozenset[Any](system.p)
+    if not system.canonical:
+        raise ValueError(
+            f"the event {event} bounces, which Hamiltonians do: give the new velocities as its action, {{v: -v}}"
+        )
     if graph.symbols(value) & p or not frozenset[Any](system.q) & graph.symbols(value):
         raise ValueError(
             f"the event {event} is no wall g(q, t) = 0 to bounce from: give its action as {{p: …}}"

@@ -1,0 +1,243 @@
+"""Motion of a Lagrangian with forces and constraints, in the state (q, q̇).
+
+M q̈ − Aᵀλ = f, A q̈ = −γ with the constraints differentiated (twice f(q, t) = 0, once g(q, q̇, t) = 0), solved on the
+graph. 2α ġ + α² f is added to the differentiated constraints, so that round-off off the constraints dies out
+(J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1, 1 (1972), doi:10.1016/0045-7825(72)90018-7), α being the fastest rate
+of the motion's linearisation at the start. Jacobi's energy h = Σ q̇ ∂L/∂q̇ − L changes at the rate
+Q·q̇ + Σ λ (a·q̇) − ∂L/∂t, and a·q̇ = −a₀ on the constraints.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+import sympy as sp
+
+from canon.expression.symbols.symbol import acceleration, momentum
+from canon.expression.symbols.user_input import counted
+from canon.flow.system.first_order_motion import FirstOrderMotion, Residual
+from canon.flow.system.linear_equations import SingularAtStartError, independent_rows, solved_from_start
+from canon.mechanics.at_scale.constrained import constrained
+from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from sympy import Expr, Symbol
+
+    from canon.array import Array
+    from canon.expression.graph.graph import Graph
+    from canon.mechanics.at_scale.constrained import ConstrainedEquations
+    from canon.mechanics.at_scale.second_order import SecondOrderEquations
+    from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
+
+__all__ = ["constraints_of", "lagrangian_motion", "multiplier_symbol", "values_at_start"]
+
+_PULL = sp.Dummy("alpha", positive=True)
+
+_SLOWEST = 1e-3
+"""The least α in units of the inverse of the time that velocities take to pass the coordinates' sizes."""
+
+
+def multiplier_symbol(i: int) -> Symbol:
+    """Return the name under which the multiplier of constraint i = 1, 2 … is known to observables and events."""
+    return sp.Symbol(f"lambda_{i}", real=True)
+
+
+def constraints_of(
+    system: Lagrangian | ConstrainedLagrangian,
+) -> tuple[Lagrangian, Sequence[Expr], Sequence[Expr]]:
+    """Return a Lagrangian with its holonomic and its nonholonomic constraints."""
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
+
+    if isinstance(system, Lagrangian):
+        return system, (), ()
+    return system.lagrangian, system.holonomic, system.nonholonomic
+
+
+def lagrangian_motion(
+    system: Lagrangian | ConstrainedLagrangian, start: Mapping[Symbol, float]
+) -> FirstOrderMotion:
+    """Return the first-order equations of a Lagrangian with its forces and constraints.
+
+    Parameters
+    ----------
+    system
+        The Lagrangian, or the Lagrangian with its constraints.
+    start
+        Numbers for q, q̇, t and the parameters at the start: pivots and α are chosen there, and constraints that
+        depend on others there are left out, their multipliers being 0.
+
+    Raises
+    ------
+    ValueError
+        The accelerations are not determined at the start.
+
+    Examples
+    --------
+    >>> from canon import Lagrangian, coordinates
+    >>> (x,) = coordinates("x")
+    >>> damped = Lagrangian(x.dot**2 / 2 - x**2 / 2, [x], forces=[-x.dot / 10])
+    >>> motion = lagrangian_motion(damped, {x: 1.0, x.dot: 0.0})
+    >>> [motion.graph.to_sympy(node) for node in motion.rates], motion.graph.to_sympy(motion.power)
+    ([x_dot, -x - x_dot/10], -x_dot**2/10)
+    """
+    lagrangian, holonomic, nonholonomic = constraints_of(system)
+    found = derivation_of_lagrangian(lagrangian)
+    graph, q, v, t, n = found.graph, found.q, found.velocities, found.t, len(found.q)
+    bound, left_out = _parted(found, holonomic, nonholonomic, start)
+    matrix, right = _bordered(found, bound)
+    where = "the mass matrix" if bound is None else "the matrix of masses and constraints"
+    values = values_at_start(graph, [node for row in matrix for node in row], start, where)
+    try:
+        solved = solved_from_start(graph, matrix, right, values.reshape(len(matrix), -1))
+    except SingularAtStartError as singular:
+        raise ValueError(_undetermined(singular, v, where)) from None
+    accelerations, kept = solved[:n], tuple(map(graph.negative, solved[n:]))
+    if bound is not None:
+        alpha = graph.number(
+            Fraction(_fastest(graph, (*q, *v), (*map(graph.symbol, v), *accelerations), start))
+        )
+        solved = graph.substitute(solved, {graph.symbol(_PULL): alpha})
+        accelerations, kept = tuple(solved[:n]), tuple(map(graph.negative, solved[n:]))
+    L, speeds = graph.from_sympy(lagrangian.L), [graph.symbol(s) for s in v]
+    momenta = graph.gradient(L, v)
+    Q = [graph.from_sympy(force) for force in lagrangian.forces] or [graph.zero] * n
+    A, rests = (bound.A, bound.rests) if bound is not None else ((), ())
+    power = (_dot(graph, Q, speeds), *map(graph.negative, (_dot(graph, kept, rests), graph.derivative(L, t))))
+    multipliers = _with_gaps(graph, kept, [index for index, _ in left_out])
+    named = dict(zip((acceleration(s) for s in q), accelerations, strict=True))
+    named |= dict(zip((momentum(s) for s in q), momenta, strict=True))
+    named |= {multiplier_symbol(i): node for i, node in enumerate(multipliers, 1)}
+    return FirstOrderMotion(
+        kind="constrained Lagrangian" if multipliers else "Lagrangian",
+        graph=graph,
+        q=q,
+        second=v,
+        letter="v",
+        t=t,
+        rates=(*speeds, *accelerations),
+        energy=graph.add((_dot(graph, speeds, momenta), graph.negative(L))),
+        power=graph.add(power),
+        named=named,
+        multipliers=multipliers,
+        reactions=tuple(_dot(graph, kept, [row[i] for row in A]) for i in range(n)) if multipliers else (),
+        residuals=(
+            *_residuals(graph, bound, speeds),
+            *(replace(r, left_out=True) for _, more in left_out for r in _residuals(graph, more, speeds)),
+        ),
+    )
+
+
+def values_at_start(graph: Graph, nodes: Sequence[int], start: Mapping[Symbol, float], what: str) -> Array:
+    """Return the values of nodes at the start as doubles.
+
+    Raises
+    ------
+    ValueError
+        One of them is not finite there.
+    """
+    point = {**start, _PULL: 0.0}
+    found = np.array([float(x) for x in graph.evaluate(nodes, point)])
+    if not np.isfinite(found).all():
+        raise ValueError(
+            f"{what} is not finite at the start: begin inside the domain of the system's functions"
+        )
+    return found
+
+
+def _parted(
+    found: SecondOrderEquations,
+    holonomic: Sequence[Expr],
+    nonholonomic: Sequence[Expr],
+    start: Mapping[Symbol, float],
+) -> tuple[ConstrainedEquations | None, list[tuple[int, ConstrainedEquations]]]:
+    """Return the constraints that are independent at the start, and the numbers and equations of the others."""
+    given = [*((f, True) for f in holonomic), *((g, False) for g in nonholonomic)]
+    if not given:
+        return None, []
+
+    def one(f: Expr, *, is_holonomic: bool) -> ConstrainedEquations:
+        return constrained(found, *((f,), ()) if is_holonomic else ((), (f,)))
+
+    each = [one(f, is_holonomic=is_holonomic) for f, is_holonomic in given]
+    rows = np.array(
+        [values_at_start(found.graph, c.A[0], start, f"constraint {i}") for i, c in enumerate(each, 1)]
+    )
+    kept = independent_rows(rows)
+    if len(kept) == len(given):
+        return constrained(found, holonomic, nonholonomic), []
+    chosen = ([given[i][0] for i in kept if given[i][1] == wanted] for wanted in (True, False))
+    return constrained(found, *chosen), [(i, each[i]) for i in range(len(given)) if i not in kept]
+
+
+def _bordered(
+    found: SecondOrderEquations, bound: ConstrainedEquations | None
+) -> tuple[list[list[int]], list[int]]:
+    """Return ((M, Aᵀ), (A, 0)) and (f, −γ − 2α ġ − α² f), whose solution is (q̈, −λ)."""
+    graph, n = found.graph, len(found.q)
+    M = [[found.M[max(i, j)][min(i, j)] for j in range(n)] for i in range(n)]
+    if bound is None:
+        return M, list(found.f)
+    k, alpha = len(bound.A), graph.symbol(_PULL)
+    matrix = [[*row, *(a[i] for a in bound.A)] for i, row in enumerate(M)]
+    matrix += [[*a, *[graph.zero] * k] for a in bound.A]
+    speeds, right = [graph.symbol(s) for s in found.velocities], list(found.f)
+    for i, curvature in enumerate(bound.curvatures):
+        rate = graph.add((_dot(graph, bound.A[i], speeds), bound.rests[i]))
+        terms = [curvature, graph.mul((graph.number(2), alpha, rate))]
+        if i < len(bound.values):
+            terms.append(graph.mul((alpha, alpha, bound.values[i])))
+        right.append(graph.negative(graph.add(terms)))
+    return matrix, right
+
+
+def _fastest(
+    graph: Graph, state: Sequence[Symbol], rates: Sequence[int], start: Mapping[Symbol, float]
+) -> float:
+    """Return the largest rate of the motion's linearisation at the start, or how fast the coordinates pass."""
+    slopes = [graph.gradient(rate, state) for rate in rates]
+    point = {**start, _PULL: 0.0}
+    jacobian = np.array([[float(x) for x in graph.evaluate(row, point)] for row in slopes])
+    n = len(state) // 2
+    sizes = np.array([abs(start[s]) for s in state])
+    passing = sizes[n:].max() / sizes[:n].max() if sizes[:n].any() else 0.0
+    fastest = float(np.abs(np.linalg.eigvals(jacobian)).max()) if np.isfinite(jacobian).all() else 0.0
+    # Round-off of a double eigenvalue 0 is no rate.
+    real = fastest if fastest > 1e-6 * np.sqrt(np.abs(jacobian).max(initial=0.0)) else 0.0
+    return max(real, _SLOWEST * passing) or 1.0
+
+
+def _residuals(
+    graph: Graph, bound: ConstrainedEquations | None, speeds: Sequence[int]
+) -> tuple[Residual, ...]:
+    if bound is None:
+        return ()
+    rates = [
+        graph.add((_dot(graph, row, speeds), rest)) for row, rest in zip(bound.A, bound.rests, strict=True)
+    ]
+    places = tuple(Residual(node, "position") for node in bound.values)
+    return (*places, *(Residual(node, "rate") for node in rates))
+
+
+def _with_gaps(graph: Graph, kept: Sequence[int], gaps: Sequence[int]) -> tuple[int, ...]:
+    """Return the multipliers of all constraints: 0 for those left out."""
+    given = iter(kept)
+    return tuple(graph.zero if i in gaps else next(given) for i in range(len(kept) + len(gaps)))
+
+
+def _undetermined(singular: SingularAtStartError, v: Sequence[Symbol], where: str) -> str:
+    moved = [f"{v[i]}" for i in range(len(v)) if abs(singular.direction[i]) > 1e-6]
+    along = f" along {', '.join(moved)}" if moved else ""
+    return (
+        f"{where} is singular at the start{along}: L does not determine {counted(len(v), 'acceleration')} there. Use "
+        "fewer coordinates, add the constraints that hold the others, or start elsewhere"
+    )
+
+
+def _dot(graph: Graph, a: Sequence[int], b: Sequence[int]) -> int:
+    return graph.add([graph.mul(pair) for pair in zip(a, b, strict=True)])

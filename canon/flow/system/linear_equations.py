@@ -1,0 +1,146 @@
+"""Linear equations on a graph, their pivots chosen from the matrix's values at the start of the motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.mechanics.at_scale.ldl import solved_on_graph
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from canon.array import Array
+    from canon.expression.graph.graph import Graph
+
+__all__ = ["SingularAtStartError", "independent_rows", "solved_from_start"]
+
+_SMALL = 1e-11
+"""A pivot below this part of its row, where every row is measured by its largest entry, is taken for round-off."""
+
+
+class SingularAtStartError(ValueError):
+    """The equations do not determine the accelerations at the start."""
+
+    def __init__(self, direction: Array) -> None:
+        super().__init__(f"the matrix is singular along {direction}")
+        self.direction = direction
+
+
+def solved_from_start(
+    graph: Graph,
+    matrix: Sequence[Sequence[int]],
+    right: Sequence[int],
+    values: Array,
+    *,
+    symmetric: bool = True,
+) -> tuple[int, ...]:
+    """Return the nodes x with A x = right, A regular at the start.
+
+    A symmetric positive definite matrix is factorised as L D Lᵀ, and so is one bordered by constraints (its Schur
+    complement is definite); no rows are exchanged. Any other is eliminated with the row exchanges that partial
+    pivoting makes at the start, which are kept for the whole motion.
+
+    Parameters
+    ----------
+    graph
+        The graph.
+    matrix, right
+        Nodes, shapes (n, n) and (n,).
+    values
+        The matrix's values at the start, shape (n, n).
+    symmetric
+        Whether A is symmetric everywhere.
+
+    Raises
+    ------
+    SingularAtStartError
+        It is singular there; the error has the null direction.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> from canon.expression.graph.graph import Graph
+    >>> graph, (a, b) = Graph(), symbols("a b")
+    >>> A, B = graph.symbol(a), graph.symbol(b)
+    >>> matrix = [[graph.zero, A], [A, graph.zero]]
+    >>> x = solved_from_start(graph, matrix, [A, B], np.array([[0.0, 2.0], [2.0, 0.0]]))
+    >>> [graph.to_sympy(node) for node in x]
+    [b/a, 1]
+    """
+    sizes = np.sqrt(np.abs(values).max(axis=1, initial=0.0))
+    if not symmetric:
+        balanced = values / np.where(sizes > 0, sizes, 1.0)[:, np.newaxis] ** 2
+    else:
+        balanced = values / np.outer(sizes, sizes) if sizes.all() else values
+    _, singular, directions = np.linalg.svd(balanced)
+    if not singular.size or singular[-1] <= _SMALL * singular[0]:
+        null = directions[-1] / np.where((sizes > 0) & symmetric, sizes, 1.0)
+        raise SingularAtStartError(null / np.abs(null).max())
+    if symmetric and _has_diagonal_pivots(balanced):
+        lower = [list(row[: i + 1]) for i, row in enumerate(matrix)]
+        return solved_on_graph(graph, lower, right)
+    return _eliminated(graph, matrix, right, balanced)
+
+
+def independent_rows(values: Array) -> list[int]:
+    """Return which rows of a matrix to keep so that the rest depends on them; the earlier of two is kept.
+
+    Examples
+    --------
+    >>> independent_rows(np.array([[1.0, 0.0], [2.0, 0.0], [0.0, 3.0]]))
+    [0, 2]
+    """
+    kept, basis = list[int](), list[Any]()
+    for i, row in enumerate(values):
+        size = np.linalg.norm(row)
+        rest = row / size if size else row
+        for _ in range(2):  # once more takes what rounding has left
+            for each in basis:
+                rest = rest - each * (each @ rest)
+        left = np.linalg.norm(rest)
+        if size and left > 1e-10:
+            kept.append(i)
+            basis.append(rest / left)
+    return kept
+
+
+def _has_diagonal_pivots(values: NDArray[np.float64]) -> bool:
+    """Return whether elimination without exchanges meets no small pivot."""
+    rest = values.copy()
+    for k in range(len(rest)):
+        pivot = rest[k, k]
+        if abs(pivot) < 1e-6 * np.abs(values[k]).max():
+            return False
+        rest[k + 1 :, k:] -= np.outer(rest[k + 1 :, k] / pivot, rest[k, k:])
+    return True
+
+
+def _eliminated(
+    graph: Graph, matrix: Sequence[Sequence[int]], right: Sequence[int], values: NDArray[np.float64]
+) -> tuple[int, ...]:
+    """Eliminate with the row exchanges that the values ask for."""
+    n, numbers = len(right), values.copy()
+    rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
+    for k in range(n):
+        best = k + int(np.argmax(np.abs(numbers[k:, k])))
+        rows[k], rows[best] = rows[best], rows[k]
+        numbers[[k, best]] = numbers[[best, k]]
+        inverse = graph.power(rows[k][k], -1)
+        for i in range(k + 1, n):
+            if rows[i][k] == graph.zero:
+                continue
+            factor = graph.mul((rows[i][k], inverse))
+            rows[i] = [
+                graph.add((a, graph.negative(graph.mul((factor, b))))) if j > k else graph.zero
+                for j, (a, b) in enumerate(zip(rows[i], rows[k], strict=True))
+            ]
+            numbers[i] -= numbers[i, k] / numbers[k, k] * numbers[k]
+    x = [graph.zero] * n
+    for i in reversed(range(n)):
+        taken = [graph.negative(graph.mul((rows[i][j], x[j]))) for j in range(i + 1, n)]
+        x[i] = graph.mul((graph.add((rows[i][n], *taken)), graph.power(rows[i][i], -1)))
+    return tuple(x)

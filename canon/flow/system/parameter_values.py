@@ -1,0 +1,85 @@
+"""Values of a system's parameters: every one is there, once, and what its symbol says it is."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy as sp
+
+from canon.kernel.program.hamilton_equations import exact_number
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from sympy import Symbol
+
+__all__ = ["check_parameters"]
+
+_KINDS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "integer")
+
+
+def check_parameters(
+    parameters: Mapping[Symbol | str, Any],
+    needed: Iterable[Symbol],
+    variables: Sequence[Symbol],
+    *,
+    others: Iterable[Symbol] = (),
+) -> None:
+    """Refuse parameters that a system lacks, that are given twice, or against what their symbols say.
+
+    Parameters
+    ----------
+    parameters
+        A number, or an array over the orbits, by symbol or name.
+    needed
+        The symbols that must have a number.
+    variables
+        Coordinates, velocities and the like, and the time, which are no parameters.
+    others
+        Symbols of observables and events, which need one too.
+
+    Raises
+    ------
+    KeyError
+        A parameter has no number, or a number is for no parameter.
+    ValueError
+        A name is given twice, is that of a variable, or its number is not what the symbol is said to be.
+
+    Examples
+    --------
+    >>> (m,) = sp.symbols("m", positive=True, seq=True)
+    >>> check_parameters({"m": -1.0}, [m], [])
+    Traceback (most recent call last):
+        ...
+    ValueError: m = -1.0, but m was made as a positive symbol: give a positive number
+    """
+    known = {s.name: s for s in (*others, *needed)}
+    moving, seen = {s.name for s in variables}, set[str]()
+    for key, value in parameters.items():
+        name = str(key)
+        if name in seen:
+            raise ValueError(f"parameters give {name} twice, by its symbol and by its name; give it once")
+        seen.add(name)
+        if name in moving:
+            raise ValueError(f"{name} moves and is no parameter: its start stands in y0")
+        if name not in known:
+            near = get_close_matches(name, known, 1)
+            has = f"it has {', '.join(sorted(known))}" if known else "it has none"
+            meant = f"; is {near[0]} meant?" if near else ""
+            raise KeyError(f"the system has no parameter {name}, {has}{meant}")
+        for number in np.ravel(np.asarray(value, dtype=object)).tolist():
+            _check_kind(known[name], number)
+    missing = sorted(name for name in known if name not in seen)
+    if missing:
+        raise KeyError(f"no number for {', '.join(missing)}: give each one, parameters={{symbol: value}}")
+
+
+def _check_kind(symbol: Symbol, value: Any) -> None:
+    number: Any = sp.Rational(exact_number(value, symbol.name))
+    for kind in _KINDS:
+        if getattr(symbol, f"is_{kind}") and not getattr(number, f"is_{kind}"):
+            raise ValueError(
+                f"{symbol.name} = {value}, but {symbol.name} was made as a {kind} symbol: give a {kind} number"
+            )

@@ -1,0 +1,121 @@
+"""Recognised systems: what a person has, its variables and parameters, and how its equations are derived."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from canon.expression.symbols.symbol import velocity
+from canon.flow.system.lagrangian_motion import constraints_of, lagrangian_motion
+from canon.flow.system.listed_equations import field_motion, heyoka_field, is_heyoka_system
+from canon.flow.system.quasi_velocity_motion import appell_motion, newton_euler_motion, quasi_motion
+from canon.flow.system.routhian_motion import routhian_motion, routhian_state
+from canon.mechanics.hamilton.vector_field import VectorField
+from canon.mechanics.lagrange.appell import GibbsAppell
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.lagrange.newton_euler import NewtonEuler
+from canon.mechanics.lagrange.sympy_bridge import QuasiMotion, from_sympy_mechanics
+from canon.mechanics.reduction.routh import Routhian
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from sympy import Expr, Symbol
+
+    from canon.flow.system.first_order_motion import FirstOrderMotion
+
+__all__ = ["RecognisedSystem", "recognised"]
+
+
+@dataclass(frozen=True, eq=False)
+class RecognisedSystem:
+    """A system, its variables and parameters known, its equations not derived yet.
+
+    Parameters
+    ----------
+    state, t
+        The variables in the order of the state, and the time.
+    parameters
+        The symbols that need a number.
+    derived
+        The equations, from numbers for the state, t and the parameters at the start.
+    """
+
+    state: tuple[Symbol, ...]
+    t: Symbol
+    parameters: tuple[Symbol, ...]
+    derived: Callable[[Mapping[Symbol, float]], FirstOrderMotion]
+
+
+def recognised(system: Any) -> RecognisedSystem:
+    """Return what is known of a system before its equations are derived.
+
+    Raises
+    ------
+    TypeError
+        It is no system that moves.
+
+    Examples
+    --------
+    >>> from canon import Lagrangian, coordinates, parameters
+    >>> (x,), (k,) = coordinates("x"), parameters("k", positive=True)
+    >>> found = recognised(Lagrangian(x.dot**2 / 2 - k * x**2 / 2, [x]))
+    >>> found.state, found.parameters
+    ((x, x_dot), (k,))
+    """
+    if type(system).__module__.startswith("sympy.physics.mechanics"):
+        system = from_sympy_mechanics(system)
+    if is_heyoka_system(system):
+        system = heyoka_field(system)
+    if isinstance(system, Lagrangian | ConstrainedLagrangian):
+        return _of_lagrangian(system)
+    if isinstance(system, Routhian):
+        L = system.lagrangian
+        said = (L.L, *L.forces, *system.ignorable_velocities)
+        return _with(routhian_state(system), system.t, said, lambda start: routhian_motion(system, start))
+    if isinstance(system, GibbsAppell):
+        kinematics = system.kinematics
+        said = (*kinematics.q_dot, system.gibbs_function, *system.forces)
+        state, hidden = (*kinematics.q, *kinematics.u), kinematics.u_dot
+        return _with(state, kinematics.t, said, lambda start: appell_motion(system, start), hidden)
+    if isinstance(system, QuasiMotion):
+        kinematics = system.kinematics
+        said, state = (*kinematics.q_dot, *system.equations), (*kinematics.q, *kinematics.u)
+        return _with(state, kinematics.t, said, lambda start: quasi_motion(system, start), kinematics.u_dot)
+    if isinstance(system, NewtonEuler):
+        state = (*system.q, *map(velocity, system.q))
+        return _with(
+            state,
+            system.t,
+            system.balances,
+            lambda start: newton_euler_motion(system, start),
+            system.unknowns,
+        )
+    if isinstance(system, VectorField):
+        motion = field_motion(system)
+        return RecognisedSystem(motion.state, motion.t, motion.parameters, lambda _: motion)
+    raise TypeError(
+        f"{system!r} is no system that can be propagated: give a Hamiltonian, a Lagrangian with its forces and "
+        "constraints, Gibbs–Appell or Newton–Euler equations, a Routhian, a vector field, a scene or its name, SymPy's "
+        "LagrangesMethod or KanesMethod, or heyoka's list of (variable, right-hand side)"
+    )
+
+
+def _of_lagrangian(system: Lagrangian | ConstrainedLagrangian) -> RecognisedSystem:
+    lagrangian, holonomic, nonholonomic = constraints_of(system)
+    said = (lagrangian.L, *lagrangian.forces, *holonomic, *nonholonomic)
+    state = (*lagrangian.q, *lagrangian.velocities)
+    return _with(state, lagrangian.t, said, lambda start: lagrangian_motion(system, start))
+
+
+def _with(
+    state: Sequence[Symbol],
+    t: Symbol,
+    said: Iterable[Expr],
+    derived: Callable[[Mapping[Symbol, float]], FirstOrderMotion],
+    unknown: Sequence[Symbol] = (),
+) -> RecognisedSystem:
+    used: set[Any] = set().union(*(f.free_symbols for f in said))
+    parameters = sorted(used - {*state, t, *unknown}, key=lambda s: s.name)
+    return RecognisedSystem(tuple(state), t, tuple(parameters), derived)

@@ -1,0 +1,124 @@
+"""Start of a motion: states given in order or by name, and starts that constraints do not allow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.dynamicsymbols import coordinate
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sympy import Symbol
+
+    from canon.array import Array
+    from canon.flow.system.first_order_motion import FirstOrderMotion
+
+__all__ = ["check_constraints", "state_in_order"]
+
+_NEAR = 1e-9
+"""In parts of the size of its terms: what a constraint may miss at the start, being pulled back to 0."""
+
+
+def state_in_order(y0: Any, state: Sequence[Symbol]) -> Any:
+    """Return a starting state in the order of the variables: what is given by name is put in order.
+
+    Parameters
+    ----------
+    y0
+        Numbers in order, shape (variables,) or (variables, orbits), as they are; or a number, or an array of shape
+        (orbits,), for each variable by symbol or name.
+    state
+        The variables.
+
+    Raises
+    ------
+    KeyError
+        A name is that of no variable, or a variable has no start.
+    ValueError
+        A variable is given twice, or the numbers are not as many as the variables.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> (theta,) = coordinates("theta")
+    >>> state_in_order({"theta_dot": 0, theta: 0.1}, [theta, theta.dot])
+    [0.1, 0]
+    """
+    names = [s.name for s in state]
+    if isinstance(y0, Mapping):
+        return _by_name(y0, names)
+    given = np.asarray(y0)
+    if given.ndim not in (1, 2) or given.shape[0] != len(names) or not given.size:
+        raise ValueError(
+            f"y0 has shape {given.shape}; the state is ({', '.join(names)}), {counted(len(names), 'number')}: give "
+            f"them in this order, shape ({len(names)},), several states as ({len(names)}, orbits), or by name"
+        )
+    return y0
+
+
+def _by_name(y0: Mapping[Any, Any], names: Sequence[str]) -> list[Any]:
+    given = dict[str, Any]()
+    for key, value in y0.items():
+        name = key if isinstance(key, str) else coordinate(key).name
+        if name not in names:
+            raise KeyError(f"y0 names {name}, which is no variable of the state ({', '.join(names)})")
+        if name in given:
+            raise ValueError(f"y0 gives {name} twice; give it once")
+        given[name] = value
+    missing = [name for name in names if name not in given]
+    if missing:
+        raise KeyError(
+            f"y0 has no value for {', '.join(missing)}: every variable needs a start, 0 where it rests"
+        )
+    orbits = {np.size(value) for value in given.values() if np.ndim(value)}
+    if not orbits:
+        return [given[name] for name in names]
+    if len(orbits) > 1:
+        raise ValueError(
+            f"y0 has values for {' and '.join(map(str, sorted(orbits)))} orbits: give one number or as many each"
+        )
+    count = orbits.pop()
+    return [list(given[name]) if np.ndim(given[name]) else [given[name]] * count for name in names]
+
+
+def check_constraints(motion: FirstOrderMotion, start: Mapping[Symbol, Array], words: Sequence[str]) -> None:
+    """Refuse a start that is not on the constraints.
+
+    Parameters
+    ----------
+    motion
+        The equations, with what should vanish.
+    start
+        Numbers for the state, the time and the parameters, arrays of shape (orbits,) where orbits differ.
+    words
+        What to call each residual.
+
+    Raises
+    ------
+    ValueError
+        A constraint or its rate does not vanish; the sentence has the residual.
+    """
+    graph = motion.graph
+    for residual, name in zip(motion.residuals, words, strict=True):
+        slopes = graph.gradient(residual.node, motion.state)
+        found = [np.asarray(x, dtype=np.float64) for x in graph.evaluate([residual.node, *slopes], start)]
+        values = [np.asarray(start[s], dtype=np.float64) for s in motion.state]
+        n = len(motion.q)
+        own = slice(0, n) if residual.words == "position" else slice(n, None)
+        largest = np.max([np.abs(x) * np.ones(1) for x in values[own]], axis=0)
+        size = sum(
+            np.abs(a) * (np.abs(x) + largest) for a, x in zip(found[1:][own], values[own], strict=True)
+        )
+        wrong = np.abs(found[0]) > _NEAR * size
+        if np.any(wrong):
+            values_there = np.ravel(found[0])
+            worst = float(values_there[np.argmax(np.abs(values_there))])
+            raise ValueError(
+                f"the start is not on the constraints: {name} is {worst:.3g} there, not 0; choose the dependent "
+                f"{'coordinates' if residual.words == 'position' else 'velocities'} so that it vanishes"
+            )

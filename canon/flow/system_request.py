@@ -1,0 +1,181 @@
+"""Request for the motion of any system: start, parameters and method checked, and the task made of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
+
+from canon.flow.checked_request import parted_by_orbit, task_with
+from canon.flow.method.method import DOP853, RK4, Gauss, Taylor
+from canon.flow.system.first_order_motion import moving_system
+from canon.flow.system.parameter_values import check_parameters
+from canon.flow.system.recognised_system import recognised
+from canon.flow.system.start_of_motion import check_constraints, state_in_order
+from canon.kernel.llvm.number_types import double_pair
+from canon.kernel.program.hamilton_equations import exact_number, exact_numbers
+from canon.mechanics.algebra.dynamicsymbols import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    import numpy.typing as npt
+
+    from canon.array import Array
+    from canon.flow.method.method import Method
+    from canon.flow.run.event import Event
+    from canon.flow.system.first_order_motion import FirstOrderMotion, MovingSystem
+    from canon.flow.task import Task
+
+__all__ = ["is_hamiltonian", "system_task"]
+
+
+def is_hamiltonian(system: Any) -> bool:
+    """Tell whether a system has H, q, p and t, as :class:`canon.flow.run.hamiltonian_system.HamiltonianSystem` says."""
+    return all(hasattr(system, name) for name in ("H", "q", "p", "t"))
+
+
+def system_task(
+    system: Any,
+    t_span: tuple[float, float],
+    y0: Any,
+    *,
+    method: Method | None = None,
+    parameters: Mapping[Symbol | str, Any] | None = None,
+    observables: Mapping[str, Expr] | None = None,
+    events: Sequence[Event] = (),
+    **settings: Any,
+) -> tuple[Task, MovingSystem]:
+    """Return the task of :func:`canon.flow.propagate.propagate` for a system without a Hamiltonian, and the system.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        As ``propagate`` documents them.
+    """
+    found, given = recognised(system), dict(parameters or {})
+    variables = (*found.state, found.t)
+    observed = {name: _plain(f, variables) for name, f in (observables or {}).items()}
+    met = tuple(_plain_event(event, variables) for event in events)
+    named = {str(key) for key in given}
+    functions = [*observed.values(), *(event.function for event in met)]
+    others = {s for f in functions for s in f.free_symbols if str(s) in named and isinstance(s, Symbol)}
+    check_parameters(given, found.parameters, variables, others=others - {*variables})
+    fixed, varying = parted_by_orbit(given)
+    states = _exact(state_in_order(y0, found.state))
+    orbits = _orbits(states, varying, np.shape(y0))
+    single = states[0].ndim == 1 and not varying
+    begin, _ = (float(exact_number(t, "t_span")) for t in t_span)
+    start: dict[Symbol, Any] = {found.t: begin}
+    by_name = {s.name: s for s in (*found.parameters, *others)}
+    start |= {by_name[str(key)]: float(exact_number(value, str(key))) for key, value in fixed.items()}
+    start |= {by_name[name]: values.astype(np.float64) for name, values in varying.items()}
+    start |= dict(zip(found.state, states[0].reshape(len(found.state), -1), strict=True))
+    motion = found.derived({s: float(np.ravel(value)[0]) for s, value in start.items()})
+    check_constraints(motion, start, _words(motion))
+    moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying])
+    _check_method(method, moving)
+    full = _full_states(moving, states, varying, orbits)
+    task = task_with(
+        moving.equations,
+        full,
+        t_span,
+        single=single,
+        method=method,
+        observables=observed,
+        events=met,
+        **settings,
+    )
+    return task, moving
+
+
+def _plain(f: Any, variables: Sequence[Symbol]) -> Expr:
+    return plain(f, variables[:-1], variables[-1])
+
+
+def _plain_event(event: Event, variables: Sequence[Symbol]) -> Event:
+    """Return an event in canon's symbols; itself where it is."""
+    function: Any = event.function
+    if not (isinstance(function, Expr) and function.has(AppliedUndef)):
+        return event
+    return replace(event, function=_plain(event.function, variables))
+
+
+def _exact(y0: Any) -> tuple[Array, Array]:
+    """Return a state as the sum of two doubles."""
+    given = np.asarray(y0)
+    if given.dtype == np.float64:
+        if not np.isfinite(given).all():
+            raise ValueError(f"y0 = {given} is not finite: give a state of finite numbers")
+        return given, np.zeros(given.shape)
+    pairs = [double_pair(exact_number(x, "a component of y0")) for x in given.ravel().tolist()]
+    high, low = (np.array(part).reshape(given.shape) for part in zip(*pairs, strict=True))
+    return high, low
+
+
+def _orbits(
+    states: tuple[Array, Array], varying: Mapping[str, npt.NDArray[Any]], shape: tuple[int, ...]
+) -> int:
+    counts = {values.size for values in varying.values()}
+    if states[0].ndim == 2:
+        counts.add(states[0].shape[1])
+    if len(counts) > 1:
+        given = ", ".join(f"{name} of shape {values.shape}" for name, values in varying.items())
+        raise ValueError(f"{given} for y0 of shape {shape}: parameters by orbit have shape (orbits,)")
+    return counts.pop() if counts else 1
+
+
+def _full_states(
+    moving: MovingSystem,
+    states: tuple[Array, Array],
+    varying: Mapping[str, npt.NDArray[Any]],
+    orbits: int,
+) -> tuple[Array, Array]:
+    """Return the states with what is integrated along unseen, each of shape (2n, orbits)."""
+    numbers = [
+        [double_pair(_one(value, name)) for value in values.tolist()] for name, values in varying.items()
+    ]
+    half, work = moving.first_half, 0 if moving.work is None else 1
+    spare = moving.equations.spare
+    made: list[Array] = []
+    for part, which in zip(states, (0, 1), strict=True):
+        visible = np.broadcast_to(part.reshape(len(moving.state), -1), (len(moving.state), orbits))
+        own = np.array([[pair[which] for pair in row] for row in numbers]).reshape(len(numbers), orbits)
+        still = np.zeros((work, orbits))
+        rest = np.zeros((spare, orbits))
+        made.append(np.concatenate([visible[:half], still, own, visible[half:], rest, still, own]))
+    return made[0], made[1]
+
+
+def _one(value: Any, name: str) -> Fraction:
+    return exact_number(value, name)
+
+
+def _words(motion: FirstOrderMotion) -> list[str]:
+    """Return what to call what should vanish at the start."""
+    counts: dict[tuple[str, bool], int] = {}
+    said: list[str] = []
+    for residual in motion.residuals:
+        key = (residual.words, residual.left_out)
+        counts[key] = counts.get(key, 0) + 1
+        more = " that depends on others" if residual.left_out else ""
+        said.append(
+            {
+                "position": f"holonomic constraint {counts[key]}{more}",
+                "rate": f"the rate of constraint {counts[key]}{more}",
+            }.get(residual.words, f"balance {counts[key]}{more}")
+        )
+    return said
+
+
+def _check_method(method: Method | None, moving: MovingSystem) -> None:
+    """Refuse methods that are made for Hamiltonians."""
+    if method is None or isinstance(method, Taylor | DOP853 | RK4 | Gauss):
+        return
+    raise ValueError(
+        f"{method} is made for a Hamiltonian and does not apply to a {moving.kind}: Taylor, DOP853, RK4 and Gauss do"
+    )

@@ -1,0 +1,237 @@
+"""Systems of every sort through one door, held against equations written independently and integrated by SciPy."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.integrate import solve_ivp
+
+from canon import (
+    DOP853,
+    RK4,
+    ConstrainedLagrangian,
+    Gauss,
+    Lagrangian,
+    Splitting,
+    VectorField,
+    coordinates,
+    parameters,
+    propagate,
+)
+
+t = sp.Symbol("t", real=True)
+x, y, z, theta, phi = coordinates("x y z theta phi")
+m, l, g, k, c, w = parameters("m l g k c w", positive=True)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A system, its start, and equations ẏ = f(t, y) of the same state, written by hand."""
+
+    system: Any
+    y0: tuple[float, ...]
+    rates: Any
+    values: dict[Any, float] = field(default_factory=dict)
+    span: tuple[float, float] = (0.0, 5.0)
+    energy: bool = True
+
+
+CASES = {
+    "a damped driven pendulum": Case(
+        Lagrangian(
+            m * l**2 * theta.dot**2 / 2 + m * g * l * sp.cos(theta),
+            [theta],
+            forces=[-c * theta.dot + sp.cos(w * t)],
+        ),
+        (0.5, -0.2),
+        lambda t, y: [y[1], (-2 * 9.8 * 1.5 * np.sin(y[0]) - 0.4 * y[1] + np.cos(2 * t)) / 4.5],
+        {m: 2, l: 1.5, g: 9.8, c: 0.4, w: 2},
+    ),
+    "Lorenz's equations": Case(
+        VectorField((10 * (y - x), x * (28 - z) - y, x * y - sp.Rational(8, 3) * z), (x, y, z)),
+        (1.0, 1.0, 1.0),
+        lambda t, y: [10 * (y[1] - y[0]), y[0] * (28 - y[2]) - y[1], y[0] * y[1] - 8 / 3 * y[2]],
+        span=(0.0, 2.0),
+        energy=False,
+    ),
+    "a pendulum in Cartesian coordinates": Case(
+        ConstrainedLagrangian(
+            Lagrangian(m * (x.dot**2 + y.dot**2) / 2 - m * g * y, [x, y]), [x**2 + y**2 - l**2]
+        ),
+        (0.6, -0.8, 0.8, 0.6),
+        lambda t, s: [
+            s[2],
+            s[3],
+            -s[0] * (s[2] ** 2 + s[3] ** 2 - 9.8 * s[1]),
+            -9.8 - s[1] * (s[2] ** 2 + s[3] ** 2 - 9.8 * s[1]),
+        ],
+        {m: 2, l: 1, g: 9.8},
+    ),
+    "Chaplygin's sleigh with its centre at the blade": Case(
+        ConstrainedLagrangian(
+            Lagrangian(m * (x.dot**2 + y.dot**2) / 2 + k * theta.dot**2 / 2, [x, y, theta]),
+            nonholonomic=[x.dot * sp.sin(theta) - y.dot * sp.cos(theta)],
+        ),
+        (0.0, 0.0, 0.3, 2 * np.cos(0.3), 2 * np.sin(0.3), 0.7),
+        lambda t, s: [s[3], s[4], s[5], -1.4 * np.sin(s[2]), 1.4 * np.cos(s[2]), 0.0],
+        {m: 1.3, k: 0.6},
+    ),
+}
+
+
+@functools.cache
+def reference(name: str) -> np.ndarray:
+    case = CASES[name]
+    found = solve_ivp(case.rates, case.span, case.y0, method="DOP853", rtol=1e-12, atol=1e-13)
+    assert found.success
+    return found.y[:, -1]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_taylor_agrees_with_equations_written_by_hand(name: str) -> None:
+    case = CASES[name]
+    motion = propagate(case.system, y0=case.y0, t_span=case.span, parameters=case.values, samples=50)
+    np.testing.assert_allclose(motion.final, reference(name), rtol=1e-9, atol=1e-9)
+    if case.energy:
+        assert abs(motion.energy_error).max() < 1e-13
+    if hasattr(case.system, "holonomic"):
+        assert abs(motion.residuals).max() < 2e-14
+
+
+@pytest.mark.parametrize(("method", "step"), [(DOP853(), None), (RK4(), 1 / 512), (Gauss(4), 1 / 16)])
+@pytest.mark.parametrize("name", list(CASES)[:3])
+def test_every_method_for_any_equations_agrees(name: str, method: Any, step: float | None) -> None:
+    case = CASES[name]
+    motion = propagate(
+        case.system,
+        y0=case.y0,
+        t_span=case.span,
+        parameters=case.values,
+        method=method,
+        step=step,
+        samples=50,
+    )
+    np.testing.assert_allclose(motion.final, reference(name), rtol=3e-6, atol=3e-6)
+
+
+def test_a_wrong_force_is_seen_in_the_motion_and_not_in_the_balance() -> None:
+    case = CASES["a damped driven pendulum"]
+    wrong = Lagrangian(case.system.L, [theta], forces=[-2 * c * theta.dot + sp.cos(w * t)])
+    motion = propagate(wrong, y0=case.y0, t_span=case.span, parameters=case.values)
+    assert abs(motion.final - reference("a damped driven pendulum")).max() > 1e-2
+    assert abs(motion.energy_error).max() < 1e-13
+
+
+def test_energy_balance_shows_the_error_of_a_crude_method() -> None:
+    case = CASES["a damped driven pendulum"]
+    arguments = {"y0": case.y0, "t_span": case.span, "parameters": case.values}
+    crude = propagate(case.system, method=RK4(), step=0.1, **arguments)
+    assert abs(crude.energy_error).max() > 1e-7
+    assert abs(crude.energy_change).max() > 0.1
+
+
+def test_splittings_are_for_hamiltonians() -> None:
+    case = CASES["a damped driven pendulum"]
+    with pytest.raises(ValueError, match=r"verlet is made for a Hamiltonian.*Taylor, DOP853, RK4"):
+        propagate(
+            case.system,
+            y0=case.y0,
+            t_span=case.span,
+            parameters=case.values,
+            method=Splitting("verlet"),
+            step=0.1,
+        )
+
+
+def test_starts_by_name_are_those_in_order() -> None:
+    case = CASES["a damped driven pendulum"]
+    named = propagate(case.system, y0={"theta": 0.5, theta.dot: -0.2}, t_span=(0, 1), parameters=case.values)
+    ordered = propagate(case.system, y0=(0.5, -0.2), t_span=(0, 1), parameters=case.values)
+    np.testing.assert_array_equal(named.y, ordered.y)
+    np.testing.assert_array_equal(named["theta"], named.q[0])
+    np.testing.assert_allclose(named["p_theta"], 4.5 * named.v[0], rtol=1e-15)
+    np.testing.assert_array_equal(named.p[0], named["p_theta"])
+
+
+@pytest.mark.parametrize(
+    ("y0", "error", "sentence"),
+    [
+        ({"theta": 0.5}, KeyError, "no value for theta_dot"),
+        ({"theta": 0.5, "theta_dot": 0, "psi": 1}, KeyError, "psi, which is no variable"),
+        ({"theta": 0.5, theta: 0.5, "theta_dot": 0}, ValueError, "theta twice"),
+        ((0.5, 0.0, 0.0), ValueError, r"shape \(3,\); the state is \(theta, theta_dot\)"),
+        ((0.5, np.nan), ValueError, "not finite"),
+    ],
+)
+def test_starts_that_make_no_sense(y0: Any, error: type[Exception], sentence: str) -> None:
+    case = CASES["a damped driven pendulum"]
+    with pytest.raises(error, match=sentence):
+        propagate(case.system, y0=y0, t_span=case.span, parameters=case.values)
+
+
+@pytest.mark.parametrize(
+    ("changed", "error", "sentence"),
+    [
+        ({"gg": 1.0}, KeyError, "no parameter gg.*is g meant"),
+        ({"g": 1.0}, ValueError, "give g twice"),
+        ({theta: 1.0}, ValueError, "theta moves and is no parameter"),
+        ({c: -0.1}, ValueError, "c was made as a positive symbol"),
+        ({c: "no number"}, ValueError, "no finite real number"),
+    ],
+)
+def test_parameters_that_make_no_sense(changed: Any, error: type[Exception], sentence: str) -> None:
+    case = CASES["a damped driven pendulum"]
+    with pytest.raises(error, match=sentence):
+        propagate(case.system, y0=case.y0, t_span=case.span, parameters=case.values | changed)
+
+
+def test_a_parameter_without_a_number() -> None:
+    case = CASES["a damped driven pendulum"]
+    with pytest.raises(KeyError, match="no number for c, w"):
+        propagate(case.system, y0=case.y0, t_span=case.span, parameters={m: 2, l: 1.5, g: 9.8})
+
+
+@pytest.mark.parametrize(
+    ("y0", "sentence"),
+    [
+        ((0.6, -0.7, 0.8, 0.6), "holonomic constraint 1 is -0.15"),
+        ((0.6, -0.8, 0.8, 0.5), "rate of constraint 1 is 0.16"),
+    ],
+)
+def test_starts_off_the_constraints_are_refused(y0: Any, sentence: str) -> None:
+    case = CASES["a pendulum in Cartesian coordinates"]
+    with pytest.raises(ValueError, match=sentence):
+        propagate(case.system, y0=y0, t_span=case.span, parameters=case.values)
+
+
+def test_redundant_constraints_move_as_without_them() -> None:
+    case = CASES["a pendulum in Cartesian coordinates"]
+    twice = ConstrainedLagrangian(case.system.lagrangian, [*case.system.holonomic, 3 * (x**2 + y**2 - l**2)])
+    given = {"y0": case.y0, "t_span": case.span, "parameters": case.values}
+    once, both = propagate(case.system, **given), propagate(twice, **given)
+    np.testing.assert_allclose(both.y, once.y, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(both.reactions, once.reactions, rtol=1e-10, atol=1e-10)
+    assert not both.multipliers[1].any()
+
+
+def test_the_tension_of_a_pendulum() -> None:
+    case = CASES["a pendulum in Cartesian coordinates"]
+    motion = propagate(case.system, y0=case.y0, t_span=case.span, parameters=case.values)
+    pull = (
+        -2 * (motion["x_dot"] ** 2 + motion["y_dot"] ** 2 - 9.8 * motion["y"]) / 2
+    )  # m (v² − g y)/l², f = r² − l²
+    np.testing.assert_allclose(motion.multipliers[0], pull, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(motion["lambda_1"], pull, rtol=1e-12, atol=1e-12)
+
+
+def test_no_energy_is_known_of_a_vector_field() -> None:
+    case = CASES["Lorenz's equations"]
+    motion = propagate(case.system, y0=case.y0, t_span=(0, 1))
+    with pytest.raises(AttributeError, match="no energy is known"):
+        _ = motion.energy
+    assert motion.error_estimate().relative[-1] < 1e-12
