@@ -193,7 +193,8 @@ class Trajectory:
         --------
         >>> from canon import Lagrangian, coordinates, propagate
         >>> (x,) = coordinates("x")
-        >>> motion = propagate(Lagrangian(x.dot**2 / 2 - x**2 / 2, [x]), {"x": 1, "x_dot": 0}, (0, 1), samples=2)
+        >>> spring, start = Lagrangian(x.dot**2 / 2 - x**2 / 2, [x]), {"x": 1, "x_dot": 0}
+        >>> motion = propagate(spring, y0=start, t_span=(0, 1), samples=2)
         >>> motion["x"].round(6), motion[x**2 + x.dot**2].round(6)
         (array([1.      , 0.877583, 0.540302]), array([1., 1., 1.]))
         """
