@@ -140,7 +140,7 @@ class ErrorEstimate:
         if np.isfinite(self.condition).any():
             said.append(f"small changes grow up to {np.nanmax(self.condition):.1e}-fold")
         if (tau := self.lyapunov_time) is not None:
-            said.append(f"e-fold in {tau:.3g} units of time (chaotic)")
+            said.append(f"e-fold in {tau:.3g} units of time (unstable)")
         if (until := self.meaningful_until) is not None:
             said.append(f"after t = {until:.6g} this single trajectory means nothing")
         return [*said, f"by {self.companion}"]

@@ -240,7 +240,7 @@ def _name(row: DriftRow) -> str:
     found = row.drift
     if found is None:
         return str(row.method)
-    size = f" {found.walk:.0e}" if found.verdict is Growth.ROUND_OFF else ""
+    size = f" {found.walk:.0e}" if found.verdict in (Growth.ROUND_OFF, Growth.WANDERING) else ""
     return f"{row.method}: {found.verdict.value}{size}"
 
 

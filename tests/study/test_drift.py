@@ -33,7 +33,7 @@ def test_bounded_series_are_called_bounded(name):
 
 @pytest.mark.parametrize("name", series.ROUND_OFF)
 def test_walks_are_called_round_off(name):
-    found = judged(series.ROUND_OFF[name], 200, seed=12)
+    found = judged(series.ROUND_OFF[name], 200, seed=12, roundoff=1e-13)
     counts = verdicts(found)
     assert counts[Growth.SECULAR] + counts[Growth.DIVERGED] <= 7
     assert counts[Growth.ROUND_OFF] >= 176
@@ -91,11 +91,21 @@ def test_a_slow_oscillation_is_not_called_round_off_or_bounded(turns):
     assert "slow oscillation" in found.reason
 
 
-def test_a_walk_far_beyond_round_off_is_undecided():
+@pytest.mark.parametrize("size", [1e-15, 1e-8, 0.3])
+def test_a_series_alone_does_not_tell_rounding_from_truncation(size):
+    """A walk of any size is a walk; what makes it walk is known where the steps and the precision are."""
+    error = size * series.walk(np.random.default_rng(15))
+    found = drift(TIMES, error, resolution=1e-3 * size)
+    assert found.verdict is Growth.WANDERING
+    assert "drift(motion)" in found.reason
+    assert found.cause == ""
+    assert drift(TIMES, error, roundoff=size, resolution=1e-3 * size).verdict is Growth.ROUND_OFF
+
+
+def test_a_walk_far_beyond_round_off_is_not_round_off():
     error = 1e-9 * series.walk(np.random.default_rng(15))
-    assert drift(TIMES, error).verdict is Growth.ROUND_OFF
     found = drift(TIMES, error, roundoff=1e-13)
-    assert found.verdict is Growth.UNDECIDED
+    assert found.verdict is Growth.WANDERING
     assert "far beyond the 1e-13" in found.reason
 
 
@@ -141,8 +151,9 @@ def test_a_walk_that_round_off_explains_is_round_off_and_a_larger_one_is_not():
     def verdicts(roundoff):
         return [drift(TIMES, error, roundoff=roundoff).verdict for error in walks]
 
-    unknown, known = verdicts(None).count(Growth.ROUND_OFF), verdicts(1e-13).count(Growth.ROUND_OFF)
+    unknown, known = verdicts(None).count(Growth.WANDERING), verdicts(1e-13).count(Growth.ROUND_OFF)
     assert known >= max(unknown, 57)
+    assert Growth.ROUND_OFF not in verdicts(None)
     assert Growth.ROUND_OFF not in verdicts(1e-16)
 
 
@@ -198,3 +209,27 @@ def test_what_slows_down_beneath_an_oscillation_is_undecided():
     assert found.verdict is Growth.UNDECIDED
     assert "slows down" in found.reason
     assert drift(TIMES, 1e-5 * arc + 1e-6 * swing).verdict is Growth.SECULAR
+
+
+QUADRUPLING = {
+    "steadily": 1.0 + 3.0 * series.SHARE,
+    "exponentially": 4.0**series.SHARE,
+    "in the middle": np.where(series.SHARE > 0.5, 4.0, 1.0),
+    "late": np.where(series.SHARE > 0.8, 4.0, 1.0),
+    "at the very end": np.where(series.SHARE > 0.92, 4.0, 1.0),
+    "faster and faster": 1.0 + 3.0 * series.SHARE**8,
+}
+
+
+@pytest.mark.parametrize("turns", [12.0, 40.0, 331.7, 1500.0])
+@pytest.mark.parametrize("how", QUADRUPLING)
+def test_an_oscillation_that_quadruples_is_not_bounded(how, turns):
+    swing = 1e-6 * np.sin(2.0 * np.pi * turns * series.SHARE + 0.3)
+    assert drift(TIMES, QUADRUPLING[how] * swing).verdict in (Growth.SECULAR, Growth.UNDECIDED)
+    assert drift(TIMES, swing).verdict is Growth.BOUNDED
+
+
+def test_a_modulation_that_comes_back_twice_is_bounded():
+    modulation = 1.0 + 1.5 * (1.0 - np.cos(4.0 * np.pi * series.SHARE))
+    found = drift(TIMES, 1e-6 * modulation * np.sin(2.0 * np.pi * 331.7 * series.SHARE))
+    assert found.verdict is Growth.BOUNDED

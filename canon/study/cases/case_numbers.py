@@ -50,9 +50,13 @@ def judged_energy(t: Array, change: Array, energy: float, steps: int, precision:
     }
 
 
-def judged_observable(t: Array, change: Sequence[float], of: Observable, precision: str) -> dict[str, Any]:
+def judged_observable(
+    t: Array, change: Sequence[float], of: Observable, steps: int, precision: str
+) -> dict[str, Any]:
     """Return the same for another observable, without curve and means."""
-    found = drift(t, np.array(change) / of.unit, resolution=unit_round_off(precision))
+    unit = unit_round_off(precision)
+    roundoff = unit * math.sqrt(steps) if of.relative else None
+    found = drift(t, np.array(change) / of.unit, roundoff=roundoff, resolution=unit)
     return {**_numbers(found), "relative": of.relative}
 
 

@@ -295,7 +295,8 @@ def _numbers(case: Case, point: Checkpoint) -> dict[str, Any]:
     t, timed = np.array(point.t), _with_time(case)
     energy = judged_energy(t, np.array(point.change), point.energy, point.steps, point.precision)
     others = {
-        of.name: judged_observable(t, point.changes[of.name], of, point.precision) for of in followed(case)
+        of.name: judged_observable(t, point.changes[of.name], of, point.steps, point.precision)
+        for of in followed(case)
     }
     return {
         **energy,

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
+from canon.flow.trajectory import Trajectory
 from canon.study.drift.block_means import WIDTH, Blocks, block_means
 from canon.study.drift.drift_verdict import Drift, Growth
+from canon.study.drift.error_series import ENERGY, ErrorSeries, error_series
 from canon.study.drift.growth import (
     Exponent,
     RandomWalk,
@@ -62,9 +65,30 @@ Less is what slow changes of an orbit bring about, such as those of Jupiter's ec
 BEYOND_ROUND_OFF = 50.0
 """How far a walk may exceed the expected round-off and still be called round-off."""
 
+BEYOND_BIAS = 10.0
+"""How far an error may exceed what rounding always to one side does, and still be rounding's."""
+
+COARSE_WINDOWS = 8
+"""Windows in which the oscillation's size at the end is compared with that in the first half."""
+
+LARGER_AT_THE_END = ((2, 1.5), (4, 1.75))
+"""How many times larger than ever in the first half, and in the first quarter, the oscillation may be at the end of a
+bounded series."""
+
 UNIT_ROUND_OFF = 2.0**-53
 
 
+@overload
+def drift(
+    t: Trajectory,
+    error: None = None,
+    *,
+    observable: str = ENERGY,
+    orbit: int | None = None,
+    diverged: float = 1.0,
+    false_alarm: float = 0.01,
+) -> Drift: ...
+@overload
 def drift(
     t: ArrayLike,
     error: ArrayLike,
@@ -73,8 +97,23 @@ def drift(
     resolution: float = UNIT_ROUND_OFF,
     diverged: float = 1.0,
     false_alarm: float = 0.01,
+) -> Drift: ...
+def drift(
+    t: Trajectory | ArrayLike,
+    error: ArrayLike | None = None,
+    *,
+    observable: str = ENERGY,
+    orbit: int | None = None,
+    roundoff: float | None = None,
+    resolution: float = UNIT_ROUND_OFF,
+    diverged: float = 1.0,
+    false_alarm: float = 0.01,
 ) -> Drift:
     """Judge how the relative error of a conserved quantity grows along a run.
+
+    ``drift(motion)`` knows the steps and the precision, and with them how much rounding can do: it tells truncation
+    from round-off. ``drift(t, error)`` knows the numbers only; an error that walks at random is then called wandering,
+    whatever makes it walk.
 
     The run is cut into blocks, and the increments of weighted block means (and of the size of the
     oscillation in each block) are tested for a slope and for a random walk. The size of the oscillation
@@ -85,15 +124,19 @@ def drift(
     Parameters
     ----------
     t
-        Times, strictly increasing, shape (times,), evenly spread (jitter welcome: samples in step with an
-        oscillation see it as a slow one).
+        A motion that :func:`canon.flow.propagate.propagate` returned; or times, strictly increasing, shape (times,),
+        evenly spread (jitter welcome: samples in step with an oscillation see it as a slow one).
     error
-        Error with its sign, such as (E(t) − E₀)/abs(E₀), shape (times,).
+        Error with its sign, such as (E(t) − E₀)/abs(E₀), shape (times,); a motion brings its own.
+    observable
+        Of a motion: ``"energy"``, or an observable that it followed.
+    orbit
+        Of a motion with many orbits: which one.
     roundoff
         Random walk expected of round-off over the whole run, such as u√n after n steps; a walk more than
-        50 times larger is not called round-off.
+        50 times larger is not called round-off. A motion brings its own.
     resolution
-        Error that the arithmetic can't tell from none.
+        Error that the arithmetic can't tell from none. A motion brings its own.
     diverged
         Error from which the quantity has lost its meaning.
     false_alarm
@@ -103,7 +146,7 @@ def drift(
     ------
     ValueError
         Where the series is too short, not in order of time, or holds NaN or infinity: a failed run is
-        never data.
+        never data. Where H of a motion depends on t, so that its change is no error.
 
     Examples
     --------
@@ -115,8 +158,37 @@ def drift(
     >>> found = drift(t, oscillation + 1e-10 * t)
     >>> found.verdict, round(found.slope * 1e10, 3), round(found.exponent, 1)
     (<Growth.SECULAR: 'secular'>, 1.0, 1.0)
+
+    A motion knows more:
+
+    >>> from canon import Hamiltonian, Splitting, coordinates, propagate
+    >>> (x,) = coordinates("x")
+    >>> quartic = Hamiltonian(x.momentum**2 / 2 + x**4 / 4, [x], [x.momentum])
+    >>> verlet = {"method": Splitting("verlet"), "step": 0.05}
+    >>> motion = propagate(quartic, t_span=(0, 1000), y0=[1.0, 0.0], samples=4096, **verlet)
+    >>> drift(motion).verdict.value, drift(motion).cause
+    ('bounded', 'truncation')
     """
-    times, values = _checked(t, error)
+    if isinstance(t, Trajectory):
+        series = error_series(t, observable, orbit)
+        times, values = _checked(series.t, series.error)
+        found = _drift(times, values, series.walk, series.resolution, diverged, false_alarm)
+        return _of_motion(found, series)
+    if error is None:
+        raise ValueError(
+            "drift(motion) takes a motion that propagate returned; of a series give times and errors"
+        )
+    return _drift(*_checked(t, error), roundoff, resolution, diverged, false_alarm)
+
+
+def _drift(
+    times: NDArray[np.float64],
+    values: NDArray[np.float64],
+    roundoff: float | None,
+    resolution: float,
+    diverged: float,
+    false_alarm: float,
+) -> Drift:
     span = float(times[-1] - times[0])
     bound = float(np.abs(values).max())
     blocks = block_means(times, values, WINDOWS)
@@ -138,7 +210,7 @@ def drift(
         verdict, exponent, reason = _wandering(times, values, blocks, walk, roundoff)
         walk = RandomWalk(walk.evidence, 0.0) if verdict is Growth.BOUNDED else walk
     else:
-        verdict, exponent, reason = _bounded(blocks)
+        verdict, exponent, reason = _bounded(times, values, blocks)
     return Drift(
         bound=bound,
         slope=slope.value / blocks.duration,
@@ -250,18 +322,61 @@ def _wandering(
         if like_a_walk:
             return Growth.ROUND_OFF, exponent, f"{found}, as round-off of {roundoff:.2g} does"
         found += ", no more than round-off but not as t^½"
+    elif roundoff is not None and like_a_walk:
+        found += f" as a random walk does, far beyond the {roundoff:.2g} of round-off"
+        return Growth.WANDERING, exponent, f"{found}: truncation, whose bound a longer run would show"
     elif roundoff is not None:
         found += f", far beyond the {roundoff:.2g} of round-off"
     elif back.evidence > PERHAPS_RETURNS:
         found += ", and perhaps returns"
     elif like_a_walk:
-        return Growth.ROUND_OFF, exponent, f"{found}, as a random walk does"
+        return (
+            Growth.WANDERING,
+            exponent,
+            f"{found}, as a random walk does: of round-off or of truncation, which drift(motion) or roundoff= tells",
+        )
     else:
         found += ", without a direction but not as t^½"
     return Growth.UNDECIDED, exponent, f"{found}: {UNCLEAR}"
 
 
-def _bounded(blocks: Blocks) -> tuple[Growth, Exponent, str]:
+def _bounded(
+    times: NDArray[np.float64], values: NDArray[np.float64], blocks: Blocks
+) -> tuple[Growth, Exponent, str]:
     found = power_of_wandering(blocks.mean, beside_scatter=False)
     exponent = Exponent(max(0.0, found.value), max(0.0, found.low), max(0.0, found.high))
+    for windows in (blocks, block_means(times, values, COARSE_WINDOWS)):
+        for part, most in LARGER_AT_THE_END:
+            if (ratio := _end_over_start(windows, part)) > most:
+                where = "half" if part == 2 else "quarter"
+                reason = (
+                    f"the oscillation at the end is {ratio:.2g} times as large as ever in the first {where}"
+                )
+                return Growth.UNDECIDED, exponent, f"{reason}: it widens, or is slowly modulated"
     return Growth.BOUNDED, exponent, "no growth above the detection limit"
+
+
+def _end_over_start(blocks: Blocks, part: int) -> float:
+    """Return how many times larger the oscillation is in the last tenth than ever in the first part."""
+    size = blocks.amplitude
+    early, late = size[: size.size // part].max(), np.median(size[-max(1, size.size // 10) :])
+    return float(late / early) if early > 0.0 else 1.0
+
+
+def _of_motion(found: Drift, series: ErrorSeries) -> Drift:
+    """Return what was found of a motion's error with what it comes from.
+
+    Rounding at random walks like √n, rounding always to one side drifts like n; what is beyond both is truncation. A
+    drift between the two may be either.
+    """
+    cause, reason = "", found.reason
+    reach = BEYOND_ROUND_OFF * series.walk
+    if found.verdict is Growth.SECULAR and not series.truncated:
+        reach = max(reach, BEYOND_BIAS * series.bias)
+    if found.verdict is Growth.ROUND_OFF:
+        cause = "round-off"
+    elif series.largest > reach:
+        cause = "truncation"
+    elif found.verdict is Growth.SECULAR:
+        reason += f"; rounding to one side may do {series.bias:.2g}: a run with half the step tells it from truncation"
+    return replace(found, bound=series.largest, cause=cause, reason=reason, way=series.way)

@@ -32,7 +32,14 @@ __all__ = ["DriftRow", "Run", "drift_row", "drift_rows"]
 TIMED_STEPS = 20_000
 """Steps that are timed without samples."""
 
-SEVERITY = (Growth.BOUNDED, Growth.ROUND_OFF, Growth.UNDECIDED, Growth.SECULAR, Growth.DIVERGED)
+SEVERITY = (
+    Growth.BOUNDED,
+    Growth.ROUND_OFF,
+    Growth.WANDERING,
+    Growth.UNDECIDED,
+    Growth.SECULAR,
+    Growth.DIVERGED,
+)
 
 
 @dataclass(frozen=True)
@@ -188,7 +195,7 @@ def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftR
         seen = found.statistics[observable.name]
         t, error, largest = (t[1:] + t[:-1]) / 2.0, seen.mean / unit, (seen.largest / unit).max(axis=0)
     smallest = unit_round_off(found.precision)
-    roundoff = smallest * math.sqrt(found.steps) if observable.name == ENERGY and relative else None
+    roundoff = smallest * math.sqrt(found.steps) if relative else None
     judged = [
         replace(drift(t, series, roundoff=roundoff, resolution=smallest), bound=float(bound))
         for series, bound in zip(np.atleast_2d(error.T), np.atleast_1d(largest), strict=True)

@@ -21,6 +21,7 @@ __all__ = ["aligned", "drift_table", "error_name"]
 WORDS = {
     Growth.BOUNDED: "bounded",
     Growth.ROUND_OFF: "round-off",
+    Growth.WANDERING: "wandering",
     Growth.SECULAR: "secular",
     Growth.DIVERGED: "diverged",
     Growth.UNDECIDED: "undecided",
@@ -29,9 +30,10 @@ WORDS = {
 MEANING = {
     Growth.BOUNDED: "no growth found; a drift as large as the one named would be found in 95 % of cases",
     Growth.ROUND_OFF: "wanders as a random walk does, in proportion to √t: accumulated rounding",
+    Growth.WANDERING: "wanders as a random walk does, and rounding is not known to explain it",
     Growth.SECULAR: "grows steadily with time",
     Growth.DIVERGED: "the error has blown up",
-    Growth.UNDECIDED: "a slow oscillation, or a drift that a longer run would show",
+    Growth.UNDECIDED: "a slow oscillation or modulation, or a drift that a longer run would show",
 }
 
 
@@ -142,6 +144,8 @@ def _verdict(found: Drift, unit: float) -> str:
         return f"bounded (drift < {found.detection_limit * unit:.0e})"
     if found.verdict is Growth.ROUND_OFF:
         return f"round-off ({found.walk:.0e} in all)"
+    if found.verdict is Growth.WANDERING:
+        return f"wandering ({found.walk:.0e} in all)"
     return WORDS[found.verdict]
 
 

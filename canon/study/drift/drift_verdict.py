@@ -19,6 +19,7 @@ class Growth(enum.Enum):
 
     BOUNDED = "bounded"
     ROUND_OFF = "round-off"
+    WANDERING = "wandering"
     SECULAR = "secular"
     DIVERGED = "diverged"
     UNDECIDED = "undecided"
@@ -44,13 +45,19 @@ class Drift:
     detection_limit
         Size of slope that would have been found with 95 % probability.
     verdict
-        The verdict; BOUNDED means that no growth was found, hence none above the detection limit.
+        The verdict; BOUNDED means that no growth was found, hence none above the detection limit; WANDERING that the
+        error walks at random, and that rounding is not known to explain it.
     walk
         Root-mean-square distance the random part of the error wandered over the run; 0 where none was found.
     span
         Duration of the series.
     reason
         Why the verdict, in words.
+    cause
+        Where the error comes from: ``"truncation"`` of the method's steps, ``"round-off"``, or empty where it is not
+        known. It is known of a motion only, whose steps and precision say how much rounding can do.
+    way
+        Method, step and precision of the motion; empty where only a series was given.
     blocks
         The block means the verdict rests on.
     """
@@ -68,6 +75,8 @@ class Drift:
     span: float
     reason: str
     blocks: Blocks
+    cause: str = ""
+    way: str = ""
 
     def __repr__(self) -> str:
         return f"<Drift: {self.verdict.value}, {self.reason}>"
@@ -83,4 +92,9 @@ class Drift:
             f"  drift            {self.slope:.3g} ± {self.slope_error:.2g} per unit of time\n"
             f"  detection limit  {self.detection_limit:.2g} per unit of time\n"
             f"  growth exponent  {self.exponent:.2f} (95 %: {low:.2f} to {high:.2f})"
+            + (
+                f"\n  comes from       {self.cause or 'truncation or round-off'}: {self.way}"
+                if self.way
+                else ""
+            )
         )

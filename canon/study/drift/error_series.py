@@ -1,0 +1,152 @@
+"""Error series of a motion: times, what should stay constant and does not, and what rounding alone would do to it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.expression.graph.number_systems import FLOAT64
+from canon.flow.method.method import DOP853, Taylor
+from canon.flow.method.number_formats import unit_round_off
+
+if TYPE_CHECKING:
+    from canon.array import Array
+    from canon.flow.trajectory import Trajectory
+
+__all__ = ["ENERGY", "ErrorSeries", "error_series"]
+
+ENERGY = "energy"
+
+FAR_ABOVE = 1e3
+"""A tolerance so many times above the unit of rounding makes truncation the larger error of a step."""
+
+LOOKED_AT = 64
+"""States of a motion at which the size of H's terms is looked at."""
+
+
+@dataclass(frozen=True)
+class ErrorSeries:
+    """The error of what should stay constant along a motion, and what is known of where it comes from.
+
+    Parameters
+    ----------
+    t, error
+        Times since the start, rising, and the error with its sign, shape (times,).
+    largest
+        Largest size of the error met, between samples too where it was followed inside the loop.
+    walk
+        Distance that rounding at random makes it walk in the root mean square: u·√n, with u the unit of rounding and n
+        the number of steps, times the size of the terms in which the quantity is linear, Σ|y ∂I/∂y|.
+    bias
+        Distance that rounding always to one side may take it: u·n times the same.
+    resolution
+        Error that the numbers of the motion can't tell from none.
+    truncated
+        Whether a tolerance far above the unit of rounding was asked for: what is beyond a walk is then truncation.
+    way
+        Method, step or tolerance, and precision, in words.
+    """
+
+    t: Array
+    error: Array
+    largest: float
+    walk: float
+    bias: float
+    resolution: float
+    truncated: bool
+    way: str
+
+
+def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None = None) -> ErrorSeries:
+    """Return the error of the energy or an observable along a motion.
+
+    Parameters
+    ----------
+    motion
+        A motion that :func:`canon.flow.propagate.propagate` returned.
+    observable
+        ``"energy"``, or one of the observables that the motion was asked to follow.
+    orbit
+        Which of many orbits.
+
+    Raises
+    ------
+    ValueError
+        H depends on t, so that its change is no error; there is no such observable; or the motion has many orbits and
+        none is chosen.
+
+    Examples
+    --------
+    >>> from canon import Hamiltonian, Splitting, coordinates, propagate
+    >>> (x,) = coordinates("x")
+    >>> oscillator = Hamiltonian(x.momentum**2 / 2 + x**2 / 2, [x], [x.momentum])
+    >>> verlet = {"method": Splitting("verlet"), "step": 0.1}
+    >>> motion = propagate(oscillator, t_span=(0, 300), y0=[1.0, 0.0], samples=300, **verlet)
+    >>> series = error_series(motion)
+    >>> series.way, bool(series.largest > 1e6 * series.walk)
+    ('verlet, step 0.1, compensated', True)
+    """
+    change, at_start = _followed(motion, observable)
+    many = motion.y.ndim == 3
+    if many and orbit is None:
+        raise ValueError(
+            f"the motion has {motion.y.shape[2]} orbits: say which one to judge, orbit=0 … {motion.y.shape[2] - 1}"
+        )
+    chosen = slice(None) if orbit is None or not many else orbit
+    unit = abs(float(np.atleast_1d(at_start)[orbit or 0])) or 1.0
+    if observable == ENERGY and not motion.relative:
+        unit = 1.0
+    t, error = abs(motion.t - motion.t[0]), change[:, chosen] / unit if many else change / unit
+    largest = float(np.abs(error).max())
+    if observable in motion.statistics:
+        seen = motion.statistics[observable]
+        mean, size = (part[:, chosen] if many else part for part in (seen.mean, seen.largest))
+        t, error, largest = (t[1:] + t[:-1]) / 2.0, mean / unit, float(size.max()) / unit
+    u = unit_round_off(motion.precision)
+    terms = _sizes_of_terms(motion, orbit or 0) / unit if observable == ENERGY else np.zeros(1)
+    walk = u * math.sqrt(motion.steps) * max(1.0, float(np.sqrt(np.mean(terms**2))))
+    bias = u * motion.steps * max(1.0, float(np.mean(terms)))
+    tolerance = motion.method.tolerance if isinstance(motion.method, Taylor | DOP853) else None
+    truncated = tolerance is not None and tolerance > FAR_ABOVE * u
+    return ErrorSeries(t, error, largest, walk, bias, u, truncated, _way(motion))
+
+
+def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
+    """Return the changes of a quantity since the start, and its value there."""
+    if observable == ENERGY:
+        if not motion.autonomous:
+            raise ValueError(
+                "H depends on t, so its change is no error; drift_study(system, …) follows the energy less the work "
+                "done from outside, or name an observable that should stay constant"
+            )
+        return motion.energy_change, motion.energy[0]
+    if observable not in motion.changes:
+        known = ", ".join((ENERGY, *motion.changes))
+        raise ValueError(
+            f"the motion has not followed {observable!r}, only {known}: propagate(…, observables={{{observable!r}: …}})"
+        )
+    return motion.changes[observable], motion.observables[observable][0]
+
+
+def _sizes_of_terms(motion: Trajectory, orbit: int) -> Array:
+    """Return Σ|y ∂H/∂y| at some states: what rounding each y by a part u of it does to H, in parts of u."""
+    if motion.task is None:
+        return np.zeros(1)
+    system = motion.task.system
+    nodes = (*system.force, *system.velocity)
+    places = np.unique(np.linspace(0, len(motion.t) - 1, LOOKED_AT).astype(int))
+    states = motion.y[:, places, orbit] if motion.y.ndim == 3 else motion.y[:, places]
+    if len(states) != len(system.inputs) - 1:
+        return np.zeros(1)  # parameters vary from orbit to orbit, and are no part of y
+    point = dict(zip(system.inputs, (*states, motion.t[places]), strict=True))
+    slopes = system.graph.evaluate(nodes, point, FLOAT64)
+    terms = [np.abs(y * np.asarray(slope)) for y, slope in zip(states, slopes, strict=True)]
+    return np.sum(terms, axis=0)
+
+
+def _way(motion: Trajectory) -> str:
+    step = "" if motion.step is None else f", step {motion.step:.4g}"
+    return f"{motion.method}{step}, {motion.precision}"
