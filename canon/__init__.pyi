@@ -21,11 +21,11 @@ from .flow.geometry.flow_jacobian import symplecticity_defect as symplecticity_d
 from .flow.geometry.numeric_evidence import brackets_at_points as brackets_at_points
 from .flow.geometry.numeric_evidence import integral_drift as integral_drift
 from .flow.geometry.numeric_evidence import symplectic_flow as symplectic_flow
-from .flow.method.method import DOP853 as DOP853
+from .flow.method.adaptive_methods import DOP853 as DOP853
+from .flow.method.adaptive_methods import Taylor as Taylor
 from .flow.method.method import RK4 as RK4
 from .flow.method.method import Gauss as Gauss
 from .flow.method.method import Splitting as Splitting
-from .flow.method.method import Taylor as Taylor
 from .flow.method.method import TimeTransformed as TimeTransformed
 from .flow.method.solvable_splitting import SABA as SABA
 from .flow.method.solvable_splitting import SBAB as SBAB

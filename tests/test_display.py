@@ -72,7 +72,7 @@ def test_a_line_says_what_it_is(shown):
     assert repr(shown["witness"]) == "<Witness: symplectic flow: speaks for it>"
     assert repr(shown["result"]).startswith("<Result: kepler; RK4, h = 0.1: ")
     assert "energy to " in repr(shown["work"].rows[0])
-    assert repr(shown["splitting"]) == "<SolvableSplitting: wisdom-holman, corrector 11>"
+    assert repr(shown["splitting"]) == "WisdomHolman(corrector=11)"
     assert repr(shown["drift"]).startswith(f"<Drift: {shown['drift'].verdict.value}, ")
 
 

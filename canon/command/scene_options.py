@@ -16,7 +16,6 @@ __all__ = [
     "add_duration",
     "add_scene",
     "list_scenes",
-    "method_named",
     "methods_given",
     "scene_given",
     "setting",
@@ -54,26 +53,9 @@ def scene_given(arguments: argparse.Namespace) -> Scene:
 
 def methods_given(arguments: argparse.Namespace) -> Sequence[Method] | None:
     """Return the methods that were named; none of them means those that the command takes by itself."""
+    from canon.flow.method.method_text import method_named
+
     return [method_named(name) for name in arguments.method] if arguments.method else None
-
-
-def method_named(name: str) -> Method:
-    """Return the method of that name on the command line.
-
-    Raises
-    ------
-    ValueError
-        Where there is no such method.
-
-    Examples
-    --------
-    >>> method_named("kahan-li-8"), method_named("rk4"), method_named("gauss-6")
-    (Splitting('kahan-li-8'), RK4(), Gauss(stages=6))
-    """
-    from canon.study.cases.case import method_from
-
-    kind, _, stages = name.partition("-")
-    return method_from({"gauss": int(stages)} if kind.lower() == "gauss" and stages.isdecimal() else name)
 
 
 def setting(text: str) -> tuple[str, float]:

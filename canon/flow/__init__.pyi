@@ -7,12 +7,12 @@ from .geometry.numeric_evidence import Witness as Witness
 from .geometry.numeric_evidence import brackets_at_points as brackets_at_points
 from .geometry.numeric_evidence import integral_drift as integral_drift
 from .geometry.numeric_evidence import symplectic_flow as symplectic_flow
-from .method.method import DOP853 as DOP853
+from .method.adaptive_methods import DOP853 as DOP853
+from .method.adaptive_methods import Taylor as Taylor
 from .method.method import RK4 as RK4
 from .method.method import Gauss as Gauss
 from .method.method import Method as Method
 from .method.method import Splitting as Splitting
-from .method.method import Taylor as Taylor
 from .method.method import TimeTransformed as TimeTransformed
 from .method.solvable_splitting import SABA as SABA
 from .method.solvable_splitting import SBAB as SBAB

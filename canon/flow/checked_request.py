@@ -14,7 +14,9 @@ from sympy import Symbol
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE
 from canon.expression.symbols.user_input import counted
 from canon.flow.fixed_step.fixed_steps import planned
-from canon.flow.method.method import DOP853, FixedStep, Method, Taylor, TimeTransformed
+from canon.flow.method.engine import FIXED_STEPS
+from canon.flow.method.method import TimeTransformed
+from canon.flow.method.method_text import MethodGiven, method_of
 from canon.flow.run.event import Event, prepared_events
 from canon.flow.run.range_check import check_magnitudes, is_narrow
 from canon.flow.run.sampling_plan import adaptive_plan, fictitious_plan, sampling
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from canon.array import Array
+    from canon.flow.method.method import Method
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
@@ -44,7 +47,7 @@ def task_of(
     y0: Sequence[Any] | npt.NDArray[Any],
     t_span: tuple[float, float],
     *,
-    method: Method | None = None,
+    method: MethodGiven | None = None,
     step: float | None = None,
     tolerance: float | None = None,
     precision: str | int | None = None,
@@ -79,7 +82,7 @@ def task_with(
     t_span: tuple[float, float],
     *,
     single: bool,
-    method: Method | None,
+    method: MethodGiven | None,
     step: float | None,
     tolerance: float | None,
     precision: str | int | None,
@@ -92,7 +95,7 @@ def task_with(
     in_fictitious_time: Callable[[TimeTransformed], ExtendedSystem] | None = None,
 ) -> Task:
     """Return the task of equations with starting states, each of shape (2n, orbits), all arguments checked."""
-    method = _with_tolerance(Taylor() if method is None else method, tolerance)
+    method = _with_tolerance(method_of(method), tolerance)
     extra = dict(observables or {})
     if "energy" in extra:
         raise ValueError(
@@ -104,7 +107,7 @@ def task_with(
     _check_start(system, given, start, precision)
     check_magnitudes(system, given[0], start, method, precision)
     frame = None
-    if isinstance(method, FixedStep):
+    if method.engine is FIXED_STEPS:
         plan = planned(wanted, step, method)
     elif isinstance(method, TimeTransformed):
         _check_transformed(method, step, cadence)
@@ -138,9 +141,9 @@ def task_with(
 def _with_tolerance(method: Method, tolerance: float | None) -> Method:
     if tolerance is None:
         return method
-    if isinstance(method, Taylor | DOP853):
-        return replace(method, tolerance=tolerance)
-    raise ValueError(f"{method} takes fixed steps: give step=, not tolerance=")
+    if method.engine.takes_step:
+        raise ValueError(f"{method} takes fixed steps: give step=, not tolerance=")
+    return replace(method, tolerance=tolerance)
 
 
 def hamilton_equations_of(
@@ -270,22 +273,25 @@ def _check_transformed(method: TimeTransformed, step: float | None, cadence: int
 
 
 def _check_adaptive(
-    method: Taylor | DOP853, step: float | None, cadence: int | None, precision: str | int | None
+    method: Method, step: float | None, cadence: int | None, precision: str | int | None
 ) -> None:
     if step is not None:
         raise ValueError(f"{method} chooses its own steps: leave step out and set its tolerance")
     if cadence is not None:
         raise ValueError(f"{method} chooses its own steps: cadence counts those of fixed-step methods")
-    if isinstance(method, DOP853) and precision not in (None, "double"):
-        raise ValueError(f"precision={precision!r}: {method} runs in double precision")
+    engine = method.engine
+    if not (precision is None or precision in engine.precisions or engine.takes_digits):
+        raise ValueError(
+            f"precision={precision!r}: {method} runs in {' or '.join(engine.precisions)} precision"
+        )
 
 
 def _check_events(task: Task) -> None:
-    if task.dense and not isinstance(task.method, Taylor):
+    if task.dense and not task.method.engine.keeps_polynomials:
         raise ValueError(f"dense=True: {task.method} has no polynomials to keep; Taylor() has")
     if not task.events:
         return
-    if isinstance(task.method, DOP853):
+    if not task.method.engine.meets_events:
         raise ValueError(f"events: {task.method} does not meet any; Taylor() and methods of fixed steps do")
     if task.states[0].shape[1] > 1:
         raise ValueError("events are met at times of each orbit's own: propagate the orbits one by one")

@@ -19,9 +19,8 @@ import numpy as np
 from canon.display import preformatted
 from canon.expression.graph.number_systems import LONGDOUBLE
 from canon.flow.integrate import integrate
-from canon.flow.method.method import Gauss, Taylor
+from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.number_formats import FIXED
-from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.observables_along import jumped
 from canon.flow.run.sampling_plan import Plan
@@ -269,7 +268,7 @@ def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
         t = plan.instants if samples.crossings and len(samples.t) < len(plan.instants) else samples.t
         ends = sorted({round(k * (len(t) - 1) / _SLICES) for k in range(1, _SLICES + 1)} - {0})
         plan = Plan(plan.start, t, ends=tuple(ends))
-        given = str(task.precision or "double") if isinstance(task.method, Taylor) else "double"
+        given = "double" if task.method.engine.takes_step else task.precision_name
         for precision, bits in _wider_taylor(given):
             better = replace(task, method=Taylor(), plan=plan, precision=precision)
             yield _CompanionTask(
@@ -294,13 +293,11 @@ def _wider_taylor(given: str) -> list[tuple[str | int, int]]:
 def _wider(task: Task) -> list[str]:
     """Return the precisions of the companions of a method of fixed steps."""
     given = FIXED[task.precision_name]
-    if isinstance(task.method, SolvableSplitting) or getattr(task.method, "parts", None) is not None:
+    if task.method.solvable is not None:
         return [given.name]
     # Extended numbers once more, as they may hold numbers that double-double does not.
     ready = EXTENDED.available() and given.number.mantissa <= EXTENDED.mantissa
-    return (
-        ["extended", "double-double"] if ready and not isinstance(task.method, Gauss) else ["double-double"]
-    )
+    return ["extended", "double-double"] if ready and task.method.family != "gauss" else ["double-double"]
 
 
 def _companions(better: _CompanionTask, samples: Samples, scale: Array) -> tuple[Samples | None, int]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from canon.flow.adaptive.dop853 import dop853_motion
 from canon.flow.adaptive.taylor_motion import taylor_motion
 from canon.flow.fixed_step.compiled_loop import compiled_loop
 from canon.flow.fixed_step.fixed_steps import fixed_steps
 from canon.flow.fixed_step.statistics import loop_observables
-from canon.flow.method.method import DOP853, FixedStep, Taylor, TimeTransformed
+from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY, Engine
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.event import prepared_events
 from canon.flow.run.samples import joined
@@ -18,6 +18,8 @@ from canon.flow.transformed.transformed_motion import transformed_motion
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from canon.array import Array
+    from canon.flow.method.method import DOP853, FixedStep, Taylor, TimeTransformed
     from canon.flow.run.samples import Samples
     from canon.flow.task import Task
 
@@ -38,31 +40,58 @@ def integrate(
     NonFiniteStateError
         The motion can't be continued.
     """
-    if isinstance(task.method, TimeTransformed):
-        frame = task.fictitious
-        assert frame is not None
-        return transformed_motion(
-            frame, task.method, task.precision, task.states, task.plan, task.events, progress, so_far
-        )
-    return joined(so_far, _more(task, progress, so_far))
+    return _ENGINES[task.method.engine](task, task.method, progress, so_far)
 
 
-def _more(task: Task, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
-    """Return the part of the motion that was not done before."""
-    states = task.states if so_far is None else (so_far.y[:, -1], so_far.carried[:, -1])
-    events, orbits = prepared_events(task.system, task.events), states[0].shape[1]
-    if isinstance(task.method, FixedStep):
-        loop = compiled_loop(task.system, task.method, fixed_precision(task.precision), orbits)
-        watch = None
-        if task.cadence is not None:
-            watch = loop_observables(
-                task.system, task.nodes, loop, task.states, task.plan.start, task.cadence
-            )
-        return fixed_steps(task.system, loop, task.method, states, task.plan, progress, watch, so_far, events)
-    if isinstance(task.method, DOP853):
-        return dop853_motion(task.system, states[0], task.plan, task.method, progress, so_far)
-    assert isinstance(task.method, Taylor)
-    precision, dense = task.precision or "double", task.dense
-    return taylor_motion(
-        task.system, states, task.plan, task.method, precision, progress, so_far, events, dense=dense
+def _in_fictitious_time(
+    task: Task, method: TimeTransformed, progress: Callable[[float], None], so_far: Samples | None
+) -> Samples:
+    frame = task.fictitious
+    assert frame is not None
+    return transformed_motion(
+        frame, method, task.precision, task.states, task.plan, task.events, progress, so_far
     )
+
+
+def _in_fixed_steps(
+    task: Task, method: FixedStep, progress: Callable[[float], None], so_far: Samples | None
+) -> Samples:
+    states, events = _states(task, so_far), prepared_events(task.system, task.events)
+    loop = compiled_loop(task.system, method, fixed_precision(task.precision), states[0].shape[1])
+    watch = None
+    if task.cadence is not None:
+        watch = loop_observables(task.system, task.nodes, loop, task.states, task.plan.start, task.cadence)
+    made = fixed_steps(task.system, loop, method, states, task.plan, progress, watch, so_far, events)
+    return joined(so_far, made)
+
+
+def _by_heyoka(
+    task: Task, method: Taylor, progress: Callable[[float], None], so_far: Samples | None
+) -> Samples:
+    states, events = _states(task, so_far), prepared_events(task.system, task.events)
+    precision, dense = task.precision or method.engine.usual_precision, task.dense
+    made = taylor_motion(
+        task.system, states, task.plan, method, precision, progress, so_far, events, dense=dense
+    )
+    return joined(so_far, made)
+
+
+def _by_scipy(
+    task: Task, method: DOP853, progress: Callable[[float], None], so_far: Samples | None
+) -> Samples:
+    states, _ = _states(task, so_far)
+    return joined(so_far, dop853_motion(task.system, states, task.plan, method, progress, so_far))
+
+
+_ENGINES: dict[Engine, Callable[[Task, Any, Callable[[float], None], Samples | None], Samples]] = {
+    FICTITIOUS_TIME: _in_fictitious_time,
+    FIXED_STEPS: _in_fixed_steps,
+    HEYOKA: _by_heyoka,
+    SCIPY: _by_scipy,
+}
+"""What integrates with the methods of each engine; all of the motion comes back, what was done before included."""
+
+
+def _states(task: Task, so_far: Samples | None) -> tuple[Array, Array]:
+    """Return the states to go on from."""
+    return task.states if so_far is None else (so_far.y[:, -1], so_far.carried[:, -1])

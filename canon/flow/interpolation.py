@@ -9,7 +9,7 @@ import numpy as np
 
 from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
 from canon.flow.fixed_step.partial_step import LoopState
-from canon.flow.method.method import FixedStep, Taylor
+from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.number_formats import fixed_precision
 
 if TYPE_CHECKING:
@@ -32,11 +32,11 @@ def states_at(task: Task, samples: Samples, times: Array) -> Array:
     first, last = sorted((samples.t[0], samples.t[-1]))
     if not ((first <= times) & (times <= last)).all():
         raise ValueError(f"the motion is known from t = {samples.t[0]:g} to {samples.t[-1]:g} only")
-    if isinstance(task.method, Taylor):
+    if task.method.engine.keeps_polynomials:
         if not samples.dense:
             raise ValueError("the motion was not kept as a function of time: propagate(…, dense=True)")
         return np.stack([orbit(times) for orbit in samples.dense], axis=2)
-    if not isinstance(task.method, FixedStep):
+    if task.method.engine is not FIXED_STEPS:
         raise ValueError(
             f"{task.method} is not kept as a function of time: name the times, propagate(…, times=…)"
         )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from sympy import Expr, Symbol
 
-    from canon.flow.method.method import Method
+    from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.event import Event
 
 __all__ = [
@@ -30,7 +30,7 @@ def propagate(
     y0: Sequence[float] | npt.NDArray[Any],
     t_span: tuple[float, float],
     *,
-    method: Method | None = None,
+    method: MethodGiven | None = None,
     step: float | None = None,
     tolerance: float | None = None,
     precision: str | int | None = None,
@@ -57,7 +57,8 @@ def propagate(
     method
         ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
         not given. By exactly solvable parts: ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that
-        vary: ``TimeTransformed(...)``.
+        vary: ``TimeTransformed(...)``. Or a method by its name, such as ``"verlet"``, ``"kahan-li-8"``, ``"RK4"``,
+        ``"gauss-6"``, ``"taylor"``, ``"saba-4"``.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
         span; ``Trajectory.step`` has it. Of a time-transformed method: the size in t of the first step.

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.method.method import DOP853, Taylor, TimeTransformed
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.sampling_plan import sampling
 
@@ -64,7 +63,7 @@ class Task:
 
     def arrived(self, found: Samples) -> bool:
         """Return whether samples reach to the end of what was to be done."""
-        if isinstance(self.method, TimeTransformed):
+        if self.fictitious is not None:
             return found.beyond.arrived
         return len(found.t) == len(self.plan.instants)
 
@@ -100,9 +99,9 @@ class Task:
     @property
     def precision_name(self) -> str:
         """The precision's keyword."""
-        if isinstance(self.method, Taylor | DOP853):
-            return str(self.precision or "double")
-        return fixed_precision(self.precision).name
+        if self.method.engine.takes_step:
+            return fixed_precision(self.precision).name
+        return str(self.precision or self.method.engine.usual_precision)
 
     def ended(self, found: Samples) -> Task:
         """Return the task with the instants that are known only now, where an event has ended a motion."""

@@ -24,7 +24,7 @@ FIRST = [*METHODS[:2], *(pytest.param(method, marks=pytest.mark.slow) for method
 
 
 def without(method):
-    return dataclasses.replace(method, commutator=False)
+    return SolvableSplitting(method.scheme, method.corrector)
 
 
 @pytest.mark.parametrize(

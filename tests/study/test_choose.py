@@ -9,7 +9,6 @@ import pytest
 import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates
-from canon.command.scene_options import method_named
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.solvable_splitting import WisdomHolman
 from canon.scene import find
@@ -121,7 +120,7 @@ def test_splittings_by_solvable_parts_are_candidates_where_something_disturbs_th
 
 def test_planets_are_cheaper_by_their_keplerian_motions():
     scene = find("outer-solar-system")
-    methods = [Splitting("srkn-6b"), *(method_named(name) for name in ("wisdom-holman", "saba-4"))]
+    methods = [Splitting("srkn-6b"), "wisdom-holman", "saba-4"]
     choice = choose(scene, None, 300.0 * scene.period, 1e-6, methods=methods)
     assert str(choice.method) in DISTURBED
     assert pilot(choice.question, choice.chosen.setting, choice.span).bound <= 1e-6

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from canon.flow.fixed_step.partial_step import PartialSteps
-from canon.flow.method.method import RK4, FixedStep, Gauss, Splitting
-from canon.flow.method.solvable_splitting import SolvableSplitting
-from canon.flow.method.solvable_splitting import loop_of as solvable_loop_of
 from canon.kernel.llvm.loop import Loop, runge_kutta_loop
 from canon.kernel.llvm.machine_code import simd_bytes
 from canon.kernel.loops.gauss import gauss_loop
 from canon.kernel.loops.splitting import splitting_loop
 from canon.kernel.schemes.gauss_tableau import gauss_coefficients
+from canon.kernel.schemes.perturbed_schemes import corrector
+from canon.kernel.solvable.solvable_loop import solvable_loop
+from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableError, named_part, solvable_part
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from fractions import Fraction
 
+    from canon.flow.method.method import RK4, Gauss, Method, Splitting
     from canon.flow.method.number_formats import Precision
+    from canon.flow.method.solvable_splitting import SolvableSplitting
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
@@ -40,15 +43,13 @@ _SMALL = 200
 """Up to this many operations in the force the registers hold that many orbits."""
 
 
-def compiled_loop(
-    system: HamiltonEquations, method: FixedStep, precision: Precision, orbits: int = 1
-) -> Loop:
+def compiled_loop(system: HamiltonEquations, method: Method, precision: Precision, orbits: int = 1) -> Loop:
     """Return the machine code that steps a system with a method, kept from an earlier call if there was one.
 
     Parameters
     ----------
     system, method, precision
-        What to integrate, how, and in which numbers.
+        What to integrate, how, and in which numbers; a method with steps of one size.
     orbits
         How many orbits will be stepped together: several run side by side in SIMD lanes.
 
@@ -58,18 +59,19 @@ def compiled_loop(
         A splitting is asked of a Hamiltonian that does not split, or a Nyström method of one whose kinetic energy
         is not quadratic.
     """
-    if isinstance(method, Splitting) and method.parts is not None:
-        method = SolvableSplitting(method.scheme, parts=method.parts)
-    if isinstance(method, SolvableSplitting):
-        return solvable_loop_of(system, method, precision)
-    number = precision.number
-    if orbits > 1:
-        stages = len(method.scheme.b) if isinstance(method, Splitting) and not precision.compensated else 0
-        number = _with_lanes(number, system, orbits, stages)
-    if isinstance(method, Gauss):
-        return _kept_gauss(system, method.stages, precision.number, compensated=precision.compensated)
-    if isinstance(method, RK4):
-        return _kept_runge_kutta(system, number, compensated=precision.compensated)
+    return _LOOPS[method.family](system, method, precision, orbits)
+
+
+def _gauss(system: HamiltonEquations, method: Gauss, precision: Precision, _orbits: int) -> Loop:
+    return _kept_gauss(system, method.stages, precision.number, compensated=precision.compensated)
+
+
+def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, orbits: int) -> Loop:
+    number = _with_lanes(precision.number, system, orbits, 0)
+    return _kept_runge_kutta(system, number, compensated=precision.compensated)
+
+
+def _splitting(system: HamiltonEquations, method: Splitting, precision: Precision, orbits: int) -> Loop:
     if not system.separable:
         raise ValueError(
             "H is not a sum T(p, t) + V(q, t), so it does not split into drifts and kicks; use Gauss(6), which is "
@@ -80,14 +82,38 @@ def compiled_loop(
             f"{method} keeps its order only for kinetic energies quadratic in p with constant coefficients; "
             "use Splitting('blanes-moan-6') or Splitting('kahan-li-8')"
         )
+    stages = len(method.scheme.b)
+    number = _with_lanes(precision.number, system, orbits, 0 if precision.compensated else stages)
     kick_first = method.scheme.kick_first and system.autonomous
-    return _kept_splitting(
-        system, len(method.scheme.b), number, compensated=precision.compensated, kick_first=kick_first
-    )
+    return _kept_splitting(system, stages, number, compensated=precision.compensated, kick_first=kick_first)
+
+
+def _solvable(
+    system: HamiltonEquations, method: Splitting | SolvableSplitting, precision: Precision, _orbits: int
+) -> Loop:
+    if not system.autonomous:
+        raise UnsolvableError(
+            "H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')"
+        )
+    if system.varying:
+        raise UnsolvableError(
+            "parameters that differ by orbit: splittings by solvable parts take one number for each"
+        )
+    assert method.solvable is not None
+    return _kept_solvable(system, method.solvable, precision)
+
+
+_LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
+    "splitting": _splitting,
+    "solvable": _solvable,
+    "gauss": _gauss,
+    "rk4": _runge_kutta,
+}
+"""What compiles the methods of each family."""
 
 
 def _with_lanes(number: MachineType, system: HamiltonEquations, orbits: int, stages: int) -> MachineType:
-    if number.scalar == "x86_fp80":  # x87 numbers have no SIMD instructions
+    if orbits == 1 or number.scalar == "x86_fp80":  # x87 numbers have no SIMD instructions
         return number
     registers, force = 1, system.program(system.force)
     if len(force.instructions) <= _SMALL:
@@ -114,17 +140,53 @@ def _kept_gauss(system: HamiltonEquations, stages: int, number: MachineType, *, 
     return gauss_loop(system, stages, compensated=compensated, number=number)
 
 
-def steps_between(loop: Loop, method: FixedStep, plan: Plan) -> PartialSteps:
+@functools.lru_cache(maxsize=64)
+def _kept_solvable(system: HamiltonEquations, method: SolvableSplitting, precision: Precision) -> Loop:
+    part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
+    if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:
+        raise UnsolvableError(
+            "the bodies have different numbers of coordinates; give each as many, or name two parts"
+        )
+    chosen = corrector(method.scheme, method.corrector) if method.corrector else None
+    democratic = method.coordinates == "democratic-heliocentric"
+    if democratic and not isinstance(part, Planets):
+        raise UnsolvableError(
+            "democratic heliocentric coordinates are for planets about a star, which H is not"
+        )
+    return solvable_loop(
+        part,
+        len(system.q),
+        method.kicks,
+        chosen,
+        compensated=precision.compensated,
+        number=precision.number,
+        democratic=democratic,
+    )
+
+
+def steps_between(loop: Loop, method: Method, plan: Plan) -> PartialSteps:
     """Return what takes steps of any length between those of a run."""
     assert plan.h is not None
-    coefficients = loop.coefficients or functools.partial(_coefficients, method, loop.number)
+    coefficients = loop.coefficients or functools.partial(_COEFFICIENTS[method.family], method, loop.number)
     return PartialSteps(loop, coefficients, plan.start, plan.h)
 
 
-def _coefficients(method: FixedStep, number: MachineType, h: Fraction) -> list[Fraction]:
-    if isinstance(method, Gauss):
-        return gauss_coefficients(method.stages, h, number)
-    if isinstance(method, RK4):
-        return [h / 2, h / 6, h / 3]
+def _of_gauss(method: Gauss, number: MachineType, h: Fraction) -> list[Fraction]:
+    return gauss_coefficients(method.stages, h, number)
+
+
+def _of_runge_kutta(_method: RK4, _number: MachineType, h: Fraction) -> list[Fraction]:
+    return [h / 2, h / 6, h / 3]
+
+
+def _of_splitting(method: Splitting, _number: MachineType, h: Fraction) -> list[Fraction]:
     a, b = method.scheme.a, method.scheme.b
     return [h * c for pair in zip(a, b, strict=False) for c in pair] + [h * a[-1]]
+
+
+_COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]] = {
+    "splitting": _of_splitting,
+    "gauss": _of_gauss,
+    "rk4": _of_runge_kutta,
+}
+"""What a step of each family reads, where the loop does not say it."""

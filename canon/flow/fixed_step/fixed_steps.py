@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.flow.fixed_step.loop_buffers import LoopObservables, Memory
-    from canon.flow.method.method import FixedStep
+    from canon.flow.method.method import FixedStep, Method
     from canon.flow.run.event import PreparedEvent
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.program.hamilton_equations import HamiltonEquations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["fixed_steps", "planned"]
 
 
-def planned(wanted: Sampling, step: float | None, method: FixedStep) -> Plan:
+def planned(wanted: Sampling, step: float | None, method: Method) -> Plan:
     """Return the plan of a run: the largest step, not above the given one, that divides the span.
 
     Raises

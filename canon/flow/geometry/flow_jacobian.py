@@ -12,8 +12,6 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.checked_request import task_of
 from canon.flow.geometry.solvable_jacobian import solvable_jacobian
 from canon.flow.geometry.transformed_jacobian import transformed_jacobian
-from canon.flow.method.method import DOP853, Taylor, TimeTransformed
-from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.flow.propagate import propagate
 from canon.flow.run.sampling_plan import Plan, fixed_plan
 from canon.flow.trajectory import carried_out
@@ -26,7 +24,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.array import Array
-    from canon.flow.method.method import Method
+    from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
 __all__ = ["FlowJacobian", "flow_jacobian", "reversal_error", "symplecticity_defect"]
@@ -83,7 +81,7 @@ def flow_jacobian(
     y0: Sequence[Any] | npt.NDArray[Any],
     t_span: tuple[float, float],
     *,
-    method: Method | None = None,
+    method: MethodGiven | None = None,
     step: float | None = None,
     tolerance: float | None = None,
     precision: str | int | None = None,
@@ -130,15 +128,14 @@ def flow_jacobian(
         raise ValueError(
             "the Jacobian is made of one orbit at a time: give one state and one set of parameters"
         )
-    if isinstance(task.method, TimeTransformed):
+    if task.fictitious is not None:
         return FlowJacobian(*transformed_jacobian(task, hamiltonian, parameters or {}))
-    if isinstance(task.method, SolvableSplitting) or getattr(task.method, "parts", None) is not None:
+    if task.method.solvable is not None:
         t, motion, slopes = solvable_jacobian(task)
         return FlowJacobian(t, motion, slopes, np.zeros_like(slopes))
     size = len(y0)
     # Orbits side by side, one variation each; where steps adapt, all variations of one orbit.
-    together = isinstance(task.method, Taylor | DOP853)
-    orbits, columns = (1, size) if together else (size, 1)
+    orbits, columns = (size, 1) if task.method.engine.takes_step else (1, size)
     made = replace(
         task,
         system=variational(task.system, columns),
@@ -216,7 +213,7 @@ def reversal_error(
     y0: Sequence[Any] | npt.NDArray[Any],
     t_span: tuple[float, float],
     *,
-    method: Method | None = None,
+    method: MethodGiven | None = None,
     step: float | None = None,
     tolerance: float | None = None,
     precision: str | int | None = None,

@@ -18,8 +18,6 @@ import sympy as sp
 from canon.expression.graph.number_systems import FLOAT64
 from canon.flow.geometry.kepler_derivative import kepler_derivative
 from canon.flow.integrate import integrate
-from canon.flow.method.method import Splitting
-from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.flow.run.sampling_plan import fixed_plan
 from canon.kernel.llvm.number_types import DOUBLE
 from canon.kernel.program.commutator import commutator_force
@@ -32,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from canon.array import Array
+    from canon.flow.method.solvable_splitting import SolvableSplitting
     from canon.flow.task import Task
     from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.solvable.solvable_parts import Centres, Part
@@ -55,10 +54,8 @@ def solvable_jacobian(task: Task) -> tuple[Array, Array, Array]:
     ValueError
         The planets' coordinates are democratic heliocentric ones, in which kicks depend on momenta.
     """
-    method = task.method
-    if isinstance(method, Splitting):
-        method = SolvableSplitting(method.scheme, parts=method.parts)
-    assert isinstance(method, SolvableSplitting)
+    method = task.method.solvable
+    assert method is not None
     if method.coordinates != "jacobi":
         raise ValueError(
             f"{method} carries no variations: in democratic heliocentric coordinates kicks depend on momenta, and the "

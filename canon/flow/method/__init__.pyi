@@ -1,9 +1,9 @@
-from .method import DOP853 as DOP853
+from .adaptive_methods import DOP853 as DOP853
+from .adaptive_methods import Taylor as Taylor
 from .method import RK4 as RK4
 from .method import Gauss as Gauss
 from .method import Method as Method
 from .method import Splitting as Splitting
-from .method import Taylor as Taylor
 from .method import TimeTransformed as TimeTransformed
 from .solvable_splitting import SABA as SABA
 from .solvable_splitting import SBAB as SBAB

@@ -1,4 +1,9 @@
-"""Integration methods as values: which to use with which settings, not how it runs."""
+"""Integration methods as values: which to use with which settings, not how it runs.
+
+Each answers for itself: ``engine`` (what integrates it, whether it takes a step, its precisions), ``family`` (the word
+that tables of functions know it by), ``order``, ``stages`` (its cost), ``is_symplectic``, ``solvable`` (the splitting
+by solvable parts that it is, or None), ``written`` (the method as files hold it), ``str`` (in words), ``citation``.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +11,11 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.user_input import counted
+from canon.flow.method.adaptive_methods import DOP853, Taylor
+from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
 from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
 from canon.kernel.schemes.order_conditions import order
@@ -70,6 +77,8 @@ class Splitting:
 
     scheme: Scheme
     parts: tuple[Expr, Expr] | None = None
+    engine = FIXED_STEPS
+    is_symplectic = True
 
     def __init__(
         self,
@@ -99,6 +108,35 @@ class Splitting:
     def __str__(self) -> str:
         name = self.scheme.name or f"splitting, order {self.order}, {counted(self.stages, 'stage')}"
         return f"{name}, own parts" if self.parts else name
+
+    @property
+    def family(self) -> str:
+        """What it is called in files; with parts it is a splitting by solvable ones."""
+        return "splitting" if self.parts is None else "solvable"
+
+    @property
+    def solvable(self) -> SolvableSplitting | None:
+        """The splitting by solvable parts that it is, where it has parts."""
+        return None if self.parts is None else SolvableSplitting(self.scheme, parts=self.parts)
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """The method as JSON and TOML can hold it.
+
+        Raises
+        ------
+        ValueError
+            It has parts, which are no text.
+
+        Examples
+        --------
+        >>> Splitting("verlet").written, Gauss(4).written, Taylor(1e-10).written
+        ({'splitting': 'verlet'}, {'gauss': 4}, {'taylor': 1e-10})
+        """
+        if self.parts is not None:
+            raise ValueError(f"{self}: a study takes the parts T(p) and V(q) of H, none of your own")
+        own = {"a": [str(x) for x in self.scheme.a], "b": [str(x) for x in self.scheme.b]}
+        return {"splitting": self.scheme.name or own}
 
     @cached_property
     def order(self) -> int:
@@ -160,6 +198,7 @@ class Gauss:
         "E. Hairer, R. I. McLachlan, A. Razakarivony, Achieving Brouwer’s law with implicit Runge–Kutta methods, "
         "BIT 48 (2008) 231–243, doi:10.1007/s10543-008-0170-3"
     )
+    engine, family, is_symplectic, solvable = FIXED_STEPS, "gauss", True, None
 
     def __post_init__(self) -> None:
         if self.stages not in range(1, HIGHEST_STAGES + 1):
@@ -167,6 +206,11 @@ class Gauss:
 
     def __str__(self) -> str:
         return f"Gauss({self.stages})"
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """The method as JSON and TOML can hold it."""
+        return {"gauss": self.stages}
 
     @property
     def order(self) -> int:
@@ -190,72 +234,15 @@ class RK4:
         "W. Kutta, Beitrag zur näherungsweisen Integration totaler Differentialgleichungen, "
         "Z. Math. Phys. 46 (1901) 435–453"
     )
+    engine, family, is_symplectic, solvable = FIXED_STEPS, "rk4", False, None
 
     def __str__(self) -> str:
         return "RK4"
 
-
-@dataclass(frozen=True)
-class Taylor:
-    """heyoka's adaptive Taylor method, of the order and with the steps its tolerance asks for.
-
-    Parameters
-    ----------
-    tolerance
-        Relative tolerance of a step; the rounding unit 2⁻⁵² where not given.
-
-    Examples
-    --------
-    >>> Taylor().order
-    20
-    """
-
-    tolerance: float | None = None
-    citation = (
-        "F. Biscani, D. Izzo, Revisiting high-order Taylor methods for astrodynamics and celestial "
-        "mechanics, Mon. Not. R. Astron. Soc. 504 (2021) 2614–2628, doi:10.1093/mnras/stab1032"
-    )
-
-    def __post_init__(self) -> None:
-        _check_tolerance(self.tolerance)
-
-    def __str__(self) -> str:
-        return "Taylor" if self.tolerance is None else f"Taylor({self.tolerance:g})"
-
     @property
-    def order(self) -> int:
-        """The order that the tolerance leads to: ⌈1 − ½ ln(tolerance)⌉."""
-        return math.ceil(1 - math.log(self.tolerance or 2.0**-52) / 2)
-
-    @property
-    def stages(self) -> int:
-        """Taylor series in a step."""
-        return 1
-
-
-@dataclass(frozen=True)
-class DOP853:
-    """SciPy's adaptive Runge–Kutta method of order 8: the ordinary choice, for comparison.
-
-    Parameters
-    ----------
-    tolerance
-        Relative and absolute tolerance of a step.
-    """
-
-    tolerance: float = 1e-12
-    order = 8
-    stages = 12
-    citation = (
-        "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., "
-        "Springer 1993, doi:10.1007/978-3-540-78862-1"
-    )
-
-    def __post_init__(self) -> None:
-        _check_tolerance(self.tolerance)
-
-    def __str__(self) -> str:
-        return f"DOP853({self.tolerance:g})"
+    def written(self) -> dict[str, Any]:
+        """The method as JSON and TOML can hold it."""
+        return {"rk4": True}
 
 
 @dataclass(frozen=True)
@@ -299,19 +286,34 @@ class TimeTransformed:
 
     method: Splitting | Gauss
     g: Expr | None = None
+    engine, family, is_symplectic, solvable = FICTITIOUS_TIME, "time_transformed", True, None
 
     def __post_init__(self) -> None:
-        if isinstance(self.method, Splitting) and (self.g is not None or self.method.parts is not None):
+        implicit = self.method.family == "gauss"
+        if not implicit and (self.g is not None or self.method.solvable is not None):
             raise ValueError(
                 "g(q, p)(H − E0) does not split: give a Gauss method with g, or a splitting without g and parts"
             )
-        if isinstance(self.method, Gauss) and self.g is None:
+        if implicit and self.g is None:
             raise ValueError(
                 "say how long a step is to be where: TimeTransformed(Gauss(6), g=…), such as g = r near a centre"
             )
 
     def __str__(self) -> str:
         return f"{self.method}, time-transformed"
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """The method as JSON and TOML can hold it.
+
+        Raises
+        ------
+        ValueError
+            It has a function g, which is no text.
+        """
+        if self.g is not None:
+            raise ValueError(f"{self} with g: a study takes the splittings, which need none")
+        return {"time_transformed": self.method.written}
 
     @property
     def order(self) -> int:
@@ -344,8 +346,3 @@ Stepped = FixedStep | TimeTransformed
 
 Method = Stepped | Taylor | DOP853
 """What ``propagate`` takes as ``method``."""
-
-
-def _check_tolerance(tolerance: float | None) -> None:
-    if tolerance is not None and not 0 < tolerance < 1:
-        raise ValueError(f"tolerance {tolerance}: give a number between 0 and 1, such as 1e-12")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from canon.flow.method.engine import FIXED_STEPS
 from canon.kernel.schemes.perturbed_schemes import (
     ABA,
     LASKAR_ROBUTEL,
@@ -15,18 +15,13 @@ from canon.kernel.schemes.perturbed_schemes import (
     wisdom_holman,
     with_commutator,
 )
-from canon.kernel.solvable.solvable_loop import solvable_loop
-from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableError, named_part, solvable_part
 
 if TYPE_CHECKING:
     from sympy import Expr
 
-    from canon.flow.method.number_formats import Precision
-    from canon.kernel.llvm.loop import Loop
-    from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.schemes.splitting_schemes import Scheme
 
-__all__ = ["COORDINATES", "SABA", "SBAB", "SolvableSplitting", "UnsolvableError", "WisdomHolman", "loop_of"]
+__all__ = ["COORDINATES", "SABA", "SBAB", "SolvableSplitting", "WisdomHolman"]
 
 Parts = tuple["Expr", "Expr"] | None
 
@@ -45,7 +40,8 @@ _DEMOCRATIC = (
 class SolvableSplitting:
     """A symplectic splitting of H = H₀ + H₁ by the flow of H₀, known in closed form, and kicks by H₁.
 
-    Made by :func:`WisdomHolman`, :func:`SABA` and :func:`SBAB`, or by ``Splitting(…, parts=(H0, H1))``.
+    :class:`WisdomHolman`, :class:`SABA` and :class:`SBAB` are those with a published scheme; what ``Splitting(…,
+    parts=(H0, H1))`` says is one too.
 
     Parameters
     ----------
@@ -66,6 +62,9 @@ class SolvableSplitting:
     parts: Parts = None
     commutator: bool = False
     coordinates: str = "jacobi"
+    engine = FIXED_STEPS
+    family = "solvable"
+    is_symplectic = True
 
     def __post_init__(self) -> None:
         if self.corrector:
@@ -85,6 +84,17 @@ class SolvableSplitting:
     def __repr__(self) -> str:
         return f"<SolvableSplitting: {self}>"
 
+    def _call(self, *stages: str) -> str:
+        """Return the call that makes this method."""
+        given = [f"{name}={value!r}" for name, value in self._choices.items()]
+        return f"{type(self).__name__}({', '.join([*stages, *given])})"
+
+    @property
+    def _choices(self) -> dict[str, Any]:
+        """What differs from the ordinary choices."""
+        usual = {"corrector": 0, "commutator": False, "coordinates": "jacobi", "parts": None}
+        return {name: chosen for name, each in usual.items() if (chosen := getattr(self, name)) != each}
+
     def __str__(self) -> str:
         notes = [
             f", corrector {self.corrector}" if self.corrector else "",
@@ -93,6 +103,24 @@ class SolvableSplitting:
             ", own parts" if self.parts else "",
         ]
         return (self.scheme.name or "splitting") + "".join(notes)
+
+    @property
+    def solvable(self) -> SolvableSplitting:
+        """The splitting itself, as other methods have None."""
+        return self
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """The method as JSON and TOML can hold it.
+
+        Raises
+        ------
+        ValueError
+            It has parts or a scheme of its own, which are no text.
+        """
+        if self.parts is not None or not self.scheme.name:
+            raise ValueError(f"{self}: a study takes parts that are found from the structure of H")
+        return {"solvable": self.scheme.name, "corrector": self.corrector, **self._choices}
 
     @property
     def kicks(self) -> Scheme:
@@ -123,10 +151,9 @@ class SolvableSplitting:
         return "; ".join(filter(None, used))
 
 
-def WisdomHolman(
-    *, corrector: int = 0, commutator: bool = False, coordinates: str = "jacobi", parts: Parts = None
-) -> SolvableSplitting:
-    """Return Wisdom and Holman's method: Kepler's motion of every planet, kicks by the planets' attractions.
+@dataclass(frozen=True, init=False, repr=False)
+class WisdomHolman(SolvableSplitting):
+    """Wisdom and Holman's method: Kepler's motion of every planet, kicks by the planets' attractions.
 
     For planets about a star the coordinates are Jacobi's, the bodies in the order of the Hamiltonian's coordinates
     after the heaviest, which should be the order of their orbits. H₀ may also be Kepler's motion about fixed centres,
@@ -163,18 +190,24 @@ def WisdomHolman(
     >>> bool(abs(motion.energy_error).max() < 3e-8)
     True
     """
-    return SolvableSplitting(wisdom_holman(), corrector, parts, commutator, coordinates)
+
+    def __init__(
+        self,
+        *,
+        corrector: int = 0,
+        commutator: bool = False,
+        coordinates: str = "jacobi",
+        parts: Parts = None,
+    ) -> None:
+        super().__init__(wisdom_holman(), corrector, parts, commutator, coordinates)
+
+    def __repr__(self) -> str:
+        return self._call()
 
 
-def SABA(
-    stages: int | str,
-    *,
-    corrector: int = 0,
-    commutator: bool = False,
-    coordinates: str = "jacobi",
-    parts: Parts = None,
-) -> SolvableSplitting:
-    """Return Laskar and Robutel's method SABA_n, or one of Blanes and others that kills ε² τ² too.
+@dataclass(frozen=True, init=False, repr=False)
+class SABA(SolvableSplitting):
+    """Laskar and Robutel's method SABA_n, or one of Blanes and others that kills ε² τ² too.
 
     Parameters
     ----------
@@ -185,7 +218,7 @@ def SABA(
         Whether steps end with a kick by the commutator {H₁, {H₀, H₁}}: SABAC_n, one evaluation more, errors
         ε τ^2n + ε² τ⁴.
     corrector, coordinates, parts
-        As for :func:`WisdomHolman`.
+        As for :class:`WisdomHolman`.
 
     Raises
     ------
@@ -199,24 +232,31 @@ def SABA(
     >>> str(SABA(3, commutator=True)), SABA(3, commutator=True).stages
     ('saba-3, commutator', 4)
     """
-    if isinstance(stages, str):
-        if stages not in ABA:
+
+    def __init__(
+        self,
+        stages: int | str,
+        *,
+        corrector: int = 0,
+        commutator: bool = False,
+        coordinates: str = "jacobi",
+        parts: Parts = None,
+    ) -> None:
+        if isinstance(stages, str) and stages not in ABA:
             raise ValueError(
                 f"SABA({stages!r}): give a number of stages from 1 to 8, or one of {', '.join(ABA)}"
             )
-        return SolvableSplitting(ABA[stages], corrector, parts, commutator, coordinates)
-    return SolvableSplitting(saba(stages), corrector, parts, commutator, coordinates)
+        scheme = ABA[stages] if isinstance(stages, str) else saba(stages)
+        super().__init__(scheme, corrector, parts, commutator, coordinates)
+
+    def __repr__(self) -> str:
+        stages = self.scheme.name.partition("-")[2]
+        return self._call(stages if stages.isdecimal() else repr(stages))
 
 
-def SBAB(
-    stages: int,
-    *,
-    corrector: int = 0,
-    commutator: bool = False,
-    coordinates: str = "jacobi",
-    parts: Parts = None,
-) -> SolvableSplitting:
-    """Return Laskar and Robutel's method SBAB_n: n kicks in a step, the first and last half ones of two steps.
+@dataclass(frozen=True, init=False, repr=False)
+class SBAB(SolvableSplitting):
+    """Laskar and Robutel's method SBAB_n: n kicks in a step, the first and last half ones of two steps.
 
     Parameters
     ----------
@@ -225,54 +265,24 @@ def SBAB(
     commutator
         Whether the first and the last kick hold the commutator {H₁, {H₀, H₁}} too: SBABC_n, errors ε τ^2n + ε² τ⁴.
     corrector, coordinates, parts
-        As for :func:`WisdomHolman`.
+        As for :class:`WisdomHolman`.
 
     Examples
     --------
     >>> SBAB(3).stages, SBAB(3, commutator=True).stages
     (3, 3)
     """
-    return SolvableSplitting(sbab(stages), corrector, parts, commutator, coordinates)
 
+    def __init__(
+        self,
+        stages: int,
+        *,
+        corrector: int = 0,
+        commutator: bool = False,
+        coordinates: str = "jacobi",
+        parts: Parts = None,
+    ) -> None:
+        super().__init__(sbab(stages), corrector, parts, commutator, coordinates)
 
-def loop_of(system: HamiltonEquations, method: SolvableSplitting, precision: Precision) -> Loop:
-    """Return the compiled loop of a splitting by solvable parts, kept from an earlier call if there was one.
-
-    Raises
-    ------
-    UnsolvableError
-        H has no solvable part, or not the one that was named.
-    """
-    if not system.autonomous:
-        raise UnsolvableError(
-            "H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')"
-        )
-    if system.varying:
-        raise UnsolvableError(
-            "parameters that differ by orbit: splittings by solvable parts take one number for each"
-        )
-    return _kept(system, method, precision)
-
-
-@functools.lru_cache(maxsize=64)
-def _kept(system: HamiltonEquations, method: SolvableSplitting, precision: Precision) -> Loop:
-    part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
-    if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:
-        raise UnsolvableError(
-            "the bodies have different numbers of coordinates; give each as many, or name two parts"
-        )
-    chosen = corrector(method.scheme, method.corrector) if method.corrector else None
-    democratic = method.coordinates == "democratic-heliocentric"
-    if democratic and not isinstance(part, Planets):
-        raise UnsolvableError(
-            "democratic heliocentric coordinates are for planets about a star, which H is not"
-        )
-    return solvable_loop(
-        part,
-        len(system.q),
-        method.kicks,
-        chosen,
-        compensated=precision.compensated,
-        number=precision.number,
-        democratic=democratic,
-    )
+    def __repr__(self) -> str:
+        return self._call(self.scheme.name.partition("-")[2])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.graph.number_systems import FLOAT64, multiprecision
-from canon.flow.method.method import Taylor
+from canon.flow.method.engine import HEYOKA
 from canon.kernel.llvm.double_double_functions import LARGEST_ANGLE
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ def check_magnitudes(
     rates = np.array(
         system.graph.evaluate(nodes, dict(zip(system.inputs, point, strict=True)), FLOAT64), float
     )
-    if isinstance(method, Taylor):
-        _check_series(state, rates, method)
+    if method.engine is HEYOKA:
+        _check_series(state, rates, method.order)
     sizes = abs(np.concatenate([state, rates]))
     ordinary = (sizes == 0) | ((sizes > 1 / _FAR) & (sizes < _FAR))
     if ordinary.all() and all(not x or 1 / _FAR < abs(x) < _FAR for x in system.parameters.values()):
@@ -89,13 +89,13 @@ def is_narrow(precision: str | int | None) -> bool:
     return precision in (None, "single", "double", "compensated", "double-double")
 
 
-def _check_series(state: Array, rates: Array, method: Taylor) -> None:
+def _check_series(state: Array, rates: Array, order: int) -> None:
     halves = zip(np.split(abs(state), 2), np.split(abs(rates), 2), strict=True)
     speeds = [float(b.max() / a.max()) for a, b in halves if a.max() > 0 and b.max() > 0]
     for speed in speeds:
-        if not speed or math.isinf(speed) or abs(math.log10(speed)) * method.order > _RANGE:
+        if not speed or math.isinf(speed) or abs(math.log10(speed)) * order > _RANGE:
             raise ValueError(
                 f"the motion begins with a time scale of {1 / speed if speed else math.inf:.3g}: the coefficients of "
-                f"Taylor series of order {method.order} are beyond 1e±308. Measure time in other units, or take "
+                f"Taylor series of order {order} are beyond 1e±308. Measure time in other units, or take "
                 "precision='extended'"
             )

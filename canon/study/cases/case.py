@@ -10,9 +10,9 @@ from functools import lru_cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.method.method import FixedStep, TimeTransformed
+from canon.flow.method.engine import FICTITIOUS_TIME
+from canon.flow.method.method_text import method_from
 from canon.scene import find
-from canon.study.cases.method_text import method_from, method_to
 from canon.study.motion.hamiltonian_text import Formula, hamiltonian_of
 from canon.version import __version__
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
-__all__ = ["Case", "key_of", "method_from", "method_to", "part_count", "versions"]
+__all__ = ["Case", "key_of", "part_count", "versions"]
 
 LIBRARIES = ("heyoka", "llvmlite", "numpy", "scipy", "sympy")
 """Libraries whose version may change a last digit."""
@@ -121,7 +121,7 @@ class Case:
         return {
             **fields,
             "system": system,
-            "method": method_to(self.method),
+            "method": self.method.written,
             "parameters": dict(self.parameters),
             **observables,
         }
@@ -182,11 +182,11 @@ def part_count(case: Case) -> int:
     >>> part_count(Case("kepler", RK4(), span=1e6, step=0.01)), part_count(Case("kepler", Taylor(), span=1e6))
     (96, 32)
     """
-    if isinstance(case.method, TimeTransformed):
+    if case.method.engine is FICTITIOUS_TIME:
         return 1  # the size of its steps follows from the state at the start of the whole run
     if case.parts is not None:
         return case.parts
-    if isinstance(case.method, FixedStep) and case.step is not None:
+    if case.method.engine.takes_step and case.step is not None:
         return max(1, math.ceil(case.span / case.step / STEPS_A_PART))
     return min(MOST_PARTS, max(1, case.samples // SAMPLES_A_PART))
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.method.method import FixedStep, TimeTransformed
+from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
 from canon.flow.propagate import propagate
 from canon.flow.run.observables_along import AccuracyWarning
 from canon.flow.run.sampling_plan import steps_over
@@ -217,7 +217,7 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
     state = [Fraction(a) + Fraction(b) for a, b in zip(point.state, point.carried, strict=True)]
     edges = np.linspace(0, case.samples, end + 1).round().astype(int)
     samples = max(1, int(edges[point.part + 1] - edges[point.part]))
-    if isinstance(case.method, FixedStep):
+    if case.method.engine is FIXED_STEPS:
         span, step = _whole_steps(case, point.part, end)
     else:
         ends = np.linspace(0.0, case.span, end + 1)
@@ -259,12 +259,12 @@ def _run(
 def _evenly(case: Case) -> bool:
     """Tell whether even samples do, from the period where it is known, else from a look at the first few intervals."""
     interval = case.span / case.samples
-    if isinstance(case.method, TimeTransformed):
+    if case.method.engine is FICTITIOUS_TIME:
         return True  # even in steps, which vary with the motion; landing at scattered times would cost more than they
     if (period := case.period) is not None and interval * FEWEST_A_PERIOD <= period:
         return True
     every, step = FINE, case.step
-    if isinstance(case.method, FixedStep):
+    if case.method.engine is FIXED_STEPS:
         _, step = _whole_steps(case, 0, 1)
         every = min(FINE, round(interval / step))
     if every < 2:

@@ -9,19 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.user_input import counted
-from canon.flow.method.method import Stepped, Taylor
+from canon.flow.method.method_text import method_from, method_of
 from canon.scene import Scene, SceneError, find
-from canon.study.cases.case import Case, key_of, method_from
+from canon.study.cases.case import Case, key_of
 from canon.study.cases.case_observables import followed, observables_from
 from canon.study.drift.drift import FEWEST
-from canon.study.drift.drift_study import ADAPTIVE_ONLY, SAMPLES_PER_PERIOD
+from canon.study.drift.drift_study import SAMPLES_PER_PERIOD
 from canon.study.errors import StudyError
 from canon.study.motion.hamiltonian_text import Formula, formula_from, formula_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from canon.flow.method.method import Method
 
 __all__ = ["Study", "read_study"]
 
@@ -175,8 +174,9 @@ def _case(
     chosen: Mapping[str, Any],
     table: Mapping[str, Any],
 ) -> Case:
-    method = method_from(chosen["method"]) if isinstance(chosen["method"], str | dict) else chosen["method"]
-    stepped = isinstance(method, Stepped)
+    given = chosen["method"]
+    method = method_from(given) if isinstance(given, dict) else method_of(given)
+    stepped = method.engine.takes_step
     period = _period(system, parameters)
     step = chosen["step"]
     if chosen["steps_per_period"] is not None:
@@ -195,19 +195,12 @@ def _case(
         parameters=parameters,
         step=float(step) if stepped else None,
         tolerance=None if stepped else chosen["tolerance"],
-        precision=_precision(method, chosen["precision"]),
+        precision=method.engine.understood(chosen["precision"]),
         parts=int(table["parts"]) if "parts" in table else None,
         observables=observables_from(table.get("observables", ())),
     )
     _check(case)
     return case
-
-
-def _precision(method: Method, wanted: Any) -> Any:
-    """Return the arithmetic a method takes: of those meant for fixed steps, the others take none."""
-    if isinstance(method, Stepped):
-        return wanted
-    return wanted if isinstance(method, Taylor) and wanted in ADAPTIVE_ONLY else None
 
 
 def _period(system: str | Formula, parameters: tuple[tuple[str, float], ...]) -> float | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.method.method import Stepped, Taylor
+from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.propagate import propagate
 from canon.flow.run.observables_along import AccuracyWarning
 from canon.kernel.llvm.number_types import EXTENDED
@@ -48,7 +48,7 @@ class Setting:
 
     def turned(self, knob: float) -> Setting:
         """Return the setting with another step or tolerance."""
-        if isinstance(self.method, Stepped):
+        if self.method.engine.takes_step:
             return replace(self, step=knob)
         return replace(self, tolerance=knob)
 

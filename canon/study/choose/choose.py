@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.display import preformatted
-from canon.flow.method.method import FixedStep, Stepped, Taylor
+from canon.flow.method.engine import FICTITIOUS_TIME
+from canon.flow.method.method_text import method_of
 from canon.flow.propagate import propagate
 from canon.scene.scene import Scene, near
 from canon.study.choose.candidate import Candidate, candidate_methods
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.flow.method.method import Method
+    from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
 
@@ -146,7 +148,7 @@ def choose(
     *,
     integral: Expr | None = None,
     parameters: Mapping[Symbol | str, float] | None = None,
-    methods: Sequence[Method] | None = None,
+    methods: Sequence[MethodGiven] | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Choice:
     """Return the cheapest method, step and precision expected to keep an accuracy over a span of time.
@@ -171,7 +173,7 @@ def choose(
     parameters
         Values of parameters; those of a scene are its own unless replaced.
     methods
-        The methods to consider; all that apply if left out.
+        The methods to consider, as values or by name; all that apply if left out.
     progress
         Called with a method's name and the fraction of the candidates that is done.
 
@@ -196,7 +198,7 @@ def choose(
     question, title = _question(system, y0, span, observable, integral, parameters)
     if observable == "energy" and question.hamiltonian.t in question.hamiltonian.H.free_symbols:
         raise StudyError("H depends on t, so its change is no error: choose by observable='position'")
-    considered = tuple(methods) if methods is not None else candidate_methods(question)
+    considered = tuple(map(method_of, methods)) if methods is not None else candidate_methods(question)
     if not considered:
         raise StudyError("no method to choose from: name at least one")
     natural = natural_step(question)
@@ -204,7 +206,7 @@ def choose(
     found: list[Candidate] = []
     for number, method in enumerate(considered):
         cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
-        precision = "compensated" if isinstance(method, Stepped) else "double"
+        precision = method.engine.usual_precision
         found.append(searched(question, method, precision, duration, natural, accuracy, cheapest))
         if progress is not None:
             progress(str(method), (number + 1) / (len(considered) + 1))
@@ -241,11 +243,8 @@ def _in_higher_precision(
     """Return what more digits reach, where the usual ones do not suffice."""
     found: list[Candidate] = []
     for method in considered:
-        if isinstance(method, Taylor):
-            ladder = ("extended", "quad")
-        elif isinstance(method, FixedStep) and method.order >= 8:
-            ladder = ("extended", "double-double")
-        else:
+        ladder = method.engine.wider
+        if method.engine is FICTITIOUS_TIME or (method.engine.takes_step and method.order < 8):
             continue
         if question.observable == "position":  # beyond these no reference is better
             ladder = ladder[:1]

@@ -8,7 +8,7 @@ from dataclasses import replace
 from canon.study.choose.candidate import MARGIN, Candidate, candidate_of, tried_with
 from canon.study.choose.choice_question import Question, Setting
 from canon.study.choose.error_law import order_of
-from canon.study.choose.pilot_run import dop853_share
+from canon.study.choose.pilot_run import pilot_share
 from canon.study.choose.step_search import LONGEST_PILOT
 from canon.study.choose.tolerance_search import ADAPTIVE_MARGIN, last_rung, tolerance_at
 
@@ -50,7 +50,7 @@ def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: 
     """Return the candidate after a longer look: at resonance, and at an error that grows late."""
     if question.span <= duration:
         return chosen
-    longer = min(question.span, CONFIRMING * duration * dop853_share(chosen.method))
+    longer = min(question.span, CONFIRMING * duration * pilot_share(chosen.method))
     if chosen.step is not None:
         longer = min(longer, LONGEST_PILOT * chosen.step)
     setting, resonant = chosen.setting, False

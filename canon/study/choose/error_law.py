@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import nnls
 
-from canon.study.choose.pilot_run import is_symplectic
 from canon.study.drift.drift import FEWEST, Growth, drift
 
 if TYPE_CHECKING:
@@ -68,10 +67,10 @@ def _constant(pilot: Pilot, span: float) -> float:
     """Return the error of what should stay constant: bounded, secular and random parts."""
     ratio = span / pilot.span
     if pilot.t.size < FEWEST:
-        return pilot.bound * (1.0 if is_symplectic(pilot.setting.method) else ratio)
+        return pilot.bound * (1.0 if pilot.setting.method.is_symplectic else ratio)
     found = drift(pilot.t, pilot.mean, diverged=math.inf)
     walk = WALK_FACTOR * found.walk * math.sqrt(ratio)
-    if is_symplectic(pilot.setting.method) and found.verdict not in (Growth.SECULAR, Growth.DIVERGED):
+    if pilot.setting.method.is_symplectic and found.verdict not in (Growth.SECULAR, Growth.DIVERGED):
         return math.hypot(pilot.bound * _widening(pilot, ratio), walk)
     if found.walk and abs(found.slope) < 2.0 * found.slope_error:
         return max(pilot.bound, walk)
@@ -95,7 +94,7 @@ def _position(pilot: Pilot, span: float) -> float:
         return float(whole * (span / pilot.span) ** 2)
     if whole > 2.0**CHAOTIC * half and whole > 1e-14:
         return math.inf
-    symplectic = is_symplectic(pilot.setting.method)
+    symplectic = pilot.setting.method.is_symplectic
     if whole > SATURATED:
         return float(whole * span / pilot.span) if symplectic else math.inf
     powers = np.array([0.5, 1.0] if symplectic else [0.5, 1.0, 2.0])

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.method.method import DOP853, FixedStep, Gauss, Splitting, Stepped, Taylor, TimeTransformed
-from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.flow.method.adaptive_methods import Taylor
+from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, SCIPY
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.study.choose.choice_question import PLACES, Question, Setting
 from canon.study.errors import StudyError
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.trajectory import Trajectory
 
-__all__ = ["Pilot", "dop853_share", "is_symplectic", "natural_step", "pilot", "seconds_per_time"]
+__all__ = ["Pilot", "natural_step", "pilot", "pilot_share", "seconds_per_time"]
 
 WINDOWS = 512
 """Windows a pilot run is looked at in."""
@@ -89,14 +89,9 @@ class Pilot:
         return bool(self.failure) or not self.energy < BEFORE_LOST
 
 
-def is_symplectic(method: Method) -> bool:
-    """Tell whether a method keeps a modified energy, so that its energy error does not grow."""
-    return isinstance(method, Splitting | Gauss | SolvableSplitting | TimeTransformed)
-
-
 def is_seen_inside(method: Method) -> bool:
     """Tell whether the errors of a method are those inside its loop: steps of one size, and no corrector."""
-    return isinstance(method, FixedStep) and not (isinstance(method, SolvableSplitting) and method.corrector)
+    return method.engine is FIXED_STEPS and not (method.solvable and method.solvable.corrector)
 
 
 def pilot(question: Question, setting: Setting, duration: float, windows: int = WINDOWS) -> Pilot:
@@ -113,7 +108,7 @@ def pilot(question: Question, setting: Setting, duration: float, windows: int = 
 
 def seconds_per_time(question: Question, setting: Setting, duration: float) -> float:
     """Return the processor time of the steps per unit of time, the least of a few runs."""
-    if isinstance(setting.method, TimeTransformed):
+    if setting.method.engine is FICTITIOUS_TIME:
         return _seconds_with_landing(question, setting, duration)
     trial = duration / 64.0
     found = question.run(setting, trial, 1)
@@ -159,7 +154,7 @@ def _watched(question: Question, setting: Setting, duration: float, windows: int
 
 def _sampled(question: Question, setting: Setting, duration: float, windows: int) -> Pilot:
     """Follow the error from sample to sample: of stepped methods in windows of many."""
-    stepped = isinstance(setting.method, Stepped)
+    stepped = setting.method.engine.takes_step
     samples = 2 * WINDOWS
     if stepped:
         samples = max(windows, min(SEEN * WINDOWS, math.ceil(duration / setting.knob)))
@@ -184,9 +179,9 @@ def _sampled(question: Question, setting: Setting, duration: float, windows: int
 def _against_reference(question: Question, setting: Setting, duration: float) -> Pilot:
     """Compare coordinates with the reference; a step is adjusted to meet its times."""
     times = None
-    if isinstance(setting.method, TimeTransformed):  # its samples are even in its own time
+    if setting.method.engine is FICTITIOUS_TIME:  # its samples are even in its own time
         times = np.linspace(0.0, duration, PLACES + 1)[1:]
-    elif isinstance(setting.method, FixedStep):
+    elif setting.method.engine is FIXED_STEPS:
         steps = PLACES * max(1, round(duration / setting.knob / PLACES))
         setting = replace(setting, step=duration / steps)
     true, rest = question.positions(duration, setting.precision)
@@ -244,6 +239,6 @@ def natural_step(question: Question, report: Callable[[float], None] = lambda _:
         raise StudyError(f"the motion can't be followed: {failed}") from failed
 
 
-def dop853_share(method: Method) -> float:
-    """Return the part of a pilot's usual duration that suffices where every step is taken in Python."""
-    return 1.0 / 16.0 if isinstance(method, DOP853) else 1.0
+def pilot_share(method: Method) -> float:
+    """Return the part of a pilot's usual duration that suffices: less where every step is taken in Python."""
+    return 1.0 / 16.0 if method.engine is SCIPY else 1.0

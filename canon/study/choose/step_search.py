@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from canon.flow.method.method import Gauss, Stepped, TimeTransformed
-from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.study.choose.candidate import (
     HOPELESS,
     MARGIN,
@@ -83,7 +82,7 @@ def searched(
     cheapest
         Cost of the best candidate so far: the search ends where a method can't come near it.
     """
-    if not isinstance(method, Stepped):
+    if not method.engine.takes_step:
         return searched_tolerance(question, method, precision, duration, accuracy, cheapest)
     # An integral may be kept exactly whatever the step: begin with a large one.
     error = accuracy if question.integral is None else 1.0
@@ -130,7 +129,7 @@ def _ceiling(tried: TriedSetting, natural: float) -> float:
     size, and so may be no longer on average than ordinary ones.
     """
     method = tried.pilot.setting.method
-    if not isinstance(method, TimeTransformed) or not tried.pilot.steps:
+    if method.engine is not FICTITIOUS_TIME or not tried.pilot.steps:
         return math.inf
     return tried.knob * widest_step(method, natural) * tried.pilot.steps / tried.pilot.span
 
@@ -152,25 +151,24 @@ def _cost_at(tried: TriedSetting, step: float) -> float:
     return tried.cost * tried.knob / step
 
 
-def _first_step(method: Stepped, natural: float, accuracy: float, duration: float) -> float:
+def _first_step(method: Method, natural: float, accuracy: float, duration: float) -> float:
     """Return where to begin: as many steps in the natural one as an ordinary error constant asks for.
 
     That of a splitting by solvable parts holds the size of the disturbance, so begin with a large step there.
     """
-    if isinstance(method, SolvableSplitting):
+    if method.family == "solvable":
         widest, order = 2.0 * natural, DISTURBED_ORDER
     else:
         widest, order = widest_step(method, natural), method.order
-    if isinstance(method, TimeTransformed):
+    if method.engine is FICTITIOUS_TIME:
         widest *= SHORTER
     return max(duration / LONGEST_PILOT, widest * min(1.0, (1e3 * accuracy) ** (1.0 / order)))
 
 
-def widest_step(method: Stepped, natural: float) -> float:
+def widest_step(method: Method, natural: float) -> float:
     """Return the step that a method of that many stages may take where accuracy does not matter, about."""
-    return natural * (
-        0.5 + method.stages / (GAUSS_STAGES_A_STEP if isinstance(method, Gauss) else STAGES_A_STEP)
-    )
+    grown = GAUSS_STAGES_A_STEP if method.family == "gauss" else STAGES_A_STEP
+    return natural * (0.5 + method.stages / grown)
 
 
 def _next_knob(

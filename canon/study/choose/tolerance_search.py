@@ -16,7 +16,7 @@ from canon.study.choose.candidate import (
     tried_with,
 )
 from canon.study.choose.choice_question import Question, Setting
-from canon.study.choose.pilot_run import dop853_share
+from canon.study.choose.pilot_run import pilot_share
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
@@ -37,7 +37,7 @@ def searched_tolerance(
 
     The rungs are e² apart, one order of Taylor's method each: in between heyoka's steps are the same.
     """
-    duration *= dop853_share(method)
+    duration *= pilot_share(method)
     aim = accuracy * ADAPTIVE_MARGIN if question.span > duration else accuracy
     last = last_rung(precision)
     good: tuple[int, TriedSetting] | None = None

@@ -10,7 +10,8 @@ import numpy as np
 
 from canon.display import preformatted
 from canon.expression.symbols.user_input import counted
-from canon.flow.method.method import Stepped, Taylor
+from canon.flow.method.adaptive_methods import Taylor
+from canon.flow.method.method_text import method_of
 from canon.flow.propagate import propagate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.study.choose.choice_table import duration_in_words
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.flow.method.method import Method
+    from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
     from canon.scene.scene import Scene
@@ -116,7 +118,7 @@ def work_precision(
     system: Scene | HamiltonianSystem,
     y0: ArrayLike | str | None,
     span: float,
-    methods: Sequence[Method],
+    methods: Sequence[MethodGiven],
     *,
     steps: Iterable[float] = (),
     tolerances: Iterable[float] = (),
@@ -134,7 +136,7 @@ def work_precision(
     span
         Duration in units of time; short enough that the motion can be followed to its end.
     methods
-        The methods.
+        The methods, as values or by name.
     steps, tolerances
         Steps for the methods of fixed step, tolerances for the others.
     precision
@@ -167,7 +169,7 @@ def work_precision(
     if repetitions < 1:
         raise StudyError(f"repetitions = {repetitions}: run each method at least once")
     several = (precision,) if precision is None or isinstance(precision, str) else tuple(precision)
-    trials = _trials(methods, several, tuple(steps), tuple(tolerances))
+    trials = _trials(tuple(map(method_of, methods)), several, tuple(steps), tuple(tolerances))
     subject = subject_of(system, y0, parameters)
     try:
         reference = _run(subject, Trial(REFERENCE, precision="quad"), span, SAMPLES).q[:, -1]
@@ -200,7 +202,7 @@ def _trials(
     """Return what is measured of all methods, of each the precision rising."""
     found: list[Trial] = []
     for method in methods:
-        if isinstance(method, Stepped):
+        if method.engine.takes_step:
             if not steps:
                 raise StudyError(f"{method} takes steps of given sizes: give steps")
             falling = sorted(steps, reverse=True)

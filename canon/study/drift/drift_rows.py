@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.method.method import FixedStep
+from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.number_formats import unit_round_off
 from canon.flow.propagate import propagate
 from canon.flow.run.observables_along import AccuracyWarning
@@ -236,7 +236,7 @@ def _seconds_of_steps(found: Trajectory, run: Run) -> float:
     Keeping a sample costs a method of fixed step as much as a thousand cheap steps do; so a part of the run is
     timed again without samples. Its steps all cost the same.
     """
-    if found.step is None or not isinstance(run.method, FixedStep):
+    if run.method.engine is not FIXED_STEPS or found.step is None:
         return found.cpu_seconds
     part = min(found.steps, TIMED_STEPS)
     again = min(run(part * found.step, 1).cpu_seconds for _ in range(2))

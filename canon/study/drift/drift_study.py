@@ -11,7 +11,9 @@ import numpy as np
 
 from canon.display import preformatted
 from canon.expression.symbols.user_input import counted
-from canon.flow.method.method import RK4, FixedStep, Gauss, Splitting, Stepped, Taylor
+from canon.flow.method.engine import FIXED_STEPS
+from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
+from canon.flow.method.method_text import method_of
 from canon.flow.propagate import is_separable
 from canon.study.drift.drift import FEWEST
 from canon.study.drift.drift_rows import DriftRow, Run, drift_row, drift_rows
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.flow.method.method import Method
+    from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.scene.scene import Scene
     from canon.study.motion.extended_phase_space import Driven
@@ -48,9 +51,6 @@ SAMPLES_PER_PERIOD = 14.0 + GOLDEN
 
 MOST_SAMPLES = 2**17
 """Samples that are kept at most unless more are asked for."""
-
-ADAPTIVE_ONLY = ("extended", "quad")
-"""Precisions that adaptive methods are asked for too."""
 
 BLOCKS_KEPT = 2**13
 """Blocks that a run is judged by where the observables are followed inside the loop."""
@@ -103,7 +103,7 @@ def drift_study(
     system: Scene | HamiltonianSystem,
     y0: ArrayLike | str | None = None,
     *,
-    methods: Sequence[Method] | None = None,
+    methods: Sequence[MethodGiven] | None = None,
     step: float | None = None,
     tolerance: float | None = None,
     periods: float = 1000.0,
@@ -129,8 +129,8 @@ def drift_study(
         Initial state (q, p), shape (2n,), or for a scene the name of a start; a scene's default start if
         left out.
     methods
-        The methods. If left out: Kahan & Li's of order 8 and Verlet's where H = T(p) + V(q), else Gauss's of order 8
-        and 2; RK4; heyoka's Taylor method.
+        The methods, as values or by name. If left out: Kahan & Li's of order 8 and Verlet's where H = T(p) + V(q),
+        else Gauss's of order 8 and 2; RK4; heyoka's Taylor method.
     step
         Step of the methods of fixed step; about a fiftieth of the period if left out.
     tolerance
@@ -179,7 +179,8 @@ def drift_study(
     subject = subject_of(system, y0, parameters)
     timed = driven(subject.hamiltonian) if subject.depends_on_time else None
     hamiltonian = subject.hamiltonian if timed is None else timed.hamiltonian
-    chosen = tuple(methods) if methods is not None else _usual_methods(hamiltonian, subject.values)
+    given = _usual_methods(hamiltonian, subject.values) if methods is None else methods
+    chosen = tuple(map(method_of, given))
     if not chosen:
         raise StudyError("no method to study: name at least one")
     known_period = period if period is not None else subject.period
@@ -197,7 +198,7 @@ def drift_study(
     inside = samples is None and known_period is not None and kept >= MOST_SAMPLES
     rows: list[DriftRow] = []
     for method in chosen:
-        stepped, watched = isinstance(method, Stepped), inside and isinstance(method, FixedStep)
+        stepped, watched = method.engine.takes_step, inside and method.engine is FIXED_STEPS
         run = Run(
             hamiltonian,
             starts,
@@ -206,7 +207,7 @@ def drift_study(
             BLOCKS_KEPT if watched else kept,
             step=h if stepped else None,
             tolerance=None if stepped else tolerance,
-            precision=precision if stepped or precision in ADAPTIVE_ONLY else None,
+            precision=method.engine.understood(precision),
             parameters=subject.values,
             cadence=_cadence(h, known_period) if watched else None,
         )
@@ -275,7 +276,7 @@ def _span(periods: float, period: float | None) -> float:
 def _usual_step(methods: Sequence[Method], period: float | None) -> float | None:
     if period is not None:
         return period / STEPS_PER_PERIOD
-    stepped = [str(method) for method in methods if isinstance(method, Stepped)]
+    stepped = [str(method) for method in methods if method.engine.takes_step]
     if stepped:
         raise StudyError(
             f"{stepped[0]} takes steps of a given size: give step=, or period= to take about a fiftieth of it"

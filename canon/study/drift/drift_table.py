@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from typing import TYPE_CHECKING, Protocol
 
-from canon.flow.method.method import Taylor
+from canon.flow.method.engine import HEYOKA
 from canon.study.drift.drift import Growth
 from canon.study.motion.observables import ENERGY
 
@@ -102,7 +102,7 @@ def drift_table(study: StudiedRows) -> str:
     notes.extend(
         dict.fromkeys(f"{row.method} failed: {row.failure}" for row in study.rows if row.drift is None)
     )
-    if any(isinstance(row.method, Taylor) and row.drift for row in study.rows):
+    if any(row.method.engine is HEYOKA and row.drift for row in study.rows):
         notes.append("evaluations: of the force; for Taylor, of the whole series of its order")
     return "\n".join([study.title, _run(study), "", lines[0], rule, *lines[1:], rule, *notes])
 

@@ -1,0 +1,186 @@
+"""Methods by name, as ``method="kahan-li-8"`` and the command line give them, and as study files write them."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from difflib import get_close_matches
+from fractions import Fraction
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from canon.flow.method.adaptive_methods import DOP853, Taylor
+from canon.flow.method.method import RK4, Gauss, Method, Splitting, TimeTransformed
+from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
+from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
+from canon.kernel.schemes.perturbed_schemes import ABA
+from canon.kernel.schemes.splitting_schemes import SCHEMES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+__all__ = ["MethodGiven", "method_from", "method_named", "method_of"]
+
+MethodGiven = Method | type[Method] | str
+"""How a method may be given: as a value, by its name, or as a class whose arguments all have defaults."""
+
+_EIGHT = range(1, 9)
+"""Stages of SABA and SBAB methods."""
+
+_CHOICES = {"corrector", "commutator", "coordinates"}
+"""What a splitting by solvable parts may say beside its name."""
+
+
+@functools.cache
+def _named() -> dict[str, Callable[[], Method]]:
+    """Return what makes each method that has a name."""
+    return {
+        **{name: partial(Splitting, name) for name in SCHEMES},
+        "rk4": RK4,
+        "taylor": Taylor,
+        "dop853": DOP853,
+        "gauss": Gauss,
+        **{f"gauss-{stages}": partial(Gauss, stages) for stages in range(1, HIGHEST_STAGES + 1)},
+        "wisdom-holman": WisdomHolman,
+        **{f"saba-{stages}": partial(SABA, stages) for stages in _EIGHT},
+        **{scheme.name: partial(SABA, stages) for stages, scheme in ABA.items()},
+        **{f"sbab-{stages}": partial(SBAB, stages) for stages in _EIGHT},
+    }
+
+
+def _folded(name: str) -> str:
+    """Return a name without what is forgiven: case, hyphens, blanks, brackets."""
+    return "".join(letter for letter in name.lower() if letter.isalnum())
+
+
+def method_named(name: str) -> Method:
+    """Return the method of a name; case, hyphens and blanks are forgiven.
+
+    Raises
+    ------
+    ValueError
+        Where there is no such method, with those whose names are near.
+
+    Examples
+    --------
+    >>> method_named("kahan-li-8"), method_named("RK4"), method_named("gauss-6"), method_named("Wisdom Holman")
+    (Splitting('kahan-li-8'), RK4(), Gauss(stages=6), WisdomHolman())
+    >>> method_named("verlets")
+    Traceback (most recent call last):
+        ...
+    ValueError: no method is called 'verlets'; did you mean verlet?
+    """
+    methods = {_folded(known): make for known, make in _named().items()}
+    if (make := methods.get(_folded(name))) is not None:
+        return make()
+    spelled = {_folded(known): known for known in _named()}
+    near = [spelled[each] for each in get_close_matches(_folded(name[:60]), spelled, n=3, cutoff=0.6)]
+    there = f"did you mean {' or '.join(near)}?" if near else f"there are {_those_there_are()}"
+    raise ValueError(f"no method is called {name!r}; {there}")
+
+
+def _those_there_are() -> str:
+    numbered = f"gauss-1 … gauss-{HIGHEST_STAGES}, saba-1 … saba-8, sbab-1 … sbab-8"
+    return f"{', '.join((*SCHEMES, 'rk4', 'taylor', 'dop853', 'wisdom-holman', *_blanes()))}, {numbered}"
+
+
+def _blanes() -> list[str]:
+    return [scheme.name for scheme in ABA.values()]
+
+
+def method_of(given: MethodGiven | None) -> Method:
+    """Return the method that was given as a value, by its name or as a class; Taylor's where none was.
+
+    Raises
+    ------
+    ValueError, TypeError
+        There is no such method, or a class needs arguments.
+
+    Examples
+    --------
+    >>> method_of(None), method_of("verlet"), method_of(RK4), method_of(SABA(4))
+    (Taylor(tolerance=None), Splitting('verlet'), RK4(), SABA(4))
+    """
+    chosen: Any = Taylor() if given is None else given
+    if isinstance(chosen, str):
+        return method_named(chosen)
+    if isinstance(chosen, type) and issubclass(chosen, Method):
+        chosen = _made(chosen)
+    if not isinstance(chosen, Method):
+        raise TypeError(
+            f"method={chosen!r} is no method: give one by name, such as 'verlet' or 'gauss-6', or as a value, such as "
+            "Splitting('kahan-li-8'), Gauss(6) or Taylor()"
+        )
+    return chosen
+
+
+def _made(kind: Any) -> Any:
+    """Return the method of a class whose arguments all have defaults."""
+    needed = [each.name for each in inspect.signature(kind).parameters.values() if each.default is each.empty]
+    if needed:
+        name = kind.__name__
+        raise TypeError(f"method={name} is a class: give a method made of it, {name}({', '.join(needed)})")
+    return kind()
+
+
+def method_from(written: Mapping[str, Any] | str) -> Method:
+    """Return the method of a table in a study file, as a method's ``written`` has it, or of a name alone.
+
+    Raises
+    ------
+    ValueError
+        Where there is no such method.
+
+    Examples
+    --------
+    >>> method_from("kahan-li-8"), method_from("rk4"), method_from({"gauss": 6})
+    (Splitting('kahan-li-8'), RK4(), Gauss(stages=6))
+    >>> method_from({"solvable": "wisdom-holman", "corrector": 3})
+    WisdomHolman(corrector=3)
+    """
+    if isinstance(written, str):
+        return method_named(written)
+    match dict(written):
+        case {"splitting": str() as name, **rest} if not rest:
+            return Splitting(name)
+        case {"splitting": {"a": a, "b": b}, **rest} if not rest:
+            return Splitting(a=[Fraction(x) for x in a], b=[Fraction(x) for x in b])
+        case {"solvable": str() as name, **rest} if set(rest) <= _CHOICES:
+            return _solvable(name, rest)
+        case {"time_transformed": str() | dict() as inner, **rest} if not rest:
+            return _time_transformed(method_from(inner))
+        case {"gauss": int() as stages, **rest} if not rest and stages is not True:
+            return Gauss(stages)
+        case {"rk4": True, **rest} if not rest:
+            return RK4()
+        case {"taylor": True, **rest} if not rest:
+            return Taylor()
+        case {"taylor": float() as tolerance, **rest} if not rest:
+            return Taylor(tolerance)
+        case {"dop853": True, **rest} if not rest:
+            return DOP853()
+        case {"dop853": float() as tolerance, **rest} if not rest:
+            return DOP853(tolerance)
+        case _:
+            known = ", ".join(f"{key} = {value!r}" for key, value in written.items())
+            raise ValueError(
+                f"no method is written {known}; there are names, {_those_there_are()}, and tables, "
+                "{ gauss = stages }, { taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
+                "{ splitting = { a, b } }, "
+                "{ solvable = name, corrector = order, commutator = true, coordinates = name }"
+            )
+
+
+def _time_transformed(inner: Method) -> TimeTransformed:
+    if not isinstance(inner, Splitting):
+        raise ValueError(
+            f"{inner} in transformed time: a study takes the splittings, which need no function g"
+        )
+    return TimeTransformed(inner)
+
+
+def _solvable(name: str, choices: dict[str, Any]) -> Method:
+    makers: dict[str, Any] = {known: make for known, make in _named().items() if make().family == "solvable"}
+    if name not in makers:
+        raise ValueError(f"no splitting by solvable parts is called {name!r}; there are {', '.join(makers)}")
+    return makers[name](**choices)
