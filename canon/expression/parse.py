@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NoReturn, cast
 import sympy as sp
 from sympy import Expr, Rational, Symbol
 
+from canon.expression.latex.undressed import is_latex
 from canon.expression.symbols.magnitude import MOST_DIGITS, digits
 from canon.expression.symbols.symbol import Coordinate
 from canon.expression.symbols.user_input import given_kind
@@ -118,7 +119,7 @@ def syntax_of(text: str, scope: Scope) -> syntax.Node:
     """
     given_kind(text, str, "an expression of the language")
     given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
-    if text.lstrip().startswith("$"):
+    if is_latex(text):
         from canon.expression.latex.grammar import parse_latex  # only here: it loads a parser generator
 
         return _in_place(text, without_units(text, scope), lambda blanked: parse_latex(blanked, scope))

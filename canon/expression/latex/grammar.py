@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 from lark import Lark, Token, Transformer_NonRecursive, UnexpectedToken
 from lark.exceptions import VisitError
 
+from canon.expression.latex.latex_statement import spans
 from canon.expression.latex.meaning import Meaning
 from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered
 from canon.expression.latex.words import Word, Words, words_of
@@ -60,15 +61,15 @@ head: HEAD (_UNDER script)? (CARET script)?
 ?script: ATOM | brace | fraction | root
 ?part: ATOM | brace
 group: LPAR sum (_COMMA sum)* _RPAR
-brace: LBRACE sum _RBRACE
+brace: LBRACE sum (OVER sum)? _RBRACE
 bars: LBAR sum _RBAR
 fraction: FRAC part part
 root: SQRT (_LINDEX sum _RINDEX)? part
 """
 _RELATIONS = {
     **dict.fromkeys(("<", "\\lt"), "<"), **dict.fromkeys((">", "\\gt"), ">"), "=": "=",
-    **dict.fromkeys(("\\le", "\\leq", "\\leqslant"), "<="), **dict.fromkeys(("\\ge", "\\geq", "\\geqslant"), ">="),
-    **dict.fromkeys(("\\ne", "\\neq"), "!="),
+    **dict.fromkeys(("\\le", "\\leq", "\\leqslant", "≤"), "<="),
+    **dict.fromkeys(("\\ge", "\\geq", "\\geqslant", "≥"), ">="), **dict.fromkeys(("\\ne", "\\neq", "≠"), "!="),
 }  # fmt: skip
 _SILENT = ("UNDER", "COMMA", "RPAR", "RBRACE", "RBAR", "LINDEX", "RINDEX")
 
@@ -88,6 +89,7 @@ def _parser() -> Lark:
         "LBAR",
         "FRAC",
         "SQRT",
+        "OVER",
     )
     declared = " ".join((*terminals, *(f"_{kind}" for kind in _SILENT)))
     return Lark(f"{_GRAMMAR}\n%declare {declared}\n", parser="lalr", lexer="basic")
@@ -123,11 +125,25 @@ def parse_latex(text: str, scope: Scope) -> Node:
         ...
     canon.expression.text.tokens.LanguageError: column 12: does this factor still belong to the argument of sin?; ...
     """
-    words = words_of(text, scope)
+    bare, statements = spans(text)
+    if len(statements) > 1:
+        column = statements[1][0].start + 1
+        raise LanguageError(text, column, "a second equation begins here", "write one equation only")
+    (sides,) = statements
     try:
-        return _Build(words, Meaning(text, scope, words.spaced)).transform(_structure(text, words))
+        words = words_of(bare, scope, sides[0].start, sides[-1].end)
+        return _Build(words, Meaning(bare, scope, words.spaced)).transform(_structure(bare, words))
     except VisitError as error:
-        raise error.orig_exc from None
+        raise _of_field(text, error.orig_exc) from None
+    except LanguageError as error:
+        raise _of_field(text, error) from None
+
+
+def _of_field(text: str, error: Exception) -> Exception:
+    """Return an error with the text as it was typed."""
+    if isinstance(error, LanguageError):
+        return LanguageError(text, error.column, error.reason, error.remedy)
+    return error
 
 
 def _structure(text: str, words: Words) -> ParseTree:
@@ -222,8 +238,11 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         pair = Tuple(tuple(self.meaning.node(piece) for piece in inner), opening.column)
         return Group(pair, braces=False, column=opening.column)
 
-    def brace(self, children: list[Any]) -> Group:
-        return Group(children[1], braces=True, column=children[0].column)
+    def brace(self, children: list[Any]) -> Piece:
+        opening, inner, *over = children
+        if over:
+            return self.meaning.fraction(inner, over[1], opening.column)
+        return Group(inner, braces=True, column=opening.column)
 
     def bars(self, children: list[Any]) -> Node:
         return Call("Abs", (self.meaning.node(children[1]),), children[0].column)

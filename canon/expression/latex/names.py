@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
+from itertools import islice, product
 from typing import TYPE_CHECKING, NoReturn, TypeAlias
 
 from canon.expression.text.syntax import LanguageError, Name, Number
@@ -23,18 +23,26 @@ FUNCTIONS = {
     "ln": "log", "log": "log", "max": "Max", "min": "Min",
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arccot": "acot",
     "arsinh": "asinh", "arcosh": "acosh", "artanh": "atanh",
-    "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh", "sgn": "sign",
+    "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh", "sgn": "sign", "abs": "Abs", "Abs": "Abs",
+    "tg": "tan", "ctg": "cot", "arctg": "atan", "cosec": "csc",
     **{name: name for name in ("asin", "acos", "atan", "acot", "asinh", "acosh", "atanh", "sign", "LambertW")},
 }  # fmt: skip
 r"""What ``\sin``, ``\operatorname{arsinh}``, … are called in the plain language."""
 
 _GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu",
           "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta",
-          "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi", "Psi", "Omega", "hbar")  # fmt: skip
+          "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi", "Psi", "Omega", "hbar", "ell")  # fmt: skip
 _VARIANTS = {f"var{name}": name for name in ("epsilon", "theta", "kappa", "pi", "rho", "sigma", "phi")}
+_SHORT = {"lambda": ("lamda", "lam", "lmbda", "lambd"), "theta": ("th",), "epsilon": ("eps",), "varepsilon": ("eps",),
+          "ell": ("l",)}  # fmt: skip
+"""Other names that people declare for a letter; Python keeps ``lambda`` for itself."""
 _RATES = ("", "_dot", "_ddot")
 _MAX_RUN = 100
 """Most letters in a row; more are no product anyone wrote, and splitting them would cost their square."""
+
+
+_MOST_CHOICES = 64
+"""Most spellings of a subscript that are looked up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,15 +82,14 @@ def stems(command: str) -> tuple[str, ...]:
     Examples
     --------
     >>> stems("varphi"), stems("theta"), stems("frac")
-    (('varphi', 'phi'), ('theta',), ())
+    (('varphi', 'phi'), ('theta', 'vartheta', 'th'), ())
     """
     if command in _VARIANTS:
-        return (command, _VARIANTS[command])
-    if command == "lambda":
-        return ("lambda", "lamda")
-    if command == "ell":
-        return ("ell", "l")
-    return (command,) if command in _GREEK else ()
+        return (command, _VARIANTS[command], *_SHORT.get(command, ()))
+    if command not in _GREEK:
+        return ()
+    variant = (f"var{command}",) if f"var{command}" in _VARIANTS and command != "pi" else ()
+    return (command, *variant, *_SHORT.get(command, ()))
 
 
 @dataclass(frozen=True)
@@ -119,17 +126,26 @@ class Names:
         LanguageError
             Where two declared names, such as ``theta1`` and ``theta_1``, would be written alike.
         """
+        others: dict[str, None] = {}
         for stem in stems:
-            found = [name for name in spellings(stem, pieces) if self._has_rate(name, order)]
-            if len(found) > 1:
-                self._refuse(
-                    column, f"this could be {' or '.join(found)}; both are declared", "rename one of them"
-                )
-            if found and found[0] in self.scope.functions:
-                return Applied(found[0], order, dotted, column)
-            if found:
-                return Name(found[0] + _RATES[order], 0, column)
-        return None
+            for choice in islice(product(*pieces), _MOST_CHOICES):
+                found = [name for name in _joined(stem, choice) if self._has_rate(name, order)]
+                if len(found) > 1:
+                    self._both(found, column)
+                if found and stem == stems[0] and all(map(_is_first, choice, pieces)):
+                    return self._named(found[0], order, column, dotted=dotted)
+                others |= dict.fromkeys(found)
+        if len(others) > 1:
+            self._both([*others], column)
+        return self._named(next(iter(others)), order, column, dotted=dotted) if others else None
+
+    def _named(self, name: str, order: int, column: int, *, dotted: bool) -> Name | Applied:
+        if name in self.scope.functions:
+            return Applied(name, order, dotted, column)
+        return Name(name + _RATES[order], 0, column)
+
+    def _both(self, names: list[str], column: int) -> NoReturn:
+        self._refuse(column, f"this could be {' or '.join(names[:3])}; both are declared", "rename one of them")
 
     def _has_rate(self, name: str, order: int) -> bool:
         if name in self.scope.functions:
@@ -160,10 +176,12 @@ class Names:
         whole = self.spelled((letters,), pieces, order, column) or self._mark(letters, 0, column)
         if whole is not None:
             return [whole]
-        if letters in FUNCTIONS:
-            self._refuse(column, f"{letters} is not declared", f"write \\{letters} for the function")
+        if (letters in FUNCTIONS or letters in ("pi", "i")) and not pieces and not order:
+            return [self._spelled_out(letters, column)]
         splits = self._splits(letters, column)
         ends = self._ends(letters, column, pieces, order, splits, powered=powered)
+        if not ends and not pieces and not order and (named := self._before_function(letters, column, splits)):
+            return named
         if not ends:
             self._unknown(letters, column, max(i for i, s in enumerate(splits) if s), pieces, order)
         ways = [[*split, end] for start, end in ends for split in splits[start]]
@@ -171,6 +189,32 @@ class Names:
             shown = " and as ".join(" ".join(_shown(item) for item in way) for way in ways[:2])
             self._refuse(column, f"{letters} can be read as {shown}", "put spaces between the names")
         return ways[0]
+
+    def _spelled_out(self, letters: str, column: int) -> Item:
+        """Return the function, π or imaginary unit that letters without a backslash name, where nothing else can be meant."""
+        splits = self._splits(letters, column)
+        endings = ((start, letters[start:]) for start in range(1, len(letters)) if splits[start])
+        if any(ending in FUNCTIONS or self.spelled((ending,), (), 0, column + start) for start, ending in endings):
+            factors = " ".join(letters)
+            self._refuse(
+                column, f"{letters} can be read as \\{letters} and as {factors}", f"write \\{letters}, or the factors with spaces"
+            )
+        if letters == "i":
+            if self.declares("I"):
+                self._refuse(column, "i is not declared, and I is", "write I for the symbol; the imaginary unit needs a sheet without I")
+            return Name("I", 0, column)
+        return Name("pi", 0, column) if letters == "pi" else Function(FUNCTIONS[letters], column)
+
+    def _before_function(self, letters: str, column: int, splits: list[list[list[Item]]]) -> list[Item]:
+        """Return the names before a function without a backslash, ``mglcos``; nothing if no such thing stands here."""
+        ends = [name for name in FUNCTIONS if letters.endswith(name) and splits[len(letters) - len(name)]]
+        if not ends:
+            return []
+        name = max(ends, key=len)
+        before = splits[len(letters) - len(name)]
+        if len(before) > 1 or len(ends) > 1:
+            self._refuse(column, f"{letters} can be read in several ways", f"put spaces between the names, and write \\{name}")
+        return [*before[0], Function(FUNCTIONS[name], column + len(letters) - len(name))]
 
     def _splits(self, letters: str, column: int) -> list[list[list[Item]]]:
         """Return for each beginning of the run at most two ways to split it into declared names."""
@@ -250,14 +294,18 @@ def spellings(stem: str, pieces: Pieces) -> tuple[str, ...]:
     """Return ``theta_1`` and ``theta1``, and for a subscript of several pieces ``q_1_2`` too."""
     if not pieces:
         return (stem,)
-    return tuple(
-        dict.fromkeys(
-            f"{stem}{gap}{joint.join(choice)}"
-            for choice in product(*pieces)
-            for gap in ("_", "")
-            for joint in ("", "_")
-        )
-    )
+    return tuple(dict.fromkeys(name for choice in islice(product(*pieces), _MOST_CHOICES) for name in _joined(stem, choice)))
+
+
+def _joined(stem: str, choice: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names that stem and subscript can be declared as, ``q_1_2``, ``q_12``, ``q12`` and ``q1_2``."""
+    if not choice:
+        return (stem,)
+    return tuple(dict.fromkeys(f"{stem}{gap}{joint.join(choice)}" for gap in ("_", "") for joint in ("", "_")))
+
+
+def _is_first(spelling: str, among: tuple[str, ...]) -> bool:
+    return spelling == among[0]
 
 
 def _shown(item: Item) -> str:

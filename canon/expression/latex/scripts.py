@@ -6,19 +6,27 @@ import re
 from dataclasses import dataclass
 
 from canon.expression.latex.names import Pieces, stems
+from canon.expression.latex.signs import letter
 from canon.expression.text import syntax
 from canon.expression.text.syntax import LanguageError, Number
 
-__all__ = ["Accented", "Scripts", "accented", "scripts", "upright"]
+__all__ = ["Accented", "Scripts", "accented", "braced_name", "dots_above", "scripts", "upright"]
 
+_FIGURES = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 _BLANK = re.compile(r"\s*")
-_PRIMES = re.compile(r"'+|\^\s*(?:\\prime(?![A-Za-z])|\{(?:\s*\\prime(?![A-Za-z]))+\s*\})")
+_PRIMES = re.compile(r"['’′″]+|\^\s*(?:\\prime(?![A-Za-z])|\{(?:\s*\\prime(?![A-Za-z]))+\s*\})")
 _POWER_BEFORE_SUBSCRIPT = re.compile(r"\^\s*(?:([0-9])|\{([0-9]+)\})\s*(?=_)")
 _UPRIGHT = re.compile(
-    r"\\(?:mathrm|mathit|text|textrm|operatorname)\s*(?:\{\s*([A-Za-z][A-Za-z0-9]*)\s*\}|([A-Za-z]))"
+    r"\\(?:mathrm|mathit|text|textrm|textit|mathsf|mathnormal|operatorname\*?)\s*(?:\{\s*([A-Za-z][A-Za-z0-9]*)\s*\}|([A-Za-z]))"
+    r"|\{\s*\\rm\s*([A-Za-z]+)\s*\}|\{\s*\\mathrm\s*\{?\s*(d)\s*\}?\s*\}"
 )
 _LETTER = re.compile(r"\\([A-Za-z]+)")
 _RUN = re.compile(r"[A-Za-z0-9]+")
+_LOWERED = re.compile(r"[₀-₉]+")
+_DOTS = re.compile("[\u0307\u0308]+")
+_BRACED_NAME = re.compile(
+    r"\{\s*(?:\\(d?dot)\s*)?(?:\{\s*)?((?:\\[A-Za-z]+|[A-Za-z])(?:\s*_\s*(?:\w|\{\s*\w+\s*\}))?)\s*(?:\}\s*)?\}(?=\s*(?:_|'|\^\s*\{?\s*\\prime))"
+)
 _MAX_PIECES = 5
 """Most pieces of one subscript; each may double the names it could mean."""
 
@@ -45,7 +53,7 @@ class Accented:
 def upright(text: str, at: int) -> tuple[str, int] | None:
     r"""Return the word of ``\mathrm{word}`` and where it ends, None if no such thing stands here."""
     match = _UPRIGHT.match(text, at)
-    return (match.group(1) or match.group(2), match.end()) if match else None
+    return (next(filter(None, match.groups())), match.end()) if match else None
 
 
 def scripts(text: str, at: int, end: int) -> Scripts:
@@ -63,8 +71,10 @@ def scripts(text: str, at: int, end: int) -> Scripts:
         here = _blank(text, at)
         if here < end and text[here] == "_" and not pieces:
             pieces, at = _subscript(text, here)
+        elif (lowered := _LOWERED.match(text, at, end)) and not pieces:
+            pieces, at = ((lowered.group().translate(_FIGURES),),), lowered.end()
         elif (match := _PRIMES.match(text, here, end)) and power is None:
-            primes += match.group().count("'") + match.group().count("prime")
+            primes += sum(map(match.group().count, ("'", "’", "′", "″", "″", "prime")))
             at = match.end()
         elif (match := _POWER_BEFORE_SUBSCRIPT.match(text, here, end)) and not pieces and power is None:
             digits = match.group(1) or match.group(2)
@@ -73,6 +83,22 @@ def scripts(text: str, at: int, end: int) -> Scripts:
             power, at = Number(int(digits), 1, here + 1), match.end()
         else:
             return Scripts(pieces, primes, power, at)
+
+
+def dots_above(text: str, at: int, end: int) -> tuple[int, int]:
+    """Return how many of Unicode's dots stand above the letter before, and where they end."""
+    match = _DOTS.match(text, at, end)
+    return (sum(1 if dot == "\u0307" else 2 for dot in match.group()), match.end()) if match else (0, at)
+
+
+def braced_name(text: str, at: int, end: int) -> tuple[tuple[str, ...], Pieces, int, int] | None:
+    r"""Return stems, subscript, dots and end of ``{\dot\theta}`` where a subscript or prime follows, None for any other brace."""
+    match = _BRACED_NAME.match(text, at, end)
+    if match is None:
+        return None
+    order = {None: 0, "dot": 1, "ddot": 2}[match.group(1)]
+    found, after = _base(text, match.start(2), 1)
+    return found, scripts(text, after, match.end(2)).pieces, order, match.end()
 
 
 def accented(text: str, at: int, end: int) -> Accented:
@@ -104,6 +130,8 @@ def _base(text: str, at: int, most: int) -> tuple[tuple[str, ...], int]:
             return found, word[1] if word else command.end()
     elif (run := _RUN.match(text, at)) and not run.group()[0].isdigit():
         return (run.group()[:most],), min(run.end(), at + most)
+    elif at < len(text) and (odd := letter(text[at])) and not odd[1]:
+        return stems(odd[0]) or (odd[0],), at + 1
     raise LanguageError(
         text, at + 1, "a name is missing here", r"an accent belongs over one name, as in \dot{\theta}"
     )
@@ -151,6 +179,8 @@ def _piece(text: str, at: int, most: int) -> tuple[tuple[str, ...], int]:
     command = _LETTER.match(text, at)
     if command and stems(command.group(1)):
         return stems(command.group(1)), command.end()
+    if at < len(text) and (odd := letter(text[at])) and not odd[1]:
+        return stems(odd[0]) or (odd[0],), at + 1
     raise LanguageError(
         text,
         min(at, len(text) - 1) + 1,

@@ -7,7 +7,6 @@ words, digits, nesting. Brackets are matched here too, so the grammar only ever 
 from __future__ import annotations
 
 import re
-import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
@@ -22,9 +21,11 @@ from canon.expression.latex.names import (
     spellings,
     stems,
 )
-from canon.expression.latex.scripts import Scripts, accented, scripts, upright
+from canon.expression.latex.pieces import LatexFraction, Operator
+from canon.expression.latex.scripts import Scripts, accented, braced_name, dots_above, scripts, upright
+from canon.expression.latex.signs import REMEDIES, SIGNS, figure, letter, raised_figures, remedy
 from canon.expression.text import syntax
-from canon.expression.text.syntax import LanguageError, Name, Number
+from canon.expression.text.syntax import LanguageError, Name, Number, Product
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
@@ -32,46 +33,38 @@ if TYPE_CHECKING:
 __all__ = ["Word", "Words", "words_of"]
 
 _SPACE = re.compile(
-    r"(?:\s|~|\\[,;:!>\s]|\\(?:q?quad|thinspace|enspace|displaystyle|limits|nolimits)(?![A-Za-z]))+"
+    r"(?:\s|~|\\[,;:!>/\s]|\\(?:q?quad|thinspace|thickspace|medspace|negthinspace|enspace|displaystyle|limits|nolimits"
+    r"|qty)(?![A-Za-z]))+"
 )
-_THIN = re.compile(r"\s|\\!|\\displaystyle|\\(?:no)?limits")
+_THIN = re.compile(r"\s|\\[!/]|\\displaystyle|\\negthinspace|\\qty|\\(?:no)?limits")
 """The spaces that show no gap in print."""
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
 _RUN = re.compile(r"[A-Za-z][A-Za-z0-9]*")
+_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*_(?=[A-Za-z0-9]*[A-Za-z])[A-Za-z0-9]{2,}(?![A-Za-z0-9_])")
+"""A name as the plain language has it, ``p_theta``, which LaTeX would print otherwise."""
+_PARTIAL = re.compile(r"\\partial\s*(?:\^\s*([2-9])\s*)?_\s*(?:\{([^{}]{1,60})\}|(\\[A-Za-z]+|[A-Za-z]))(?:\s*\^\s*([2-9]))?")
+_OF_SPECIAL_FUNCTIONS = {"W": "LambertW", "K": "elliptic_k", "E": "elliptic_e"}
+"""How SymPy prints them, before \\left( ."""
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
+_COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:[A-Za-z]+(?:\{[^{}]{0,200}\})?|.)", re.DOTALL)
 
-_SIGNS = {
-    "+": "SIGN", "-": "SIGN", "−": "SIGN", "*": "TIMES", "·": "TIMES", "×": "TIMES", "\\cdot": "TIMES",
-    "\\times": "TIMES", "/": "SLASH", "^": "CARET", "_": "UNDER", ",": "COMMA", "\\frac": "FRAC", "\\tfrac": "FRAC",
-    "\\dfrac": "FRAC", "\\cfrac": "FRAC", "\\sqrt": "SQRT",
-    **dict.fromkeys(("=", "<", ">", "\\lt", "\\gt", "\\le", "\\leq", "\\leqslant", "\\ge", "\\geq", "\\geqslant",
-                     "\\ne", "\\neq"), "RELATION"),
-}  # fmt: skip
 _SINGLES = {"CARET": 1, "UNDER": 1, "FRAC": 2, "SQRT": 1}
 """How many arguments may follow without braces, each then one character."""
-_OPEN = {"(": ")", "[": "]", "\\{": "\\}", "\\lbrace": "\\rbrace", "{": "}", "\\lvert": "\\rvert"}
+_OPEN = {"(": ")", "[": "]", "\\{": "\\}", "\\lbrace": "\\rbrace", "{": "}", "\\lvert": "\\rvert", "\\lbrack": "\\rbrack"}
 _SIZES = re.compile(r"\\(?:left|right|middle|[bB]igg?[lrm]?)(?![A-Za-z])\s*")
 _ACCENTS = {"dot": 1, "ddot": 2}
-_DECORATIONS = ("bar", "hat", "tilde")
-_REMEDIES = {
-    "infty": "an expression is finite; write a bound as a condition without it",
-    "pm": "write two claims, one for each sign", "mp": "write two claims, one for each sign",
-    "int": "write the integral out", "sum": "write the sum out", "prod": "write the product out",
-    "begin": "write one expression; Piecewise is spelled without the $",
-    "vec": "write the components", "mathbf": "write the components", "boldsymbol": "write the components",
-    "dddot": "only first and second rates are read", "over": r"write \frac{a}{b}",
-    "approx": "write = for an equation", "equiv": "write = for an equation", "lg": r"write \log_{10}",
-    "nabla": r"write the partial derivatives \frac{\partial V}{\partial x}", "div": "write / or \\frac",
-    "\\": "write one equation only", "%": "comments are not read",
-}  # fmt: skip
-
-
+_DECORATIONS = {"bar": ("bar",), "overline": ("bar",), "hat": ("hat",), "widehat": ("hat",), "tilde": ("tilde",), "widetilde": ("tilde",),
+                "vec": ("vec",), "mathbf": ("vec", "bf"), "boldsymbol": ("vec", "bf"), "bm": ("vec", "bf"),
+                "mathcal": ("cal",), "mathscr": ("scr",), "mathfrak": ("frak",)}  # fmt: skip
+_SQUARED = re.compile(r"\s*\^\s*(?:2|\{\s*2\s*\})|²")
+_MOST_FAULTS = 5
+"""Most faults that are told at once."""
 @dataclass(frozen=True, slots=True)
 class Word:
     """One word: its kind in the grammar, what it means, how it looks and where it stands."""
 
     kind: str
-    item: Item | None
+    item: Item | LatexFraction | Operator | None
     shown: str
     column: int
 
@@ -94,34 +87,54 @@ class _Bracket:
     column: int
 
 
-def words_of(text: str, scope: Scope) -> Words:
-    """Return the words of a LaTeX text that begins with ``$``.
+def words_of(text: str, scope: Scope, start: int = 0, end: int | None = None) -> Words:
+    """Return the words of a formula in LaTeX, which begins and ends at these places of its field.
 
     Raises
     ------
     LanguageError
-        Where the text is too large, not closed, or has something in it that is not read.
+        Where the text is too large, not closed, or has something in it that is not read; all such places are told.
     """
     if len(text) > syntax.MAX_CHARACTERS:
         most = syntax.MAX_CHARACTERS
         raise LanguageError(
             text, most, f"{len(text)} characters, and at most {most} are read", "split the claim"
         )
-    reader = _Reader(text, scope)
-    while reader.at < reader.end:
-        reader.step()
+    reader = _Reader(text, scope, start, len(text) if end is None else end)
+    faults: list[LanguageError] = []
+    while reader.at < reader.end and len(faults) < _MOST_FAULTS:
+        at = reader.at
+        try:
+            reader.step()
+        except LanguageError as error:
+            faults.append(error)
+            reader.passed_over(at)
+    if faults:
+        raise _together(faults)
     if reader.open:
         reader.refuse(reader.open[-1].column, f"{reader.open[-1].shown} is never closed")
     return Words(tuple(reader.words), frozenset(reader.spaced), reader.end + 1)
 
 
+def _together(faults: list[LanguageError]) -> LanguageError:
+    """Return several faults as one, at the column of the first."""
+    first, *others = faults
+    told = dict.fromkeys((first.reason,))
+    also: list[str] = []
+    for fault in others:
+        if fault.reason not in told:
+            told[fault.reason] = None
+            also.append(f"column {fault.column}: {fault.message}")
+    return LanguageError(first.text, first.column, first.reason, "; ".join((first.remedy, *also)).strip("; ")) if also else first
+
+
 class _Reader:
     """Walks through the text once, from left to right."""
 
-    def __init__(self, text: str, scope: Scope) -> None:
+    def __init__(self, text: str, scope: Scope, start: int, end: int) -> None:
         self.text = text
         self.names = Names(text, scope)
-        self.at, self.end = self.inside()
+        self.at, self.end = start, end
         self.words: list[Word] = []
         self.spaced: set[int] = set()
         self.gap = False
@@ -131,17 +144,11 @@ class _Reader:
     def refuse(self, column: int, reason: str, remedy: str = "") -> NoReturn:
         raise LanguageError(self.text, column, reason, remedy)
 
-    def inside(self) -> tuple[int, int]:
-        """Return where the formula begins and ends between its dollars."""
-        start = self.text.index("$")
-        dollars = "$$" if self.text.startswith("$$", start) else "$"
-        start += len(dollars)
-        end = self.text.find("$", start)
-        if end < 0:
-            return start, len(self.text)
-        if self.text[end:].rstrip() != dollars:
-            self.refuse(end + 1, "one formula only is read", "nothing may follow the closing $")
-        return start, end
+    def passed_over(self, at: int) -> None:
+        """Go on behind a word that is not read."""
+        word = _COMMAND_WITH_ARGUMENT.match(self.text, at, self.end) or _RUN.match(self.text, at, self.end)
+        self.at = max(self.at, word.end() if word else at + 1)
+        self.singles = 0
 
     @property
     def last(self) -> str:
@@ -191,6 +198,8 @@ class _Reader:
     def letters(self, run: str) -> None:
         """Read names in roman letters, with subscript and primes where they are not a bare argument."""
         column = self.at + 1
+        if not self.singles and self.spelled_plainly():
+            return
         if self.singles:
             if len(run) > self.singles:
                 self.refuse(
@@ -201,11 +210,32 @@ class _Reader:
             self.put(self.names.run(run, column, (), 0, powered=False), column)
             return
         self.at += len(run)
+        if run in _OF_SPECIAL_FUNCTIONS and self.text.startswith("\\left(", self.at) and not self.names.declares(run):
+            self.put([Function(_OF_SPECIAL_FUNCTIONS[run], column)], column)
+            return
+        if run == "sqrt" and self.follows("({") and not self.names.declares(run):
+            self.put([Function("sqrt", column)], column)
+            return
+        dots, self.at = dots_above(self.text, self.at, self.end)
         after = scripts(self.text, self.at, self.end)
         self.at = after.at
-        items = self.names.run(run, column, after.pieces, after.primes, powered=self.follows("^"))
+        order = dots or after.primes
+        items = self.names.run(run, column, after.pieces, order, powered=self.follows("^"))
         self.put(items, column)
         self.raised(after.power)
+
+    def spelled_plainly(self) -> bool:
+        """Read a declared name as the plain language spells it, ``p_theta`` or ``x_dot``, if one stands here."""
+        match = _PLAIN.match(self.text, self.at, self.end)
+        if match is None or not self.names.declares(match.group()):
+            return False
+        start = self.at
+        self.at = match.end()
+        after = scripts(self.text, self.at, self.end)
+        if after.pieces:
+            return False
+        self.named((match.group(),), start)
+        return True
 
     def put(self, items: list[Item], column: int) -> None:
         for item in items:
@@ -213,9 +243,9 @@ class _Reader:
         start = column - 1
         self.words[-1] = Word(self.last, items[-1], self.text[start : self.at].strip()[:30], items[-1].column)
 
-    def follows(self, character: str) -> bool:
+    def follows(self, characters: str) -> bool:
         space = _SPACE.match(self.text, self.at, self.end)
-        return self.text.startswith(character, space.end() if space else self.at)
+        return self.text.startswith(tuple(characters), space.end() if space else self.at)
 
     def raised(self, power: Number | None) -> None:
         """Write the power that stood before the subscript, as in ``p^2_1``."""
@@ -227,6 +257,8 @@ class _Reader:
         """Write the declared name with these stems, whose text began at ``start`` and has been read to here."""
         column = start + 1
         bare = self.singles > 0
+        if not bare and not order:
+            order, self.at = dots_above(self.text, self.at, self.end)
         after = Scripts((), 0, None, self.at) if bare else scripts(self.text, self.at, self.end)
         if after.pieces and pieces:
             self.refuse(self.at + 1, "a second subscript", "write one, q_{12}")
@@ -257,17 +289,18 @@ class _Reader:
         kind = command[1:]
         if kind in _ACCENTS:
             self.named(under.stems, start, under.pieces, _ACCENTS[kind])
-        else:
-            self.named(
-                tuple(f"{stem}{gap}{kind}" for stem in under.stems for gap in ("", "_")), start, under.pieces
-            )
+            return
+        found = [f"{stem}{gap}{word}" for word in _DECORATIONS[kind] for stem in under.stems for gap in ("", "_")]
+        if "vec" in _DECORATIONS[kind] and _SQUARED.match(self.text, self.at, self.end):
+            found += under.stems  # the square of a vector is that of its length
+        self.named(tuple(found), start, under.pieces)
 
     def upright(self, word: str, start: int) -> None:
         r"""Write the word of ``\mathrm{word}``: d, e and i have their meaning, others are names or functions."""
         column = start + 1
         if word in ("d", "e"):
             self.put([Mark(word, column)], column)
-        elif word == "i":
+        elif word == "i" and not self.names.declares("i"):
             if self.names.declares("I"):
                 self.refuse(
                     column, "the imaginary unit can't be written here: I is declared", "rename the symbol I"
@@ -281,9 +314,11 @@ class _Reader:
     def command(self, command: str) -> None:
         start = self.at
         word = upright(self.text, start)
-        if command in _SIGNS:
+        if command in SIGNS:
             self.at += len(command)
-            self.emit(_SIGNS[command], command, start + 1)
+            self.emit(SIGNS[command], command, start + 1)
+        elif command == "\\partial" and (match := _PARTIAL.match(self.text, self.at, self.end)):
+            self.partial(match)
         elif word:
             self.at = word[1]
             self.upright(word[0], start)
@@ -292,6 +327,9 @@ class _Reader:
             self.named(stems(command[1:]), start)
         elif command[1:] in (*_ACCENTS, *_DECORATIONS):
             self.accent(command)
+        elif command in ("\\dd", "\\diff") or (command == "\\d" and not self.names.declares("d")):
+            self.at += len(command)
+            self.put([Mark("d", start + 1)], start + 1)
         elif command == "\\partial" or command[1:] in FUNCTIONS:
             self.at += len(command)
             column = start + 1
@@ -302,7 +340,7 @@ class _Reader:
             )
             self.put([item], column)
         elif not self.bracket(command, ""):
-            self.refuse(start + 1, f"{command} is not read", _REMEDIES.get(command[1:], ""))
+            self.refuse(start + 1, f"{command} is not read", REMEDIES.get(command[1:], ""))
 
     def delimiter(self, size: str) -> None:
         r"""Read the bracket after ``\left``, ``\bigr`` and the like."""
@@ -352,12 +390,60 @@ class _Reader:
 
     def sign(self, character: str) -> None:
         column = self.at + 1
-        if character in _SIGNS:
+        if character in SIGNS:
             self.at += 1
-            self.emit(_SIGNS[character], character, column)
+            self.emit(SIGNS[character], character, column)
+        elif fraction := figure(character):
+            self.at += 1
+            above, below = (Number(number, 1, column) for number in fraction)
+            item = LatexFraction(Product(((False, above), (True, below)), column), True, column)
+            self.emit("ATOM", character, column, item)
+        elif (figures := raised_figures(self.text, self.at, self.end))[0]:
+            self.raised_by(*figures)
+        elif character == "∂":
+            self.at += 1
+            self.put([Mark("partial", column)], column)
+        elif odd := letter(character):
+            self.at += 1
+            self.named(stems(odd[0]) or (odd[0],), column - 1, (), odd[1])
+        elif character == "{" and not self.singles and (braced := braced_name(self.text, self.at, self.end)):
+            self.at = braced[3]
+            self.named(braced[0], column - 1, braced[1], braced[2])
+        elif character == "{" and not self.singles and (word := upright(self.text, self.at)):
+            self.at = word[1]
+            self.upright(word[0], column - 1)
         elif not self.bracket(character, ""):
             shown = repr(character) if character.isascii() else f"{character!r} (U+{ord(character):04X})"
-            self.refuse(column, f"{shown} is not part of a formula", _remedy(character))
+            self.refuse(column, f"{shown} is not part of a formula", remedy(character))
+
+    def raised_by(self, figures: str, end: int) -> None:
+        """Write the exponent that superscripts of Unicode spell."""
+        column = self.at + 1
+        if len(figures) > syntax.MAX_DIGITS:
+            self.refuse(column, f"a number of more than {syntax.MAX_DIGITS} digits")
+        self.at = end
+        self.emit("CARET", "^", column)
+        number = Number(int(figures.lstrip("-")), 1, column)
+        if figures.startswith("-"):
+            self.emit("LBRACE", "{", column)
+            self.emit("SIGN", "-", column)
+        self.emit("ATOM", figures, column, number)
+        if figures.startswith("-"):
+            self.emit("RBRACE", "}", column)
+        self.singles = 0
+
+    def partial(self, match: re.Match[str]) -> None:
+        r"""Read ``\partial_x``, ``\partial_x^2`` or ``\partial_{xy}``, a derivative that waits for its operand."""
+        column = self.at + 1
+        group = 2 if match.group(2) is not None else 3
+        inside = words_of(self.text, self.names.scope, match.start(group), match.end(group)).words
+        variables = [word.item for word in inside if isinstance(word.item, Name)]
+        order = int(match.group(1) or match.group(4) or 1)
+        if len(variables) < len(inside) or (order > 1 and (len(variables) > 1 or (match.group(1) and match.group(4)))):
+            self.refuse(column, "a derivative with respect to what?", r"write \frac{\partial V}{\partial x}")
+        self.at = match.end()
+        operator = Operator(False, tuple((name, order) for name in variables), column)
+        self.emit("ATOM", match.group(), column, operator)
 
 
 def _undeclared(name: str, column: int) -> Item | None:
@@ -365,20 +451,3 @@ def _undeclared(name: str, column: int) -> Item | None:
     if name == "pi":
         return Name("pi", 0, column)
     return Mark("delta", column) if name == "delta" else None
-
-
-def _remedy(character: str) -> str:
-    """Return what to write instead of a character."""
-    letter = re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (\w+)", unicodedata.name(character, ""))
-    if letter:
-        name = letter.group(2).lower().replace("lamda", "lambda")
-        return f"write \\{name if letter.group(1) == 'SMALL' else name.capitalize()}"
-    return {
-        "'": "a prime belongs directly after the name of a coordinate",
-        ".": "write 0.5 for a decimal, and no full stop at the end",
-        "&": "write one equation only",
-        "!": "there is no factorial",
-        "≤": r"write \le",
-        "≥": r"write \ge",
-        "≠": r"write \ne",
-    }.get(character, "")

@@ -1,0 +1,234 @@
+r"""Undressing of LaTeX: what sets a formula on the page, and says nothing of its meaning, becomes blanks.
+
+``$``, ``\[ \]``, ``\begin{align}``, ``&``, ``\label{…}``, ``\boxed{…}``, ``\tag{1}`` and comments are taken off; each leaves as many
+blanks as it had characters, so that every column stays where it was. What parts two formulas leaves a mark.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import islice
+from typing import NoReturn
+
+from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
+
+__all__ = ["CASES", "PART", "ROW", "is_latex", "undressed"]
+
+ROW, PART = "\x1e", "\x1f"
+r"""What stands in the place of ``\\``, and of the gap between two formulas in dollars."""
+CASES = re.compile(r"\\(begin|end)\s*\{\s*d?cases\s*\}")
+
+_IS_LATEX = re.compile(r"\$|\\(?:[A-Za-z]|[\[(\\{|,;:! ])|[\^_]\{")
+_DISPLAYS = frozenset(
+    ("equation", "align", "aligned", "alignat", "alignedat", "gather", "gathered", "split", "eqnarray", "multline",
+     "multlined", "displaymath", "math", "flalign", "subequations", "array", "center")
+)  # fmt: skip
+_ENVIRONMENT = re.compile(r"\\(begin|end)\s*\{\s*([A-Za-z]+)(\*?)\s*\}(?:\s*\[[tcb]\])?")
+_COLUMNS = re.compile(r"\s*\{[lcr|@{}0-9\s]{0,40}\}")
+_COMMENT = re.compile(r"(?<!\\)%[^\n]*")
+_SAID_OF_THE_PAGE = re.compile(
+    r"\\(?:label|tag\*?|ref|eqref|vspace\*?|hspace\*?|color|vphantom|cite|footnote)\s*\{[^{}]*\}"
+    r"|\\(?:nonumber|notag|displaystyle|textstyle|scriptstyle|centering|noindent|hfill|par|allowbreak|mathstrut|strut"
+    r"|allowdisplaybreaks|medskip|bigskip|smallskip|newline|hline|nobreak|left\s*\.\s*(?=\\left)|relax)(?![A-Za-z])"
+)
+_BROKEN_BRACKET = re.compile(r"\\right\s*\.(?:\s|&|~|\\\\|\\(?:q?quad|nonumber|notag)(?![A-Za-z])|\\[,;:!])*\\left\s*\.")
+_BOX = re.compile(
+    r"\\(?:boxed|fbox|underline|ensuremath|colorbox\s*\{\w*\}|textcolor\s*\{\w*\}|mathclap|mathop)\s*(?=\{)"
+)
+_ROW = re.compile(r"\\\\\*?(?:\s*\[\s*-?[0-9.]+\s*(?:pt|em|ex|mm|cm|in|baselineskip)\s*\])?")
+_DELIMITER = re.compile(r"\$\$?|(?<!\\)\\[\[\]()]")
+_CLOSING = {"$": "$", "$$": "$$", "\\[": "\\]", "\\(": "\\)"}
+_GAP = re.compile(r"[\s,;.:]*(?:and|und|et)?[\s,;.:]*")
+_BRACE = re.compile(r"\\.|[{}]", re.DOTALL)
+_BRACE_OR_EQUALS = re.compile(r"\\.|[{}=]", re.DOTALL)
+_STANDS_ALONE = re.compile(rf"(?:[\s.,;{ROW}{PART}]|\\(?:q?quad|[,;:! ]))*(?:$|\\[a-z]+arrow|\\implies|(?<=[{ROW}{PART};]))")
+_MOST_BOXES = 20
+_SYSTEM_OPENS = re.compile(r"\\left\s*\\(?:\{|lbrace(?![A-Za-z]))(?=\s*\\begin\s*\{\s*(?:array|aligned|gathered)\s*\})")
+_SYSTEM_CLOSES = re.compile(r"(?<=\})\s*\\right\s*\.")
+
+
+def is_latex(text: str) -> bool:
+    r"""Tell whether a text is LaTeX: it holds a dollar, a command such as ``\theta``, or ``^{`` or ``_{``.
+
+    Plain text of the language has none of these.
+
+    Examples
+    --------
+    >>> is_latex(r"\frac12 m \dot x^2"), is_latex("x^{2}"), is_latex("m*x_dot**2/2")
+    (True, True, False)
+    """
+    return _IS_LATEX.search(text) is not None
+
+
+def undressed(text: str) -> str:
+    r"""Return a LaTeX text without what only sets it on the page; every column stays where it was.
+
+    Raises
+    ------
+    LanguageError
+        Where the text is too long, or a display does not end.
+
+    Examples
+    --------
+    >>> undressed(r"\begin{align} x &= 1 \end{align}").strip()
+    'x  = 1'
+    >>> undressed(r"$H = \boxed{p^2}$, ").strip()
+    'H =       {p^2}  ,'
+    """
+    if len(text) > MAX_CHARACTERS:
+        reason = f"{len(text)} characters, and at most {MAX_CHARACTERS} are read"
+        raise LanguageError(text, MAX_CHARACTERS, reason, "split the claim")
+    bare = _COMMENT.sub(_blanks, text) if "%" in text else text
+    bare = _without_delimiters(bare)
+    if "\\" not in bare:
+        return bare
+    bare = _SAID_OF_THE_PAGE.sub(_blanks, bare)
+    bare = _BROKEN_BRACKET.sub(_blanks, bare)
+    if "\\begin" in bare or "\\end" in bare:
+        bare = _without_displays(text, bare)
+    return _unboxed(_rows(bare))
+
+
+def _unboxed(text: str) -> str:
+    r"""Return a text without ``\boxed``; the braces of a box that holds whole equations go too."""
+    boxes = [*islice(_BOX.finditer(text), _MOST_BOXES)]
+    if not boxes:
+        return text
+    closing = _closing_braces(text)
+    signs = [*text]
+    for box in boxes:
+        start, end = box.end(), closing.get(box.end(), -1)
+        signs[box.start() : start] = " " * (start - box.start())
+        if end > 0 and _holds_equations(text[start + 1 : end]) and _STANDS_ALONE.match(text, end + 1):
+            signs[start] = signs[end] = " "
+    return "".join(signs)
+
+
+def _closing_braces(text: str) -> dict[int, int]:
+    """Return for each brace that opens where it is closed."""
+    found: dict[int, int] = {}
+    open_: list[int] = []
+    for match in _BRACE.finditer(text):
+        if match.group() == "{":
+            open_.append(match.start())
+        elif match.group() == "}" and open_:
+            found[open_.pop()] = match.start()
+    return found
+
+
+def _holds_equations(inside: str) -> bool:
+    """Tell whether an equality sign stands in a box outside further braces."""
+    depth = 0
+    for match in _BRACE_OR_EQUALS.finditer(inside):
+        sign = match.group()
+        if sign == "=" and depth == 0:
+            return True
+        depth += (sign == "{") - (sign == "}")
+    return False
+
+
+def _blanks(match: re.Match[str]) -> str:
+    return " " * len(match.group())
+
+
+def _without_delimiters(text: str) -> str:
+    r"""Return a text without ``$``, ``\[ \]``, ``\( \)``; a mark stands in the gap between two formulas."""
+    zones: list[tuple[int, int]] = []
+    opened: re.Match[str] | None = None
+    for match in _DELIMITER.finditer(text):
+        sign = match.group()
+        if opened is None:
+            if sign not in _CLOSING:
+                raise LanguageError(text, match.start() + 1, f"{sign} closes nothing")
+            opened = match
+        elif sign == _CLOSING[opened.group()]:
+            zones.append((opened.start(), match.end()))
+            opened = None
+        elif opened.group() == "$" and sign == "$$":
+            zones.append((opened.start(), match.start() + 1))
+            opened = match
+        else:
+            reason = f"{sign} inside {opened.group()} of column {opened.start() + 1}"
+            raise LanguageError(text, match.start() + 1, reason, f"close it with {_CLOSING[opened.group()]} before")
+    bare = _DELIMITER.sub(_blanks, text)
+    for (_, left), (right, _) in zip(zones[:-1], zones[1:], strict=True):
+        if _GAP.fullmatch(text, left, right) and (right > left or text[left - 2 : left] in ("$$", "\\]")):
+            mark = left if right > left else left - 1
+            bare = bare[:mark] + PART + " " * (right - mark - 1) + bare[right:]
+    return bare
+
+
+def _without_displays(text: str, bare: str) -> str:
+    r"""Return a text without the ``\begin`` and ``\end`` of displays; ``cases`` that are values stay."""
+    bare = _SYSTEM_OPENS.sub(_blanks, bare)
+    pieces: list[str] = []
+    open_: list[tuple[str, int]] = []
+    at = 0
+    for match in _ENVIRONMENT.finditer(bare):
+        word, name = match.group(1), match.group(2)
+        if match.start() < at:
+            continue
+        if word == "begin":
+            open_.append((name, match.start()))
+        elif not open_ or open_[-1][0] != name:
+            raise LanguageError(text, match.start() + 1, f"\\end{{{name[:20]}}} closes nothing")
+        else:
+            open_.pop()
+        if name in ("cases", "dcases"):
+            continue
+        if name not in _DISPLAYS:
+            _refuse_display(text, name, match.start())
+        end = match.end()
+        if word == "begin" and name in ("array", "alignat", "alignedat"):
+            columns = _COLUMNS.match(bare, end)
+            end = columns.end() if columns else end
+        elif word == "end" and name in ("array", "aligned", "gathered"):
+            closing = _SYSTEM_CLOSES.match(bare, end)
+            end = closing.end() if closing else end
+        pieces += (bare[at : match.start()], " " * (end - match.start()))
+        at = end
+    if open_:
+        name, start = open_[-1]
+        raise LanguageError(text, start + 1, f"\\begin{{{name}}} is never closed", f"write \\end{{{name}}} at its end")
+    return "".join((*pieces, bare[at:]))
+
+
+def _refuse_display(text: str, name: str, start: int) -> NoReturn:
+    remedy = "write its components one by one" if name.endswith("matrix") else "write the equations alone"
+    raise LanguageError(text, start + 1, f"\\begin{{{name[:20]}}} is not read", remedy)
+
+
+def _rows(text: str) -> str:
+    r"""Return a text with a mark for each ``\\`` and blanks for each ``&``, except in cases that are values."""
+    kept: list[tuple[int, int]] = []
+    pieces: list[str] = []
+    at = 0
+    depth = 0
+    start = 0
+    for match in CASES.finditer(text):
+        depth += 1 if match.group(1) == "begin" else -1
+        if depth == 1 and match.group(1) == "begin":
+            start = match.start()
+        elif depth == 0:
+            kept.append((start, match.end()))
+    for start, end in [*kept, (len(text), len(text))]:
+        pieces.append(_ROW.sub(lambda m: ROW + " " * (len(m.group()) - 1), text[at:start]).replace("&", " "))
+        inside = text[start:end]
+        pieces.append(_rows(_without_cases(inside)) if _is_system(inside) else inside)
+        at = end
+    return "".join(pieces)
+
+
+def _without_cases(text: str) -> str:
+    r"""Return a text that begins and ends with ``cases`` without these two."""
+    first, last = CASES.match(text), [*CASES.finditer(text)][-1]
+    opening = first.end() if first else 0
+    return " " * opening + text[opening : last.start()] + " " * (len(text) - last.start())
+
+
+def _is_system(cases: str) -> bool:
+    r"""Tell whether the rows of ``cases`` are equations: each has ``=`` before its first ``&`` or right behind it."""
+    if not cases:
+        return False
+    rows = [row for row in _ROW.split(_without_cases(cases)) if row.strip(" ,.;")]
+    return bool(rows) and all(re.search(r"(?<![<>\\!])=", row.split("&")[0] + row.partition("&")[2][:3]) for row in rows)
