@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, NoReturn, cast
 import sympy as sp
 from sympy import Expr, Rational, Symbol
 
-from canon.expression.latex.undressed import is_latex
 from canon.expression.symbols.magnitude import MOST_DIGITS, digits
 from canon.expression.symbols.symbol import Coordinate
 from canon.expression.symbols.user_input import given_kind
 from canon.expression.text import syntax
 from canon.expression.text.juxtaposition import parse_juxtaposed
+from canon.expression.text.notation import is_latex
 from canon.expression.text.scope import Scope
-from canon.expression.text.statement import Side, Statement, plain_statements
+from canon.expression.text.statement import Statement, plain_statements
 from canon.expression.text.syntax import LanguageError, parse_syntax
 from canon.expression.text.units import without_units
 from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, MAX_CHOICES, RELATIONS
@@ -143,8 +143,10 @@ def statements_of(text: str, scope: Scope) -> tuple[Statement, ...]:
     """
     given_kind(text, str, "an expression of the language")
     given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
-    if text.lstrip().startswith("$"):
-        return (Statement((Side(text),)),)
+    if is_latex(text):
+        from canon.expression.latex.latex_statement import latex_statements  # only here, as above
+
+        return latex_statements(text)
     return plain_statements(text)
 
 

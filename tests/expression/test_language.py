@@ -127,7 +127,7 @@ def test_conditions_and_equations():
         ("x := 1", 3, "lambdas"),
         ("x = 1", 1, "comparison"),
         ("x; x", 2, "not part"),
-        ("x\\x", 2, "not part"),
+        ("x\\x", 2, "not read"),
         ("x ^ 2", 3, "write **"),
         ("2 x", 3, "an operator is missing"),
         ("(x", 1, "never closed"),

@@ -8,19 +8,20 @@ Conventions
 -----------
 * ``a b`` is a product; ``mgl`` is m g l where these are declared and ``mgl`` is not.
 * A function without brackets takes the factors that follow it, up to the next sign, operator or function:
-  ``\sin 2\theta`` is sin(2θ), ``\sin\theta\cos\theta`` is sin(θ) cos(θ), ``\cos\omega t`` is cos(ω t). Only
-  numbers and parameters may stand before the last of these factors; ``\sin\theta\,x``, ``\sin\theta\dot\theta``,
-  ``\sin a(b+c)``, ``\sin\theta^2`` and ``\sin\theta/2`` are refused.
+  ``\sin 2\theta`` is sin(2θ), ``\sin\theta\cos\theta`` is sin(θ) cos(θ), ``\cos\omega t`` is cos(ω t). Behind a
+  coordinate it takes no velocity, ``\sin\theta\dot\theta`` is sin(θ) θ̇, and behind an angle no bracket. Only numbers
+  and parameters may stand before the last of these factors; ``\sin\theta\,x``, ``\sin\alpha x``, ``\sin a(b+c)``,
+  ``\sin\theta^2`` and ``\sin\theta/2`` are refused.
 * With brackets or braces it takes exactly these: ``\sin(a)b`` is sin(a) b, ``\sin(a)^2`` is sin(a)².
 * ``\sin^2 x`` is sin(x)², ``\sin^{-1}x`` the inverse function; ``\log`` is the natural logarithm.
 * Braces are not seen in print: ``{x^a}^b`` and ``\frac{a}{b}^2`` are refused.
-* ``a/b c`` is refused; ``\frac{d}{dt}`` is read of coordinates and of functions of the time only.
+* ``a/b c`` is refused; ``p^2/2m`` and ``g/l\sin\theta`` are read as :mod:`canon.expression.latex.quotient` tells.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from lark import Lark, Token, Transformer_NonRecursive, UnexpectedToken
 from lark.exceptions import VisitError
@@ -28,6 +29,7 @@ from lark.exceptions import VisitError
 from canon.expression.latex.latex_statement import spans
 from canon.expression.latex.meaning import Meaning
 from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered
+from canon.expression.latex.quotient import dividing, shown
 from canon.expression.latex.words import Word, Words, words_of
 from canon.expression.text.syntax import (
     Call,
@@ -101,7 +103,7 @@ def parse_latex(text: str, scope: Scope) -> Node:
     Parameters
     ----------
     text
-        The formula; it begins with ``$``, which need not be closed.
+        The formula, with or without ``$``, ``\[ \]`` or a display around it.
     scope
         The declared names; ``\theta_1`` is ``theta_1`` or ``theta1``, ``\varphi`` is ``varphi`` or ``phi``,
         whichever is declared.
@@ -120,16 +122,16 @@ def parse_latex(text: str, scope: Scope) -> Node:
     >>> formula = parse_equation(r"$\ddot\theta + \frac{g}{l}\sin\theta = 0$", scope)
     >>> formula == parse_equation("theta_ddot + g/l*sin(theta)", scope)
     True
-    >>> parse_equation(r"$\sin\theta\dot\theta = 0$", scope)
+    >>> parse_equation(r"$\sin\theta l = 0$", scope)
     Traceback (most recent call last):
         ...
-    canon.expression.text.tokens.LanguageError: column 12: does this factor still belong to the argument of sin?; ...
+    canon.expression.text.tokens.LanguageError: column 13: does this factor still belong to the argument of sin? sin(theta) l or ...
     """
     bare, statements = spans(text)
-    if len(statements) > 1:
-        column = statements[1][0].start + 1
+    sides, *others = statements
+    if others:
+        column = others[0][0].start + 1
         raise LanguageError(text, column, "a second equation begins here", "write one equation only")
-    (sides,) = statements
     try:
         words = words_of(bare, scope, sides[0].start, sides[-1].end)
         return _Build(words, Meaning(bare, scope, words.spaced)).transform(_structure(bare, words))
@@ -199,16 +201,29 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             items = _items(piece)
             divides = before is not None and before.kind == "SLASH"
             found = self.meaning.factors(items)
-            if divides and before and len(found) > 1:
-                self.meaning.refuse(
-                    before.column, "does the quotient end after one factor?", r"write \frac{a}{b} or a/(b c)"
-                )
+            if divides and before:
+                above = [node for _, node in factors]
+                last = dividing(above, items, found, self.meaning.ends)
+                if last is None:
+                    self.open_quotient(before, above, found)
+                factors += [(number < last, node) for number, node in enumerate(found)]
+                found = []
             if after and after.kind == "SLASH" and self.meaning.ends_bare(items):
                 self.meaning.refuse(
                     after.column, "does this divide the function or its argument?", r"write \frac{a}{b}"
                 )
             factors += [(divides, node) for node in found]
         return Product(tuple(factors), children[0].column)
+
+    def open_quotient(self, slash: Word, above: list[Node], below: list[Node]) -> NoReturn:
+        """Refuse a quotient of which it is open where it ends, with both readings."""
+        over, first, rest, all_ = shown(above[-1:]), shown(below[:1]), shown(below[1:]), shown(below)
+        readings = f"({over}/{first}) {rest} or {over}/({all_})"
+        self.meaning.refuse(
+            slash.column,
+            f"does the quotient end after one factor? {over}/{first} {rest} can be {readings}",
+            rf"write \frac{{{over}}}{{{first}}} {rest} or \frac{{{over}}}{{{all_}}}, whichever is meant",
+        )
 
     def run(self, children: list[Any]) -> FactorRun:
         return FactorRun(tuple(children), children[0].column)

@@ -1,6 +1,7 @@
 r"""Statements in LaTeX: a field taken apart at ``\\``, ``\Rightarrow``, commas between equations, and equality signs.
 
-Nothing is read here; each side keeps its columns. A row of a display that begins with ``=`` or with a sign goes on with the row before.
+Nothing is read here; each side keeps its columns. A row of a display that begins with ``=`` or with a sign goes on with
+the row before.
 """
 
 from __future__ import annotations
@@ -11,31 +12,42 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from canon.expression.latex.undressed import CASES, PART, ROW, undressed
+from canon.expression.text.statement import Side, Statement
 from canon.expression.text.tokens import LanguageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Span", "spans", "spelled_plainly"]
+__all__ = ["Span", "latex_statements", "spans", "spelled_plainly"]
 
 MAX_SIDES = 100
 """Most sides in one field."""
 _SEEN = 60
 """Characters that are looked at on either side of a cut."""
-_ARROWS = "Rightarrow|Longrightarrow|implies|iff|Leftrightarrow|Longleftrightarrow|therefore|leadsto|rightarrow|longrightarrow"
+_ARROWS = "Rightarrow|Longrightarrow|implies|iff|Leftrightarrow|Longleftrightarrow|therefore|rightarrow|longrightarrow"
 _TOKEN = re.compile(
     r"\\(?:begin|end)\s*\{\s*d?cases\s*\}"
     rf"|\\(?:{_ARROWS})(?![A-Za-z])"
-    r"|\\(?:text|textrm|mbox|mathrm|textit)\s*\{[\s,;~]*(?:and|und|et|y|e|thus|so|hence|or equivalently|then|with|i\.e\.)?[\s,;:~]*\}"
+    r"|\\(?:text|textrm|mbox|mathrm|textit)\s*\{[\s,;~]*(?:and|und|et|thus|so|hence|then|i\.e\.)[\s,;:~]*\}"
     r"|\\(?:stackrel|overset)\s*\{[^{}]{0,20}\}\s*\{\s*=\s*\}"
-    r"|\\(?:equiv|coloneqq|triangleq|doteq|q?quad|left|right|lbrace|rbrace)(?![A-Za-z])|\\[A-Za-z]+|\\.|:=|[=<>!]=|[-\w⇒∴=≡(){}\[\],;\n" + ROW + PART + "]",
+    r"|\\(?:equiv|coloneqq|triangleq|doteq|q?quad|left|right|lbrace|rbrace)(?![A-Za-z])|\\[A-Za-z]+|\\.|:=|[=<>!]=|[-\w⇒∴=≡(){}\[\],;\n"
+    + ROW
+    + PART
+    + "]",
     re.DOTALL,
 )
 _OPENS, _CLOSES = ("(", "[", "{", "\\{", "\\lbrace"), (")", "]", "}", "\\}", "\\rbrace")
 _EQUALS = ("=", ":=", "==", "≡", "\\equiv", "\\coloneqq", "\\triangleq", "\\doteq")
-_CONTINUES = re.compile(r"(?:\s|\\q?quad|\\[,;:! ]|[{}])*(?:=|[-+−*/·×)\]^]|\\(?:equiv|cdot|times|right|[lg]eq?|approx|simeq)(?![A-Za-z])|[<>])")
-_GOES_ON = re.compile(r"(?:=|[-+−*/·×(\[]|\\(?:equiv|cdot|times|left\s*[(\[])(?![A-Za-z]))(?:\s|\\q?quad|\\[,;:! ])*$")
-_RELATION_FIRST = re.compile(r"(?:\s|\\q?quad|\\[,;:! ])*(?:=|\\equiv(?![A-Za-z])|[<>]|\\[lg]eq?(?![A-Za-z]))")
+_CONTINUES = re.compile(
+    r"(?:\s|\\q?quad|\\[,;:! ]|[{}])*"
+    r"(?:=|[-+−*/·×)\]^]|\\(?:equiv|cdot|times|right|[lg]eq?|approx|simeq)(?![A-Za-z])|[<>])"
+)
+_GOES_ON = re.compile(
+    r"(?:=|[-+−*/·×(\[]|\\(?:equiv|cdot|times|left\s*[(\[])(?![A-Za-z]))(?:\s|\\q?quad|\\[,;:! ])*$"
+)
+_RELATION_FIRST = re.compile(
+    r"(?:\s|\\q?quad|\\[,;:! ])*(?:=|\\equiv(?![A-Za-z])|[<>]|\\[lg]eq?(?![A-Za-z]))"
+)
 _ENDS = re.compile(r"(?:[\s.,;~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\\\)*$")
 _BEGINS = re.compile(r"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z]))*")
 
@@ -55,6 +67,29 @@ class _Cut:
     kind: str
     start: int
     end: int
+
+
+def latex_statements(text: str) -> tuple[Statement, ...]:
+    r"""Return the statements of a field in LaTeX, each side with ``$`` before it where there is a place for it.
+
+    Raises
+    ------
+    LanguageError
+        Where a display does not end, or there are more sides than anyone writes in one field.
+
+    Examples
+    --------
+    >>> [[side.said for side in s.sides] for s in latex_statements(r"$\dot q = p$, $\dot p = -q$")]
+    [["q'", 'p'], ["p'", '-q']]
+    """
+    bare, statements = spans(text)
+    return tuple(Statement(tuple(_side(bare, span) for span in sides)) for sides in statements)
+
+
+def _side(bare: str, span: Span) -> Side:
+    piece = bare[span.start : span.end]
+    before = re.sub(r"\S", " ", bare[: span.start])
+    return Side(f"{before[:-1]}$" + piece if before else piece, spelled_plainly(piece))
 
 
 def spans(text: str) -> tuple[str, tuple[tuple[Span, ...], ...]]:
@@ -78,7 +113,9 @@ def spans(text: str) -> tuple[str, tuple[tuple[Span, ...], ...]]:
     equals = [cut for cut in found if cut.kind == "="]
     parts = _parts(bare, found, [cut.start for cut in equals])
     if len(equals) + len(parts) > MAX_SIDES:
-        reason = f"{len(equals) + len(parts)} sides of equations, and at most {MAX_SIDES} are read in one field"
+        reason = (
+            f"{len(equals) + len(parts)} sides of equations, and at most {MAX_SIDES} are read in one field"
+        )
         raise LanguageError(text, 1, reason, "split the claim")
     statements: list[tuple[Span, ...]] = []
     for start, end in parts:
@@ -86,9 +123,9 @@ def spans(text: str) -> tuple[str, tuple[tuple[Span, ...], ...]]:
         starts = [start, *(cut.end for cut in inside)]
         ends = [*(cut.start for cut in inside), end]
         sides = tuple(_trimmed(bare, a, b) for a, b in zip(starts, ends, strict=True))
-        if len(sides) > 1 or sides[0].start < sides[0].end:
+        if inside or bare[start:end].strip(" .,;"):
             statements.append(sides)
-    return _clean(bare, equals), tuple(statements) or ((_trimmed(bare, 0, len(bare)),),)
+    return _clean(bare, equals), tuple(statements or [(_trimmed(bare, 0, len(bare)),)])
 
 
 def _clean(bare: str, equals: Sequence[_Cut] = ()) -> str:
@@ -143,7 +180,7 @@ def _kind(sign: str) -> str:
         return sign
     if sign in ("\\quad", "\\qquad"):
         return "gap"
-    return "arrow" if sign.startswith(("\\text", "\\mbox", "\\mathrm")) and "{" in sign else ""
+    return "gap" if sign.startswith(("\\text", "\\mbox", "\\mathrm")) and "{" in sign else ""
 
 
 def _parts(bare: str, cuts: list[_Cut], signs: list[int]) -> list[tuple[int, int]]:
@@ -187,7 +224,7 @@ def spelled_plainly(side: str) -> str:
 
     Examples
     --------
-    >>> spelled_plainly(r"\dot{p}_{\theta}"), spelled_plainly(r"F_{2}(q, P)"), spelled_plainly(r"\left\{ L_z , x \right\}")
+    >>> spelled_plainly(r"\dot{p}_{\theta}"), spelled_plainly(r"F_{2}(q, P)"), spelled_plainly(r"\{ L_z , x \}")
     ("p_theta'", 'F_2(q,P)', '{L_z,x}')
     >>> spelled_plainly(r"\frac{\mathrm{d}\mathcal{H}}{\mathrm{d}t}")
     'dH/dt'
@@ -210,7 +247,10 @@ _SPELLINGS = tuple(
     (re.compile(pattern), spelling)
     for pattern, spelling in (
         (r"\\(?:left|right|[bB]igg?[lrm]?|displaystyle|limits|,|;|:|!|quad|qquad| )(?![A-Za-z])", ""),
-        (r"\\(?:mathrm|operatorname|text|mathit|mathcal|mathscr|mathfrak|mathbf|boldsymbol|rm|bm)\s*\{\s*(\w+)\s*\}", r"\1"),
+        (
+            r"\\(?:mathrm|operatorname|text|mathit|mathcal|mathscr|mathfrak|mathbf|boldsymbol|rm|bm)\s*\{\s*(\w+)\s*\}",
+            r"\1",
+        ),
         (r"\\(?:mathrm|mathcal|mathscr|mathbf)\s*(\w)", r"\1"),
         (r"\\(?:hat|vec|widehat|overline)\s*(?:\{\s*(\w+)\s*\}|(\w))", r"\1\2"),
         (r"\\partial(?![A-Za-z])", "∂"),

@@ -11,6 +11,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, NoReturn
 
+from canon.expression.latex.argument_end import ArgumentEnd
 from canon.expression.latex.derivatives import Derivatives, derivative
 from canon.expression.latex.names import Applied, Function, Mark
 from canon.expression.latex.pieces import (
@@ -24,10 +25,10 @@ from canon.expression.latex.pieces import (
     is_function,
     is_minus_one,
     items_of,
-    names_in,
     raised,
     unbraced,
 )
+from canon.expression.latex.quotient import shown
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Power, Product, Tuple
 
@@ -59,6 +60,11 @@ class Meaning:
     text: str
     scope: Scope
     spaced: frozenset[int]
+
+    @cached_property
+    def ends(self) -> ArgumentEnd:
+        """What knows where arguments end."""
+        return ArgumentEnd(self.scope, self.spaced)
 
     @cached_property
     def derivatives(self) -> Derivatives:
@@ -97,6 +103,7 @@ class Meaning:
 
     def factors(self, items: tuple[Piece, ...]) -> list[Node]:
         """Return the factors of pieces side by side."""
+        items = self._without_time(items)
         for left, right in pairwise(items):
             self._neighbours(left, right)
         found: list[Node] = []
@@ -117,6 +124,28 @@ class Meaning:
             found.append(node)
         return found
 
+    def _without_time(self, items: tuple[Piece, ...]) -> tuple[Piece, ...]:
+        r"""Return factors without the time in ``\theta(t)``, ``\dot\theta(t)^2``, ``\theta^{2}{\left(t \right)}``."""
+        found: list[Piece] = []
+        for item in items:
+            base, exponent = (item.base, item.exponent) if isinstance(item, Powered) else (item, None)
+            before = found[-1] if found else None
+            name = before.base if isinstance(before, Powered) and exponent is None else before
+            if not (isinstance(name, Name) and self._is_time(base) and self._has_rate_or_is_momentum(name)):
+                found.append(item)
+            elif exponent is not None:
+                found[-1] = Powered(name, exponent, name.column)
+        return tuple(found)
+
+    def _is_time(self, piece: Piece) -> bool:
+        """Whether a piece is the time in brackets."""
+        inner = unbraced(piece)
+        inside = unbraced(inner.inner) if isinstance(inner, Group) else None
+        return isinstance(inside, Name) and inside.text == self.scope.time.name
+
+    def _has_rate_or_is_momentum(self, name: Name) -> bool:
+        return isinstance(self.scope.symbol(name.text), Coordinate | Momentum | Rate)
+
     def _neighbours(self, left: Piece, right: Piece) -> None:
         """Refuse two factors that side by side look like something else."""
         column = right.column
@@ -131,9 +160,7 @@ class Meaning:
             )
         inner = first.inner if isinstance(left, Name) and isinstance(first, Group) else None
         if isinstance(left, Name) and isinstance(inner, Tuple | Number | Name):
-            symbol = self.scope.symbol(left.text)
-            time = isinstance(inner, Name) and inner.text == self.scope.time.name
-            if time and isinstance(symbol, Coordinate | Rate):
+            if isinstance(inner, Name) and inner.text == self.scope.time.name:
                 reason = f"{left.text} is a symbol here, its dependence on the time is understood"
                 self.refuse(column, reason, "leave the argument out")
             reason = f"{left.text} is a declared symbol and can't be applied to anything"
@@ -178,15 +205,13 @@ class Meaning:
         """Return the argument that a function without brackets takes, and where it ends."""
         end = at + 1
         taken: list[Node] = []
-        numeric, moving = True, False
+        numeric = True
         while end < len(items) and not is_function(items[end]) and not isinstance(items[end], Operator):
             item = items[end]
-            if not numeric and (moving or item.column in self.spaced or not self._still_argument(item)):
-                self.refuse(
-                    item.column,
-                    f"does this factor still belong to the argument of {function.name}?",
-                    f"write \\{function.name}(x) y or \\{function.name}(x y), or this factor first",
-                )
+            if not numeric and self.ends.lies_before(taken, item):
+                break
+            if not numeric and not self.ends.goes_on(taken, item):
+                self._open(item, taken, function)
             if isinstance(item, Head) and isinstance(item.function, Applied):
                 node, end = self._declared(items, end, item, item.function)
             elif isinstance(item, Mark):
@@ -194,9 +219,7 @@ class Meaning:
             else:
                 node, end = self.node(item), end + 1
             taken.append(node)
-            names = {name.text for name in names_in(node)}
-            numeric = numeric and all(name == "pi" and self.scope.symbol(name) is None for name in names)
-            moving = moving or any(self._moves(name) for name in names)
+            numeric = numeric and self.ends.is_numeric(node)
         if not taken:
             self.refuse(items[at].column, f"{function.name} needs its argument")
         last = items[end - 1]
@@ -212,17 +235,16 @@ class Meaning:
             return taken[0], end
         return Product(tuple((False, node) for node in taken), taken[0].column), end
 
-    def _still_argument(self, item: Piece) -> bool:
-        """Whether a factor after a parameter continues an argument: a name, not a rate."""
-        base = item.base if isinstance(item, Powered) else item
-        return isinstance(base, Name) and not isinstance(self.scope.symbol(base.text), Rate)
-
-    def _moves(self, name: str) -> bool:
-        symbol = self.scope.symbol(name)
-        return (
-            symbol == self.scope.time
-            or name in self.scope.functions
-            or isinstance(symbol, Coordinate | Momentum | Rate)
+    def _open(self, item: Piece, taken: list[Node], function: Function) -> NoReturn:
+        """Refuse a factor that may or may not belong to an argument, with both readings."""
+        name, argument = function.name, shown(taken)
+        factor = unbraced(item.base if isinstance(item, Powered) else item)
+        symbol = shown([factor]) if isinstance(factor, Name) else "(…)"
+        outside, inside = f"{name}({argument}) {symbol}", f"{name}({argument} {symbol})"
+        self.refuse(
+            item.column,
+            f"does this factor still belong to the argument of {name}? {outside} or {inside}",
+            f"write \\{outside} or \\{inside}, whichever is meant",
         )
 
     def _ambiguous_power(self, piece: Powered, function: Function) -> NoReturn:

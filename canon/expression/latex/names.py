@@ -145,7 +145,9 @@ class Names:
         return Name(name + _RATES[order], 0, column)
 
     def _both(self, names: list[str], column: int) -> NoReturn:
-        self._refuse(column, f"this could be {' or '.join(names[:3])}; both are declared", "rename one of them")
+        self._refuse(
+            column, f"this could be {' or '.join(names[:3])}; both are declared", "rename one of them"
+        )
 
     def _has_rate(self, name: str, order: int) -> bool:
         if name in self.scope.functions:
@@ -180,7 +182,12 @@ class Names:
             return [self._spelled_out(letters, column)]
         splits = self._splits(letters, column)
         ends = self._ends(letters, column, pieces, order, splits, powered=powered)
-        if not ends and not pieces and not order and (named := self._before_function(letters, column, splits)):
+        if (
+            not ends
+            and not pieces
+            and not order
+            and (named := self._before_function(letters, column, splits))
+        ):
             return named
         if not ends:
             self._unknown(letters, column, max(i for i, s in enumerate(splits) if s), pieces, order)
@@ -191,17 +198,25 @@ class Names:
         return ways[0]
 
     def _spelled_out(self, letters: str, column: int) -> Item:
-        """Return the function, π or imaginary unit that letters without a backslash name, where nothing else can be meant."""
+        """Return the function, π or imaginary unit that letters without a backslash name, if they mean nothing else."""
         splits = self._splits(letters, column)
         endings = ((start, letters[start:]) for start in range(1, len(letters)) if splits[start])
-        if any(ending in FUNCTIONS or self.spelled((ending,), (), 0, column + start) for start, ending in endings):
+        if any(
+            ending in FUNCTIONS or self.spelled((ending,), (), 0, column + start) for start, ending in endings
+        ):
             factors = " ".join(letters)
             self._refuse(
-                column, f"{letters} can be read as \\{letters} and as {factors}", f"write \\{letters}, or the factors with spaces"
+                column,
+                f"{letters} can be read as \\{letters} and as {factors}",
+                f"write \\{letters}, or the factors with spaces",
             )
         if letters == "i":
             if self.declares("I"):
-                self._refuse(column, "i is not declared, and I is", "write I for the symbol; the imaginary unit needs a sheet without I")
+                self._refuse(
+                    column,
+                    "i is not declared, and I is",
+                    "write I for the symbol; the imaginary unit needs a sheet without I",
+                )
             return Name("I", 0, column)
         return Name("pi", 0, column) if letters == "pi" else Function(FUNCTIONS[letters], column)
 
@@ -213,7 +228,11 @@ class Names:
         name = max(ends, key=len)
         before = splits[len(letters) - len(name)]
         if len(before) > 1 or len(ends) > 1:
-            self._refuse(column, f"{letters} can be read in several ways", f"put spaces between the names, and write \\{name}")
+            self._refuse(
+                column,
+                f"{letters} can be read in several ways",
+                f"put spaces between the names, and write \\{name}",
+            )
         return [*before[0], Function(FUNCTIONS[name], column + len(letters) - len(name))]
 
     def _splits(self, letters: str, column: int) -> list[list[list[Item]]]:
@@ -294,14 +313,20 @@ def spellings(stem: str, pieces: Pieces) -> tuple[str, ...]:
     """Return ``theta_1`` and ``theta1``, and for a subscript of several pieces ``q_1_2`` too."""
     if not pieces:
         return (stem,)
-    return tuple(dict.fromkeys(name for choice in islice(product(*pieces), _MOST_CHOICES) for name in _joined(stem, choice)))
+    return tuple(
+        dict.fromkeys(
+            name for choice in islice(product(*pieces), _MOST_CHOICES) for name in _joined(stem, choice)
+        )
+    )
 
 
 def _joined(stem: str, choice: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names that stem and subscript can be declared as, ``q_1_2``, ``q_12``, ``q12`` and ``q1_2``."""
     if not choice:
         return (stem,)
-    return tuple(dict.fromkeys(f"{stem}{gap}{joint.join(choice)}" for gap in ("_", "") for joint in ("", "_")))
+    return tuple(
+        dict.fromkeys(f"{stem}{gap}{joint.join(choice)}" for gap in ("_", "") for joint in ("", "_"))
+    )
 
 
 def _is_first(spelling: str, among: tuple[str, ...]) -> bool:

@@ -92,7 +92,7 @@ def dots_above(text: str, at: int, end: int) -> tuple[int, int]:
 
 
 def braced_name(text: str, at: int, end: int) -> tuple[tuple[str, ...], Pieces, int, int] | None:
-    r"""Return stems, subscript, dots and end of ``{\dot\theta}`` where a subscript or prime follows, None for any other brace."""
+    r"""Return stems, subscript, dots and end of ``{\dot\theta}`` before a subscript or prime, None elsewhere."""
     match = _BRACED_NAME.match(text, at, end)
     if match is None:
         return None

@@ -17,7 +17,7 @@ __all__ = ["REMEDIES", "SIGNS", "figure", "letter", "raised_figures", "remedy"]
 SIGNS: Mapping[str, str] = MappingProxyType(
     {
         **dict.fromkeys(("+", "-", "−", "–", "\\minus"), "SIGN"),
-        **dict.fromkeys(("*", "·", "×", "⋅", "∙", "∗", "•", "\\cdot", "\\times", "\\ast", "\\bullet", "\\cdotp"), "TIMES"),
+        **dict.fromkeys(("*", "·", "×", "⋅", "∙", "∗", "•", "\\cdot", "\\times", "\\ast", "\\bullet"), "TIMES"),
         **dict.fromkeys(("/", "∕", "⁄"), "SLASH"),
         "^": "CARET", "_": "UNDER", ",": "COMMA", "\\over": "OVER",
         **dict.fromkeys(("\\frac", "\\tfrac", "\\dfrac", "\\cfrac", "\\nicefrac", "\\sfrac"), "FRAC"),
@@ -41,8 +41,9 @@ REMEDIES: Mapping[str, str] = MappingProxyType(
         "nabla": r"write the partial derivatives \frac{\partial V}{\partial x}", "div": "write / or \\frac",
         "\\": "write one equation only", "%": "comments are not read",
         "input": "files are not read", "include": "files are not read", "write": "nothing is written",
-        **dict.fromkeys(("def", "newcommand", "let", "gdef", "edef", "renewcommand"), "macros are not read; write them out"),
-        "left": r"write \left( \right)", "right": r"write \left( \right)", "cdots": "write it out", "ldots": "write it out",
+        **dict.fromkeys(("def", "newcommand", "let", "gdef", "edef", "renewcommand"), "macros are not read"),
+        "left": r"write \left( \right)", "right": r"write \left( \right)",
+        "cdots": "write it out", "ldots": "write it out",
         "dots": "write it out", "hbox": r"write \text{…}",
     }
 )  # fmt: skip

@@ -1,24 +1,23 @@
 r"""Undressing of LaTeX: what sets a formula on the page, and says nothing of its meaning, becomes blanks.
 
-``$``, ``\[ \]``, ``\begin{align}``, ``&``, ``\label{…}``, ``\boxed{…}``, ``\tag{1}`` and comments are taken off; each leaves as many
+``$``, ``\[ \]``, ``\begin{align}``, ``&``, ``\label{…}``, ``\boxed{…}`` and comments are taken off; each leaves as many
 blanks as it had characters, so that every column stays where it was. What parts two formulas leaves a mark.
 """
 
 from __future__ import annotations
 
 import re
-from itertools import islice
+from itertools import islice, pairwise
 from typing import NoReturn
 
 from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
 
-__all__ = ["CASES", "PART", "ROW", "is_latex", "undressed"]
+__all__ = ["CASES", "PART", "ROW", "undressed"]
 
 ROW, PART = "\x1e", "\x1f"
 r"""What stands in the place of ``\\``, and of the gap between two formulas in dollars."""
 CASES = re.compile(r"\\(begin|end)\s*\{\s*d?cases\s*\}")
 
-_IS_LATEX = re.compile(r"\$|\\(?:[A-Za-z]|[\[(\\{|,;:! ])|[\^_]\{")
 _DISPLAYS = frozenset(
     ("equation", "align", "aligned", "alignat", "alignedat", "gather", "gathered", "split", "eqnarray", "multline",
      "multlined", "displaymath", "math", "flalign", "subequations", "array", "center")
@@ -31,7 +30,9 @@ _SAID_OF_THE_PAGE = re.compile(
     r"|\\(?:nonumber|notag|displaystyle|textstyle|scriptstyle|centering|noindent|hfill|par|allowbreak|mathstrut|strut"
     r"|allowdisplaybreaks|medskip|bigskip|smallskip|newline|hline|nobreak|left\s*\.\s*(?=\\left)|relax)(?![A-Za-z])"
 )
-_BROKEN_BRACKET = re.compile(r"\\right\s*\.(?:\s|&|~|\\\\|\\(?:q?quad|nonumber|notag)(?![A-Za-z])|\\[,;:!])*\\left\s*\.")
+_BROKEN_BRACKET = re.compile(
+    r"\\right\s*\.(?:\s|&|~|\\\\|\\(?:q?quad|nonumber|notag)(?![A-Za-z])|\\[,;:!])*\\left\s*\."
+)
 _BOX = re.compile(
     r"\\(?:boxed|fbox|underline|ensuremath|colorbox\s*\{\w*\}|textcolor\s*\{\w*\}|mathclap|mathop)\s*(?=\{)"
 )
@@ -41,23 +42,22 @@ _CLOSING = {"$": "$", "$$": "$$", "\\[": "\\]", "\\(": "\\)"}
 _GAP = re.compile(r"[\s,;.:]*(?:and|und|et)?[\s,;.:]*")
 _BRACE = re.compile(r"\\.|[{}]", re.DOTALL)
 _BRACE_OR_EQUALS = re.compile(r"\\.|[{}=]", re.DOTALL)
-_STANDS_ALONE = re.compile(rf"(?:[\s.,;{ROW}{PART}]|\\(?:q?quad|[,;:! ]))*(?:$|\\[a-z]+arrow|\\implies|(?<=[{ROW}{PART};]))")
+_STANDS_ALONE = re.compile(
+    rf"(?:[\s.,;{ROW}{PART}]|\\(?:q?quad|[,;:! ]))*(?:$|\\[a-z]+arrow|\\implies|(?<=[{ROW}{PART};]))"
+)
 _MOST_BOXES = 20
-_SYSTEM_OPENS = re.compile(r"\\left\s*\\(?:\{|lbrace(?![A-Za-z]))(?=\s*\\begin\s*\{\s*(?:array|aligned|gathered)\s*\})")
+_BLANK = r"(?:\s|~|&|\\q?quad(?![A-Za-z])|\\[,;:! ])*"
+_AMPERSAND = re.compile(r"(?<!\\)&")
+_SIGN_BEFORE = re.compile(
+    rf"(?:^|[=<>≤≥≠+\-−*/({{\[,;{ROW}{PART}]|\\(?:equiv|approx|simeq|[lg]eq?|neq?|cdot|times|left\s*[(\[]|colon|implies|Rightarrow)){_BLANK}$"
+)
+_SIGN_BEHIND = re.compile(
+    rf"{_BLANK}(?:$|[=<>≤≥≠+\-−*/)\],.{ROW}{PART}]|:=|\\(?:equiv|approx|simeq|[lg]eq?|neq?|cdot|times|right)(?![A-Za-z]))"
+)
+_SYSTEM_OPENS = re.compile(
+    r"\\left\s*\\(?:\{|lbrace(?![A-Za-z]))(?=\s*\\begin\s*\{\s*(?:array|aligned|gathered)\s*\})"
+)
 _SYSTEM_CLOSES = re.compile(r"(?<=\})\s*\\right\s*\.")
-
-
-def is_latex(text: str) -> bool:
-    r"""Tell whether a text is LaTeX: it holds a dollar, a command such as ``\theta``, or ``^{`` or ``_{``.
-
-    Plain text of the language has none of these.
-
-    Examples
-    --------
-    >>> is_latex(r"\frac12 m \dot x^2"), is_latex("x^{2}"), is_latex("m*x_dot**2/2")
-    (True, True, False)
-    """
-    return _IS_LATEX.search(text) is not None
 
 
 def undressed(text: str) -> str:
@@ -81,7 +81,7 @@ def undressed(text: str) -> str:
     bare = _COMMENT.sub(_blanks, text) if "%" in text else text
     bare = _without_delimiters(bare)
     if "\\" not in bare:
-        return bare
+        return _aligned(bare) if "&" in bare else bare
     bare = _SAID_OF_THE_PAGE.sub(_blanks, bare)
     bare = _BROKEN_BRACKET.sub(_blanks, bare)
     if "\\begin" in bare or "\\end" in bare:
@@ -149,9 +149,11 @@ def _without_delimiters(text: str) -> str:
             opened = match
         else:
             reason = f"{sign} inside {opened.group()} of column {opened.start() + 1}"
-            raise LanguageError(text, match.start() + 1, reason, f"close it with {_CLOSING[opened.group()]} before")
+            raise LanguageError(
+                text, match.start() + 1, reason, f"close it with {_CLOSING[opened.group()]} before"
+            )
     bare = _DELIMITER.sub(_blanks, text)
-    for (_, left), (right, _) in zip(zones[:-1], zones[1:], strict=True):
+    for (_, left), (right, _) in pairwise(zones):
         if _GAP.fullmatch(text, left, right) and (right > left or text[left - 2 : left] in ("$$", "\\]")):
             mark = left if right > left else left - 1
             bare = bare[:mark] + PART + " " * (right - mark - 1) + bare[right:]
@@ -189,7 +191,9 @@ def _without_displays(text: str, bare: str) -> str:
         at = end
     if open_:
         name, start = open_[-1]
-        raise LanguageError(text, start + 1, f"\\begin{{{name}}} is never closed", f"write \\end{{{name}}} at its end")
+        raise LanguageError(
+            text, start + 1, f"\\begin{{{name}}} is never closed", f"write \\end{{{name}}} at its end"
+        )
     return "".join((*pieces, bare[at:]))
 
 
@@ -212,11 +216,24 @@ def _rows(text: str) -> str:
         elif depth == 0:
             kept.append((start, match.end()))
     for start, end in [*kept, (len(text), len(text))]:
-        pieces.append(_ROW.sub(lambda m: ROW + " " * (len(m.group()) - 1), text[at:start]).replace("&", " "))
+        pieces.append(_aligned(_ROW.sub(lambda m: ROW + " " * (len(m.group()) - 1), text[at:start])))
         inside = text[start:end]
         pieces.append(_rows(_without_cases(inside)) if _is_system(inside) else inside)
         at = end
     return "".join(pieces)
+
+
+def _aligned(text: str) -> str:
+    """Return a text with blanks for each ``&`` at a sign or a row's beginning, and marks for those that part columns."""
+    return _AMPERSAND.sub(
+        lambda m: (
+            " "
+            if _SIGN_BEFORE.search(text[max(0, m.start() - 60) : m.start()])
+            or _SIGN_BEHIND.match(text, m.end())
+            else PART
+        ),
+        text,
+    )
 
 
 def _without_cases(text: str) -> str:
@@ -231,4 +248,6 @@ def _is_system(cases: str) -> bool:
     if not cases:
         return False
     rows = [row for row in _ROW.split(_without_cases(cases)) if row.strip(" ,.;")]
-    return bool(rows) and all(re.search(r"(?<![<>\\!])=", row.split("&")[0] + row.partition("&")[2][:3]) for row in rows)
+    return bool(rows) and all(
+        re.search(r"(?<![<>\\!])=", row.split("&")[0] + row.partition("&")[2][:3]) for row in rows
+    )

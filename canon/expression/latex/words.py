@@ -7,7 +7,6 @@ words, digits, nesting. Brackets are matched here too, so the grammar only ever 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
 from canon.expression.latex.names import (
@@ -24,6 +23,7 @@ from canon.expression.latex.names import (
 from canon.expression.latex.pieces import LatexFraction, Operator
 from canon.expression.latex.scripts import Scripts, accented, braced_name, dots_above, scripts, upright
 from canon.expression.latex.signs import REMEDIES, SIGNS, figure, letter, raised_figures, remedy
+from canon.expression.latex.word_list import Word, WordList, Words
 from canon.expression.text import syntax
 from canon.expression.text.syntax import LanguageError, Name, Number, Product
 
@@ -40,51 +40,28 @@ _THIN = re.compile(r"\s|\\[!/]|\\displaystyle|\\negthinspace|\\qty|\\(?:no)?limi
 """The spaces that show no gap in print."""
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
 _RUN = re.compile(r"[A-Za-z][A-Za-z0-9]*")
-_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*_(?=[A-Za-z0-9]*[A-Za-z])[A-Za-z0-9]{2,}(?![A-Za-z0-9_])")
+_PLAIN = re.compile(
+    r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*_(?=[A-Za-z0-9]*[A-Za-z])[A-Za-z0-9]{2,}(?![A-Za-z0-9_])"
+)
 """A name as the plain language has it, ``p_theta``, which LaTeX would print otherwise."""
-_PARTIAL = re.compile(r"\\partial\s*(?:\^\s*([2-9])\s*)?_\s*(?:\{([^{}]{1,60})\}|(\\[A-Za-z]+|[A-Za-z]))(?:\s*\^\s*([2-9]))?")
+_PARTIAL = re.compile(
+    r"\\partial\s*(?:\^\s*([2-9])\s*)?_\s*(?:\{([^{}]{1,60})\}|(\\[A-Za-z]+|[A-Za-z]))(?:\s*\^\s*([2-9]))?"
+)
 _OF_SPECIAL_FUNCTIONS = {"W": "LambertW", "K": "elliptic_k", "E": "elliptic_e"}
 """How SymPy prints them, before \\left( ."""
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
 _COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:[A-Za-z]+(?:\{[^{}]{0,200}\})?|.)", re.DOTALL)
 
-_SINGLES = {"CARET": 1, "UNDER": 1, "FRAC": 2, "SQRT": 1}
-"""How many arguments may follow without braces, each then one character."""
-_OPEN = {"(": ")", "[": "]", "\\{": "\\}", "\\lbrace": "\\rbrace", "{": "}", "\\lvert": "\\rvert", "\\lbrack": "\\rbrack"}
 _SIZES = re.compile(r"\\(?:left|right|middle|[bB]igg?[lrm]?)(?![A-Za-z])\s*")
 _ACCENTS = {"dot": 1, "ddot": 2}
-_DECORATIONS = {"bar": ("bar",), "overline": ("bar",), "hat": ("hat",), "widehat": ("hat",), "tilde": ("tilde",), "widetilde": ("tilde",),
-                "vec": ("vec",), "mathbf": ("vec", "bf"), "boldsymbol": ("vec", "bf"), "bm": ("vec", "bf"),
-                "mathcal": ("cal",), "mathscr": ("scr",), "mathfrak": ("frak",)}  # fmt: skip
+_DECORATIONS = {
+    **dict.fromkeys(("bar", "overline"), ("bar",)), **dict.fromkeys(("hat", "widehat"), ("hat",)),
+    **dict.fromkeys(("tilde", "widetilde"), ("tilde",)), "vec": ("vec",), "mathcal": ("cal",), "mathscr": ("scr",),
+    **dict.fromkeys(("mathbf", "boldsymbol", "bm"), ("vec", "bf")),
+}  # fmt: skip
 _SQUARED = re.compile(r"\s*\^\s*(?:2|\{\s*2\s*\})|²")
 _MOST_FAULTS = 5
 """Most faults that are told at once."""
-@dataclass(frozen=True, slots=True)
-class Word:
-    """One word: its kind in the grammar, what it means, how it looks and where it stands."""
-
-    kind: str
-    item: Item | LatexFraction | Operator | None
-    shown: str
-    column: int
-
-
-@dataclass(frozen=True, slots=True)
-class Words:
-    """The words of a formula, the columns that a visible space stands before, and the column after the end."""
-
-    words: tuple[Word, ...]
-    spaced: frozenset[int]
-    end: int
-
-
-@dataclass(frozen=True, slots=True)
-class _Bracket:
-    shown: str
-    closing: str
-    kind: str
-    singles: int
-    column: int
 
 
 def words_of(text: str, scope: Scope, start: int = 0, end: int | None = None) -> Words:
@@ -111,9 +88,9 @@ def words_of(text: str, scope: Scope, start: int = 0, end: int | None = None) ->
             reader.passed_over(at)
     if faults:
         raise _together(faults)
-    if reader.open:
-        reader.refuse(reader.open[-1].column, f"{reader.open[-1].shown} is never closed")
-    return Words(tuple(reader.words), frozenset(reader.spaced), reader.end + 1)
+    if reader.out.open:
+        reader.refuse(reader.out.open[-1].column, f"{reader.out.open[-1].shown} is never closed")
+    return Words(tuple(reader.out.words), frozenset(reader.out.spaced), reader.end + 1)
 
 
 def _together(faults: list[LanguageError]) -> LanguageError:
@@ -125,7 +102,11 @@ def _together(faults: list[LanguageError]) -> LanguageError:
         if fault.reason not in told:
             told[fault.reason] = None
             also.append(f"column {fault.column}: {fault.message}")
-    return LanguageError(first.text, first.column, first.reason, "; ".join((first.remedy, *also)).strip("; ")) if also else first
+    return (
+        LanguageError(first.text, first.column, first.reason, "; ".join((first.remedy, *also)).strip("; "))
+        if also
+        else first
+    )
 
 
 class _Reader:
@@ -135,11 +116,7 @@ class _Reader:
         self.text = text
         self.names = Names(text, scope)
         self.at, self.end = start, end
-        self.words: list[Word] = []
-        self.spaced: set[int] = set()
-        self.gap = False
-        self.singles = 0
-        self.open: list[_Bracket] = []
+        self.out = WordList(text)
 
     def refuse(self, column: int, reason: str, remedy: str = "") -> NoReturn:
         raise LanguageError(self.text, column, reason, remedy)
@@ -148,25 +125,12 @@ class _Reader:
         """Go on behind a word that is not read."""
         word = _COMMAND_WITH_ARGUMENT.match(self.text, at, self.end) or _RUN.match(self.text, at, self.end)
         self.at = max(self.at, word.end() if word else at + 1)
-        self.singles = 0
-
-    @property
-    def last(self) -> str:
-        return self.words[-1].kind if self.words else ""
-
-    def emit(self, kind: str, shown: str, column: int, item: Item | None = None) -> None:
-        if len(self.words) >= syntax.MAX_TOKENS:
-            self.refuse(column, f"more than {syntax.MAX_TOKENS} numbers, names and signs", "split the claim")
-        self.words.append(Word(kind, item, shown, column))
-        if self.gap:
-            self.spaced.add(column)
-        self.gap = False
-        self.singles = max(self.singles - 1, 0) if kind == "ATOM" else _SINGLES.get(kind, 0)
+        self.out.singles = 0
 
     def step(self) -> None:
         """Read one word."""
         if space := _SPACE.match(self.text, self.at, self.end):
-            self.gap = self.gap or bool(_THIN.sub("", space.group()))
+            self.out.gap = self.out.gap or bool(_THIN.sub("", space.group()))
             self.at = space.end()
             return
         if number := _NUMBER.match(self.text, self.at, self.end):
@@ -183,8 +147,8 @@ class _Reader:
 
     def number(self, digits: str) -> None:
         column = self.at + 1
-        if self.singles:
-            if len(digits) > self.singles or not digits.isdigit():
+        if self.out.singles:
+            if len(digits) > self.out.singles or not digits.isdigit():
                 self.refuse(
                     column, f"LaTeX takes only the first digit of {digits[:20]} here", "write braces, x^{10}"
                 )
@@ -193,15 +157,15 @@ class _Reader:
             self.refuse(column, f"a number of more than {syntax.MAX_DIGITS} digits")
         self.at += len(digits)
         whole, _, fraction = digits.partition(".")
-        self.emit("ATOM", digits, column, Number(int(whole + fraction), 10 ** len(fraction), column))
+        self.out.emit("ATOM", digits, column, Number(int(whole + fraction), 10 ** len(fraction), column))
 
     def letters(self, run: str) -> None:
         """Read names in roman letters, with subscript and primes where they are not a bare argument."""
         column = self.at + 1
-        if not self.singles and self.spelled_plainly():
+        if not self.out.singles and self.spelled_plainly():
             return
-        if self.singles:
-            if len(run) > self.singles:
+        if self.out.singles:
+            if len(run) > self.out.singles:
                 self.refuse(
                     column, f"LaTeX takes only the first letter of {run[:20]} here", "write braces, x^{ab}"
                 )
@@ -210,7 +174,11 @@ class _Reader:
             self.put(self.names.run(run, column, (), 0, powered=False), column)
             return
         self.at += len(run)
-        if run in _OF_SPECIAL_FUNCTIONS and self.text.startswith("\\left(", self.at) and not self.names.declares(run):
+        if (
+            run in _OF_SPECIAL_FUNCTIONS
+            and self.text.startswith("\\left(", self.at)
+            and not self.names.declares(run)
+        ):
             self.put([Function(_OF_SPECIAL_FUNCTIONS[run], column)], column)
             return
         if run == "sqrt" and self.follows("({") and not self.names.declares(run):
@@ -222,7 +190,7 @@ class _Reader:
         order = dots or after.primes
         items = self.names.run(run, column, after.pieces, order, powered=self.follows("^"))
         self.put(items, column)
-        self.raised(after.power)
+        self.out.raised(after.power)
 
     def spelled_plainly(self) -> bool:
         """Read a declared name as the plain language spells it, ``p_theta`` or ``x_dot``, if one stands here."""
@@ -239,24 +207,20 @@ class _Reader:
 
     def put(self, items: list[Item], column: int) -> None:
         for item in items:
-            self.emit("HEAD" if isinstance(item, Function | Applied) else "ATOM", "", item.column, item)
+            self.out.emit("HEAD" if isinstance(item, Function | Applied) else "ATOM", "", item.column, item)
         start = column - 1
-        self.words[-1] = Word(self.last, items[-1], self.text[start : self.at].strip()[:30], items[-1].column)
+        self.out.words[-1] = Word(
+            self.out.last, items[-1], self.text[start : self.at].strip()[:30], items[-1].column
+        )
 
     def follows(self, characters: str) -> bool:
         space = _SPACE.match(self.text, self.at, self.end)
         return self.text.startswith(tuple(characters), space.end() if space else self.at)
 
-    def raised(self, power: Number | None) -> None:
-        """Write the power that stood before the subscript, as in ``p^2_1``."""
-        if power is not None:
-            self.emit("CARET", "^", power.column)
-            self.emit("ATOM", str(power.numerator), power.column, power)
-
     def named(self, found: tuple[str, ...], start: int, pieces: Pieces = (), order: int = 0) -> None:
         """Write the declared name with these stems, whose text began at ``start`` and has been read to here."""
         column = start + 1
-        bare = self.singles > 0
+        bare = self.out.singles > 0
         if not bare and not order:
             order, self.at = dots_above(self.text, self.at, self.end)
         after = Scripts((), 0, None, self.at) if bare else scripts(self.text, self.at, self.end)
@@ -278,11 +242,11 @@ class _Reader:
                 column, f"{shown} is not declared", self.names.scope.near(spellings(found[-1], pieces)[0])
             )
         self.put([item], column)
-        self.raised(after.power)
+        self.out.raised(after.power)
 
     def accent(self, command: str) -> None:
         start = self.at
-        if self.singles:
+        if self.out.singles:
             self.refuse(start + 1, f"{command} as an argument without braces", "write braces around it")
         under = accented(self.text, start + len(command), self.end)
         self.at = under.at
@@ -290,7 +254,9 @@ class _Reader:
         if kind in _ACCENTS:
             self.named(under.stems, start, under.pieces, _ACCENTS[kind])
             return
-        found = [f"{stem}{gap}{word}" for word in _DECORATIONS[kind] for stem in under.stems for gap in ("", "_")]
+        found = [
+            f"{stem}{gap}{word}" for word in _DECORATIONS[kind] for stem in under.stems for gap in ("", "_")
+        ]
         if "vec" in _DECORATIONS[kind] and _SQUARED.match(self.text, self.at, self.end):
             found += under.stems  # the square of a vector is that of its length
         self.named(tuple(found), start, under.pieces)
@@ -316,7 +282,7 @@ class _Reader:
         word = upright(self.text, start)
         if command in SIGNS:
             self.at += len(command)
-            self.emit(SIGNS[command], command, start + 1)
+            self.out.emit(SIGNS[command], command, start + 1)
         elif command == "\\partial" and (match := _PARTIAL.match(self.text, self.at, self.end)):
             self.partial(match)
         elif word:
@@ -352,85 +318,45 @@ class _Reader:
 
     def bracket(self, shown: str, side: str) -> bool:
         """Read a bracket; ``side`` says whether a bar opens or closes where it was told."""
-        column = self.at + 1
-        if shown in ("|", "\\vert"):
-            opens = side == "open" or (not side and not (self.open and self.open[-1].closing == "|"))
-            found = self.opened(shown, "|", column) if opens else self.closed("|", column)
-        elif shown in _OPEN:
-            found = self.opened(shown, _OPEN[shown], column)
-        elif shown in _OPEN.values():
-            found = self.closed(shown, column)
-        else:
+        if not self.out.bracket(shown, side, self.at + 1):
             return False
         self.at += len(shown)
-        return found
-
-    def opened(self, shown: str, closing: str, column: int) -> bool:
-        if len(self.open) >= syntax.MAX_NESTING:
-            self.refuse(column, f"nested more than {syntax.MAX_NESTING} deep")
-        index = shown == "[" and self.last == "SQRT"
-        kind = (
-            "INDEX" if index else "BRACE" if shown == "{" else "BAR" if closing in ("|", "\\rvert") else "PAR"
-        )
-        singles = 1 if index else max(self.singles - 1, 0) if shown == "{" else 0
-        self.open.append(_Bracket(shown, closing, kind, singles, column))
-        self.emit("L" + kind, shown, column)
-        return True
-
-    def closed(self, shown: str, column: int) -> bool:
-        if not self.open:
-            self.refuse(column, f"{shown} closes nothing")
-        bracket = self.open.pop()
-        if bracket.closing != shown:
-            where = f"{bracket.shown} of column {bracket.column}"
-            self.refuse(column, f"{shown} where {bracket.closing} should close the {where}")
-        self.emit("R" + bracket.kind, shown, column)
-        self.singles = bracket.singles
         return True
 
     def sign(self, character: str) -> None:
         column = self.at + 1
         if character in SIGNS:
             self.at += 1
-            self.emit(SIGNS[character], character, column)
+            self.out.emit(SIGNS[character], character, column)
         elif fraction := figure(character):
             self.at += 1
             above, below = (Number(number, 1, column) for number in fraction)
-            item = LatexFraction(Product(((False, above), (True, below)), column), True, column)
-            self.emit("ATOM", character, column, item)
+            item = LatexFraction(
+                Product(((False, above), (True, below)), column), numbers=True, column=column
+            )
+            self.out.emit("ATOM", character, column, item)
         elif (figures := raised_figures(self.text, self.at, self.end))[0]:
-            self.raised_by(*figures)
+            self.out.raised_by(figures[0], column)
+            self.at = figures[1]
         elif character == "∂":
             self.at += 1
             self.put([Mark("partial", column)], column)
         elif odd := letter(character):
             self.at += 1
             self.named(stems(odd[0]) or (odd[0],), column - 1, (), odd[1])
-        elif character == "{" and not self.singles and (braced := braced_name(self.text, self.at, self.end)):
+        elif (
+            character == "{"
+            and not self.out.singles
+            and (braced := braced_name(self.text, self.at, self.end))
+        ):
             self.at = braced[3]
             self.named(braced[0], column - 1, braced[1], braced[2])
-        elif character == "{" and not self.singles and (word := upright(self.text, self.at)):
+        elif character == "{" and not self.out.singles and (word := upright(self.text, self.at)):
             self.at = word[1]
             self.upright(word[0], column - 1)
         elif not self.bracket(character, ""):
             shown = repr(character) if character.isascii() else f"{character!r} (U+{ord(character):04X})"
             self.refuse(column, f"{shown} is not part of a formula", remedy(character))
-
-    def raised_by(self, figures: str, end: int) -> None:
-        """Write the exponent that superscripts of Unicode spell."""
-        column = self.at + 1
-        if len(figures) > syntax.MAX_DIGITS:
-            self.refuse(column, f"a number of more than {syntax.MAX_DIGITS} digits")
-        self.at = end
-        self.emit("CARET", "^", column)
-        number = Number(int(figures.lstrip("-")), 1, column)
-        if figures.startswith("-"):
-            self.emit("LBRACE", "{", column)
-            self.emit("SIGN", "-", column)
-        self.emit("ATOM", figures, column, number)
-        if figures.startswith("-"):
-            self.emit("RBRACE", "}", column)
-        self.singles = 0
 
     def partial(self, match: re.Match[str]) -> None:
         r"""Read ``\partial_x``, ``\partial_x^2`` or ``\partial_{xy}``, a derivative that waits for its operand."""
@@ -439,11 +365,13 @@ class _Reader:
         inside = words_of(self.text, self.names.scope, match.start(group), match.end(group)).words
         variables = [word.item for word in inside if isinstance(word.item, Name)]
         order = int(match.group(1) or match.group(4) or 1)
-        if len(variables) < len(inside) or (order > 1 and (len(variables) > 1 or (match.group(1) and match.group(4)))):
+        if len(variables) < len(inside) or (
+            order > 1 and (len(variables) > 1 or (match.group(1) and match.group(4)))
+        ):
             self.refuse(column, "a derivative with respect to what?", r"write \frac{\partial V}{\partial x}")
         self.at = match.end()
-        operator = Operator(False, tuple((name, order) for name in variables), column)
-        self.emit("ATOM", match.group(), column, operator)
+        operator = Operator(total=False, variables=tuple((name, order) for name in variables), column=column)
+        self.out.emit("ATOM", match.group(), column, operator)
 
 
 def _undeclared(name: str, column: int) -> Item | None:

@@ -12,6 +12,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from canon.expression.text.notation import is_latex
 from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def units(text: str, scope: Scope) -> tuple[Unit, ...]:
 
 
 def _units(text: str, scope: Scope) -> Iterator[Unit]:
-    latex = text.lstrip().startswith("$")
+    latex = is_latex(text)
     for number in _NUMBER.finditer(text):
         at = number.end()
         if latex:

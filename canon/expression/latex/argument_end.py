@@ -1,0 +1,98 @@
+r"""End of an argument without brackets: which factors after ``\sin`` are still under the sine.
+
+``\sin\theta\dot\phi`` is sin(θ) φ̇, since no one takes the sine of an angle times a velocity; ``\cos\omega t`` is
+cos(ωt). What could be either is said to be open, and the reader asks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from canon.expression.latex.names import Mark
+from canon.expression.latex.pieces import Group, Piece, Powered, names_in, unbraced
+from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
+from canon.expression.text.syntax import Name, Node
+
+if TYPE_CHECKING:
+    from canon.expression.text.scope import Scope
+
+__all__ = ["ArgumentEnd"]
+
+_ANGLES = (
+    "theta",
+    "vartheta",
+    "phi",
+    "varphi",
+    "psi",
+    "alpha",
+    "beta",
+    "gamma",
+    "delta",
+    "epsilon",
+    "chi",
+    "eta",
+    "th",
+    "ph",
+)
+"""Letters that are angles wherever a function is taken of them alone."""
+
+
+@dataclass(frozen=True)
+class ArgumentEnd:
+    """Tells where arguments end.
+
+    Parameters
+    ----------
+    scope
+        The declared names.
+    spaced
+        Columns that a visible space stands before.
+    """
+
+    scope: Scope
+    spaced: frozenset[int]
+
+    def is_numeric(self, node: Node) -> bool:
+        """Whether a factor is a number, π among them."""
+        return all(name.text == "pi" and self.scope.symbol("pi") is None for name in names_in(node))
+
+    def moves(self, node: Node) -> bool:
+        """Whether a factor changes with the time."""
+        return any(self._moves(name.text) for name in names_in(node))
+
+    def is_angle(self, node: Node) -> bool:
+        """Whether every name in a factor is that of an angle."""
+        names = [name.text for name in names_in(node) if name.text != "pi"]
+        return bool(names) and all(name.partition("_")[0].rstrip("0123456789") in _ANGLES for name in names)
+
+    def lies_before(self, taken: list[Node], item: Piece) -> bool:
+        """Whether an argument is complete before a factor that no argument would go on with."""
+        whole = any(map(self.moves, taken)) or self.is_angle(taken[-1])
+        base = unbraced(item.base) if isinstance(item, Powered) else unbraced(item)
+        if not whole:
+            return False
+        if isinstance(base, Mark):
+            return base.text == "e" and isinstance(item, Powered)
+        if isinstance(base, Name):
+            symbol = self.scope.symbol(base.text)
+            return isinstance(symbol, Rate) or (self.is_angle(taken[-1]) and isinstance(symbol, Momentum))
+        return (
+            isinstance(base, Group) and base.printed and self.is_angle(taken[-1]) and not self._is_time(base)
+        )
+
+    def goes_on(self, taken: list[Node], item: Piece) -> bool:
+        r"""Whether a factor surely continues an argument, as the t of ``\omega t`` does."""
+        if any(map(self.moves, taken)) or self.is_angle(taken[-1]) or item.column in self.spaced:
+            return False
+        base = item.base if isinstance(item, Powered) else item
+        return isinstance(base, Name) and not isinstance(self.scope.symbol(base.text), Rate)
+
+    def _is_time(self, group: Group) -> bool:
+        inside = unbraced(group.inner) if group.braces is False else group
+        return isinstance(inside, Name) and inside.text == self.scope.time.name
+
+    def _moves(self, name: str) -> bool:
+        symbol = self.scope.symbol(name)
+        of_motion = isinstance(symbol, Coordinate | Momentum | Rate)
+        return of_motion or symbol == self.scope.time or name in self.scope.functions

@@ -1,0 +1,22 @@
+"""Notation of a text: LaTeX, or the plain language."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["is_latex"]
+
+_IS_LATEX = re.compile(r"\$|\\(?:[A-Za-z]|[\[(\\{|,;:! ])|[\^_]\{")
+
+
+def is_latex(text: str) -> bool:
+    r"""Tell whether a text is LaTeX: it holds a dollar, a command such as ``\theta``, or ``^{`` or ``_{``.
+
+    Plain text of the language has none of these.
+
+    Examples
+    --------
+    >>> is_latex(r"\frac12 m \dot x^2"), is_latex("x^{2}"), is_latex("m*x_dot**2/2")
+    (True, True, False)
+    """
+    return _IS_LATEX.search(text) is not None
