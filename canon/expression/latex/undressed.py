@@ -224,7 +224,7 @@ def _rows(text: str) -> str:
 
 
 def _aligned(text: str) -> str:
-    """Return a text with blanks for each ``&`` at a sign or a row's beginning, and marks for those that part columns."""
+    """Return a text with blanks for each ``&`` at a sign or where a row begins, marks for those that part columns."""
     return _AMPERSAND.sub(
         lambda m: (
             " "
