@@ -10,7 +10,7 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.flow.checked_request import parted_by_orbit, task_with
-from canon.flow.method.method import DOP853, RK4, Gauss, Taylor
+from canon.flow.method.method_text import method_of
 from canon.flow.system.first_order_motion import moving_system
 from canon.flow.system.parameter_values import check_parameters
 from canon.flow.system.recognised_system import recognised
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.flow.method.method import Method
+    from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.event import Event
     from canon.flow.system.first_order_motion import FirstOrderMotion, MovingSystem
     from canon.flow.task import Task
@@ -44,7 +45,7 @@ def system_task(
     t_span: tuple[float, float],
     y0: Any,
     *,
-    method: Method | None = None,
+    method: MethodGiven | None = None,
     parameters: Mapping[Symbol | str, Any] | None = None,
     observables: Mapping[str, Expr] | None = None,
     events: Sequence[Event] = (),
@@ -78,14 +79,15 @@ def system_task(
     motion = found.derived({s: float(np.ravel(value)[0]) for s, value in start.items()})
     check_constraints(motion, start, _words(motion))
     moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying])
-    _check_method(method, moving)
+    chosen = method_of(method)
+    _check_method(chosen, moving)
     full = _full_states(moving, states, varying, orbits)
     task = task_with(
         moving.equations,
         full,
         t_span,
         single=single,
-        method=method,
+        method=chosen,
         observables=observed,
         events=met,
         **settings,
@@ -172,9 +174,13 @@ def _words(motion: FirstOrderMotion) -> list[str]:
     return said
 
 
-def _check_method(method: Method | None, moving: MovingSystem) -> None:
+_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss")
+"""Families of methods that need no Hamiltonian."""
+
+
+def _check_method(method: Method, moving: MovingSystem) -> None:
     """Refuse methods that are made for Hamiltonians."""
-    if method is None or isinstance(method, Taylor | DOP853 | RK4 | Gauss):
+    if method.family in _FOR_ANY_SYSTEM:
         return
     raise ValueError(
         f"{method} is made for a Hamiltonian and does not apply to a {moving.kind}: Taylor, DOP853, RK4 and Gauss do"

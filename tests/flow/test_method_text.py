@@ -8,7 +8,16 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from canon import Hamiltonian, choose, coordinates, drift_study, flow_jacobian, propagate, work_precision
+from canon import (
+    Hamiltonian,
+    Lagrangian,
+    choose,
+    coordinates,
+    drift_study,
+    flow_jacobian,
+    propagate,
+    work_precision,
+)
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.method_text import method_from, method_named, method_of
@@ -172,3 +181,10 @@ def test_studies_and_jacobians_take_names():
     assert [row.method for row in study.rows] == [Splitting("verlet"), RK4()]
     assert choose(scene, None, 50.0, 1e-3, methods=["verlet"]).method == Splitting("verlet")
     assert work_precision(scene, None, 5.0, ["rk4"], steps=[0.1], repetitions=1).rows[0].method == RK4()
+
+
+def test_names_are_read_for_any_system():
+    pendulum = Lagrangian(x.dot**2 / 2 + sp.cos(x), [x])
+    assert propagate(pendulum, method="rk4", step=0.1, t_span=(0, 5), y0=[1.0, 0.0]).method == RK4()
+    with pytest.raises(ValueError, match="verlet is made for a Hamiltonian"):
+        propagate(pendulum, method="verlet", step=0.1, t_span=(0, 5), y0=[1.0, 0.0])

@@ -2,7 +2,8 @@
 
 Each answers for itself: ``engine`` (what integrates it, whether it takes a step, its precisions), ``family`` (the word
 that tables of functions know it by), ``order``, ``stages`` (its cost), ``is_symplectic``, ``solvable`` (the splitting
-by solvable parts that it is, or None), ``written`` (the method as files hold it), ``str`` (in words), ``citation``.
+by solvable parts that it is, or None), ``tolerance`` (None where it takes a step), ``written`` (the method as files
+hold it), ``str`` (in words), ``citation``.
 """
 
 from __future__ import annotations
@@ -77,8 +78,7 @@ class Splitting:
 
     scheme: Scheme
     parts: tuple[Expr, Expr] | None = None
-    engine = FIXED_STEPS
-    is_symplectic = True
+    engine, is_symplectic, tolerance = FIXED_STEPS, True, None
 
     def __init__(
         self,
@@ -199,6 +199,7 @@ class Gauss:
         "BIT 48 (2008) 231–243, doi:10.1007/s10543-008-0170-3"
     )
     engine, family, is_symplectic, solvable = FIXED_STEPS, "gauss", True, None
+    tolerance = None
 
     def __post_init__(self) -> None:
         if self.stages not in range(1, HIGHEST_STAGES + 1):
@@ -235,6 +236,7 @@ class RK4:
         "Z. Math. Phys. 46 (1901) 435–453"
     )
     engine, family, is_symplectic, solvable = FIXED_STEPS, "rk4", False, None
+    tolerance = None
 
     def __str__(self) -> str:
         return "RK4"
@@ -287,6 +289,7 @@ class TimeTransformed:
     method: Splitting | Gauss
     g: Expr | None = None
     engine, family, is_symplectic, solvable = FICTITIOUS_TIME, "time_transformed", True, None
+    tolerance = None
 
     def __post_init__(self) -> None:
         implicit = self.method.family == "gauss"

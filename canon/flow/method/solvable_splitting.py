@@ -62,9 +62,7 @@ class SolvableSplitting:
     parts: Parts = None
     commutator: bool = False
     coordinates: str = "jacobi"
-    engine = FIXED_STEPS
-    family = "solvable"
-    is_symplectic = True
+    engine, family, is_symplectic, tolerance = FIXED_STEPS, "solvable", True, None
 
     def __post_init__(self) -> None:
         if self.corrector:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.expression.graph.number_systems import FLOAT64
-from canon.flow.method.method import DOP853, Taylor
 from canon.flow.method.number_formats import unit_round_off
 
 if TYPE_CHECKING:
@@ -109,7 +108,7 @@ def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None
     terms = _sizes_of_terms(motion, orbit or 0) / unit if observable == ENERGY else np.zeros(1)
     walk = u * math.sqrt(motion.steps) * max(1.0, float(np.sqrt(np.mean(terms**2))))
     bias = u * motion.steps * max(1.0, float(np.mean(terms)))
-    tolerance = motion.method.tolerance if isinstance(motion.method, Taylor | DOP853) else None
+    tolerance = motion.method.tolerance
     truncated = tolerance is not None and tolerance > FAR_ABOVE * u
     return ErrorSeries(t, error, largest, walk, bias, u, truncated, _way(motion))
 
