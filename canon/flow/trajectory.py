@@ -14,7 +14,7 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.error_estimate import ErrorEstimate, error_estimate
 from canon.flow.integrate import integrate, silently
 from canon.flow.interpolation import states_at
-from canon.flow.run.observables_along import measured, warn_of_jumps
+from canon.flow.run.observables_along import measured, size_of_terms, warn_of_jumps
 from canon.flow.run.samples import Samples, Statistics
 from canon.flow.system.left_out import check_left_out
 from canon.flow.system.named_values import node_along, variables_of
@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from canon.flow.task import Task
 
 __all__ = ["Interrupted", "Trajectory", "carried_out"]
+
+_ROUNDING = 2.0**-44
+"""A starting energy below this part of the size of H's terms is what rounding the start has left of zero."""
 
 
 class Energies(NamedTuple):
@@ -276,10 +279,13 @@ class Trajectory:
         """The state at the last time, shape (2n,)."""
         return self.y[:, -1]
 
-    @property
+    @cached_property
     def relative(self) -> bool:
-        """Whether ``energy_error`` is relative: the starting energy is not zero (of no orbit)."""
-        return bool(np.all(self.energy[0] != 0))
+        """Whether ``energy_error`` is relative: the starting energy is not zero but for rounding (of no orbit)."""
+        start = self.energy[0]
+        if self.moving is not None or self.task is None or self.samples is None or not np.all(start != 0):
+            return bool(np.all(start != 0))
+        return bool(np.all(np.abs(start) > _ROUNDING * size_of_terms(self.task.system, self.samples)))
 
     @cached_property
     def energy_error(self) -> Array:
@@ -287,6 +293,7 @@ class Trajectory:
 
         Where forces or what depends on time do work on a system, the defect of its energy balance,
         E(t) − E(0) − W(t) with W = ∫ power dt, takes the place of H − H₀.
+        An H₀ that is nothing beside the terms of H, as of a pendulum −cos θ released from π/2, counts as zero.
 
         Raises
         ------

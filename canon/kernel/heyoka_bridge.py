@@ -34,6 +34,8 @@ _COMPACT_FROM = 300
 """Graphs with more nodes are compiled in heyoka's compact mode, which keeps compile times short."""
 
 
+_ONE = Fraction(1)
+
 _LARGEST_PRODUCT = 64
 """Natural powers up to this one are written as products."""
 
@@ -127,12 +129,19 @@ def heyoka_expressions(
 
 
 def heyoka_functions(
-    system: HamiltonEquations, nodes: Sequence[int], number: Callable[[Fraction], Any] = float
+    system: HamiltonEquations,
+    nodes: Sequence[int],
+    number: Callable[[Fraction], Any] = float,
+    unit: Fraction = _ONE,
 ) -> list[Any]:
     """Return functions of (q, p, t) in the variables of :func:`heyoka_equations`."""
     import heyoka as hy
 
-    return heyoka_expressions(system.graph, nodes, {**_variables(system), system.t: hy.time}, number)
+    variables = _variables(system)
+    if unit != 1:
+        size = hy.expression(number(unit))
+        variables = {symbol: size * variable for symbol, variable in variables.items()}
+    return heyoka_expressions(system.graph, nodes, {**variables, system.t: hy.time}, number)
 
 
 def _product_of_squares(x: Any, power: int) -> Any:
@@ -148,10 +157,18 @@ def _product_of_squares(x: Any, power: int) -> Any:
 
 
 def heyoka_equations(
-    system: HamiltonEquations, number: Callable[[Fraction], Any] = float
+    system: HamiltonEquations, number: Callable[[Fraction], Any] = float, unit: Fraction = _ONE
 ) -> list[tuple[Any, Any]]:
-    """Return Hamilton's equations as heyoka takes them: pairs of a variable and its rate, (q, p) in order."""
-    return list(zip(_variables(system).values(), heyoka_functions(system, system.rates, number), strict=True))
+    """Return Hamilton's equations as heyoka takes them: pairs of a variable and its rate, (q, p) in order.
+
+    The variables are q and p in parts of ``unit``.
+    """
+    import heyoka as hy
+
+    rates = heyoka_functions(system, system.rates, number, unit)
+    if unit != 1:
+        rates = [hy.expression(number(1 / unit)) * rate for rate in rates]
+    return list(zip(_variables(system).values(), rates, strict=True))
 
 
 def _variables(system: HamiltonEquations) -> dict[Symbol, Any]:
@@ -168,6 +185,7 @@ def taylor_integrator(
     tolerance: float | None,
     number: Callable[[Fraction], Any] = float,
     events: Mapping[str, Sequence[Any]] = MappingProxyType({}),
+    unit: Fraction = _ONE,
 ) -> Any:
     """Return heyoka's adaptive integrator of Hamilton's equations.
 
@@ -187,14 +205,17 @@ def taylor_integrator(
         Makes the numbers it computes with; see :func:`heyoka_number`.
     events
         heyoka's ``t_events`` and ``nt_events``.
+    unit
+        What the integrator's numbers are parts of, a power of two; heyoka takes the tolerance for an absolute one where
+        all of them are below 1.
     """
     import heyoka as hy
 
     compact = number is not float or len(system.graph.reachable(system.rates)) > _COMPACT_FROM
-    state = [number(x) for x in y0]
+    state = [number(x / unit) for x in y0]
     options: dict[str, Any] = {} if tolerance is None else {"tol": number(Fraction(tolerance))}
     return hy.taylor_adaptive(
-        heyoka_equations(system, number),
+        heyoka_equations(system, number, unit),
         np.array(state),
         time=number(t0),
         fp_type=type(state[0]),

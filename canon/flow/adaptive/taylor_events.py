@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["TaylorEvents"]
 
+_ONE = Fraction(1)
+
 _ROUNDING = 2.0**-9
 """What part of the motion on leaving a zero rounding may make up."""
 
@@ -37,6 +39,8 @@ class TaylorEvents:
         The precision's keyword and what makes its numbers.
     forward
         1 where time runs forward, −1 where it runs back.
+    unit
+        What the integrator's numbers are parts of.
 
     Raises
     ------
@@ -52,7 +56,9 @@ class TaylorEvents:
         number: Callable[[Fraction], Any],
         *,
         forward: int,
+        unit: Fraction = _ONE,
     ) -> None:
+        self.unit, self.size = unit, number(unit)
         self.system, self.events, self.number, self.forward = system, events, number, forward
         self.recorded = [event for event in events if event.event.action == "record"]
         self.terminal = [event for event in events if event.event.action != "record"]
@@ -76,7 +82,7 @@ class TaylorEvents:
 
         def of(event: PreparedEvent, make: Any, callback: Any) -> Any:
             direction = kinds[event.event.direction * self.forward]
-            (function,) = heyoka_functions(self.system, [event.value], self.number)
+            (function,) = heyoka_functions(self.system, [event.value], self.number, self.unit)
             kind = type(self.number(Fraction(0)))
             return make(function, direction=direction, fp_type=kind, callback=callback)
 
@@ -133,7 +139,7 @@ class TaylorEvents:
             )
             if known or any(event is other for other in handled):
                 continue
-            old, new = (self._value(event, float(t), *_parts(state)) for state in (before, after))
+            old, new = (self._value(event, float(t), *self._parts(state)) for state in (before, after))
             if old * new < 0 or (new != 0 and abs(old) < abs(new) * _ROUNDING):
                 if not event.event.counts(new > 0):
                     continue
@@ -151,10 +157,10 @@ class TaylorEvents:
         NonFiniteStateError
             It is back already: events pile up.
         """
-        now = self._value(event, float(t), *_parts(after))
-        sent = self._value(event, float(t), *_parts(changed), rate=True) * self.forward
+        now = self._value(event, float(t), *self._parts(after))
+        sent = self._value(event, float(t), *self._parts(changed), rate=True) * self.forward
         if now * sent <= 0:
-            y = changed.astype(np.float64)[self.system.rows]
+            y = (changed * self.size).astype(np.float64)[self.system.rows]
             raise NonFiniteStateError(
                 f"{event.event} is met again at once at {time_and_state(float(t), y)}: events pile up there; stop the "
                 "motion before",
@@ -185,7 +191,7 @@ class TaylorEvents:
         return met
 
     def _changed(self, jump: tuple[int, ...], t: float, state: Any) -> Any:
-        high, low = _parts(state)
+        high, low = self._parts(state)
         found = values_in(self.wide, self.system, jump, t, high[:, np.newaxis], low[:, np.newaxis])[:, 0]
         if not np.isfinite(found.astype(np.float64)).all():
             y = high[self.system.rows]
@@ -193,15 +199,15 @@ class TaylorEvents:
                 f"the new state of an event is not finite at {time_and_state(t, y)}", t, y
             )
         exact = [sum((Fraction(*x.as_integer_ratio()) for x in parts), Fraction(0)) for parts in found]
-        return np.array([self.number(x) for x in exact])
+        return np.array([self.number(x / self.unit) for x in exact])
 
     def _record(self, event: PreparedEvent, t: float, state: Any, sign: int, after: Any) -> None:
         rows = self.system.rows
-        moved = None if after is None else after.astype(np.float64)[rows]
-        y = state.astype(np.float64)[rows]
+        moved = None if after is None else (after * self.size).astype(np.float64)[rows]
+        y = (state * self.size).astype(np.float64)[rows]
         self.crossings.append(Crossing(event.event, t, y, sign * self.forward > 0, moved))
 
-
-def _parts(state: Any) -> tuple[Array, Array]:
-    high = state.astype(np.float64)
-    return high, (state - high).astype(np.float64)
+    def _parts(self, state: Any) -> tuple[Array, Array]:
+        whole = state * self.size
+        high = whole.astype(np.float64)
+        return high, (whole - high).astype(np.float64)

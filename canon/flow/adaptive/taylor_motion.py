@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.adaptive.taylor_events import TaylorEvents
+from canon.flow.adaptive.state_unit import state_unit
 from canon.flow.adaptive.taylor_orbit import Slice, TaylorOrbit, ends_of, orbits_of
 from canon.flow.run.samples import Samples
 from canon.kernel.heyoka_bridge import heyoka_number
@@ -69,12 +70,14 @@ def taylor_motion(
     number = heyoka_number(precision)
     first = 0 if so_far is None else len(so_far.t) - 1
     grid = np.array([number(Fraction(t)) for t in plan.instants[first:].tolist()])
-    taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward)
     t0, span = Fraction(float(plan.instants[first])), grid[-1] - grid[0]
+    unit = state_unit(system, states[0] if so_far is None else so_far.y[:, 0], plan)
+    taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward, unit=unit)
     orbits = orbits_of(system, states, t0, method, number, taylor_events, span)
     if so_far is not None:
         for orbit, (state, clock) in zip(orbits, so_far.beyond, strict=True):
             orbit.integrator.state[:], orbit.integrator.dtime = state, clock
+            orbit.new = False
     compiled = time.perf_counter() - compiling
     if events and so_far is None and taylor_events.at_zero(float(plan.instants[0]), *states):
         orbits[0].leave([], (), dense=dense)
@@ -99,7 +102,7 @@ def taylor_motion(
         compile_seconds=compiled,
         beyond=run.beyond,
         crossings=tuple(taylor_events.crossings),
-        dense=tuple(Polynomials(tuple(orbit.pieces), number) for orbit in orbits) if dense else (),
+        dense=tuple(Polynomials(tuple(orbit.pieces), number, unit) for orbit in orbits) if dense else (),
     )
 
 
@@ -154,7 +157,8 @@ class _TaylorRun:
 
     def _add(self, made: Sequence[Slice]) -> None:
         self.stopped = any(each.stopped for each in made)
-        self.rows.append(np.stack([each.rows for each in made], axis=2))
+        found = np.stack([each.rows for each in made], axis=2)
+        self.rows.append(found if self.taylor_events.unit == 1 else found * self.taylor_events.size)
         self.steps += sum(each.steps for each in made)
         self.seconds += sum(each.seconds for each in made)
         self.beyond = ends_of(self.orbits)
@@ -182,10 +186,13 @@ class Polynomials:
         heyoka's continuous outputs, one after the other.
     number
         Makes the numbers they are evaluated at.
+    unit
+        What their values are parts of.
     """
 
     pieces: tuple[Any, ...]
     number: Callable[[Fraction], Any]
+    unit: Fraction = Fraction(1)
 
     def __call__(self, t: Array) -> Array:
         """Return the states (2n, times) at times inside the span."""
@@ -193,5 +200,5 @@ class Polynomials:
         for k, instant in enumerate(t.tolist()):
             at = self.number(Fraction(instant))
             piece = next(p for p in self.pieces if min(p.bounds) <= at <= max(p.bounds))
-            found[:, k] = np.asarray(piece(at)).astype(np.float64)
+            found[:, k] = np.asarray(piece(at)).astype(np.float64) * float(self.unit)
         return found

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import copy
+import functools
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.adaptive.first_step import first_step
+from canon.flow.adaptive.held_steps import HeldSteps, LocalisedTerms, finer
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.kernel.heyoka_bridge import taylor_integrator
 
@@ -44,18 +47,50 @@ class Slice:
 
 @dataclass(eq=False)
 class TaylorOrbit:
-    """One orbit on its way: heyoka's integrator, and one without events to leave their zeros with."""
+    """One orbit on its way: heyoka's integrator, and one without events to leave their zeros with.
+
+    ``held`` keeps the steps from passing over localised terms; ``new`` tells that the next step is the first from
+    a state that was given.
+    """
 
     integrator: Any
     taylor_events: TaylorEvents
     free: Any
     span: Any
+    held: HeldSteps
+    new: bool = True
     pieces: list[Any] = field(default_factory=list[Any])
     safe: tuple[Any, Any] = (None, None)
 
     def advance(self, grid: Any, *, dense: bool) -> Slice:
-        """Go from the first time of a grid to its last and return the states at all but the first."""
-        started, rows, steps, left = time.thread_time(), list[Any](), 0, list(grid[1:])
+        """Go from the first time of a grid to its last and return the states at all but the first.
+
+        Where the way leads far from a localised term, it is gone once more with steps that are held to it.
+        """
+        terms = self.held.terms
+        if not self.held.waits:
+            if terms.exponents:
+                constant = [self.integrator.state] * len(grid)
+                terms.hold(self.integrator, terms.largest(constant, list(grid)))
+            return self._along(list(grid), dense=dense)
+        own, new, pieces = self.integrator, self.new, len(self.pieces)
+        start, clock = own.state.copy(), own.dtime
+        times, parts = finer(list(grid))
+        made = self._along(times, dense=dense)
+        largest = terms.largest([start, *made.rows], times[: len(made.rows) + 1])
+        if made.outcome is None and terms.near(largest):
+            return replace(made, rows=made.rows[parts - 1 :: parts])
+        del self.pieces[pieces:]
+        self.new, self.integrator = new, self.held.integrator(largest)
+        self.integrator.state[:], self.integrator.dtime = start, clock
+        again = self._along(list(grid), dense=dense)
+        own.state[:], own.dtime = self.integrator.state, self.integrator.dtime
+        if again.outcome is None:
+            self.integrator = own
+        return replace(again, seconds=made.seconds + again.seconds)
+
+    def _along(self, grid: list[Any], *, dense: bool) -> Slice:
+        started, rows, steps, left = time.thread_time(), list[Any](), 0, grid[1:]
         failure, stopped = None, False
         while left:
             steps_taken, found, outcome = self._towards(self.integrator, left, dense=dense)
@@ -134,6 +169,15 @@ class TaylorOrbit:
         from heyoka import taylor_outcome
 
         steps, rows = 0, list[Any]()
+        if self.new:
+            self.new = False
+            end = first_step(self._without_events(), times[-1])
+            if end is not None:
+                before = [t for t in times if abs(t - integrator.time) < abs(end - integrator.time)]
+                taken, found, outcome = self._some_steps(integrator, [*before, end], dense=dense)
+                if len(found) <= len(before):
+                    return taken, found, outcome
+                steps, rows = taken, found[: len(before)]
         while True:
             self.safe = (integrator.state.copy(), integrator.dtime)
             before, left = integrator.time, times[len(rows) :]
@@ -148,7 +192,7 @@ class TaylorOrbit:
         from heyoka import taylor_outcome
 
         limits = {"max_steps": _MANY_STEPS}
-        if self.taylor_events.events:
+        if integrator.with_events:
             limits["max_delta_t"] = abs(self.span)
         if not dense and len(times) == 1:  # keeping every step's series for times between costs a fifth
             outcome, _, _, steps, _, _ = integrator.propagate_until(times[-1], **limits)
@@ -164,6 +208,12 @@ class TaylorOrbit:
         first, last = sorted(piece.bounds)
         return steps, [np.array(piece(t)) for t in times if first <= t <= last], outcome
 
+    def _without_events(self) -> Any:
+        if self.free is None:
+            return self.integrator
+        self.free.state[:], self.free.dtime = self.integrator.state, self.integrator.dtime
+        return self.free
+
     def lost(self, outcome: object, rows: Sequence[int]) -> NonFiniteStateError:
         """Return the error that says where the motion ended: its last finite step is looked for again."""
         own = self.integrator
@@ -174,7 +224,7 @@ class TaylorOrbit:
             if not np.isfinite(own.state.astype(np.float64)).all() or own.time == t:
                 break
             t, state = own.time, own.state.copy()
-        y = state.astype(np.float64)[list(rows)]
+        y = (state * self.taylor_events.size).astype(np.float64)[list(rows)]
         return NonFiniteStateError(
             f"the motion can't be continued after {time_and_state(float(t), y)} ({outcome}): a collision or the edge "
             "of H's domain; stop earlier",
@@ -193,17 +243,26 @@ def orbits_of(
     span: Any,
 ) -> list[TaylorOrbit]:
     """Compile one integrator and copy it for the other orbits."""
-    made, free = list[TaylorOrbit](), None
-    for high, low in zip(states[0].T.tolist(), states[1].T.tolist(), strict=True):
-        y0 = [Fraction(a) + Fraction(b) for a, b in zip(high, low, strict=True)]
-        if not made:
-            settings = system, y0, t0, method.tolerance, number
-            integrator = taylor_integrator(*settings, taylor_events.heyoka_events())
-            free = taylor_integrator(*settings) if taylor_events.events else None
-        else:
-            integrator = copy.deepcopy(made[0].integrator)
-            integrator.state[:] = [number(x) for x in y0]
-        made.append(TaylorOrbit(integrator, taylor_events, free, span))
+    starts = [
+        [Fraction(a) + Fraction(b) for a, b in zip(high, low, strict=True)]
+        for high, low in zip(states[0].T.tolist(), states[1].T.tolist(), strict=True)
+    ]
+    unit, events = taylor_events.unit, taylor_events.heyoka_events()
+    terms = LocalisedTerms.of(system, number, method.tolerance, unit, taylor_events.forward)
+    settings = system, starts[0], t0, method.tolerance, number
+
+    @functools.cache
+    def held() -> Any:
+        return taylor_integrator(*settings, terms.beside({}), unit)
+
+    first = taylor_integrator(*settings, terms.beside(events) if events else events, unit)
+    free = taylor_integrator(*settings, unit=unit) if events else None
+    made = list[TaylorOrbit]()
+    for start in starts:
+        integrator = copy.deepcopy(first) if made else first
+        integrator.state[:] = [number(x / unit) for x in start]
+        steps = HeldSteps(terms, held, waits=not events)
+        made.append(TaylorOrbit(integrator, taylor_events, free, span, steps))
     return made
 
 

@@ -19,10 +19,13 @@ if TYPE_CHECKING:
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["AccuracyWarning", "jumped", "measured", "values_in", "warn_of_jumps"]
+__all__ = ["AccuracyWarning", "jumped", "measured", "size_of_terms", "values_in", "warn_of_jumps"]
 
 _IMPLAUSIBLE = 0.5
 """An energy that changes by more than this part of the size of H's terms at the start is no small error."""
+
+_VANISHING = 1e-6
+"""Terms of H that are smaller at the start than this part of their median size on the way are nothing to measure by."""
 
 _WIDE = bool(np.finfo(np.longdouble).nmant >= 63)
 
@@ -106,13 +109,24 @@ def warn_of_jumps(system: HamiltonEquations, samples: Samples, change: Array) ->
 
 def jumped(system: HamiltonEquations, samples: Samples, change: Array) -> npt.NDArray[np.bool_]:
     """Return where the energy has changed by half the size of H's terms at the start, shape (times, orbits)."""
+    size = size_of_terms(system, samples)
+    # Where H and its terms are 0 there is nothing to compare with.
+    return (np.abs(change) > _IMPLAUSIBLE * size) & (size > 0)
+
+
+def size_of_terms(system: HamiltonEquations, samples: Samples) -> Array:
+    """Return how large the terms of H are together at the start, or on the way where they vanish there, shape (orbits,).
+
+    They do where a pendulum −cos θ is released from the horizontal: what rounding leaves of them is no measure.
+    """
     node = system.graph.nodes[system.hamiltonian]
     terms = node.operands if node.kind == "add" else (system.hamiltonian,)
-    values = dict(zip(system.inputs, (*samples.y[:, 0], np.float64(samples.t[0])), strict=True))
-    sizes = [abs(np.broadcast_to(v, change.shape[1:])) for v in system.graph.evaluate(terms, values)]
-    size = np.sum(sizes, axis=0)
-    # Where H and its terms are 0 at the start there is nothing to compare with.
-    return (np.abs(change) > _IMPLAUSIBLE * size) & (size > 0)
+    values = dict(zip(system.inputs, (*samples.y, samples.t[:, np.newaxis]), strict=True))
+    with np.errstate(all="ignore"):
+        found = system.graph.evaluate(terms, values)
+    sizes = np.sum([abs(np.broadcast_to(v, samples.y.shape[1:])) for v in found], axis=0)
+    usual = np.median(sizes, axis=0)
+    return np.where(sizes[0] > _VANISHING * usual, sizes[0], usual)
 
 
 def _rounded(values: npt.NDArray[Any]) -> Array:

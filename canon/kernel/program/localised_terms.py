@@ -1,0 +1,71 @@
+"""Localised terms of an expression: exponentials that vanish but for a short way, and what they depend on.
+
+A pulse exp(−((t − t₀)/w)²) or a bump 1/cosh²((x − x₀)/w) is rounded to nothing a few widths away, and with it all of
+its Taylor coefficients: no method that chooses its steps by values of the term can know that it is there. The exponent
+can: it is an ordinary function all the way, and the term is to be seen where the exponent is of moderate size.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.expression.graph.graph import Graph
+
+__all__ = ["exponents_of", "sights"]
+
+_EXPONENTIAL = ("exp", "sinh", "cosh", "tanh")
+_MARGIN = 14.0
+"""exp(−14) ≈ 10⁻⁶: a term 10⁶ times larger than all others is still seen in time."""
+
+_FARTHER_IN = 3.0
+"""Powers of a term, such as 1/cosh⁶, come in sight so many times farther in."""
+
+
+def exponents_of(graph: Graph, nodes: Sequence[int]) -> tuple[int, ...]:
+    """Return the exponents of all exponentials in some expressions that are not constant, each once.
+
+    Parameters
+    ----------
+    graph
+        The graph that holds the expressions.
+    nodes
+        The expressions, such as rates of change.
+
+    Examples
+    --------
+    >>> from sympy import exp, symbols, tanh
+    >>> from canon.expression.graph.graph import Graph
+    >>> x, t = symbols("x t")
+    >>> graph = Graph()
+    >>> [graph.to_sympy(g) for g in exponents_of(graph, [graph.from_sympy(x + exp(2 - t**2) + tanh(5 * x))])]
+    [5*x, 2 - t**2]
+    """
+    found = dict[int, None]()
+    for each in graph.reachable(nodes):
+        kind, operands, _ = graph.nodes[each]
+        if kind in _EXPONENTIAL:
+            found[operands[0]] = None
+        elif kind == "pow" and graph.symbols(operands[1]):
+            found[graph.mul([operands[1], graph.function("log", operands[0])])] = None
+    varying = sorted(node for node in found if graph.symbols(node))
+    return tuple(node for k, node in enumerate(varying) if graph.negative(node) not in varying[:k])
+
+
+def sights(unit: float) -> tuple[float, ...]:
+    """Return the sizes of an exponent x, largest first, at which terms come in sight in numbers of a rounding unit.
+
+    At the first exp(−x) is of no account yet, at the second 1 − tanh² x and 1/cosh² x begin to be, at the third higher
+    powers.
+
+    Examples
+    --------
+    >>> [round(x) for x in sights(2.0**-52)]
+    [50, 17, 6]
+    """
+    digits = -math.log(unit)
+    saturated = digits / 2 - 1
+    return (_MARGIN + digits, saturated, saturated / _FARTHER_IN)
