@@ -1,13 +1,14 @@
-"""Steps of the Taylor method held to localised terms of the equations: pulses in time and bumps in space are not passed over.
+"""Steps of the Taylor method held to localised terms: pulses in time and bumps in space are not passed over.
 
 Where the exponent of a term becomes of moderate size a step ends; from there on the series know the term. To find such
-times heyoka looks for zeros in every step, which takes up to three times as long, so that it is done only where the motion
-has come far from a term.
+times heyoka looks for zeros in every step, which takes up to three times as long, so that it is done only where the
+motion has come far from a term.
 """
 
 from __future__ import annotations
 
 import copy
+import itertools
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -161,7 +162,7 @@ def finer(grid: Sequence[Any]) -> tuple[list[Any], int]:
         return list(grid), 1
     kind = type(grid[0])
     times = [grid[0]]
-    for a, b in zip(grid[:-1], grid[1:], strict=True):
+    for a, b in itertools.pairwise(grid):
         times += [a + (b - a) * kind(k) / kind(parts) for k in range(1, parts)]
         times.append(b)
     return times, parts

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.adaptive.taylor_events import TaylorEvents
 from canon.flow.adaptive.state_unit import state_unit
+from canon.flow.adaptive.taylor_events import TaylorEvents
 from canon.flow.adaptive.taylor_orbit import Slice, TaylorOrbit, ends_of, orbits_of
 from canon.flow.run.samples import Samples
 from canon.kernel.heyoka_bridge import heyoka_number

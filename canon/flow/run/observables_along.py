@@ -115,7 +115,7 @@ def jumped(system: HamiltonEquations, samples: Samples, change: Array) -> npt.ND
 
 
 def size_of_terms(system: HamiltonEquations, samples: Samples) -> Array:
-    """Return how large the terms of H are together at the start, or on the way where they vanish there, shape (orbits,).
+    """Return the size of H's terms together at the start, or on the way where they vanish there, shape (orbits,).
 
     They do where a pendulum −cos θ is released from the horizontal: what rounding leaves of them is no measure.
     """
