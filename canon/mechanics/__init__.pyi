@@ -81,6 +81,7 @@ from .lagrange.force import generalized_torques as generalized_torques
 from .lagrange.force import gravity as gravity
 from .lagrange.force import lagrangian_of_bodies as lagrangian_of_bodies
 from .lagrange.force import magnetic_field as magnetic_field
+from .lagrange.force import potential_forces as potential_forces
 from .lagrange.force import rayleigh_forces as rayleigh_forces
 from .lagrange.force import spring as spring
 from .lagrange.frobenius import Pfaffian as Pfaffian

@@ -74,3 +74,18 @@ def test_principal_axes_are_the_tensor_without_products(inertia):
     for name, moment in zip(TENSOR, [*(inertia * 3)[:3], "0", "0", "0"], strict=True):
         claim = claim.replace(name, moment)
     assert appell(few, claim=claim.split(" ; ")).holds
+
+
+def test_forces_without_potential_enter_by_the_velocities_that_they_work_with():
+    """A blade driven by F forwards and braked in turning; the work of F on u is cos² + sin² = 1 times F u."""
+    sleigh = {
+        "q": ["x", "y", "theta"],
+        "quasi": ["u", "w"],
+        "q_dot": ["u*cos(theta)", "u*sin(theta)", "w"],
+        "bodies": [{"m": "m", "r": ["x", "y"]}, {"I": "J", "omega": "w"}],
+        "Qnc": ["F*cos(theta)", "F*sin(theta)", "-c*theta_dot"],
+        "parameters": {"m": "positive", "J": "positive", "F": "real", "c": "positive"},
+    }
+    assert appell(sleigh, claim=["m*u_dot - F", "J*w_dot + c*w"]).holds
+    assert appell(sleigh, claim=["m*u_dot - F", "J*w_dot - c*w"]).fails
+    assert appell(sleigh, claim=["m*u_dot", "J*w_dot"]).fails

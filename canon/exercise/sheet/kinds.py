@@ -124,7 +124,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
         "gibbs-appell": Kind(
             "gibbs_appell.gibbs_appell",
             {"q": _N, "bodies": Shape.BODIES},
-            {"quasi": _N, "q_dot": _TS, "V": _T, "S": _T, "claim": _TS},
+            {"quasi": _N, "q_dot": _TS, "V": _T, "Qnc": _TS, "S": _T, "claim": _TS},
             one_of=(("S",), ("claim",)),
             answer=("S", "claim"),
             unknowns="S up to terms without accelerations, or the accelerations",

@@ -19,7 +19,7 @@ from canon.expression.symbols.symbol import velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.dynamicsymbols import needs_plain, plain
 from canon.mechanics.algebra.substitution import exchanged
-from canon.mechanics.lagrange.body import PlanarBody, RigidBody
+from canon.mechanics.lagrange.body import Particle, PlanarBody
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.expression.graph.graph import Graph
-    from canon.mechanics.lagrange.body import Body
+    from canon.mechanics.lagrange.body import Body, RigidBody
 
 __all__ = ["Channel", "Reader", "channels"]
 
@@ -143,15 +143,15 @@ def channels(reader: Reader, bodies: Sequence[Body], field: Sequence[Expr] = ())
             load = loads[k] if loads and loads[k] != zero else None
             if pairs or rest is not None:
                 yield Channel(mass, pairs, rest, load)
-        if isinstance(body, PlanarBody):
+        if isinstance(body, PlanarBody) and body.angle is not None:
             pairs, rest = reader.slopes(body.angle)
             if pairs or rest is not None:
                 yield Channel(reader.node(body.moment), pairs, rest)
-        elif isinstance(body, RigidBody):
+        elif not isinstance(body, Particle):
             yield from _turning(reader, body)
 
 
-def _turning(reader: Reader, body: RigidBody) -> Iterator[Channel]:
+def _turning(reader: Reader, body: PlanarBody | RigidBody) -> Iterator[Channel]:
     """Yield ω along the body's axes; a product of inertia Iᵢⱼ weighs ωᵢ + ωⱼ and takes its share from ωᵢ and ωⱼ."""
     v = [velocity(s) for s in reader.q]
     at_rest = dict.fromkeys(v, sp.S.Zero)
@@ -159,7 +159,7 @@ def _turning(reader: Reader, body: RigidBody) -> Iterator[Channel]:
     inertia = body.inertia
     weighed: list[tuple[Expr, Expr]] = []
     for i, w in enumerate(omega):
-        others = [inertia.row(i)[j] for j in range(3) if j != i]
+        others = [inertia.row(i)[j] for j in range(len(omega)) if j != i]
         weighed.append((inertia.row(i)[i] - sp.Add(*others), w))
         weighed += [(inertia.row(i)[j], w + omega[j]) for j in range(i) if inertia.row(i)[j] != 0]
     for moment, w in weighed:

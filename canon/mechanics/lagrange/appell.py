@@ -17,7 +17,7 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression
-from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
+from canon.mechanics.algebra.substitution import as_tuple, entry
 from canon.mechanics.lagrange.body import bodies_of
 from canon.mechanics.lagrange.quasi_velocity import Kinematics, solved_for
 
@@ -101,26 +101,37 @@ class GibbsAppell:
         return self.kinematics.u_dot
 
     @cached_property
+    def _motion(self) -> tuple[tuple[Expr, Expr, Expr], ...]:
+        """What turns and moves: inertia, acceleration, and the gyroscopic part of the torque, a component each."""
+        rate = self.kinematics.rate
+        found: list[tuple[Expr, Expr, Expr]] = []
+        for body in self.bodies:
+            found += [(body.m * a, a, sp.S.Zero) for a in (rate(rate(place)) for place in body.r)]
+            omega = sp.Matrix(body.angular_velocity(self.kinematics))
+            alpha = omega.applyfunc(rate)
+            torque = body.inertia * alpha
+            spin = omega.cross(body.inertia * omega) if len(omega) == 3 else sp.zeros(len(omega), 1)
+            found += zip(torque.flat(), alpha.flat(), spin.flat(), strict=True)
+        return tuple(found)
+
+    @cached_property
     def gibbs_function(self) -> Expr:
         """The acceleration energy S as a function of q, u, u̇, t, up to terms without accelerations."""
-        rate = self.kinematics.rate
-        terms: list[Expr] = []
-        for body in self.bodies:
-            terms += [body.m * rate(rate(place)) ** 2 / 2 for place in body.r]
-            omega = body.angular_velocity(self.kinematics)
-            alpha = [rate(w) for w in omega]
-            n = range(len(omega))
-            terms += [entry(body.inertia, i, j) * alpha[i] * alpha[j] / 2 for i in n for j in n]
-            if len(omega) == 3:
-                spin = [sp.Add(*(entry(body.inertia, i, j) * omega[j] for j in n)) for i in n]
-                terms += [a * b for a, b in zip(alpha, cross(omega, spin), strict=True)]
-        return sp.Add(*terms)
+        return sp.Add(*(force * a / 2 + gyroscopic * a for force, a, gyroscopic in self._motion))
+
+    @cached_property
+    def slopes(self) -> tuple[Expr, ...]:
+        """The slopes ∂S/∂u̇ = Σ m r̈·∂r̈/∂u̇ + Σ (I α + ω × I ω)·∂α/∂u̇, from shorter expressions than S."""
+        return tuple(
+            sp.Add(*((force + gyroscopic) * a.diff(b) for force, a, gyroscopic in self._motion))
+            for b in self.u_dot
+        )
 
     @cached_property
     def forces(self) -> tuple[Expr, ...]:
         """The generalized forces of the quasi-velocities, Σ (Q − ∂V/∂q) ∂q̇/∂u."""
-        B, through = self.kinematics.basis, self.kinematics.through
-        along_q = [exchanged(Q, through) - self.V.diff(s) for s, Q in zip(self.q, self.Q, strict=True)]
+        B, along = self.kinematics.basis, self.kinematics.along
+        along_q = [along(Q) - self.V.diff(s) for s, Q in zip(self.q, self.Q, strict=True)]
         return tuple(
             sp.Add(*(force * entry(B, i, j) for i, force in enumerate(along_q))) for j in range(B.cols)
         )
@@ -128,7 +139,7 @@ class GibbsAppell:
     @cached_property
     def equations(self) -> tuple[Expr, ...]:
         """The Gibbs–Appell equations, each = 0: ∂S/∂u̇ − U."""
-        return tuple(self.gibbs_function.diff(a) - U for a, U in zip(self.u_dot, self.forces, strict=True))
+        return tuple(slope - U for slope, U in zip(self.slopes, self.forces, strict=True))
 
     @cached_property
     def quasi_accelerations(self) -> tuple[Expr, ...]:

@@ -77,18 +77,31 @@ class PlanarBody:
         Moment of inertia about the axis through the centre of mass.
     angle
         Angle of rotation as a function of q and t.
+    omega
+        Instead of ``angle``: the angular velocity as a function of q, q̇, t.
     """
 
     m: Expr
     r: tuple[Expr, ...]
     moment: Expr
-    angle: Expr
+    angle: Expr | None = None
+    omega: Expr | None = None
 
-    def __init__(self, m: Expr, r: Sequence[Expr], moment: Expr, angle: Expr) -> None:
+    def __init__(
+        self,
+        m: Expr,
+        r: Sequence[Expr],
+        moment: Expr,
+        angle: Expr | None = None,
+        omega: Expr | None = None,
+    ) -> None:
+        if (angle is None) == (omega is None):
+            raise ValueError("say how the body turns by angle or by omega, and not by both")
         object.__setattr__(self, "m", given_expression(m, "m"))
         object.__setattr__(self, "r", as_tuple(r))
         object.__setattr__(self, "moment", given_expression(moment, "moment"))
-        object.__setattr__(self, "angle", given_expression(angle, "angle"))
+        object.__setattr__(self, "angle", None if angle is None else given_expression(angle, "angle"))
+        object.__setattr__(self, "omega", None if omega is None else given_expression(omega, "omega"))
 
     @property
     def inertia(self) -> sp.ImmutableDenseMatrix:
@@ -97,7 +110,9 @@ class PlanarBody:
 
     def angular_velocity(self, kinematics: Kinematics) -> tuple[Expr, ...]:
         """Return the rate of the angle."""
-        return (kinematics.rate(self.angle),)
+        if self.angle is not None:
+            return (kinematics.rate(self.angle),)
+        return (kinematics.along(self.omega),)
 
 
 @dataclass(frozen=True)
@@ -158,7 +173,7 @@ class RigidBody:
     def angular_velocity(self, kinematics: Kinematics) -> tuple[Expr, ...]:
         """Return ω along the body's axes: the three entries of Rᵀ Ṙ."""
         if self.omega is not None:
-            return tuple(exchanged(kinematics.plain(w), kinematics.through) for w in self.omega)
+            return tuple(kinematics.along(w) for w in self.omega)
         R = sp.Matrix(self.rotation).applyfunc(kinematics.plain)
         spin = R.T * R.applyfunc(kinematics.rate)
         return tuple(sp.expand(entry(spin, i, j)) for i, j in ((2, 1), (0, 2), (1, 0)))
@@ -319,7 +334,8 @@ def is_scleronomic(
     for i, body in enumerate(bodies, 1):
         claims += [(f"∂r/∂t of body {i}", plain(place, named, t).diff(t)) for place in body.r]
         if isinstance(body, PlanarBody):
-            claims.append((f"∂angle/∂t of body {i}", plain(body.angle, named, t).diff(t)))
+            turning = plain(body.omega if body.angle is None else body.angle, named, t)
+            claims.append((f"how body {i} turns at fixed q", turning.diff(t)))
         elif isinstance(body, RigidBody):
             turning = body.omega if body.rotation is None else tuple(body.rotation.flat())
             parts = plain_all(turning or (), named, t)

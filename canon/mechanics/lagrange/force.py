@@ -12,22 +12,24 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time, time_derivative, velocity
+from canon.expression.symbols.user_input import given_expression
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all
+from canon.mechanics.lagrange.body import RigidBody, kinetic_energy
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.mechanics.lagrange.body import Body, RigidBody
+    from canon.mechanics.lagrange.body import Body
     from canon.proof.domain.domain import Domain
     from canon.proof.domain.verdict import Verdict
 
 __all__ = [
     "charge_term", "damper", "do_no_work", "electric_field", "generalized_forces", "generalized_moments",
     "generalized_torques", "gravity",
-    "lagrangian_of_bodies", "magnetic_field", "rayleigh_forces", "spring",
+    "lagrangian_of_bodies", "magnetic_field", "potential_forces", "rayleigh_forces", "spring",
 ]  # fmt: skip
 
 
@@ -86,18 +88,28 @@ def generalized_torques(
 
 
 def generalized_moments(
-    moments: Sequence[Sequence[Expr]], bodies: Sequence[RigidBody], q: Sequence[Symbol], t: Symbol = time
+    moments: Sequence[Sequence[Expr]],
+    bodies: Sequence[RigidBody | Sequence[Expr]],
+    q: Sequence[Symbol],
+    t: Symbol = time,
 ) -> tuple[Expr, ...]:
-    """Return Q = Σ M·∂ω/∂q̇ of moments on bodies in space.
+    """Return Q = Σ M·∂ω/∂q̇ of moments on bodies.
 
     Parameters
     ----------
     moments
         The components of each moment along the axes of its body.
     bodies
-        The bodies they act on.
+        The bodies they act on, or the components of their angular velocities ω(q, q̇, t) along the same axes.
     q
         The coordinates.
+    t
+        The time.
+
+    Raises
+    ------
+    ValueError
+        Where an angular velocity is not affine in the velocities, or has not the components of its moment.
 
     Examples
     --------
@@ -112,13 +124,36 @@ def generalized_moments(
     [0, M*cos(theta), M]
     """
     kinematics = Kinematics(q, t=t)
-    q = kinematics.q
-    pairs = [
-        (kinematics.plain(sp.sympify(component, strict=True)), w)
-        for moment, body in zip(moments, bodies, strict=True)
-        for component, w in zip(moment, body.angular_velocity(kinematics), strict=True)
-    ]
-    return tuple(sp.Add(*(component * w.diff(velocity(s)) for component, w in pairs)) for s in q)
+    velocities = [velocity(s) for s in kinematics.q]
+    pairs: list[tuple[Expr, Expr]] = []
+    for moment, body in zip(moments, bodies, strict=True):
+        given = body.angular_velocity(kinematics) if isinstance(body, RigidBody) else body
+        omega = [kinematics.along(w) for w in given]
+        pairs += zip((kinematics.plain(given_expression(M)) for M in moment), omega, strict=True)
+    slopes = [[w.diff(v) for _, w in pairs] for v in velocities]
+    if any(slope.has(*velocities) for row in slopes for slope in row):
+        raise ValueError(
+            "an angular velocity is not affine in the velocities, so its moment has no virtual work"
+        )
+    return tuple(sp.Add(*(M * slope for (M, _), slope in zip(pairs, row, strict=True))) for row in slopes)
+
+
+def potential_forces(V: Expr, q: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
+    """Return Q = d/dt ∂V/∂q̇ − ∂V/∂q, which is −∂V/∂q where V does not depend on velocities.
+
+    Examples
+    --------
+    The magnetic part of a charge's potential, −e A·ṙ, gives Lorentz's force:
+
+    >>> from canon import coordinates
+    >>> from sympy import symbols
+    >>> x, y = coordinates("x y")
+    >>> potential_forces(-symbols("B")*x*y.dot, [x, y])
+    (B*y_dot, -B*x_dot)
+    """
+    q = coordinate_symbols(q)
+    energy = plain(V, q, t)
+    return tuple(time_derivative(energy.diff(velocity(s)), q, t) - energy.diff(s) for s in q)
 
 
 def do_no_work(
@@ -269,8 +304,6 @@ def lagrangian_of_bodies(
     >>> lagrangian_of_bodies([Particle(m, (x,))], [x], k*x**2/2, dissipation=c*x.dot**2/2).equations
     (c*x_dot + k*x + m*x_ddot,)
     """
-    from canon.mechanics.lagrange.body import kinetic_energy
-
     q = coordinate_symbols(q)
     damping = rayleigh_forces(dissipation, q)
     given = plain_all(forces or (sp.S.Zero,) * len(q), q, t)

@@ -212,8 +212,7 @@ class NewtonEuler:
         if isinstance(body, Particle):
             return []
         omega = body.angular_velocity(kinematics)
-        n = range(len(omega))
-        spin = [sp.Add(*(entry(body.inertia, a, b) * omega[b] for b in n)) for a in n]
+        spin = (body.inertia * sp.Matrix(omega)).flat()
         turning = [kinematics.rate(component) for component in spin]
         moment = self._moment(i, len(omega))
         if isinstance(body, RigidBody):

@@ -9,18 +9,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.expression.symbols.symbol import Rate, acceleration, time, velocity
-from canon.expression.symbols.user_input import counted
+from canon.expression.symbols.user_input import counted, given_expression
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate, coordinate_symbols, needs_plain, plain
 from canon.mechanics.algebra.linear import eliminate, solve
-from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
+from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged, substitute
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -117,6 +117,10 @@ class Kinematics:
         others = [w for w in self.u if not isinstance(w, Rate)]
         return plain(f, (*self.q, *others), self.t)
 
+    def along(self, f: Any) -> Expr:
+        """Return f(q, q̇, q̈, t) as a function of q, u, u̇, t."""
+        return substitute(self.plain(given_expression(f)), self.through)
+
     @cached_property
     def through(self) -> Mapping[Symbol, Expr]:
         """What each q̇ and q̈ is in terms of q, u, u̇, t."""
@@ -125,7 +129,7 @@ class Kinematics:
 
     def satisfy(self, constrained: ConstrainedLagrangian, domain: Domain | None = None) -> Verdict:
         """Tell whether every q̇(q, u, t) satisfies the constraints on the velocities, whatever u."""
-        claims = [(f"{rate} = 0", exchanged(rate, self.through)) for rate in constrained.rates]
+        claims = [(f"{rate} = 0", self.along(rate)) for rate in constrained.rates]
         return all_vanish(claims, "the quasi-velocities satisfy the constraints", domain)
 
 
@@ -180,7 +184,7 @@ def maggi_equations(lagrangian: Lagrangian, kinematics: Kinematics) -> tuple[Exp
 
     They hold no reaction of constraints that the kinematics satisfies.
     """
-    lagrange = [exchanged(e, kinematics.through) for e in lagrangian.equations]
+    lagrange = [kinematics.along(e) for e in lagrangian.equations]
     B = kinematics.basis
     return tuple(
         sp.Add(*(e * entry(B, i, j) for i, e in enumerate(lagrange))) for j in range(len(kinematics.u))
