@@ -69,7 +69,7 @@ def row(method: Splitting | Gauss, steps_a_period: float, orbits: int, steps: in
     step = 2 * np.pi / steps_a_period
     begun = time.process_time()
     motion = propagate(
-        kepler.hamiltonian, starts(orbits), (0.0, steps * step), method=method, step=step,
+        kepler.hamiltonian, (0.0, steps * step), starts(orbits), method=method, step=step,
         precision="compensated", parameters=dict.fromkeys(kepler.values, 1), samples=SAMPLES,
     )  # fmt: skip
     spent = time.process_time() - begun

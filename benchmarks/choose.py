@@ -166,7 +166,7 @@ def outcomes(
     chosen: list[tuple[float, Choice, float, float, float]] = []
     for accuracy in accuracies:
         before = time.process_time()
-        choice = choose(scene, start, span, accuracy, observable)
+        choice = choose(scene, span, start, accuracy=accuracy, observable=observable)
         took = time.process_time() - before
         error = cost = math.inf
         if choice.reached:

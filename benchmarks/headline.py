@@ -108,8 +108,8 @@ def run(problem: Problem, case: Case) -> dict[str, Any]:
         keywords |= {"times": np.geomspace(unit, end, INSTANTS + 1)[:-1]}
     motion = propagate(
         scene.hamiltonian,
-        start,
         (0.0, end),
+        start,
         method=case.method,
         parameters=scene.values,
         **keywords,

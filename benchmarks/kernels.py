@@ -304,7 +304,7 @@ from canon import Hamiltonian, Splitting, coordinates, propagate
 begun = time.process_time()
 x, y = coordinates("x y")
 H = Hamiltonian((x.momentum**2 + y.momentum**2) / 2 - 1 / sp.sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum])
-propagate(H, [0.4, 0, 0, 2], (0, 0.01), method=Splitting("kahan-li-8"), step=0.01, samples=1)
+propagate(H, (0, 0.01), [0.4, 0, 0, 2], method=Splitting("kahan-li-8"), step=0.01, samples=1)
 print(time.process_time() - begun)
 """
 

@@ -134,7 +134,7 @@ def canon_methods(problem: Problem) -> Iterator[Contender]:
         def run(setting: int, instants: int, method: Any = method) -> Run:
             step = problem.span / problem.periods / setting
             motion = propagate(
-                problem.hamiltonian, problem.y0, (0.0, problem.span), method=method, step=step * (1 + 1e-10),
+                problem.hamiltonian, (0.0, problem.span), problem.y0, method=method, step=step * (1 + 1e-10),
                 precision="double", parameters=problem.values, samples=instants,
             )  # fmt: skip
             # A run of fewer steps than instants shows every step.
@@ -147,7 +147,7 @@ def canon_methods(problem: Problem) -> Iterator[Contender]:
 
     def taylor(setting: float, instants: int) -> Run:
         motion = propagate(
-            problem.hamiltonian, problem.y0, (0.0, problem.span), method=Taylor(setting),
+            problem.hamiltonian, (0.0, problem.span), problem.y0, method=Taylor(setting),
             parameters=problem.values, samples=instants,
         )  # fmt: skip
         return motion.cpu_seconds, motion.energy

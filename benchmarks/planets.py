@@ -79,7 +79,7 @@ def main() -> None:
 
     def run(method: FixedStep, steps: int, samples: int) -> Trajectory:
         return propagate(
-            planets.hamiltonian, [*start.q, *start.p], span, method=method, step=period / steps * (1 + 1e-9),
+            planets.hamiltonian, span, [*start.q, *start.p], method=method, step=period / steps * (1 + 1e-9),
             precision=given.precision, parameters=planets.values, samples=samples,
         )  # fmt: skip
 

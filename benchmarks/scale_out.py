@@ -34,8 +34,8 @@ def study(steps: int) -> Study:
     states = [[0.0, 0.1 + 0.002 * k, 0.4, 0.1] for k in range(CASES // 2)]
     h = 0.01
     common = {"system": "henon-heiles", "start": states, "samples": 1024}
-    quick = Study.of(**common, method=Splitting("kahan-li-8"), step=h, until=h * steps)
-    slow = Study.of(**common, method=Gauss(4), step=h, until=h * steps // 4)
+    quick = Study.of(**common, method=Splitting("kahan-li-8"), step=h, span=h * steps)
+    slow = Study.of(**common, method=Gauss(4), step=h, span=h * steps // 4)
     return Study((*quick.cases, *slow.cases))
 
 

@@ -21,7 +21,7 @@ def test_the_table_answers_first_and_says_how_to_run_it(capsys):
 
 
 def test_lines_are_json_with_the_choice_first(capsys):
-    assert choose("--accuracy", "1e-6", "--until", "500", "--json") == 0
+    assert choose("--accuracy", "1e-6", "--span", "500", "--json") == 0
     lines = [json.loads(line, parse_constant=pytest.fail) for line in capsys.readouterr().out.splitlines()]
     assert [line["chosen"] for line in lines] == [True] + [False] * (len(lines) - 1)
     assert lines[0]["keeps"]

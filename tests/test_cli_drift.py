@@ -92,7 +92,7 @@ def test_several_orbits(capsys):
 
 
 def test_a_duration_in_units_of_time_and_more_digits(capsys):
-    arguments = ["drift", "henon-heiles", "--until", "100", "--method", "taylor", "--precision", "extended"]
+    arguments = ["drift", "henon-heiles", "--span", "100", "--method", "taylor", "--precision", "extended"]
     assert main([*arguments, "--json"]) == 0
     line = json.loads(capsys.readouterr().out)
     assert line["span"] == 100.0

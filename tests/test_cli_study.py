@@ -28,9 +28,9 @@ system = "quartic"
 start = ["near", "far"]
 method = ["verlet", "rk4"]
 step = 0.05
-until = 100
+span = 100
 """
-FAILING = SMALL + '\n[[study]]\nsystem = "double-pendulum"\nmethod = "verlet"\nstep = 0.1\nuntil = 50\n'
+FAILING = SMALL + '\n[[study]]\nsystem = "double-pendulum"\nmethod = "verlet"\nstep = 0.1\nspan= 50\n'
 
 
 @pytest.fixture
@@ -117,7 +117,7 @@ def test_shares_of_several_jobs_merge_to_the_whole(small, tmp_path, capsys):
 def test_killed_and_resumed_from_the_shell(tmp_path):
     file, kept = tmp_path / "long.toml", tmp_path / "long.sqlite"
     file.write_text(
-        '[[study]]\nsystem = "henon-heiles"\nmethod = ["kahan-li-8", "taylor"]\nstep = 0.02\nuntil = 600\nparts = 30\n'
+        '[[study]]\nsystem = "henon-heiles"\nmethod = ["kahan-li-8", "taylor"]\nstep = 0.02\nspan= 600\nparts = 30\n'
     )
     canon = [sys.executable, "-m", "canon.cli", "study"]
     program = subprocess.Popen([*canon, "run", str(file), "--checkpoint", "0"])

@@ -17,15 +17,15 @@ def examples():
     pendulum = canon.Hamiltonian(theta.momentum**2 / 2 - cos(theta), [theta], [theta.momentum])
     scene = find("henon-heiles")
     methods = [canon.Splitting("verlet"), canon.RK4()]
-    motion = canon.propagate(scene.hamiltonian, scene.state(), (0, 100), method=methods[0], step=0.1)
+    motion = canon.propagate(scene.hamiltonian, (0, 100), scene.state(), method=methods[0], step=0.1)
     claim = {"id": "c", "kind": "equality-only", "lhs": "x", "rhs": "x", "parameters": {"x": "real"}}
     sheet = canon.Sheet("A sheet", (canon.Claim("c", "equality-only", claim),))
-    choice = canon.choose(scene, None, 100.0, 1e-3, methods=methods)
+    choice = canon.choose(scene, 100.0, accuracy=1e-3, methods=methods)
     crossed = canon.propagate(
-        pendulum, [1.0, 0.0], (0, 10), method=canon.Taylor(), events=[canon.Event(theta)]
+        pendulum, (0, 10), [1.0, 0.0], method=canon.Taylor(), events=[canon.Event(theta)]
     )
     with TemporaryDirectory() as folder:
-        study = canon.Study.of(system="kepler", method="rk4", step=0.1, until=10.0)
+        study = canon.Study.of(system="kepler", method="rk4", step=0.1, span=10.0)
         canon.run_study(study, f"{folder}/results.sqlite")
         results = canon.results_of(f"{folder}/results.sqlite")
     return {
@@ -33,19 +33,19 @@ def examples():
         "domain": canon.Domain((x > 0,)),
         "scene": scene,
         "trajectory": motion,
-        "jacobian": canon.flow_jacobian(pendulum, [1.0, 0.0], (0, 1), method=methods[0], step=0.1),
+        "jacobian": canon.flow_jacobian(pendulum, (0, 1), [1.0, 0.0], method=methods[0], step=0.1),
         "drift": canon.drift(motion.t, motion.energy_error),
         "row": canon.drift_study(scene, methods=methods, periods=20).rows[0],
         "methods": canon.drift_study(scene, methods=methods, periods=20),
         "choice": choice,
-        "work": canon.work_precision(scene, None, 5.0, methods, steps=[0.1, 0.05]),
-        "study": canon.Study.of(system="kepler", method="rk4", step=[0.01, 0.02], until=10.0),
+        "work": canon.work_precision(scene, 5.0, methods=methods, steps=[0.1, 0.05]),
+        "study": canon.Study.of(system="kepler", method="rk4", step=[0.01, 0.02], span=10.0),
         "claim": sheet.claims[0],
         "sheet": sheet,
         "judgement": canon.check(sheet).judgements[0],
         "error": motion.error_estimate(),
         "crossing": crossed.events[0],
-        "witness": canon.symplectic_flow(pendulum, [1.0, 0.0], (0, 1)),
+        "witness": canon.symplectic_flow(pendulum, (0, 1), [1.0, 0.0]),
         "candidate": choice.candidates[0],
         "result": results[0],
         "body": canon.RigidBody(x, (), (x, x, x), rotation=eye(3)),

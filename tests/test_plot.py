@@ -76,7 +76,7 @@ def test_it_draws_where_it_is_told(study, tmp_path):
 def test_trajectories_are_drawn_as_well():
     scene = find("henon-heiles")
     motions = [
-        propagate(scene.hamiltonian, scene.state(), (0.0, 300.0), method=method, step=0.1)
+        propagate(scene.hamiltonian, (0.0, 300.0), scene.state(), method=method, step=0.1)
         for method in (RK4(), Splitting("verlet"))
     ]
     assert len(curves(plot_energy_error(motions))) == 2
@@ -91,7 +91,7 @@ def test_trajectories_are_drawn_as_well():
 def test_an_error_that_is_exactly_zero_is_no_line():
     scene = find("harmonic-oscillator")
     motion = propagate(
-        scene.hamiltonian, [0.0, 0.0], (0.0, 300.0), method=RK4(), step=0.1, parameters=scene.values
+        scene.hamiltonian, (0.0, 300.0), [0.0, 0.0], method=RK4(), step=0.1, parameters=scene.values
     )
     assert curves(plot_energy_error(motion)) == []
 

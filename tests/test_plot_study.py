@@ -42,9 +42,9 @@ def results(tmp_path_factory):
     """Six finished cases of one motion, two that failed, one pending of which a half is done."""
     store = Store(tmp_path_factory.mktemp("study") / "study.sqlite")
     methods = [Splitting("verlet"), RK4()]
-    common = {"step": [0.05, 0.1, 0.2], "until": 400.0, "samples": 512}
+    common = {"step": [0.05, 0.1, 0.2], "span": 400.0, "samples": 512}
     run_study(Study.of(system="henon-heiles", method=methods, **common), store)
-    run_study(Study.of(system="double-pendulum", method="verlet", step=[0.1, 0.2], until=50.0), store)
+    run_study(Study.of(system="double-pendulum", method="verlet", step=[0.1, 0.2], span=50.0), store)
     later = Case("kepler", RK4(), span=50.0, step=0.05, parts=4)
     store.add_cases({key_of(later): json.dumps(later.to_dict())})
     store.save_checkpoint(key_of(later), 2, "…")
@@ -133,8 +133,7 @@ def test_resonant_steps_are_ringed():
 def test_rows_of_drift_studies_are_drawn_by_step():
     scene = find("henon-heiles")
     rows = [
-        drift_study(scene, methods=[RK4()], step=step, until=300.0, samples=400).rows[0]
-        for step in (0.1, 0.2)
+        drift_study(scene, methods=[RK4()], step=step, span=300.0, samples=400).rows[0] for step in (0.1, 0.2)
     ]
     (line,) = plot_drift_by_step(rows).lines
     assert line.get_ydata().tolist() == [row.drift.bound for row in rows]
@@ -143,9 +142,9 @@ def test_rows_of_drift_studies_are_drawn_by_step():
 def test_the_chosen_point_lies_where_it_was_predicted():
     scene = find("henon-heiles")
     found = work_precision(
-        scene, None, 30.0, [Splitting("kahan-li-8"), Gauss(4)], steps=[0.4, 0.2, 0.1], repetitions=1
+        scene, 30.0, methods=[Splitting("kahan-li-8"), Gauss(4)], steps=[0.4, 0.2, 0.1], repetitions=1
     )
-    chosen = choose(scene, None, 60.0, 1e-8)
+    chosen = choose(scene, 60.0, accuracy=1e-8)
     axes = plot_work_precision(found, error="energy", chosen=chosen)
     (star,) = (line for line in axes.lines if line.get_marker() == "*")
     assert star.get_ydata().tolist() == [chosen.predicted_error]
@@ -160,7 +159,7 @@ def test_the_fan_holds_the_orbits():
     orbits = np.tile(scene.state("regular")[:, None], (1, 16))
     orbits[1] += 0.01 * np.arange(16)
     motion = propagate(
-        scene.hamiltonian, orbits, (0, 100.0), method=Splitting("verlet"), step=0.1, samples=500
+        scene.hamiltonian, (0, 100.0), orbits, method=Splitting("verlet"), step=0.1, samples=500
     )
     axes = plot_ensemble_fan(motion)
     largest = np.abs(motion.energy_error).max()
@@ -169,7 +168,7 @@ def test_the_fan_holds_the_orbits():
     assert median.get_xdata()[-1] == pytest.approx(100.0)
     last = np.abs(motion.energy_error[motion.t > median.get_xdata()[-2]]).max(axis=0)
     assert median.get_ydata()[-1] == pytest.approx(np.median(last))
-    one = propagate(scene.hamiltonian, orbits[:, 0], (0, 10.0), method=RK4(), step=0.1)
+    one = propagate(scene.hamiltonian, (0, 10.0), orbits[:, 0], method=RK4(), step=0.1)
     with pytest.raises(ValueError, match="propagate four or more"):
         plot_ensemble_fan(one)
 
@@ -180,7 +179,7 @@ def test_a_section_is_drawn_over_its_reference():
     def met(method, step=None):
         crossing = Event(scene.q[0], 1)
         motion = propagate(
-            scene.hamiltonian, scene.state("regular"), (0, 200.0), method=method, step=step, events=[crossing]
+            scene.hamiltonian, (0, 200.0), scene.state("regular"), method=method, step=step, events=[crossing]
         )
         return motion.events
 
@@ -222,7 +221,7 @@ def test_what_a_stranger_called_his_system_is_text_in_the_report(tmp_path):
         "<img src=x onerror=alert(1)>", "p**2/2 + q**2/2", ("q",), ("p",), starts=(("s", (1.0, 0.0)),)
     )
     store = Store(tmp_path / "evil.sqlite")
-    run_study(Study.of(system=evil, method="verlet", step=0.1, until=50.0), store)
+    run_study(Study.of(system=evil, method="verlet", step=0.1, span=50.0), store)
     page = study_report(results_of(store), "</title><script>")
     assert "<script" not in page
     assert "<img src=x" not in page

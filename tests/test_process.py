@@ -143,7 +143,7 @@ starts = { near = [0.5, 1.0] }
 system = "free"
 method = ["verlet", "rk4"]
 step = 0.5
-until = 300
+span = 300
 """
 
 

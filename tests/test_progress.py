@@ -27,7 +27,7 @@ def standard_error(monkeypatch, stream, patience=0.0):
 
 
 def run(progress):
-    propagate(PENDULUM, [1.0, 0.0], (0, 2000), method=Splitting("verlet"), step=0.01, progress=progress)
+    propagate(PENDULUM, (0, 2000), [1.0, 0.0], method=Splitting("verlet"), step=0.01, progress=progress)
 
 
 def test_nothing_is_shown_where_nobody_looks(monkeypatch):

@@ -74,10 +74,10 @@ def double() -> Problem:
 def lyapunov() -> Outcome:
     """Compare with Benettin's method: neighbours pulled back to a fixed distance, averaged over a long time."""
     given = double()
-    told = propagate(given.hamiltonian, given.y0, (0, 60), samples=60).error_estimate().lyapunov_time
+    told = propagate(given.hamiltonian, (0, 60), given.y0, samples=60).error_estimate().lyapunov_time
     state, beside, total, pieces, apart = np.array(given.y0), np.array([1e-8, 0, 0, 0]), 0.0, 400, 1e-8
     for _ in range(pieces):
-        pair = propagate(given.hamiltonian, np.stack([state, state + beside], axis=1), (0, 5), samples=1).y[
+        pair = propagate(given.hamiltonian, (0, 5), np.stack([state, state + beside], axis=1), samples=1).y[
             :, -1
         ]
         grown = pair[:, 1] - pair[:, 0]

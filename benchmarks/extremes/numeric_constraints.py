@@ -216,8 +216,8 @@ def long_run(*, projected: bool) -> Outcome:
     H = Hamiltonian(theta.momentum**2 / 2 - 10 * sp.cos(theta), [theta], [theta.momentum])
     angle = propagate(
         H,
-        [sp.atan2(sp.Rational(6, 10), sp.Rational(8, 10)), 0],
         (0, h * steps),
+        [sp.atan2(sp.Rational(6, 10), sp.Rational(8, 10)), 0],
         method=Splitting("kahan-li-8"),
         step=1e-2,
     ).final[0]

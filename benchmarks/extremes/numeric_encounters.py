@@ -144,7 +144,7 @@ def rows() -> Iterator[Row]:
 
 
 def run(given: Problem, **how: object) -> object:
-    return propagate(given.hamiltonian, given.y0, given.span, samples=20, **how).final
+    return propagate(given.hamiltonian, given.span, given.y0, samples=20, **how).final
 
 
 def kepler(gap: float, until: float) -> Problem:
@@ -223,7 +223,7 @@ def fixed_through_collision() -> Outcome:
 
 def stopped_before_collision() -> Outcome:
     near = Event(sp.sqrt(x**2 + y**2) - sp.Rational(1, 10**6), -1, "stop")
-    motion = propagate(KEPLER, [1.0, 0.0, 0.0, 0.0], (0, 2), events=[near])
+    motion = propagate(KEPLER, (0, 2), [1.0, 0.0, 0.0, 0.0], events=[near])
     with mp.workdps(40):
         r = mpf(10) ** -6
         true = mp.sqrt(mpf(1) / 2) * (mp.acos(mp.sqrt(r)) + mp.sqrt(r * (1 - r)))

@@ -78,7 +78,7 @@ def rows() -> Iterator[Row]:
 
 
 def run(H: Hamiltonian, y0: Sequence[float], until: float, how: dict[str, object], *events: Event) -> object:
-    return propagate(H, y0, (0, until), events=events, samples=4, **how)
+    return propagate(H, (0, until), y0, events=events, samples=4, **how)
 
 
 def _times(motion: object, true: Sequence[float]) -> Outcome:

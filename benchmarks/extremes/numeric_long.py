@@ -102,7 +102,7 @@ def rows() -> Iterator[Row]:
 def billion() -> Outcome:
     n, h = 10**9, Fraction(1, 64)
     motion = propagate(
-        OSCILLATOR, [1.0, 0.0], (0, float(n * h)), method=Splitting("verlet"), step=float(h), samples=4
+        OSCILLATOR, (0, float(n * h)), [1.0, 0.0], method=Splitting("verlet"), step=float(h), samples=4
     )
     with mp.workdps(60):
         # Kick–drift–kick or drift–kick–drift: the discrete motion turns by the angle 2 asin(h/2) a step.
@@ -136,15 +136,15 @@ def loop_in_numbers() -> Outcome:
 def resumed() -> Outcome:
     how = {"method": Splitting("verlet"), "step": 2.0**-6}
     span = 10**8 / 64
-    whole = propagate(OSCILLATOR, [1.0, 0.0], (0, span), samples=2, **how)
-    half = propagate(OSCILLATOR, [1.0, 0.0], (0, span / 2), samples=1, **how).resume(span, samples=1)
+    whole = propagate(OSCILLATOR, (0, span), [1.0, 0.0], samples=2, **how)
+    half = propagate(OSCILLATOR, (0, span / 2), [1.0, 0.0], samples=1, **how).resume(span, samples=1)
     same = bool((whole.y == half.y).all() and (whole.carried == half.carried).all())
     return Outcome(f"the same bits: {same}", right=same)
 
 
 def clock() -> Outcome:
     motion = propagate(
-        OSCILLATOR, [1.0, 0.0], (0, 100_000), method=Splitting("verlet"), step=0.1, samples=1000
+        OSCILLATOR, (0, 100_000), [1.0, 0.0], method=Splitting("verlet"), step=0.1, samples=1000
     )
     true = [float(Fraction(k, 10)) for k in range(0, 10**6 + 1, 1000)]
     error = float(abs(motion.t - true).max())
@@ -212,7 +212,7 @@ def _ball(count: int) -> tuple[Hamiltonian, np.ndarray]:
 def many_bodies() -> Outcome:
     """Against the forces written with NumPy in long double and the same method in steps a tenth as long."""
     H, start = _ball(200)
-    motion = propagate(H, start, (0, 0.1), method=Splitting("mclachlan-4"), step=0.005, samples=2)
+    motion = propagate(H, (0, 0.1), start, method=Splitting("mclachlan-4"), step=0.005, samples=2)
     return outcome_of(motion, np.stack([_numpy_ball(start, t) for t in motion.t], axis=1))
 
 
@@ -259,7 +259,7 @@ def lattice(n: int, alpha: float) -> Outcome:
     H = Hamiltonian(sp.Add(*[c**2 / 2 for c in p], *V), q, p)
     modes = np.pi * np.arange(1, n + 1) / (n + 1)
     start = np.concatenate([np.sin(modes) + np.sin(500 * modes) * 0.01, np.zeros(n)])
-    motion = propagate(H, start, (0, 100), method=Splitting("mclachlan-4"), step=0.1, samples=2)
+    motion = propagate(H, (0, 100), start, method=Splitting("mclachlan-4"), step=0.1, samples=2)
     if alpha:
         return outcome_of(motion, np.stack([_numpy_chain(start, alpha, t) for t in motion.t], axis=1))
     from scipy.fft import dst, idst
@@ -297,7 +297,7 @@ def _pendulums() -> tuple[Hamiltonian, np.ndarray]:
 
 def ensemble() -> Outcome:
     H, starts = _pendulums()
-    motion = propagate(H, starts, (0, 10), method=Splitting("kahan-li-8"), step=0.1, samples=1)
+    motion = propagate(H, (0, 10), starts, method=Splitting("kahan-li-8"), step=0.1, samples=1)
     chosen = np.linspace(0, 10**6 - 1, 50).astype(int).tolist()
     estimate = motion.error_estimate(chosen)
     truth = by_taylor(H, starts[:, chosen], "quad")(motion.t)

@@ -97,14 +97,14 @@ def cases() -> Iterator[tuple[str, str, Callable[[], Any]]]:
         "domain-left",
         "H = p²/2 + x √x leaves its domain",
         lambda: propagate(
-            Hamiltonian(x.momentum**2 / 2 + x * sp.sqrt(x), [x], [x.momentum]), [1.0, 0.0], (0, 10)
+            Hamiltonian(x.momentum**2 / 2 + x * sp.sqrt(x), [x], [x.momentum]), (0, 10), [1.0, 0.0]
         ),
     )
     yield (
         "domain-left-verlet",
         "the same with Verlet",
         lambda: propagate(
-            Hamiltonian(x.momentum**2 / 2 + x * sp.sqrt(x), [x], [x.momentum]), [1.0, 0.0], (0, 10), **VERLET
+            Hamiltonian(x.momentum**2 / 2 + x * sp.sqrt(x), [x], [x.momentum]), (0, 10), [1.0, 0.0], **VERLET
         ),
     )
     yield (
@@ -125,13 +125,13 @@ def cases() -> Iterator[tuple[str, str, Callable[[], Any]]]:
     yield (
         "explodes",
         "H = p²/2 − x⁴: infinity in finite time",
-        lambda: propagate(Hamiltonian(x.momentum**2 / 2 - x**4, [x], [x.momentum]), [1.0, 1.0], (0, 10)),
+        lambda: propagate(Hamiltonian(x.momentum**2 / 2 - x**4, [x], [x.momentum]), (0, 10), [1.0, 1.0]),
     )
     yield (
         "explodes-verlet",
         "the same with Verlet",
         lambda: propagate(
-            Hamiltonian(x.momentum**2 / 2 - x**4, [x], [x.momentum]), [1.0, 1.0], (0, 10), **VERLET
+            Hamiltonian(x.momentum**2 / 2 - x**4, [x], [x.momentum]), (0, 10), [1.0, 1.0], **VERLET
         ),
     )
     yield (
@@ -139,8 +139,8 @@ def cases() -> Iterator[tuple[str, str, Callable[[], Any]]]:
         "x⁴/4 in single precision from x = 1e12",
         lambda: propagate(
             Hamiltonian(x.momentum**2 / 2 + x**4 / 4, [x], [x.momentum]),
-            [1e12, 1.0],
             (0, 1),
+            [1e12, 1.0],
             precision="single",
             **VERLET,
         ),
@@ -155,12 +155,12 @@ def cases() -> Iterator[tuple[str, str, Callable[[], Any]]]:
 def go(y0: Any, *, span: tuple[float, float] = (0, 1), numbers: Any = None, **how: Any) -> Any:
     if not how and isinstance(y0, np.ndarray):
         how = {"method": Taylor()}
-    return propagate(SPRING, y0, span, parameters={k: 1.0} if numbers is None else numbers, **how).final
+    return propagate(SPRING, span, y0, parameters={k: 1.0} if numbers is None else numbers, **how).final
 
 
 def broken(value: Any) -> Any:
     return propagate(
-        Hamiltonian(x.momentum**2 / 2 + value * x**2, [x], [x.momentum]), [1.0, 0.0], (0, 1)
+        Hamiltonian(x.momentum**2 / 2 + value * x**2, [x], [x.momentum]), (0, 1), [1.0, 0.0]
     ).final
 
 

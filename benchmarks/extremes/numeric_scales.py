@@ -117,7 +117,7 @@ def _plainly(problem: object) -> dict[str, object]:
 
 
 def propagated(given: Problem, **how: object) -> object:
-    return propagate(given.hamiltonian, given.y0, given.span, samples=10, **how).final
+    return propagate(given.hamiltonian, given.span, given.y0, samples=10, **how).final
 
 
 def refuses(exponent: int) -> object:

@@ -57,7 +57,7 @@ def rows() -> Iterator[Row]:
         "an oscillator, Verlet with h ω = 2.01 over 10⁴ steps: the limit is 2",
         lambda: refused(
             lambda: (
-                propagate(OSCILLATOR, [1.0, 0.0], (0, 20100), method=Splitting("verlet"), step=2.01).final
+                propagate(OSCILLATOR, (0, 20100), [1.0, 0.0], method=Splitting("verlet"), step=2.01).final
             ),
             NonFiniteStateError,
         ),
@@ -99,7 +99,7 @@ def rows() -> Iterator[Row]:
         "pole-start",
         "a spherical pendulum that starts at the pole, sin θ = 0",
         lambda: refused(
-            lambda: propagate(sphere(0.0).hamiltonian, [0.0, 0.0, 1.0, 0.0], (0, 1)).final,
+            lambda: propagate(sphere(0.0).hamiltonian, (0, 1), [0.0, 0.0, 1.0, 0.0]).final,
             ValueError,
             holds="not finite",
         ),

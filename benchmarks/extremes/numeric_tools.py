@@ -38,7 +38,7 @@ def by_taylor(
     """Return the motion by heyoka's Taylor method in higher precision."""
 
     def truth(t: np.ndarray) -> np.ndarray:
-        found = propagate(H, y0, (t0, float(t[-1])), method=Taylor(), precision=precision, times=t[1:])
+        found = propagate(H, (t0, float(t[-1])), y0, method=Taylor(), precision=precision, times=t[1:])
         return found.y.astype(np.longdouble) + found.carried
 
     return truth
@@ -114,7 +114,7 @@ def motion_row(
         given = problem()
         try:
             motion, warning = with_warnings(
-                lambda: propagate(given.hamiltonian, given.y0, given.span, samples=samples, **how)
+                lambda: propagate(given.hamiltonian, given.span, given.y0, samples=samples, **how)
             )
         except NonFiniteStateError as error:
             return Outcome(shown(f"NonFiniteStateError: {error}"), refused=True)

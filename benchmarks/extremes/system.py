@@ -88,7 +88,7 @@ def _move(k: int) -> str:
     (q,) = coordinates("q")
     pendulum = Hamiltonian(q.momentum**2 / 2 - sp.cos(q), [q], [q.momentum])
     found = propagate(
-        pendulum, (1.0 + k / 100, 0.5), (0.0, 50.0), method=Splitting("blanes-moan-4"), step=0.05
+        pendulum, (0.0, 50.0), (1.0 + k / 100, 0.5), method=Splitting("blanes-moan-4"), step=0.05
     )
     return hashlib.sha256(np.ascontiguousarray(found.q).tobytes()).hexdigest()
 

@@ -29,7 +29,7 @@ reading the table:
 
 examples:
   canon choose kepler --accuracy 1e-10 --periods 1e6
-  canon choose outer-solar-system --accuracy 1e-4 --until 3.65e8 --observable position
+  canon choose outer-solar-system --accuracy 1e-4 --span 3.65e8 --observable position
   canon choose kepler --observable "Runge–Lenz vector, x" --accuracy 1e-8 --periods 1e4
   canon choose henon-heiles --accuracy 1e-8 --periods 1e5 --method verlet --method taylor --json
 
@@ -84,14 +84,14 @@ def _choice(scene: Scene, arguments: argparse.Namespace) -> Choice:
     from canon.progress import ProgressBar
     from canon.study.choose.choose import choose
 
-    span = arguments.until if arguments.until is not None else arguments.periods * scene.period
+    span = arguments.span if arguments.span is not None else arguments.periods * scene.period
     with ProgressBar() as progress:
         return choose(
             scene,
-            arguments.start,
             span,
-            arguments.accuracy,
-            arguments.observable,
+            arguments.start,
+            accuracy=arguments.accuracy,
+            observable=arguments.observable,
             methods=methods_given(arguments),
             progress=lambda _, done: progress("pilot runs", done),
         )
@@ -105,7 +105,7 @@ def _command(choice: Choice, arguments: argparse.Namespace) -> str:
     knob = f"--step {choice.step:.6g}" if choice.step is not None else f"--tolerance {choice.tolerance:.3g}"
     words = ["canon drift", arguments.scene, *(f"--set {each}" for each in arguments.set)]
     words += [f'--start "{arguments.start}"'] if arguments.start else []
-    words += [f"--method {name}", knob, f"--until {choice.span:.10g}"]
+    words += [f"--method {name}", knob, f"--span {choice.span:.10g}"]
     return " ".join([*words, f"--precision {choice.precision}"])
 
 

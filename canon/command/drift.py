@@ -129,7 +129,7 @@ def _study(scene: Scene, arguments: argparse.Namespace) -> DriftStudy:
             step=arguments.step,
             tolerance=arguments.tolerance,
             periods=arguments.periods,
-            until=arguments.until,
+            span=arguments.span,
             precision=arguments.precision,
             samples=arguments.samples,
             observables=arguments.observable or ("energy",),

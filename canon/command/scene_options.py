@@ -35,7 +35,7 @@ def add_duration(parser: argparse.ArgumentParser) -> None:
     length.add_argument(
         "--periods", metavar="N", type=float, default=1000.0, help="duration in periods (1000)"
     )
-    length.add_argument("--until", metavar="T", type=float, help="duration in units of time")
+    length.add_argument("--span", metavar="T", type=float, help="duration in units of time")
 
 
 def scene_given(arguments: argparse.Namespace) -> Scene:

@@ -39,7 +39,7 @@ a study (TOML):
   system = ["quartic", "simple-pendulum"]
   method = ["verlet", "kahan-li-8", { gauss = 4 }, "taylor"]
   step = [0.05, 0.1, 0.2]
-  until = 10000.0
+  span = 10000.0
 
 examples:
   canon study run drifts.toml --jobs 4              keeps its results in drifts.sqlite

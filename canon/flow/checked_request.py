@@ -44,8 +44,8 @@ _KEPT = 64
 
 def task_of(
     hamiltonian: HamiltonianSystem,
+    t_span: tuple[float | Fraction, float | Fraction],
     y0: Sequence[Any] | npt.NDArray[Any],
-    t_span: tuple[float, float],
     *,
     method: MethodGiven | None = None,
     step: float | None = None,
@@ -62,6 +62,7 @@ def task_of(
     """Return the task of :func:`canon.flow.propagate.propagate`, which documents the arguments and errors."""
     fixed, varying = parted_by_orbit(parameters or {})
     system = hamilton_equations_of(hamiltonian, fixed, tuple(varying))
+    ends = _two_ends(t_span, y0)
     given, single = _with_parameters(y0, len(hamiltonian.q), varying)
 
     def in_fictitious_time(method: TimeTransformed) -> ExtendedSystem:
@@ -70,7 +71,7 @@ def task_of(
         return extended_system(larger, equations, hamiltonian, Fraction(step or 0))
 
     return task_with(
-        system, given, t_span, single=single, method=method, step=step, tolerance=tolerance, precision=precision,
+        system, given, ends, single=single, method=method, step=step, tolerance=tolerance, precision=precision,
         samples=samples, times=times, observables=observables, cadence=cadence, events=events, dense=dense,
         in_fictitious_time=in_fictitious_time,
     )  # fmt: skip
@@ -79,7 +80,7 @@ def task_of(
 def task_with(
     system: HamiltonEquations,
     given: tuple[Array, Array],
-    t_span: tuple[float, float],
+    t_span: tuple[float | Fraction, float | Fraction],
     *,
     single: bool,
     method: MethodGiven | None,
@@ -221,6 +222,20 @@ def _with_parameters(
         wide = np.broadcast_to(part, (2 * n, count))
         states.append(np.concatenate([wide[:n], own, wide[n:], own]))
     return (states[0], states[1]), False
+
+
+def _two_ends(t_span: Any, y0: Any) -> tuple[Fraction, Fraction]:
+    if np.shape(t_span) != (2,):
+        raise ValueError(
+            f"t_span = {t_span}: give the first and the last time, (t0, t1), and after it the state y0"
+        )
+    if isinstance(t_span, list) and isinstance(y0, tuple) and len(y0) == 2:
+        raise ValueError(
+            f"t_span = {t_span} and y0 = {y0} look like each other's: the span of time comes before the state, "
+            f"propagate(system, {y0}, {t_span}). Where {t_span} is the span, write it as a tuple"
+        )
+    start, end = (exact_number(t, "t_span") for t in t_span)
+    return start, end
 
 
 def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from canon.progress import reporting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from fractions import Fraction
 
     import numpy.typing as npt
     from sympy import Expr, Symbol
@@ -27,8 +28,8 @@ __all__ = [
 
 def propagate(
     hamiltonian: HamiltonianSystem,
+    t_span: tuple[float | Fraction, float | Fraction],
     y0: Sequence[float] | npt.NDArray[Any],
-    t_span: tuple[float, float],
     *,
     method: MethodGiven | None = None,
     step: float | None = None,
@@ -49,11 +50,11 @@ def propagate(
     ----------
     hamiltonian
         The Hamiltonian, in any consistent units.
+    t_span
+        The first and the last time; the last may be the earlier one.
     y0
         The starting state (q, p), shape (2n,), or many of them, shape (2n, orbits). Floats are taken for the
         numbers they are; text, fractions and long doubles keep what a double would lose.
-    t_span
-        The first and the last time; the last may be the earlier one.
     method
         ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
         not given. By exactly solvable parts: ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that
@@ -126,7 +127,7 @@ def propagate(
     >>> (g,) = parameters("g", positive=True)
     >>> pendulum = Hamiltonian(theta.momentum**2 / 2 - g * sympy.cos(theta), [theta], [theta.momentum])
     >>> motion = propagate(
-    ...     pendulum, [1.0, 0.0], (0, 1000), method=Splitting("kahan-li-8"), step=0.1, parameters={g: 9.81}
+    ...     pendulum, (0, 1000), [1.0, 0.0], method=Splitting("kahan-li-8"), step=0.1, parameters={g: 9.81}
     ... )
     >>> motion.steps, bool(abs(motion.energy_error).max() < 1e-8)
     (10000, True)
@@ -140,7 +141,7 @@ def propagate(
         with reporting(progress) as report:
             return carried_out(task, report, moving=moving)
     task = task_of(
-        hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
+        hamiltonian, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,
         events=events, dense=dense,
     )  # fmt: skip

@@ -42,7 +42,7 @@ def is_hamiltonian(system: Any) -> bool:
 
 def system_task(
     system: Any,
-    t_span: tuple[float, float],
+    t_span: tuple[float | Fraction, float | Fraction],
     y0: Any,
     *,
     method: MethodGiven | None = None,

@@ -328,7 +328,7 @@ class Trajectory:
         >>> import sympy
         >>> (x,) = coordinates("x")
         >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
-        >>> motion = propagate(pendulum, [1.0, 0.0], (0, 100), method=Splitting("verlet"), step=0.1)
+        >>> motion = propagate(pendulum, (0, 100), [1.0, 0.0], method=Splitting("verlet"), step=0.1)
         >>> estimate = motion.error_estimate()
         >>> bool(0.02 < estimate.relative[-1] < 0.1), estimate.meaningful_until, estimate.lyapunov_time
         (True, None, None)
@@ -398,8 +398,8 @@ class Trajectory:
         >>> (x,) = coordinates("x")
         >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
         >>> chosen = {"method": Splitting("verlet"), "step": 0.125}
-        >>> half = propagate(pendulum, [1.0, 0.0], (0, 10), samples=10, **chosen)
-        >>> whole = propagate(pendulum, [1.0, 0.0], (0, 20), samples=20, **chosen)
+        >>> half = propagate(pendulum, (0, 10), [1.0, 0.0], samples=10, **chosen)
+        >>> whole = propagate(pendulum, (0, 20), [1.0, 0.0], samples=20, **chosen)
         >>> bool((half.resume(20).y == whole.y).all())
         True
         """

@@ -48,7 +48,7 @@ def plot_ensemble_fan(of: Trajectory, ax: Axes | None = None, *, intervals: int 
     >>> from canon.scene import find
     >>> scene = find("henon-heiles")
     >>> starts = np.outer(scene.state(), np.linspace(0.9, 1.1, 8))
-    >>> motion = propagate(scene.hamiltonian, starts, (0, 50), method=Splitting("verlet"), step=0.1)
+    >>> motion = propagate(scene.hamiltonian, (0, 50), starts, method=Splitting("verlet"), step=0.1)
     >>> plot_ensemble_fan(motion).get_title(loc="left")
     'verlet, 8 orbits'
     """

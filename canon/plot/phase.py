@@ -96,7 +96,7 @@ def plot_poincare_section(
     >>> from canon.scene import find
     >>> scene = find("henon-heiles")
     >>> crossing = Event(scene.q[0], 1)
-    >>> met = propagate(scene.hamiltonian, scene.state(), (0, 60), method=Taylor(), events=[crossing]).events
+    >>> met = propagate(scene.hamiltonian, (0, 60), scene.state(), method=Taylor(), events=[crossing]).events
     >>> len(plot_poincare_section({"Taylor": met}).lines[0].get_xdata()) == len(met) > 5
     True
     """

@@ -52,7 +52,7 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     >>> from canon import Study, results_of, run_study
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = f"{folder}/study.sqlite"
-    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=[0.1, 0.2], until=100.0), file)
+    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=[0.1, 0.2], span=100.0), file)
     ...     plot_study_heatmap(results_of(file)).get_title(loc="left")
     '2 cases: 2 finished'
     """

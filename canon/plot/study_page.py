@@ -77,7 +77,7 @@ def study_report(results: Sequence[Result], title: str) -> str:
     >>> from canon import Study, results_of, run_study
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = f"{folder}/study.sqlite"
-    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=0.1, until=100.0), file)
+    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=0.1, span=100.0), file)
     ...     study_report(results_of(file), "Drifts").count("<tr class=")
     1
     """

@@ -120,7 +120,7 @@ def plot_drift_by_step(
     --------
     >>> from canon import RK4, work_precision
     >>> from canon.scene import find
-    >>> found = work_precision(find("henon-heiles"), None, 20.0, [RK4()], steps=[0.4, 0.2, 0.1], repetitions=1)
+    >>> found = work_precision(find("henon-heiles"), 20.0, methods=[RK4()], steps=[0.4, 0.2, 0.1], repetitions=1)
     >>> plot_drift_by_step(found).get_xlabel()
     'step (units of time)'
     """

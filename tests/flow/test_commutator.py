@@ -84,13 +84,13 @@ def test_time_reversal(method):
 def test_the_motion_does_not_depend_on_where_it_is_looked_at():
     system, masses = planets("1e-2")
     arguments = {"method": SABA(3, commutator=True), "step": 0.1, "t_span": (0, 20)}
-    once, often = (propagate(system, planets_start(masses), samples=n, **arguments) for n in (1, 50))
+    once, often = (propagate(system, y0=planets_start(masses), samples=n, **arguments) for n in (1, 50))
     np.testing.assert_array_equal(once.final, often.final)
 
 
 def slope(system, start, method, steps, span=30):
     errors = [
-        abs(propagate(system, start, (0, span), method=method, step=h, samples=200).energy_change).max()
+        abs(propagate(system, (0, span), start, method=method, step=h, samples=200).energy_change).max()
         for h in steps
     ]
     return np.polyfit(np.log(steps), np.log(errors), 1)[0]

@@ -76,7 +76,7 @@ METHODS = [
 @pytest.mark.parametrize(("method", "how"), METHODS, ids=lambda x: str(x))
 def test_bounds_the_error_of_kepler_s_motion(method, how):
     start = kepler_start(0.4)
-    motion = propagate(KEPLER, start, (0, 20), method=method, samples=20, **how)
+    motion = propagate(KEPLER, (0, 20), start, method=method, samples=20, **how)
     estimate = motion.error_estimate()
     error = true_error(motion, kepler_truth(start, motion.t))
     assert (error <= estimate.error).all()
@@ -92,7 +92,7 @@ def test_bounds_the_error_of_kepler_s_motion(method, how):
 def test_bounds_it_where_the_motion_nearly_collides(gap):
     start = kepler_start(gap)
     method = TimeTransformed(Splitting("kahan-li-8"))
-    motion = propagate(KEPLER, start, (0, 10), method=method, step=0.05 * gap, samples=10)
+    motion = propagate(KEPLER, (0, 10), start, method=method, step=0.05 * gap, samples=10)
     estimate = motion.error_estimate()
     assert (true_error(motion, kepler_truth(start, motion.t)) <= estimate.error).all()
     assert estimate.relative[-1] < 1e-5
@@ -101,15 +101,15 @@ def test_bounds_it_where_the_motion_nearly_collides(gap):
 @pytest.mark.parametrize("gap", [1e-6, 1e-12])
 @pytest.mark.filterwarnings("ignore::canon.AccuracyWarning")
 def test_two_runs_that_jump_over_the_same_collision_know_nothing(gap):
-    motion = propagate(KEPLER, kepler_start(gap), (0, 10), method=Gauss(6), step=0.01, samples=10)
+    motion = propagate(KEPLER, (0, 10), kepler_start(gap), method=Gauss(6), step=0.01, samples=10)
     assert np.isinf(motion.error_estimate().relative[1:]).all()
 
 
 def test_a_collision_that_taylor_s_method_can_not_pass_is_an_error():
     with pytest.raises(ValueError, match=r"begins with a time scale of 7\.07e-19"):
-        propagate(KEPLER, kepler_start(1e-12), (0, 100), samples=50)
+        propagate(KEPLER, (0, 100), kepler_start(1e-12), samples=50)
     with pytest.raises(NonFiniteStateError, match=r"can't be continued after t = 3\.14"):
-        propagate(KEPLER, [2.0, 0.0, 0.0, 7e-7], (0, 100), samples=50)
+        propagate(KEPLER, (0, 100), [2.0, 0.0, 0.0, 7e-7], samples=50)
 
 
 def double_pendulum():
@@ -127,12 +127,12 @@ def double_pendulum():
 @pytest.mark.parametrize("angle", [1.994, 2.0, 2.003, 2.008])
 def test_chaos_is_said(angle):
     double, start = double_pendulum(), [angle, 2.5, 0.0, 0.0]
-    motion = propagate(double, start, (0, 150), samples=150)
+    motion = propagate(double, (0, 150), start, samples=150)
     estimate = motion.error_estimate()
     assert 1.5 < estimate.lyapunov_time < 6
     assert 60 < estimate.meaningful_until < 160
     assert "this single trajectory means nothing" in str(estimate)
-    truth = propagate(double, start, (0, 150), samples=150, precision="quad")
+    truth = propagate(double, (0, 150), start, samples=150, precision="quad")
     with_meaning = motion.t < estimate.meaningful_until
     error = abs(motion.y - truth.y - truth.carried)
     assert (error <= estimate.error)[:, with_meaning].all()
@@ -140,13 +140,13 @@ def test_chaos_is_said(angle):
 
 
 def test_small_oscillations_are_no_chaos():
-    motion = propagate(double_pendulum(), [0.2, 0.3, 0.0, 0.0], (0, 600), samples=150)
+    motion = propagate(double_pendulum(), (0, 600), [0.2, 0.3, 0.0, 0.0], samples=150)
     assert motion.error_estimate().lyapunov_time is None
 
 
 def test_one_close_encounter_is_no_chaos():
     method = TimeTransformed(Splitting("kahan-li-8"))
-    motion = propagate(KEPLER, [2.0, 0.0, 0.0, 7e-7], (0, 6), method=method, step=0.01, samples=20)
+    motion = propagate(KEPLER, (0, 6), [2.0, 0.0, 0.0, 7e-7], method=method, step=0.01, samples=20)
     estimate = motion.error_estimate()
     assert estimate.condition[-1] > 1e6
     assert estimate.lyapunov_time is None
@@ -155,9 +155,9 @@ def test_one_close_encounter_is_no_chaos():
 def test_the_times_of_events_have_errors_too():
     crossing = Event(x, 1)
     motion = propagate(
-        PENDULUM, [-1.0, 0.0], (0, 40), method=Splitting("verlet"), step=0.1, events=[crossing]
+        PENDULUM, (0, 40), [-1.0, 0.0], method=Splitting("verlet"), step=0.1, events=[crossing]
     )
-    exact = propagate(PENDULUM, [-1.0, 0.0], (0, 40), precision="quad", events=[crossing])
+    exact = propagate(PENDULUM, (0, 40), [-1.0, 0.0], precision="quad", events=[crossing])
     estimate = motion.error_estimate()
     missed = [abs(a.t - b.t) for a, b in zip(motion.events, exact.events, strict=True)]
     assert (missed <= estimate.events).all()
@@ -168,8 +168,8 @@ def test_the_times_of_events_have_errors_too():
 @pytest.mark.parametrize("how", [{}, {"method": Splitting("kahan-li-8"), "step": 0.01}])
 def test_the_time_of_an_event_that_ends_the_motion(how):
     end = Event(x, 1, "stop")
-    motion = propagate(PENDULUM, [-1.0, 0.0], (0, 40), events=[end], **how)
-    exact = propagate(PENDULUM, [-1.0, 0.0], (0, 40), precision="quad", events=[end])
+    motion = propagate(PENDULUM, (0, 40), [-1.0, 0.0], events=[end], **how)
+    exact = propagate(PENDULUM, (0, 40), [-1.0, 0.0], precision="quad", events=[end])
     estimate = motion.error_estimate()
     assert motion.stopped
     assert estimate.events[0] < 1e-13
@@ -179,7 +179,7 @@ def test_the_time_of_an_event_that_ends_the_motion(how):
 
 def test_chosen_orbits_of_an_ensemble():
     starts = np.array([np.linspace(0.1, 3, 40), np.zeros(40)])
-    motion = propagate(PENDULUM, starts, (0, 10), method=Splitting("forest-ruth"), step=0.1, samples=5)
+    motion = propagate(PENDULUM, (0, 10), starts, method=Splitting("forest-ruth"), step=0.1, samples=5)
     some, all_of_them = motion.error_estimate([3, 30]), motion.error_estimate()
     assert some.error.shape == (2, 6, 2)
     assert np.allclose(some.relative, all_of_them.relative[:, [3, 30]], rtol=1e-3)
@@ -190,7 +190,7 @@ def test_time_transformed_motions_that_an_event_has_ended(how):
     method = TimeTransformed(Splitting("forest-ruth"))
     radial = x * x.momentum + y * y.momentum
     end = Event(radial, -1, "stop")
-    motion = propagate(KEPLER, kepler_start(0.5), (0, 9), method=method, step=0.01, events=[end], **how)
+    motion = propagate(KEPLER, (0, 9), kepler_start(0.5), method=method, step=0.01, events=[end], **how)
     estimate = motion.error_estimate()
     assert motion.stopped
     # The apocentre is passed after half a period of 2π.

@@ -37,7 +37,7 @@ def times(motion):
 @pytest.mark.parametrize("forward", [1, -1])
 def test_a_stop_ends_the_motion_at_the_event(method, how, forward):
     motion = propagate(
-        FALL, [0.5, 0.0], (0, 6 * forward), method=method, samples=10, events=[Event(x, -1, "stop")], **how
+        FALL, (0, 6 * forward), [0.5, 0.0], method=method, samples=10, events=[Event(x, -1, "stop")], **how
     )
     assert motion.stopped
     assert times(motion) == [pytest.approx(forward, abs=1e-15)]
@@ -56,7 +56,7 @@ def test_a_stop_within_round_off_of_the_end_of_a_step(below, action):
     """A free body is at 1 − 2⁻ᵏ as the fourth step ends, or the fifth begins."""
     free = System(px**2 / 2, (x,), (px,))
     event = Event(x - 1 + sp.Rational(1, 2**below), +1, action)
-    motion = propagate(free, [0.0, 1.0], (0, 3), method=VERLET, step=0.25, events=[event])
+    motion = propagate(free, (0, 3), [0.0, 1.0], method=VERLET, step=0.25, events=[event])
     assert motion.stopped == (action == "stop")
     assert times(motion) == pytest.approx([1.0], abs=2e-15)
     assert motion.t[-1] == pytest.approx(1.0 if motion.stopped else 3.0, abs=2e-15)
@@ -66,7 +66,7 @@ def test_a_stop_within_round_off_of_the_end_of_a_step(below, action):
 @pytest.mark.parametrize("action", ["bounce", {px: -px}, {px: -px, x: sp.Integer(0)}], ids=str)
 def test_a_bounce_keeps_the_energy_and_its_times(method, how, action):
     motion = propagate(
-        FALL, [0.5, 0.0], (0, 100), method=method, samples=100, events=[Event(x, -1, action)], **how
+        FALL, (0, 100), [0.5, 0.0], method=method, samples=100, events=[Event(x, -1, action)], **how
     )
     np.testing.assert_allclose(times(motion), np.arange(1, 100, 2), rtol=1e-14)
     u, missed = 2.0**-53, np.array([abs(met.y[0]) for met in motion.events])
@@ -84,8 +84,8 @@ def test_a_bounce_in_every_precision_is_as_good_as_the_precision():
     for precision, bound in floor.items():
         motion = propagate(
             FALL,
-            [0.5, 0.0],
             (0, 6),
+            [0.5, 0.0],
             method=VERLET,
             step=0.01,
             precision=precision,
@@ -97,15 +97,15 @@ def test_a_bounce_in_every_precision_is_as_good_as_the_precision():
 
 def test_taylor_refuses_to_change_states_it_would_round():
     with pytest.raises(ValueError, match="'double' and 'extended' only"):
-        propagate(FALL, [0.5, 0.0], (0, 6), precision="quad", events=[Event(x, -1, "bounce")])
+        propagate(FALL, (0, 6), [0.5, 0.0], precision="quad", events=[Event(x, -1, "bounce")])
 
 
 @pytest.mark.slow
 def test_taylor_meets_events_in_higher_precisions():
-    extended = propagate(FALL, [0.5, 0.0], (0, 6), precision="extended", events=[Event(x, -1, "bounce")])
+    extended = propagate(FALL, (0, 6), [0.5, 0.0], precision="extended", events=[Event(x, -1, "bounce")])
     assert len(extended.events) == 3
     assert abs(extended.energy_error).max() < 1e-18
-    quad = propagate(FALL, [0.5, 0.0], (0, 6), precision="quad", events=[Event(x, -1, "stop")])
+    quad = propagate(FALL, (0, 6), [0.5, 0.0], precision="quad", events=[Event(x, -1, "stop")])
     assert times(quad) == [1.0]
 
 
@@ -117,8 +117,8 @@ def test_a_circular_billiard_keeps_energy_and_angular_momentum():
     for method, how in ((VERLET, {"step": 0.37}), (Taylor(), {})):
         motion = propagate(
             free,
-            [0.1, 0.2, 0.7, 1.1],
             (0, 200),
+            [0.1, 0.2, 0.7, 1.1],
             method=method,
             samples=50,
             events=[wall],
@@ -157,12 +157,12 @@ def test_recording_changes_no_bit_and_agrees_with_taylor(method, how):
 def test_the_located_time_converges_with_the_order_of_the_method():
     def first(step):
         return (
-            propagate(PENDULUM, [1.0, 0.0], (0, 2), method=VERLET, step=step, events=[Event(theta)])
+            propagate(PENDULUM, (0, 2), [1.0, 0.0], method=VERLET, step=step, events=[Event(theta)])
             .events[0]
             .t
         )
 
-    true = propagate(PENDULUM, [1.0, 0.0], (0, 2), events=[Event(theta)]).events[0].t
+    true = propagate(PENDULUM, (0, 2), [1.0, 0.0], events=[Event(theta)]).events[0].t
     errors = [abs(first(step) - true) for step in (0.04, 0.02, 0.01)]
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.1)
     assert errors[1] / errors[2] == pytest.approx(4, rel=0.1)
@@ -170,7 +170,7 @@ def test_the_located_time_converges_with_the_order_of_the_method():
 
 def test_several_crossings_in_one_step_are_met_in_their_order():
     events = [Event(x, name="x"), Event(px, name="p"), Event(x + sp.Rational(1, 100), name="lower")]
-    motion = propagate(FALL, [-0.125, 0.51], (0, 3), method=VERLET, step=3.0, samples=1, events=events)
+    motion = propagate(FALL, (0, 3), [-0.125, 0.51], method=VERLET, step=3.0, samples=1, events=events)
 
     def root(level):
         return 0.51 + np.array([-1, 1]) * np.sqrt(0.51**2 - 2 * (0.125 + level))
@@ -183,20 +183,20 @@ def test_several_crossings_in_one_step_are_met_in_their_order():
 
 @pytest.mark.parametrize(("method", "how"), [(VERLET, {"step": 0.3}), (VERLET, {"step": 3.0})])
 def test_touching_without_crossing_is_no_event(method, how):
-    touching = propagate(FALL, [-0.125, 0.5], (0, 3), method=method, samples=1, events=[Event(x)], **how)
+    touching = propagate(FALL, (0, 3), [-0.125, 0.5], method=method, samples=1, events=[Event(x)], **how)
     assert touching.events == ()
     through = propagate(
-        FALL, [-0.125 + 1e-9, 0.5], (0, 3), method=method, samples=1, events=[Event(x)], **how
+        FALL, (0, 3), [-0.125 + 1e-9, 0.5], method=method, samples=1, events=[Event(x)], **how
     )
     np.testing.assert_allclose(times(through), 0.5 + np.array([-1, 1]) * np.sqrt(2e-9), rtol=1e-9)
 
 
 @pytest.mark.parametrize(("method", "how"), EVERY, ids=IDS)
 def test_a_start_at_zero_is_no_event_but_what_follows_is(method, how):
-    up = propagate(FALL, [0.0, 0.5], (0, 3), method=method, samples=1, events=[Event(x)], **how)
+    up = propagate(FALL, (0, 3), [0.0, 0.5], method=method, samples=1, events=[Event(x)], **how)
     assert times(up) == [pytest.approx(1, abs=1e-15)]
     down = propagate(
-        FALL, [0.0, -0.5], (0, 3), method=method, samples=1, events=[Event(x, -1, "stop")], **how
+        FALL, (0, 3), [0.0, -0.5], method=method, samples=1, events=[Event(x, -1, "stop")], **how
     )
     assert times(down) == []
     assert not down.stopped
@@ -205,14 +205,14 @@ def test_a_start_at_zero_is_no_event_but_what_follows_is(method, how):
 @pytest.mark.parametrize(("method", "how"), EVERY, ids=IDS)
 def test_events_that_pile_up_are_an_error_with_time_and_state(method, how):
     with pytest.raises(NonFiniteStateError, match="pile up") as caught:
-        propagate(FALL, [0.5, 0.0], (0, 9), method=method, events=[Event(x, -1, {px: -px / 2})], **how)
+        propagate(FALL, (0, 9), [0.5, 0.0], method=method, events=[Event(x, -1, {px: -px / 2})], **how)
     assert caught.value.time == pytest.approx(3, abs=1e-5)
     np.testing.assert_allclose(caught.value.state, [0, 0], atol=1e-5)
 
 
 def test_an_event_that_leaves_its_domain_is_an_error():
     with pytest.raises(NonFiniteStateError, match="domain"):
-        propagate(FALL, [0.5, 0.0], (0, 9), method=VERLET, step=0.01, events=[Event(sp.log(x + 2))])
+        propagate(FALL, (0, 9), [0.5, 0.0], method=VERLET, step=0.01, events=[Event(sp.log(x + 2))])
 
 
 def test_a_driven_systems_events_read_the_clock():
@@ -220,7 +220,7 @@ def test_a_driven_systems_events_read_the_clock():
 
     wall = Event(x - sp.sin(time) / 10, -1, "bounce")
     for method, how in ((VERLET, {"step": 0.01}), (Taylor(), {})):
-        motion = propagate(FALL, [0.5, 0.0], (0, 10), method=method, events=[wall], **how)
+        motion = propagate(FALL, (0, 10), [0.5, 0.0], method=method, events=[wall], **how)
         for met in motion.events:
             assert met.y[0] == pytest.approx(np.sin(met.t) / 10, abs=1e-14)
             # Reflected in the frame of the wall.
@@ -249,13 +249,13 @@ def test_events_that_make_no_sense_are_refused(change, error, message):
 
 def test_a_bounce_asks_for_a_quadratic_kinetic_energy():
     with pytest.raises(ValueError, match="not quadratic"):
-        propagate(DRAG, [0.5, 0.0], (0, 1), method=VERLET, step=0.1, events=[Event(x, -1, "bounce")])
-    moved = propagate(DRAG, [0.5, 0.0], (0, 3), method=KL8, step=0.01, events=[Event(x, -1, {px: -px})])
+        propagate(DRAG, (0, 1), [0.5, 0.0], method=VERLET, step=0.1, events=[Event(x, -1, "bounce")])
+    moved = propagate(DRAG, (0, 3), [0.5, 0.0], method=KL8, step=0.01, events=[Event(x, -1, {px: -px})])
     assert len(moved.events) == 1
     assert abs(moved.energy_error).max() < 1e-14
     theta_wall = Event(DOUBLE_PENDULUM.q[0], 0, "bounce")
     swung = propagate(
-        DOUBLE_PENDULUM, [1.0, 0.4, 0.1, -0.2], (0, 20), method=Gauss(6), step=0.05, events=[theta_wall]
+        DOUBLE_PENDULUM, (0, 20), [1.0, 0.4, 0.1, -0.2], method=Gauss(6), step=0.05, events=[theta_wall]
     )
     assert len(swung.events) > 5
     assert abs(swung.energy_error).max() < 1e-11

@@ -30,7 +30,7 @@ METHODS = [
 def test_each_orbit_follows_its_own_parameters(method, how):
     masses, springs = np.array([1.0, 2.0, 0.5, 1.0, 3.0]), np.array([1.0, 1.0, 2.0, 0.25, 4.0])
     motion = propagate(
-        OSCILLATOR, [1.0, 0.5], (0, 10), method=method, parameters={m: masses, "k": springs}, samples=20,
+        OSCILLATOR, (0, 10), [1.0, 0.5], method=method, parameters={m: masses, "k": springs}, samples=20,
         observables={"kx": k * x}, **how,
     )  # fmt: skip
     assert motion.y.shape == (2, 21, 5)
@@ -44,7 +44,7 @@ def test_each_orbit_follows_its_own_parameters(method, how):
     np.testing.assert_allclose(motion.observables["kx"], springs * motion.q[0], rtol=1e-15)
     # As with one number a run, up to round-off: the constants are rounded in another place.
     one = propagate(
-        OSCILLATOR, [1.0, 0.5], (0, 10), method=method, parameters={m: 0.5, k: 2}, samples=20, **how
+        OSCILLATOR, (0, 10), [1.0, 0.5], method=method, parameters={m: 0.5, k: 2}, samples=20, **how
     )
     np.testing.assert_allclose(motion.y[:, :, 2], one.y, atol=1e-9 if method == DOP853() else 1e-13)
 
@@ -60,10 +60,10 @@ def test_alone_in_lanes_and_on_threads_the_same_bits(method, precision):
         e: np.linspace(0.1, 0.3, orbits),
     }
     arguments = {"method": method, "step": 0.05, "precision": precision, "samples": 3, "cadence": 10}
-    together = propagate(SOFT, start, (0, 6), parameters=values, **arguments)
+    together = propagate(SOFT, (0, 6), start, parameters=values, **arguments)
     for orbit in (0, 1, 37, 69):
         own = {name: value[orbit : orbit + 1] for name, value in values.items()}
-        alone = propagate(SOFT, start[:, orbit], (0, 6), parameters=own, **arguments)
+        alone = propagate(SOFT, (0, 6), start[:, orbit], parameters=own, **arguments)
         np.testing.assert_array_equal(alone.y[:, :, 0], together.y[:, :, orbit])
         np.testing.assert_array_equal(alone.carried[:, :, 0], together.carried[:, :, orbit])
         np.testing.assert_array_equal(
@@ -73,14 +73,14 @@ def test_alone_in_lanes_and_on_threads_the_same_bits(method, precision):
 
 def test_what_splits_or_is_quadratic_stays_so():
     assert propagate(
-        PENDULUMS, [1.0, 0.0], (0, 1), method=Splitting("srkn-6a"), step=0.1, parameters={m: [1, 2], k: 1}
+        PENDULUMS, (0, 1), [1.0, 0.0], method=Splitting("srkn-6a"), step=0.1, parameters={m: [1, 2], k: 1}
     ).y.shape == (2, 11, 2)
     with pytest.raises(ValueError, match="not a sum"):
         propagate(
-            COUPLED, [1.0, 0.0], (0, 1), method=Splitting("verlet"), step=0.1, parameters={m: [1, 2], k: 1}
+            COUPLED, (0, 1), [1.0, 0.0], method=Splitting("verlet"), step=0.1, parameters={m: [1, 2], k: 1}
         )
     moved = propagate(
-        COUPLED, [1.0, 0.0], (0, 5), method=Gauss(6), step=0.05, parameters={m: [1, 2], k: [0, 3]}
+        COUPLED, (0, 5), [1.0, 0.0], method=Gauss(6), step=0.05, parameters={m: [1, 2], k: [0, 3]}
     )
     assert abs(moved.energy_error).max() < 1e-13
     np.testing.assert_allclose(moved.q[0, :, 0], np.cos(moved.t), atol=1e-13)
@@ -88,8 +88,8 @@ def test_what_splits_or_is_quadratic_stays_so():
 
 def test_families_are_resumed_and_read_between_samples():
     arguments = {"method": Splitting("kahan-li-8"), "step": 0.1, "parameters": {m: ["1/3", 2], k: 1}}
-    whole = propagate(PENDULUMS, [1.0, 0.0], (0, 20), samples=4, **arguments)
-    half = propagate(PENDULUMS, [1.0, 0.0], (0, 10), samples=2, **arguments)
+    whole = propagate(PENDULUMS, (0, 20), [1.0, 0.0], samples=4, **arguments)
+    half = propagate(PENDULUMS, (0, 10), [1.0, 0.0], samples=2, **arguments)
     np.testing.assert_array_equal(half.resume(20).y, whole.y)
     np.testing.assert_array_equal(whole(np.array([10.0])), half.y[:, -1:])
 
@@ -122,8 +122,8 @@ def test_a_lost_orbit_of_a_family_shows_its_state_without_the_parameters():
     with pytest.raises(NonFiniteStateError, match="of orbit 1") as caught:
         propagate(
             edge,
-            [[0.0, 0.0], [0.1, 2.0]],
             (0, 1),
+            [[0.0, 0.0], [0.1, 2.0]],
             method=Splitting("verlet"),
             step=0.001,
             parameters={k: [9, 1]},

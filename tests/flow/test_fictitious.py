@@ -120,10 +120,10 @@ def test_short_runs_do_not_overshoot():
 def test_a_collision_behind_the_end_does_no_harm():
     # Falling from rest, the collision is at t = π/√8 = 1.1107; steps of 0.02 far from it.
     start = [1.0, 0.0, 0.0, 0.0]
-    found = propagate(KEPLER, start, (0, 1.1), method=POINCARE, step=0.01, samples=5)
+    found = propagate(KEPLER, (0, 1.1), start, method=POINCARE, step=0.01, samples=5)
     assert found.t[-1] == 1.1
     with pytest.raises(NonFiniteStateError) as lost:
-        propagate(KEPLER, start, (0, 2.0), method=POINCARE, step=0.01, samples=5)
+        propagate(KEPLER, (0, 2.0), start, method=POINCARE, step=0.01, samples=5)
     assert lost.value.time == pytest.approx(1.1107, abs=0.01)
     assert lost.value.state.shape == (4,)
     assert f"t = {lost.value.time:.9g}" in str(lost.value)
@@ -368,20 +368,20 @@ def test_parameters_may_vary_by_orbit():
     heavy = System((px**2 + py**2) / 2 - mu / RADIUS, (x, y), (px, py))
     masses = np.array([1.0, 1.5, 2.0])
     found = propagate(
-        heavy, kepler_start(0.5), (0, 6), method=LOGARITHMIC, step=0.01, samples=4, parameters={mu: masses}
+        heavy, (0, 6), kepler_start(0.5), method=LOGARITHMIC, step=0.01, samples=4, parameters={mu: masses}
     )
     assert found.y.shape == (4, 5, 3)
     for k, mass in enumerate(masses):
-        one = propagate(heavy, kepler_start(0.5), (0, 6), samples=4, parameters={mu: mass})
+        one = propagate(heavy, (0, 6), kepler_start(0.5), samples=4, parameters={mu: mass})
         np.testing.assert_allclose(found.y[:, :, k], one.y, atol=1e-11)
 
 
 def test_one_of_many_orbits_that_is_lost_is_named():
     start = np.array([[0.5, 1.0], [0.0, 0.0], [0.0, 0.0], [1.7, 0.0]])
     with pytest.raises(NonFiniteStateError, match="orbit 1"):
-        propagate(KEPLER, start, (0, 2), method=POINCARE, step=0.01, samples=5)
+        propagate(KEPLER, (0, 2), start, method=POINCARE, step=0.01, samples=5)
     with pytest.raises(ValueError, match="one by one"):
-        propagate(KEPLER, start, (0, 1), method=POINCARE, step=0.01, events=[Event(RADIAL)])
+        propagate(KEPLER, (0, 1), start, method=POINCARE, step=0.01, events=[Event(RADIAL)])
 
 
 # time reversal --------------------------------------------------------------------------------------------
@@ -394,7 +394,7 @@ def test_whole_steps_are_retraced_to_round_off(method):
     k = len(there.t) // 2
     rates = np.hypot(*there.q)  # dt/ds is r for all of them
     back = propagate(
-        KEPLER, there.y[:, k], (there.t[k], 0), method=method, step=0.004 * rates[k] / rates[0], samples=2000
+        KEPLER, (there.t[k], 0), there.y[:, k], method=method, step=0.004 * rates[k] / rates[0], samples=2000
     )
     assert k <= len(back.t) - 1 <= k + 1
     np.testing.assert_allclose(back.y[:, :k], there.y[:, k:0:-1], atol=1e-10)
@@ -404,6 +404,6 @@ def test_whole_steps_are_retraced_to_round_off(method):
 def test_a_pendulum_with_a_g_of_its_own():
     (p,) = PENDULUM.p
     method = TimeTransformed(Gauss(5), 1 / (1 + p**2))
-    found = propagate(PENDULUM, [2.0, 0.3], (0, 20), method=method, step=0.1, times=np.arange(1, 20))
-    true = propagate(PENDULUM, [2.0, 0.3], (0, 20), samples=20)
+    found = propagate(PENDULUM, (0, 20), [2.0, 0.3], method=method, step=0.1, times=np.arange(1, 20))
+    true = propagate(PENDULUM, (0, 20), [2.0, 0.3], samples=20)
     np.testing.assert_allclose(found.y, true.y, atol=1e-11)

@@ -80,8 +80,8 @@ def test_time_reversal(method):
 def test_ten_orbits_agree_with_heyoka_to_13_digits():
     system, masses = planets("1e-3")
     start, span = planets_start(masses), (0, 20 * np.pi)
-    true = propagate(system, start, span, method=Taylor(), precision="extended", samples=1).final
-    found = propagate(system, start, span, method=SABA("8-6-4", **DEMOCRATIC), step=0.05, samples=1).final
+    true = propagate(system, span, start, method=Taylor(), precision="extended", samples=1).final
+    found = propagate(system, span, start, method=SABA("8-6-4", **DEMOCRATIC), step=0.05, samples=1).final
     scale = np.array([*[3.0] * 12, *[max(m, 1e-3) for m in np.repeat(masses, 3)]])
     assert abs((found - true) / scale).max() < 1e-13
 
@@ -92,7 +92,7 @@ def test_momentum_angular_momentum_and_the_centre_of_mass():
     centre = sum(sp.Float(m) * a for m, a in zip(masses, x, strict=True))
     spin = sum(x * y.momentum - y * x.momentum for x, y, _ in PLACES)
     motion = propagate(
-        system, planets_start(masses), (0, 50), method=WisdomHolman(**DEMOCRATIC), step=0.1, samples=50,
+        system, (0, 50), planets_start(masses), method=WisdomHolman(**DEMOCRATIC), step=0.1, samples=50,
         observables={"P": sum(p), "C": centre, "L": spin},
     )  # fmt: skip
     assert abs(motion.energy_change).max() > 1e-9
@@ -117,7 +117,7 @@ def test_the_order_of_the_planets_does_not_matter():
     for method, agree in ((SABA(2, **DEMOCRATIC), True), (SABA(2), False)):
         ends = []
         for H, y in ((system, start), (turned, start[:, place])):
-            found = propagate(H, y.ravel(), (0, 30), method=method, step=0.3, samples=1).final.reshape(
+            found = propagate(H, (0, 30), y.ravel(), method=method, step=0.3, samples=1).final.reshape(
                 2, 4, 3
             )
             ends.append(found if H is system else found[:, order])
@@ -142,17 +142,17 @@ def test_any_number_of_planets_in_both_coordinates(count):
     speeds = 1j * radii**-0.5 * np.exp(1j * angles) * np.array([float(a) for a in m[1:]])
     start = [0, 0, *np.ravel([z.real, z.imag], "F"), 0, 0, *np.ravel([speeds.real, speeds.imag], "F")]
     true = propagate(
-        system, start, (0, 1), method=Splitting("sofroniou-spaletta-10"), step=1 / 64, samples=1
+        system, (0, 1), start, method=Splitting("sofroniou-spaletta-10"), step=1 / 64, samples=1
     ).final
     for coordinates in ("jacobi", "democratic-heliocentric"):
         method = SABA("10-6-4", coordinates=coordinates)
-        found = propagate(system, start, (0, 1), method=method, step=0.125, samples=1).final
+        found = propagate(system, (0, 1), start, method=method, step=0.125, samples=1).final
         assert abs(found - true).max() < 3e-13 * abs(true).max()
 
 
 def test_what_is_no_planetary_system_is_refused():
     with pytest.raises(UnsolvableError, match="planets about a star"):
-        propagate(KEPLER, kepler_start(0.1), (0, 1), method=WisdomHolman(**DEMOCRATIC), step=0.1)
+        propagate(KEPLER, (0, 1), kepler_start(0.1), method=WisdomHolman(**DEMOCRATIC), step=0.1)
     with pytest.raises(ValueError, match="'jacobi' and 'democratic-heliocentric'"):
         WisdomHolman(coordinates="barycentric")
 

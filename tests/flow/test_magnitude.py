@@ -23,7 +23,7 @@ def test_lengths_whose_cubes_doubles_do_not_hold(method, length):
     H, start = kepler(length)
     how = {} if method == Taylor() else {"step": 0.02 * start[0]}
     with pytest.raises(ValueError, match="beyond 1e±308"):
-        propagate(H, start, (0, start[0]), method=method, samples=4, **how)
+        propagate(H, (0, start[0]), start, method=method, samples=4, **how)
 
 
 @pytest.mark.parametrize("length", [120, 150, -110, -150])
@@ -31,8 +31,8 @@ def test_wider_exponents_hold_them(length):
     H, start = kepler(length)
     motion = propagate(
         H,
-        start,
         (0, start[0]),
+        start,
         method=Splitting("kahan-li-8"),
         step=0.02 * start[0],
         precision="extended",
@@ -49,20 +49,20 @@ def test_angles_whose_sines_double_double_does_not_have():
     pendulum = Hamiltonian(x.momentum**2 / 2 - sp.cos(x), [x], [x.momentum])
     with pytest.raises(ValueError, match="double-double has sines up to"):
         propagate(
-            pendulum, [1e16, 0], (0, 1), method=Splitting("verlet"), step=0.1, precision="double-double"
+            pendulum, (0, 1), [1e16, 0], method=Splitting("verlet"), step=0.1, precision="double-double"
         )
 
 
 def test_a_time_scale_whose_twentieth_power_is_no_double():
     H, start = kepler(60)
     with pytest.raises(ValueError, match="time scale of 1e\\+60"):
-        propagate(H, start, (0, start[0]))
-    motion = propagate(H, start, (0, start[0]), precision="extended", samples=2)
+        propagate(H, (0, start[0]), start)
+    motion = propagate(H, (0, start[0]), start, precision="extended", samples=2)
     assert abs(motion.final[0] / start[0] - np.cos(1)) < 1e-15
 
 
 @pytest.mark.parametrize("size", [1e-300, 1e-310, 1e-318, 1e150])
 def test_small_and_large_oscillations(size):
-    motion = propagate(OSCILLATOR, [size, 0.0], (0, 10), method=Splitting("kahan-li-8"), step=0.1, samples=10)
+    motion = propagate(OSCILLATOR, (0, 10), [size, 0.0], method=Splitting("kahan-li-8"), step=0.1, samples=10)
     missed = np.maximum.accumulate(abs(motion.q[0] - size * np.cos(motion.t)))
     assert (missed <= motion.error_estimate().error[0] + np.spacing(size)).all()

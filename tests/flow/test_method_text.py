@@ -179,8 +179,8 @@ def test_studies_and_jacobians_take_names():
     scene = find("henon-heiles")
     study = drift_study(scene, methods=["Verlet", RK4], periods=30)
     assert [row.method for row in study.rows] == [Splitting("verlet"), RK4()]
-    assert choose(scene, None, 50.0, 1e-3, methods=["verlet"]).method == Splitting("verlet")
-    assert work_precision(scene, None, 5.0, ["rk4"], steps=[0.1], repetitions=1).rows[0].method == RK4()
+    assert choose(scene, 50.0, accuracy=1e-3, methods=["verlet"]).method == Splitting("verlet")
+    assert work_precision(scene, 5.0, methods=["rk4"], steps=[0.1], repetitions=1).rows[0].method == RK4()
 
 
 def test_names_are_read_for_any_system():

@@ -25,10 +25,10 @@ METHODS = [{"method": Taylor()}, {"method": Splitting("verlet"), "step": 0.1}]
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_an_event_outside_its_own_domain(g, how):
     with pytest.raises(NonFiniteStateError, match=r"not finite at t|can't be continued after t"):
-        propagate(SPRING, [1.0, 0.0], (0, 5), parameters={k: 1}, events=[Event(g)], **how)
+        propagate(SPRING, (0, 5), [1.0, 0.0], parameters={k: 1}, events=[Event(g)], **how)
 
 
 @pytest.mark.parametrize("how", METHODS)
 def test_a_parameter_beyond_doubles(how):
     with pytest.raises(ValueError, match="beyond 1e308"):
-        propagate(SPRING, [1.0, 0.0], (0, 5), parameters={k: sp.Integer(10) ** 400}, **how)
+        propagate(SPRING, (0, 5), [1.0, 0.0], parameters={k: sp.Integer(10) ** 400}, **how)

@@ -104,7 +104,7 @@ def test_a_map_with_an_arbitrary_function_is_refused():
 )  # fmt: skip
 def test_a_hamiltonian_flow_is_symplectic(motion, start, parameters):
     for measure in (symplectic_flow, bilinear_covariant):
-        seen = measure(motion, start, (0, 15), parameters=parameters)
+        seen = measure(motion, (0, 15), start, parameters=parameters)
         assert seen.speaks == "for", seen.text
         assert seen.largest < 1e-10
         assert seen.looks == 101
@@ -113,9 +113,9 @@ def test_a_hamiltonian_flow_is_symplectic(motion, start, parameters):
 @pytest.mark.parametrize("measure", [symplectic_flow, bilinear_covariant])
 def test_a_damped_flow_is_not_symplectic(measure):
     free = VectorField((p, -sin(q)), (q, p))
-    assert measure(free, [1, 0], (0, 10)).speaks == "for"
+    assert measure(free, (0, 10), [1, 0]).speaks == "for"
     damped = VectorField((p, -sin(q) - k * p), (q, p))
-    seen = measure(damped, [1, 0], (0, 10), parameters={"k": "0.01"})
+    seen = measure(damped, (0, 10), [1, 0], parameters={"k": "0.01"})
     assert seen.speaks == "against"
     assert "not symplectic" in seen.text
 
@@ -124,8 +124,8 @@ def test_the_contraction_of_a_damped_flow_is_the_known_one():
     """The divergence is −γ, so MᵀJM = exp(−γt) J in one degree of freedom."""
     damped = VectorField((p, -sin(q) - p / 10), (q, p))
     contraction = 1 - np.exp(-0.5)
-    assert symplectic_flow(damped, [1, 0], (0, 5)).largest == pytest.approx(contraction, rel=1e-12)
-    seen = bilinear_covariant(damped, [1, 0], (0, 5), variations=[[1, 0], [0, 2]])
+    assert symplectic_flow(damped, (0, 5), [1, 0]).largest == pytest.approx(contraction, rel=1e-12)
+    seen = bilinear_covariant(damped, (0, 5), [1, 0], variations=[[1, 0], [0, 2]])
     assert seen.largest == pytest.approx(2 * contraction, rel=1e-12)
     assert "-2 at the start" in seen.text  # Σ(δp Δq − Δp δq) with δ = (1, 0), Δ = (0, 2)
 
@@ -134,56 +134,56 @@ def test_each_degree_of_freedom_counts():
     """A flow that turns volume into volume, yet is not symplectic: (x, p_x) shrinks as (y, p_y) swells."""
     field = VectorField((px, py, -x - px / 10, -y + py / 10), (x, y, px, py))
     for measure in (symplectic_flow, bilinear_covariant):
-        assert measure(field, [1, 0, 0, 1], (0, 5)).speaks == "against"
+        assert measure(field, (0, 5), [1, 0, 0, 1]).speaks == "against"
 
 
 def test_motion_too_sensitive_for_doubles_decides_nothing():
     saddle = Hamiltonian(p**2 / 2 - q**2 / 2, q, p)
-    seen = symplectic_flow(saddle, [1, 0], (0, 30))
+    seen = symplectic_flow(saddle, (0, 30), [1, 0])
     assert seen.speaks == "neither"
     assert "decides nothing" in seen.text
-    assert symplectic_flow(saddle, [1, 0], (0, 3)).speaks == "for"
+    assert symplectic_flow(saddle, (0, 3), [1, 0]).speaks == "for"
 
 
 # integrals -----------------------------------------------------------------------------------------
 
 
 def test_energy_is_kept_and_energy_with_something_added_is_not():
-    seen = integral_drift(PENDULUM.H, PENDULUM, [1, 0], (0, 20))
+    seen = integral_drift(PENDULUM.H, PENDULUM, (0, 20), [1, 0])
     assert seen.speaks == "for"
     assert seen.largest < 1e-13
-    twin = integral_drift(PENDULUM.H + q / 100, PENDULUM, [1, 0], (0, 20))
+    twin = integral_drift(PENDULUM.H + q / 100, PENDULUM, (0, 20), [1, 0])
     assert twin.speaks == "against"
     assert twin.largest == pytest.approx(0.02, rel=1e-2)
     assert "certainly no constant of this motion" in twin.text
 
 
 def test_the_runge_lenz_vector_has_one_sign():
-    assert integral_drift(runge_lenz(-1), KEPLER, KEPLER_START, (0, 20), parameters=UNITS).speaks == "for"
-    twin = integral_drift(runge_lenz(1), KEPLER, KEPLER_START, (0, 20), parameters=UNITS)
+    assert integral_drift(runge_lenz(-1), KEPLER, (0, 20), KEPLER_START, parameters=UNITS).speaks == "for"
+    twin = integral_drift(runge_lenz(1), KEPLER, (0, 20), KEPLER_START, parameters=UNITS)
     assert twin.speaks == "against"
 
 
 def test_an_integral_may_hold_the_time():
     oscillator = Hamiltonian((p**2 + w**2 * q**2) / 2, q, p)
     phase = q * cos(w * time) - p * sin(w * time) / w
-    assert integral_drift(phase, oscillator, [1, 0.5], (-3, 9), parameters={w: 2}).speaks == "for"
+    assert integral_drift(phase, oscillator, (-3, 9), [1, 0.5], parameters={w: 2}).speaks == "for"
     twin = phase.subs(time, -time)
-    assert integral_drift(twin, oscillator, [1, 0.5], (-3, 9), parameters={w: 2}).speaks == "against"
-    assert integral_drift(DRIVEN.H, DRIVEN, [1, 0.3], (0, 9)).speaks == "against"
+    assert integral_drift(twin, oscillator, (-3, 9), [1, 0.5], parameters={w: 2}).speaks == "against"
+    assert integral_drift(DRIVEN.H, DRIVEN, (0, 9), [1, 0.3]).speaks == "against"
 
 
 def test_an_integral_of_a_vector_field_of_three_variables():
     a, b, c = symbols("a b c", real=True)
     euler = VectorField((b * c, -2 * c * a, a * b), (a, b, c))
-    assert integral_drift(a**2 + b**2 + c**2, euler, [1, 0.2, 0.4], (0, 10)).speaks == "for"
-    assert integral_drift(a**2 + b**2 - c**2, euler, [1, 0.2, 0.4], (0, 10)).speaks == "against"
+    assert integral_drift(a**2 + b**2 + c**2, euler, (0, 10), [1, 0.2, 0.4]).speaks == "for"
+    assert integral_drift(a**2 + b**2 - c**2, euler, (0, 10), [1, 0.2, 0.4]).speaks == "against"
     with pytest.raises(ValueError, match="3 variables"):
-        symplectic_flow(euler, [1, 0.2, 0.4], (0, 10))
+        symplectic_flow(euler, (0, 10), [1, 0.2, 0.4])
 
 
 def test_a_chaotic_motion_keeps_its_energy():
-    seen = integral_drift(HENON_HEILES.H, HENON_HEILES, [0, -0.15, 0.5, 0], (0, 400))
+    seen = integral_drift(HENON_HEILES.H, HENON_HEILES, (0, 400), [0, -0.15, 0.5, 0])
     assert seen.speaks == "for", seen.text
 
 
@@ -191,49 +191,49 @@ def test_units_may_be_far_from_one():
     """The Earth about the Sun in kilograms, metres and seconds."""
     parameters = {m: "5.97e24", k: "7.92e44"}
     start = ["1.496e11", 0, 0, "1.778e29"]
-    seen = integral_drift(KEPLER.H, KEPLER, start, (0, "3.15e7"), parameters=parameters)
+    seen = integral_drift(KEPLER.H, KEPLER, (0, "3.15e7"), start, parameters=parameters)
     assert seen.speaks == "for"
     assert seen.largest < 1e-13 * 2.65e33
-    twin = integral_drift(KEPLER.H * (1 + x / 10**15), KEPLER, start, (0, "3.15e7"), parameters=parameters)
+    twin = integral_drift(KEPLER.H * (1 + x / 10**15), KEPLER, (0, "3.15e7"), start, parameters=parameters)
     assert twin.speaks == "against"
 
 
 def test_what_changes_less_than_doubles_show_is_not_called_kept():
-    seen = integral_drift(PENDULUM.H + q / 10**18, PENDULUM, [1, 0], (0, 20))
+    seen = integral_drift(PENDULUM.H + q / 10**18, PENDULUM, (0, 20), [1, 0])
     assert seen.speaks == "neither"
 
 
 def test_where_nothing_can_be_measured_there_is_no_evidence():
     with pytest.raises(ValueError, match="equilibrium"):
-        integral_drift(q, PENDULUM, [0, 0], (0, 20))
+        integral_drift(q, PENDULUM, (0, 20), [0, 0])
     with pytest.raises(ValueError, match="no variable"):
-        integral_drift(sp.Integer(5), PENDULUM, [1, 0], (0, 20))
+        integral_drift(sp.Integer(5), PENDULUM, (0, 20), [1, 0])
     with pytest.raises(ValueError, match="no finite real value at t = 0"):
-        integral_drift(sp.log(-(p**2)), PENDULUM, [1, 0], (0, 20))
+        integral_drift(sp.log(-(p**2)), PENDULUM, (0, 20), [1, 0])
     with pytest.raises(ValueError, match="arbitrary function"):
-        integral_drift(Function("f")(q), PENDULUM, [1, 0], (0, 20))
+        integral_drift(Function("f")(q), PENDULUM, (0, 20), [1, 0])
     with pytest.raises(KeyError, match="k, m"):
-        integral_drift(x, KEPLER, KEPLER_START, (0, 1))
+        integral_drift(x, KEPLER, (0, 1), KEPLER_START)
     with pytest.raises(ValueError, match="3 numbers"):
-        integral_drift(x, KEPLER, [1, 0, 0], (0, 1), parameters=UNITS)
+        integral_drift(x, KEPLER, (0, 1), [1, 0, 0], parameters=UNITS)
     with pytest.raises(ValueError, match="no finite real number"):
-        integral_drift(x, KEPLER, [1, 0, 0, float("nan")], (0, 1), parameters=UNITS)
+        integral_drift(x, KEPLER, (0, 1), [1, 0, 0, float("nan")], parameters=UNITS)
     with pytest.raises(NonFiniteStateError):
-        integral_drift(KEPLER.H, KEPLER, [1, 0, 0, 0], (0, 3), parameters=UNITS)
+        integral_drift(KEPLER.H, KEPLER, (0, 3), [1, 0, 0, 0], parameters=UNITS)
 
 
 # verdicts ------------------------------------------------------------------------------------------
 
 
 def test_evidence_leaves_the_status():
-    seen = integral_drift(PENDULUM.H, PENDULUM, [1, 0], (0, 20))
+    seen = integral_drift(PENDULUM.H, PENDULUM, (0, 20), [1, 0])
     open_ = Verdict(Status.UNDECIDED, "the energy is constant", evidence=(Evidence("before", "known"),))
     told = open_.witness(seen.evidence)
     assert told.undecided
     assert [e.kind for e in told.evidence] == ["before", "drift of an integral"]
     with pytest.raises(Undecided):
         bool(told)
-    against = integral_drift(q, PENDULUM, [1, 0], (0, 20))
+    against = integral_drift(q, PENDULUM, (0, 20), [1, 0])
     for status in Status:
         assert Verdict(status).witness(seen.evidence, against.evidence).status is status
     assert seen.text in str(told)

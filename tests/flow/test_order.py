@@ -21,10 +21,10 @@ SPAN = 12.0
 def fitted_order(system, start, method, window=(3e-12, 1e-4), span=SPAN, longest=0.5):
     """Fit errors inside a window: below it is round-off, above it the steps are too long for a power law."""
     floor, ceiling = window
-    true = propagate(system, start, (0, span), method=Taylor(), samples=1).final
+    true = propagate(system, (0, span), start, method=Taylor(), samples=1).final
     steps, errors = [], []
     for n in np.unique(np.geomspace(span / longest, 500 * span, 120).astype(int)):
-        found = propagate(system, start, (0, span), method=method, step=span / n, samples=1)
+        found = propagate(system, (0, span), start, method=method, step=span / n, samples=1)
         error = abs(found.final - true).max()
         if floor < error < ceiling:
             steps.append(found.step)
@@ -71,9 +71,9 @@ def test_the_users_own_coefficients_run():
 
 
 def test_dop853_follows_its_tolerance():
-    true = propagate(HENON_HEILES, HENON_HEILES_START, (0, SPAN)).final
+    true = propagate(HENON_HEILES, (0, SPAN), HENON_HEILES_START).final
     errors = [
-        abs(propagate(HENON_HEILES, HENON_HEILES_START, (0, SPAN), method=DOP853(tol)).final - true).max()
+        abs(propagate(HENON_HEILES, (0, SPAN), HENON_HEILES_START, method=DOP853(tol)).final - true).max()
         for tol in (1e-4, 1e-7, 1e-10)
     ]
     assert errors[0] > 20 * errors[1] > 400 * errors[2]

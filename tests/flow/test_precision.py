@@ -46,7 +46,7 @@ def test_the_unit_round_off_of_more_digits():
 def test_fixed_step_precisions_end_at_their_own_round_off(precision):
     n = 2_000
     error = propagate(
-        KEPLER, kepler_start(0.2), (0, 50), method=SS10, step=50 / n, precision=precision
+        KEPLER, (0, 50), kepler_start(0.2), method=SS10, step=50 / n, precision=precision
     ).energy_error
     floor = UNIT[precision] * n**0.5
     bound = {"compensated": 0.3}.get(precision, 100)
@@ -62,8 +62,8 @@ def test_gauss_methods_end_at_the_round_off_of_each_precision(stages, precision)
     n = 4_000
     motion = propagate(
         DOUBLE_PENDULUM,
-        DOUBLE_PENDULUM_START,
         (0, 60),
+        DOUBLE_PENDULUM_START,
         method=Gauss(stages),
         step=60 / n,
         precision=precision,
@@ -78,9 +78,9 @@ def test_gauss_methods_end_at_the_round_off_of_each_precision(stages, precision)
 @pytest.mark.parametrize(("precision", "digits"), [("single", 6), ("double", 15), ("extended", 18)])
 def test_a_gauss_step_is_the_double_double_one_rounded(precision, digits):
     arguments = {"method": Gauss(5), "step": 1 / 8, "samples": 1}
-    found = propagate(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 1 / 8), precision=precision, **arguments)
+    found = propagate(DOUBLE_PENDULUM, (0, 1 / 8), DOUBLE_PENDULUM_START, precision=precision, **arguments)
     wide = propagate(
-        DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 1 / 8), precision="double-double", **arguments
+        DOUBLE_PENDULUM, (0, 1 / 8), DOUBLE_PENDULUM_START, precision="double-double", **arguments
     )
     difference = (found.y[:, -1] - wide.y[:, -1]) + (found.carried[:, -1] - wide.carried[:, -1])
     assert abs(difference).max() < 10.0**-digits
@@ -90,7 +90,7 @@ def test_a_gauss_step_is_the_double_double_one_rounded(precision, digits):
 def test_a_gauss_iteration_that_does_not_converge_says_so_in_every_precision(precision):
     """A fall into the centre from rest."""
     with pytest.raises(NonFiniteStateError, match="do not converge") as caught:
-        propagate(KEPLER, [1.0, 0.0, 0.0, 0.0], (0, 3), method=Gauss(4), step=0.02, precision=precision)
+        propagate(KEPLER, (0, 3), [1.0, 0.0, 0.0, 0.0], method=Gauss(4), step=0.02, precision=precision)
     assert 1.0 < caught.value.time < np.pi / 8**0.5
 
 
@@ -99,8 +99,8 @@ def test_double_double_steps_are_exact_to_31_digits():
     for system, start in ((KEPLER, kepler_start(0.6)), (HENON_HEILES, HENON_HEILES_START)):
         found = propagate(
             system,
-            start,
             (0, 0.25),
+            start,
             method=Splitting("kahan-li-8"),
             step=0.125,
             precision="double-double",
@@ -119,7 +119,7 @@ def test_double_double_energy_error_is_the_methods_own():
     errors = [
         abs(
             propagate(
-                KEPLER, kepler_start(0.2), (0, 10), step=step, precision="double-double", **arguments
+                KEPLER, (0, 10), kepler_start(0.2), step=step, precision="double-double", **arguments
             ).energy_error
         ).max()
         for step in (1 / 16, 1 / 32)
@@ -134,23 +134,23 @@ def test_gauss_methods_in_double_double_keep_their_order_far_below_doubles(stage
     arguments = {"method": Gauss(stages), "precision": "double-double", "samples": 4}
     errors = [
         abs(
-            propagate(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 2), step=step, **arguments).energy_error
+            propagate(DOUBLE_PENDULUM, (0, 2), DOUBLE_PENDULUM_START, step=step, **arguments).energy_error
         ).max()
         for step in (1 / 16, 1 / 32)
     ]
     assert errors[0] / errors[1] == pytest.approx(2 ** (2 * stages), rel=0.2)
     assert floor < errors[1] < {3: 1e-11, 6: 1e-22, 8: 2e-30}[stages]
     doubles = propagate(
-        DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 2), method=Gauss(stages), step=1 / 32, samples=4
+        DOUBLE_PENDULUM, (0, 2), DOUBLE_PENDULUM_START, method=Gauss(stages), step=1 / 32, samples=4
     )
-    wide = propagate(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, (0, 2), step=1 / 32, **arguments)
+    wide = propagate(DOUBLE_PENDULUM, (0, 2), DOUBLE_PENDULUM_START, step=1 / 32, **arguments)
     np.testing.assert_allclose(doubles.y, wide.y, atol=2e-15)
 
 
 def test_gauss_methods_in_double_double_keep_quadratic_integrals():
     x, y, px, py = *KEPLER.q, *KEPLER.p
     motion = propagate(
-        KEPLER, kepler_start(0.5), (0, 20), method=Gauss(2), step=0.05, precision="double-double",
+        KEPLER, (0, 20), kepler_start(0.5), method=Gauss(2), step=0.05, precision="double-double",
         observables={"L": x * py - y * px},
     )  # fmt: skip
     assert abs(motion.energy_error).max() > 1e-6
@@ -159,11 +159,11 @@ def test_gauss_methods_in_double_double_keep_quadratic_integrals():
 
 def test_a_start_beyond_doubles_is_kept():
     exact = ["1/3", "0.1", "0", "1.1"]
-    motion = propagate(KEPLER, exact, (0, 1), method=SS10, step=0.01, precision="double-double", samples=1)
+    motion = propagate(KEPLER, (0, 1), exact, method=SS10, step=0.01, precision="double-double", samples=1)
     assert motion.y[0, 0] == 1 / 3
     assert motion.carried[0, 0] == pytest.approx(1 / 3 * 2**-54, rel=1e-9)
     rounded = propagate(
-        KEPLER, [1 / 3, 0.1, 0.0, 1.1], (0, 1), method=SS10, step=0.01, precision="double-double", samples=1
+        KEPLER, (0, 1), [1 / 3, 0.1, 0.0, 1.1], method=SS10, step=0.01, precision="double-double", samples=1
     )
     difference = (motion.y - rounded.y) + (motion.carried - rounded.carried)
     assert 1e-18 < abs(difference[:, -1]).max() < 1e-14
@@ -171,8 +171,8 @@ def test_a_start_beyond_doubles_is_kept():
 
 @pytest.mark.parametrize("precision", [*ADAPTIVE[1:], 30])
 def test_heyokas_precisions_go_below_doubles(precision):
-    motion = propagate(PENDULUM, [1.0, 0.0], (0, 20), precision=precision, samples=10)
-    double = propagate(PENDULUM, [1.0, 0.0], (0, 20), samples=10)
+    motion = propagate(PENDULUM, (0, 20), [1.0, 0.0], precision=precision, samples=10)
+    double = propagate(PENDULUM, (0, 20), [1.0, 0.0], samples=10)
     np.testing.assert_allclose(motion.y, double.y, atol=1e-13)
     floor = {"extended": 1e-18, "quad": 1e-31, 30: 1e-28}[precision]
     assert 0 < abs(motion.energy_error).max() < floor
@@ -193,16 +193,16 @@ def test_heyokas_precisions_go_below_doubles(precision):
 def test_precisions_that_a_method_does_not_have(method, precision, message):
     fixed = {"step": 0.1} if method in (SS10, Gauss(2)) else {}
     with pytest.raises(ValueError, match=message):
-        propagate(KEPLER, kepler_start(0.2), (0, 1), method=method, precision=precision, **fixed)
+        propagate(KEPLER, (0, 1), kepler_start(0.2), method=method, precision=precision, **fixed)
 
 
 def test_a_pendulum_in_double_double_is_heyokas_in_quadruple():
     motion = propagate(
-        PENDULUM, [1.0, 0.0], (0, 3), method=SS10, step=1 / 64, precision="double-double", samples=3
+        PENDULUM, (0, 3), [1.0, 0.0], method=SS10, step=1 / 64, precision="double-double", samples=3
     )
     assert 0 < abs(motion.energy_error).max() < 1e-24
     finer = propagate(
-        PENDULUM, [1.0, 0.0], (0, 3), method=SS10, step=1 / 128, precision="double-double", samples=3
+        PENDULUM, (0, 3), [1.0, 0.0], method=SS10, step=1 / 128, precision="double-double", samples=3
     )
     # Of order 10 far below what doubles show: the sines are right there too.
     ratio = abs(motion.energy_error).max() / abs(finer.energy_error).max()
@@ -214,8 +214,8 @@ def test_double_double_says_what_it_has_not():
     with pytest.raises(ValueError, match=r"no asinh in double-double.*'quad'"):
         propagate(
             hyperbolic,
-            [1.0, 0.0],
             (0, 1),
+            [1.0, 0.0],
             method=Splitting("verlet"),
             step=0.1,
             precision="double-double",
@@ -232,11 +232,11 @@ def starts(base, orbits):
 def test_orbits_together_give_the_bits_of_each_alone(method, precision):
     many = starts(kepler_start(0.3), 37)
     arguments = {"method": method, "step": 0.05, "precision": precision, "samples": 3}
-    together = propagate(KEPLER, many, (0, 3), **arguments)
+    together = propagate(KEPLER, (0, 3), many, **arguments)
     assert together.y.shape == (4, 4, 37)
     assert together.energy_error.shape == (4, 37)
     for orbit in (0, 5, 36):
-        alone = propagate(KEPLER, many[:, orbit], (0, 3), **arguments)
+        alone = propagate(KEPLER, (0, 3), many[:, orbit], **arguments)
         np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
         np.testing.assert_array_equal(together.carried[:, :, orbit], alone.carried)
         np.testing.assert_array_equal(together.energy_error[:, orbit], alone.energy_error)
@@ -247,11 +247,11 @@ def test_a_thousand_orbits_give_the_bits_of_each_alone(precision):
     """So many are stepped in more registers."""
     many = starts(kepler_start(0.3), 1003)
     arguments = {"method": Splitting("kahan-li-8"), "step": 0.05, "precision": precision, "samples": 1}
-    together = propagate(KEPLER, many, (0, 2), **arguments)
-    few = propagate(KEPLER, many[:, :7], (0, 2), **arguments)
+    together = propagate(KEPLER, (0, 2), many, **arguments)
+    few = propagate(KEPLER, (0, 2), many[:, :7], **arguments)
     np.testing.assert_array_equal(together.y[:, :, :7], few.y)
     for orbit in (0, 500, 1002):
-        alone = propagate(KEPLER, many[:, orbit], (0, 2), **arguments)
+        alone = propagate(KEPLER, (0, 2), many[:, orbit], **arguments)
         np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
         np.testing.assert_array_equal(together.carried[:, :, orbit], alone.carried)
 
@@ -263,9 +263,9 @@ def test_ensembles_of_every_method_and_of_transcendental_hamiltonians(method):
         (DRIVEN, [1.0, 0.5]) if isinstance(method, Splitting) else (DOUBLE_PENDULUM, DOUBLE_PENDULUM_START)
     )
     many = starts(base, 3)
-    together = propagate(system, many, (0, 2), method=method, samples=4, **fixed)
+    together = propagate(system, (0, 2), many, method=method, samples=4, **fixed)
     for orbit in range(3):
-        alone = propagate(system, many[:, orbit], (0, 2), method=method, samples=4, **fixed)
+        alone = propagate(system, (0, 2), many[:, orbit], method=method, samples=4, **fixed)
         np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
 
 
@@ -273,17 +273,17 @@ def test_an_orbit_that_is_lost_is_named():
     # The first half drift takes orbit 2 into the centre.
     many = np.array([[1.0, 1.0, 1.0, 1.0], [0.0] * 4, [0.0, 0.0, -2.0, 0.0], [1.0, 1.0, 0.0, 1.0]])
     with pytest.raises(NonFiniteStateError, match="of orbit 2") as caught:
-        propagate(KEPLER, many, (0, 4), method=Splitting("verlet"), step=1.0)
+        propagate(KEPLER, (0, 4), many, method=Splitting("verlet"), step=1.0)
     np.testing.assert_array_equal(caught.value.state, many[:, 2])
     with pytest.raises(ValueError, match="y0 has shape"):
-        propagate(KEPLER, many[:3], (0, 4), method=RK4(), step=0.1)
+        propagate(KEPLER, (0, 4), many[:3], method=RK4(), step=0.1)
 
 
 def test_progress_of_ensembles_reaches_one_and_interruptions_stop_every_thread():
     many = starts(HENON_HEILES_START, 300)
     seen = []
     propagate(
-        HENON_HEILES, many, (0, 20), method=Splitting("verlet"), step=0.01, samples=5, progress=seen.append
+        HENON_HEILES, (0, 20), many, method=Splitting("verlet"), step=0.01, samples=5, progress=seen.append
     )
     assert seen[-1] == 1
 
@@ -292,5 +292,5 @@ def test_progress_of_ensembles_reaches_one_and_interruptions_stop_every_thread()
 
     with pytest.raises(KeyboardInterrupt):
         propagate(
-            HENON_HEILES, many, (0, 1e9), method=Splitting("verlet"), step=0.01, samples=2, progress=impatient
+            HENON_HEILES, (0, 1e9), many, method=Splitting("verlet"), step=0.01, samples=2, progress=impatient
         )

@@ -30,8 +30,8 @@ OSCILLATOR = System(u.momentum**2 / (2 * m) + k * u**2 / 2, (u,), (u.momentum,))
 def test_the_oscillator_moves_as_the_closed_form():
     motion = propagate(
         OSCILLATOR,
-        [1.0, 0.0],
         (0, 10),
+        [1.0, 0.0],
         method=Splitting("kahan-li-8"),
         step=0.01,
         parameters={m: 2, "k": sp.Rational(9, 2)},
@@ -46,7 +46,7 @@ def test_the_oscillator_moves_as_the_closed_form():
 @pytest.mark.parametrize("method", [VERLET, RK4(), Taylor(), DOP853()], ids=str)
 def test_shapes_and_times(method):
     fixed = {"step": 0.1} if method in (VERLET, RK4()) else {}
-    motion = propagate(HENON_HEILES, HENON_HEILES_START, (1, 11), method=method, samples=20, **fixed)
+    motion = propagate(HENON_HEILES, (1, 11), HENON_HEILES_START, method=method, samples=20, **fixed)
     assert motion.y.shape == (4, 21)
     assert motion.q.shape == motion.p.shape == (2, 21)
     np.testing.assert_allclose(motion.t, np.linspace(1, 11, 21), rtol=1e-15)
@@ -61,30 +61,30 @@ def test_shapes_and_times(method):
 @pytest.mark.parametrize("method", [Splitting("kahan-li-8"), Taylor(), DOP853()], ids=str)
 def test_time_may_run_backwards(method):
     fixed = {"step": 0.05} if isinstance(method, Splitting) else {}
-    there = propagate(HENON_HEILES, HENON_HEILES_START, (0, 7), method=method, samples=7, **fixed)
-    back = propagate(HENON_HEILES, there.final, (7, 0), method=method, samples=7, **fixed)
+    there = propagate(HENON_HEILES, (0, 7), HENON_HEILES_START, method=method, samples=7, **fixed)
+    back = propagate(HENON_HEILES, (7, 0), there.final, method=method, samples=7, **fixed)
     np.testing.assert_allclose(back.y[:, ::-1], there.y, atol=1e-9)
 
 
 def test_sampled_states_do_not_depend_on_how_many_are_kept():
     arguments = {"method": Splitting("kahan-li-8"), "step": 0.1}
-    few = propagate(HENON_HEILES, HENON_HEILES_START, (0, 100), samples=4, **arguments)
-    many = propagate(HENON_HEILES, HENON_HEILES_START, (0, 100), samples=1000, **arguments)
+    few = propagate(HENON_HEILES, (0, 100), HENON_HEILES_START, samples=4, **arguments)
+    many = propagate(HENON_HEILES, (0, 100), HENON_HEILES_START, samples=1000, **arguments)
     np.testing.assert_array_equal(few.y, many.y[:, ::250])
 
 
 def test_the_step_is_the_largest_that_divides_the_span_and_is_not_above_the_asked_one():
-    motion = propagate(PENDULUM, [1.0, 0.0], (0, 1), method=VERLET, step=0.3)
+    motion = propagate(PENDULUM, (0, 1), [1.0, 0.0], method=VERLET, step=0.3)
     assert (motion.steps, motion.step) == (4, 0.25)
-    exact = propagate(PENDULUM, [1.0, 0.0], (0, 1), method=VERLET, step=0.1)
+    exact = propagate(PENDULUM, (0, 1), [1.0, 0.0], method=VERLET, step=0.1)
     assert exact.steps == 10
-    assert propagate(PENDULUM, [1.0, 0.0], (0, 1), method=VERLET, step=5.0).steps == 1
-    assert propagate(PENDULUM, [1.0, 0.0], (1, 0), method=VERLET, step=0.3).step == -0.25
+    assert propagate(PENDULUM, (0, 1), [1.0, 0.0], method=VERLET, step=5.0).steps == 1
+    assert propagate(PENDULUM, (1, 0), [1.0, 0.0], method=VERLET, step=0.3).step == -0.25
 
 
 def test_energy_is_evaluated_beyond_double_precision():
     motion = propagate(
-        KEPLER, kepler_start(0.2), (0, 100), method=Splitting("kahan-li-8"), step=0.01, samples=50
+        KEPLER, (0, 100), kepler_start(0.2), method=Splitting("kahan-li-8"), step=0.01, samples=50
     )
     error = abs(motion.energy_error[1:])
     # Evaluated in doubles, every value would be a multiple of 2⁻⁵³.
@@ -94,7 +94,7 @@ def test_energy_is_evaluated_beyond_double_precision():
 
 def test_long_doubles_and_40_digits_give_the_same_energies():
     made = equations(KEPLER.H, KEPLER.q, KEPLER.p, KEPLER.t, {})
-    found = propagate(KEPLER, kepler_start(0.5), (0, 3), method=VERLET, step=0.01, samples=5)
+    found = propagate(KEPLER, (0, 3), kepler_start(0.5), method=VERLET, step=0.01, samples=5)
     samples = Samples(found.t, found.y, found.carried, 1, 1, 0.01, 0.0, 0.0)
     carried = np.full_like(samples.y, 1e-18)
     wide, many = (
@@ -105,13 +105,13 @@ def test_long_doubles_and_40_digits_give_the_same_energies():
 
 
 def test_a_vanishing_starting_energy_gives_absolute_errors():
-    motion = propagate(OSCILLATOR, [0.0, 0.0], (0, 1), method=VERLET, step=0.1, parameters={m: 1, k: 1})
+    motion = propagate(OSCILLATOR, (0, 1), [0.0, 0.0], method=VERLET, step=0.1, parameters={m: 1, k: 1})
     assert not motion.relative
     assert abs(motion.energy_error).max() == 0
 
 
 def test_the_energy_of_a_driven_system_is_no_error():
-    motion = propagate(DRIVEN, [1.0, 0.5], (0, 5), method=VERLET, step=0.01)
+    motion = propagate(DRIVEN, (0, 5), [1.0, 0.5], method=VERLET, step=0.01)
     assert abs(motion.energy_change).max() > 0.01
     with pytest.raises(ValueError, match="depends on t"):
         _ = motion.energy_error
@@ -120,7 +120,7 @@ def test_the_energy_of_a_driven_system_is_no_error():
 def test_progress_ends_at_one_and_rises():
     for method, fixed in ((VERLET, {"step": 0.001}), (Taylor(), {}), (DOP853(), {})):
         seen = []
-        propagate(PENDULUM, [1.0, 0.0], (0, 50), method=method, progress=seen.append, samples=10, **fixed)
+        propagate(PENDULUM, (0, 50), [1.0, 0.0], method=method, progress=seen.append, samples=10, **fixed)
         assert seen == sorted(seen)
         assert seen[-1] == pytest.approx(1)
 
@@ -130,7 +130,7 @@ def test_an_interruption_is_heard_within_a_slice():
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        propagate(PENDULUM, [1.0, 0.0], (0, 1e9), method=VERLET, step=0.01, samples=2, progress=impatient)
+        propagate(PENDULUM, (0, 1e9), [1.0, 0.0], method=VERLET, step=0.01, samples=2, progress=impatient)
 
 
 REFUSED = [
@@ -173,25 +173,25 @@ def test_what_makes_no_sense_is_refused(wrong, error, message):
 
 def test_a_start_outside_the_domain_is_refused():
     with pytest.raises(ValueError, match="not finite at y0"):
-        propagate(KEPLER, [0.0, 0.0, 1.0, 0.0], (0, 1), method=VERLET, step=0.1)
+        propagate(KEPLER, (0, 1), [0.0, 0.0, 1.0, 0.0], method=VERLET, step=0.1)
 
 
 def test_a_run_out_of_the_domain_tells_time_and_state():
     # √(1 − u²) ends at u = 1, where this motion arrives near t = 0.5.
     edge = System(u.momentum**2 / 2 - sp.sqrt(1 - u**2) - 2 * u, (u,), (u.momentum,))
     with pytest.raises(NonFiniteStateError, match="after t =") as caught:
-        propagate(edge, [0.0, 2.0], (0, 10), method=VERLET, step=0.001)
+        propagate(edge, (0, 10), [0.0, 2.0], method=VERLET, step=0.001)
     assert 0.2 < caught.value.time < 1
     assert np.isfinite(caught.value.state).all()
     # Finite, and at most one drift beyond the edge.
     assert 0.99 < caught.value.state[0] < 1 + 0.001 * 2.8
     for method in (Taylor(), DOP853()):
         with pytest.raises(NonFiniteStateError, match="after t ="):
-            propagate(edge, [0.0, 2.0], (0, 10), method=method)
+            propagate(edge, (0, 10), [0.0, 2.0], method=method)
 
 
 def test_a_nystrom_method_asks_for_a_quadratic_kinetic_energy():
     quartic = System(u.momentum**4 / 4 + u**2 / 2, (u,), (u.momentum,))
     with pytest.raises(ValueError, match="quadratic in p"):
-        propagate(quartic, [1.0, 0.0], (0, 1), method=Splitting("srkn-6a"), step=0.1)
-    assert propagate(quartic, [1.0, 0.0], (0, 1), method=Splitting("blanes-moan-6"), step=0.1).steps == 10
+        propagate(quartic, (0, 1), [1.0, 0.0], method=Splitting("srkn-6a"), step=0.1)
+    assert propagate(quartic, (0, 1), [1.0, 0.0], method=Splitting("blanes-moan-6"), step=0.1).steps == 10

@@ -51,8 +51,8 @@ def equal(a, b):
 def test_a_run_resumed_is_the_run_in_one(system, start, method, how, span):
     t0, end = span
     arguments = {"method": method, "cadence": 3, **how}
-    whole = propagate(system, start, span, samples=8, **arguments)
-    half = propagate(system, start, (t0, (t0 + end) / 2), samples=4, **arguments)
+    whole = propagate(system, span, start, samples=8, **arguments)
+    half = propagate(system, (t0, (t0 + end) / 2), start, samples=4, **arguments)
     equal(half.resume(end, samples=4), whole)
     equal(half.resume(end), whole)
     equal(half.resume((t0 + 3 * end) / 4, samples=2).resume(end, samples=2), whole)
@@ -98,7 +98,7 @@ def test_taylor_is_completed_bit_by_bit(precision):
     assert [met.t for met in completed.events] == [met.t for met in whole.events]
     longer = whole.resume(150)
     np.testing.assert_allclose(
-        longer.final, propagate(HENON_HEILES, HENON_HEILES_START, (0, 150)).final, atol=1e-11
+        longer.final, propagate(HENON_HEILES, (0, 150), HENON_HEILES_START).final, atol=1e-11
     )
 
 
@@ -124,15 +124,15 @@ def test_an_interrupted_ensemble_keeps_what_all_orbits_have_reached():
 
 def test_a_run_with_events_is_resumed_with_its_events():
     arguments = {"method": Splitting("kahan-li-8"), "step": 0.1, "events": [Event(x)]}
-    whole = propagate(HENON_HEILES, HENON_HEILES_START, (0, 60), samples=6, **arguments)
-    half = propagate(HENON_HEILES, HENON_HEILES_START, (0, 30), samples=3, **arguments)
+    whole = propagate(HENON_HEILES, (0, 60), HENON_HEILES_START, samples=6, **arguments)
+    half = propagate(HENON_HEILES, (0, 30), HENON_HEILES_START, samples=3, **arguments)
     resumed = half.resume(60)
     equal(resumed, whole)
     assert [met.t for met in resumed.events] == [met.t for met in whole.events]
 
 
 def test_what_cannot_be_resumed_says_so():
-    motion = propagate(HENON_HEILES, HENON_HEILES_START, (0, 1), method=Splitting("verlet"), step=0.1)
+    motion = propagate(HENON_HEILES, (0, 1), HENON_HEILES_START, method=Splitting("verlet"), step=0.1)
     with pytest.raises(ValueError, match="has arrived"):
         motion.resume()
     with pytest.raises(ValueError, match=r"no whole number of steps .* take 1\.2 or 1\.3"):
@@ -147,21 +147,21 @@ def test_what_cannot_be_resumed_says_so():
 
 
 def test_taylors_dense_output_is_the_motion_to_its_tolerance():
-    motion = propagate(HENON_HEILES, HENON_HEILES_START, (0, 50), samples=3, dense=True)
+    motion = propagate(HENON_HEILES, (0, 50), HENON_HEILES_START, samples=3, dense=True)
     times = np.linspace(0, 50, 301)
-    true = propagate(HENON_HEILES, HENON_HEILES_START, (0, 50), times=times)
+    true = propagate(HENON_HEILES, (0, 50), HENON_HEILES_START, times=times)
     np.testing.assert_allclose(motion(times), true.y, atol=2e-13)
     np.testing.assert_array_equal(motion(motion.t), motion.y)
     assert motion(17.3).shape == (4,)
-    back = propagate(HENON_HEILES, motion.final, (50, 0), samples=2, dense=True)
+    back = propagate(HENON_HEILES, (50, 0), motion.final, samples=2, dense=True)
     np.testing.assert_allclose(back(times), true.y, atol=1e-11)
-    many = propagate(HENON_HEILES, np.array([HENON_HEILES_START] * 2).T, (0, 9), samples=2, dense=True)
+    many = propagate(HENON_HEILES, (0, 9), np.array([HENON_HEILES_START] * 2).T, samples=2, dense=True)
     assert many(np.array([1.0, 2.0, 3.0])).shape == (4, 3, 2)
     np.testing.assert_array_equal(many(4.0)[:, 1], many(4.0)[:, 0])
 
 
 def test_dense_output_goes_through_bounces():
-    motion = propagate(HENON_HEILES, HENON_HEILES_START, (0, 30), dense=True, events=[Event(x, -1, "bounce")])
+    motion = propagate(HENON_HEILES, (0, 30), HENON_HEILES_START, dense=True, events=[Event(x, -1, "bounce")])
     assert len(motion.events) > 3
     assert motion(np.linspace(0, 30, 500))[0].min() > -1e-14
     for met in motion.events:
@@ -171,28 +171,28 @@ def test_dense_output_goes_through_bounces():
 
 @pytest.mark.parametrize(("system", "start", "method", "how"), CASES, ids=lambda c: str(c)[:20])
 def test_fixed_steps_are_taken_again_between_samples(system, start, method, how):
-    few = propagate(system, start, (0, 10), method=method, samples=3, **how)
-    every = propagate(system, start, (0, 10), method=method, samples=100, **how)
+    few = propagate(system, (0, 10), start, method=method, samples=3, **how)
+    every = propagate(system, (0, 10), start, method=method, samples=100, **how)
     again = few(every.t)
     if isinstance(method, Gauss):
         # The stages start from others: a little round-off, of doubles at least, for those are compared.
         np.testing.assert_allclose(again, every.y, atol=90 * max(2.0**-53, unit_round_off(every.precision)))
     else:
         np.testing.assert_array_equal(again, every.y)
-    halves = propagate(system, start, (0, 10), samples=200).y[:, 1::2]
+    halves = propagate(system, (0, 10), start, samples=200).y[:, 1::2]
     middle = few(every.t[:-1] + 0.05)
     assert (
         abs(middle - halves).max()
-        < 3 * abs(every.y - propagate(system, start, (0, 10), samples=100).y).max() + 1e-6
+        < 3 * abs(every.y - propagate(system, (0, 10), start, samples=100).y).max() + 1e-6
     )
 
 
 def test_ensembles_between_samples_are_their_orbits():
     start = np.array(HENON_HEILES_START)[:, np.newaxis] * np.linspace(0.5, 1, 5)
     arguments = {"method": Splitting("kahan-li-8"), "step": 0.1, "samples": 3}
-    together = propagate(HENON_HEILES, start, (0, 10), **arguments)(np.array([0.33, 7.77]))
+    together = propagate(HENON_HEILES, (0, 10), start, **arguments)(np.array([0.33, 7.77]))
     for orbit in range(5):
-        alone = propagate(HENON_HEILES, start[:, orbit], (0, 10), **arguments)(np.array([0.33, 7.77]))
+        alone = propagate(HENON_HEILES, (0, 10), start[:, orbit], **arguments)(np.array([0.33, 7.77]))
         np.testing.assert_array_equal(together[:, :, orbit], alone)
 
 
@@ -210,7 +210,7 @@ def test_ensembles_between_samples_are_their_orbits():
 def test_motion_that_was_not_kept_is_refused(arguments, message):
     from tests.flow.systems import PENDULUM
 
-    motion = propagate(PENDULUM, [1.0, 0.0], (0, 10), **arguments)
+    motion = propagate(PENDULUM, (0, 10), [1.0, 0.0], **arguments)
     with pytest.raises(ValueError, match=message):
         motion(3.0)
     with pytest.raises(ValueError, match="from t = 0 to 10 only"):

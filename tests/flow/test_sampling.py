@@ -16,8 +16,8 @@ TIMES = np.array([0.3, 0.7, 1.9, 6.0, 17.24])
 def test_fixed_steps_keep_the_state_after_the_nearest_step(method, direction):
     span = SPAN[::direction]
     times = TIMES[::direction]
-    motion = propagate(HENON_HEILES, HENON_HEILES_START, span, method=method, step=0.05, times=times)
-    every = propagate(HENON_HEILES, HENON_HEILES_START, span, method=method, step=0.05, samples=400)
+    motion = propagate(HENON_HEILES, span, HENON_HEILES_START, method=method, step=0.05, times=times)
+    every = propagate(HENON_HEILES, span, HENON_HEILES_START, method=method, step=0.05, samples=400)
     nearest = [0, *(round(abs(t - span[0]) / 0.05) for t in times), 400]
     np.testing.assert_array_equal(motion.t, every.t[nearest])
     np.testing.assert_array_equal(motion.y, every.y[:, nearest])
@@ -27,8 +27,8 @@ def test_fixed_steps_keep_the_state_after_the_nearest_step(method, direction):
 def test_times_nearest_to_one_step_are_kept_once():
     motion = propagate(
         HENON_HEILES,
-        HENON_HEILES_START,
         (0, 1),
+        HENON_HEILES_START,
         method=Splitting("verlet"),
         step=0.1,
         times=[0, 0.49, 0.51, 1],
@@ -38,10 +38,10 @@ def test_times_nearest_to_one_step_are_kept_once():
 
 @pytest.mark.parametrize("method", [Taylor(), DOP853()], ids=str)
 def test_adaptive_methods_are_evaluated_at_the_very_times(method):
-    motion = propagate(HENON_HEILES, HENON_HEILES_START, SPAN, method=method, times=TIMES)
+    motion = propagate(HENON_HEILES, SPAN, HENON_HEILES_START, method=method, times=TIMES)
     np.testing.assert_array_equal(motion.t, [0, *TIMES, 20])
     for k, t in enumerate(TIMES):
-        there = propagate(HENON_HEILES, HENON_HEILES_START, (0, t), samples=1).final
+        there = propagate(HENON_HEILES, (0, t), HENON_HEILES_START, samples=1).final
         np.testing.assert_allclose(motion.y[:, k + 1], there, atol=1e-12 if method == Taylor() else 1e-9)
 
 
@@ -61,4 +61,4 @@ def test_adaptive_methods_are_evaluated_at_the_very_times(method):
 )
 def test_times_that_make_no_sense_are_refused(wrong, message):
     with pytest.raises(ValueError, match=message):
-        propagate(HENON_HEILES, HENON_HEILES_START, SPAN, method=Splitting("verlet"), step=0.1, **wrong)
+        propagate(HENON_HEILES, SPAN, HENON_HEILES_START, method=Splitting("verlet"), step=0.1, **wrong)

@@ -13,7 +13,7 @@ METHODS = [{"method": Taylor()}, {"method": Splitting("verlet"), "step": 0.1}]
 
 @pytest.mark.parametrize("how", METHODS)
 def test_a_ball_into_the_corners_of_a_box(how):
-    motion = propagate(FREE, [0.5, 0.5, 1.0, 1.0], (0, 50.25), events=BOX, samples=3, **how)
+    motion = propagate(FREE, (0, 50.25), [0.5, 0.5, 1.0, 1.0], events=BOX, samples=3, **how)
     assert len(motion.events) == 100
     assert np.allclose(motion.final[:2], 0.75, atol=1e-13)
 
@@ -23,7 +23,7 @@ def test_a_ball_into_the_corners_of_a_box(how):
 def test_a_bounce_where_another_event_ends_the_motion(how, turned):
     events = [Event(x, -1, "bounce"), Event(y, -1, "stop"), Event(x + y, -1)]
     motion = propagate(
-        FREE, [1.0, 1.0, -1.0, -1.0], (0, 5), events=events[::-1] if turned else events, samples=3, **how
+        FREE, (0, 5), [1.0, 1.0, -1.0, -1.0], events=events[::-1] if turned else events, samples=3, **how
     )
     assert motion.stopped
     assert abs(motion.t[-1] - 1) < 1e-15
@@ -33,6 +33,6 @@ def test_a_bounce_where_another_event_ends_the_motion(how, turned):
 @pytest.mark.parametrize("how", METHODS)
 def test_a_bounce_where_another_event_is_noted(how):
     events = [Event(x, -1, "bounce"), Event(y, -1)]
-    motion = propagate(FREE, [1.0, 1.0, -1.0, -1.0], (0, 5), events=events, samples=3, **how)
+    motion = propagate(FREE, (0, 5), [1.0, 1.0, -1.0, -1.0], events=events, samples=3, **how)
     assert sorted(str(met.event) for met in motion.events) == ["x = 0", "y = 0"]
     assert np.allclose(motion.final, [4, -4, 1, -1], atol=1e-14)

@@ -52,7 +52,7 @@ def energy_errors(epsilon, method, steps):
     start = planets_start(masses)
     return np.array(
         [
-            abs(propagate(system, start, (0, 60), method=method, step=step, samples=200).energy_change).max()
+            abs(propagate(system, (0, 60), start, method=method, step=step, samples=200).energy_change).max()
             for step in steps
         ]
     )
@@ -110,8 +110,8 @@ def test_the_schemes_of_blanes_and_others_remove_the_square():
 def test_a_hundred_orbits_agree_with_heyoka():
     system, masses = planets("1e-3")
     start, span = planets_start(masses), (0, 200 * np.pi)
-    true = propagate(system, start, span, method=Taylor(), precision="extended", samples=1).final
-    found = propagate(system, start, span, method=SABA("8-6-4"), step=0.0625, samples=1).final
+    true = propagate(system, span, start, method=Taylor(), precision="extended", samples=1).final
+    found = propagate(system, span, start, method=SABA("8-6-4"), step=0.0625, samples=1).final
     scale = np.array([*[3.0] * 12, *[max(m, 1e-3) for m in np.repeat(masses, 3)]])
     # Of 100 orbits; heyoka in doubles is itself off by 8e-12 here.
     assert abs((found - true) / scale).max() < 1e-12
@@ -120,8 +120,8 @@ def test_a_hundred_orbits_agree_with_heyoka():
 def test_ten_orbits_agree_with_heyoka_to_13_digits():
     system, masses = planets("1e-3")
     start, span = planets_start(masses), (0, 20 * np.pi)
-    true = propagate(system, start, span, method=Taylor(), precision="extended", samples=1).final
-    found = propagate(system, start, span, method=SABA("8-6-4"), step=0.05, samples=1).final
+    true = propagate(system, span, start, method=Taylor(), precision="extended", samples=1).final
+    found = propagate(system, span, start, method=SABA("8-6-4"), step=0.05, samples=1).final
     scale = np.array([*[3.0] * 12, *[max(m, 1e-3) for m in np.repeat(masses, 3)]])
     assert abs((found - true) / scale).max() < 1e-13
 
@@ -131,7 +131,7 @@ def test_the_centre_of_mass_moves_evenly_and_momentum_is_kept():
     x, p = [place[0] for place in PLACES], [place[0].momentum for place in PLACES]
     centre = sum(sp.Float(m) * a for m, a in zip(masses, x, strict=True))
     motion = propagate(
-        system, planets_start(masses), (0, 50), method=WisdomHolman(), step=0.1, samples=50,
+        system, (0, 50), planets_start(masses), method=WisdomHolman(), step=0.1, samples=50,
         observables={"P": sum(p), "C": centre},
     )  # fmt: skip
     momentum = motion.observables["P"][0]
@@ -144,8 +144,8 @@ def test_angular_momentum_is_kept():
     total = sum(x * y.momentum - y * x.momentum for x, y, _ in PLACES)
     motion = propagate(
         system,
-        planets_start(masses),
         (0, 200),
+        planets_start(masses),
         method=SABA(1),
         step=0.3,
         samples=50,
@@ -187,9 +187,9 @@ def test_time_reversal(method):
 def test_the_motion_does_not_depend_on_where_it_is_looked_at(method):
     system, masses = planets("1e-2")
     arguments = {"method": method, "step": 0.1, "t_span": (0, 20)}
-    once = propagate(system, planets_start(masses), samples=1, **arguments)
-    often = propagate(system, planets_start(masses), samples=50, **arguments)
-    watched = propagate(system, planets_start(masses), samples=10, cadence=3, **arguments)
+    once = propagate(system, y0=planets_start(masses), samples=1, **arguments)
+    often = propagate(system, y0=planets_start(masses), samples=50, **arguments)
+    watched = propagate(system, y0=planets_start(masses), samples=10, cadence=3, **arguments)
     np.testing.assert_array_equal(once.final, often.final)
     np.testing.assert_array_equal(once.final, watched.final)
     assert np.isfinite(watched.statistics["energy"].mean).all()
@@ -197,9 +197,9 @@ def test_the_motion_does_not_depend_on_where_it_is_looked_at(method):
 
 def test_an_ensemble_gives_the_bits_of_single_orbits():
     starts = np.array([kepler_start(e) for e in (0.1, 0.4, 0.7)]).T
-    together = propagate(KEPLER, starts, (0, 10), method=SABA(2), step=0.5, samples=1)
+    together = propagate(KEPLER, (0, 10), starts, method=SABA(2), step=0.5, samples=1)
     for k in range(3):
-        alone = propagate(KEPLER, starts[:, k], (0, 10), method=SABA(2), step=0.5, samples=1)
+        alone = propagate(KEPLER, (0, 10), starts[:, k], method=SABA(2), step=0.5, samples=1)
         np.testing.assert_array_equal(together.final[:, k], alone.final)
 
 
@@ -208,7 +208,7 @@ def test_an_ensemble_gives_the_bits_of_single_orbits():
 
 def test_kepler_alone_is_exact_with_long_steps():
     u, n, starts = 2.0**-53, 628, [kepler_start(0.56 + 0.01 * k) for k in range(8)]
-    ends = [propagate(KEPLER, start, (0, n), method=WisdomHolman(), step=1.0, samples=1) for start in starts]
+    ends = [propagate(KEPLER, (0, n), start, method=WisdomHolman(), step=1.0, samples=1) for start in starts]
     misses = [
         abs(found.final - kepler_orbit(start, n)).max() for found, start in zip(ends, starts, strict=True)
     ]
@@ -220,7 +220,7 @@ def test_kepler_alone_is_exact_with_long_steps():
 def test_round_off_of_keplers_flow_is_a_random_walk():
     u, n = 2.0**-53, 50_000
     ends = [
-        propagate(KEPLER, kepler_start(0.2 + 1e-3 * k), (0, n), method=WisdomHolman(), step=1.0, samples=1)
+        propagate(KEPLER, (0, n), kepler_start(0.2 + 1e-3 * k), method=WisdomHolman(), step=1.0, samples=1)
         for k in range(8)
     ]
     ends = [motion.energy_error[-1] for motion in ends]
@@ -233,7 +233,7 @@ def test_round_off_of_short_steps_does_not_drift():
     u, n = 2.0**-53, 200_000
     ends = [
         propagate(
-            KEPLER, kepler_start(0.02 + 1e-3 * k), (0, n / 16), method=WisdomHolman(), step=1 / 16, samples=1
+            KEPLER, (0, n / 16), kepler_start(0.02 + 1e-3 * k), method=WisdomHolman(), step=1 / 16, samples=1
         )
         for k in range(8)
     ]
@@ -243,8 +243,8 @@ def test_round_off_of_short_steps_does_not_drift():
 
 def test_a_flyby_is_exact():
     start = [-20.0, 3.0, 1.5, 0.0]
-    true = propagate(KEPLER, start, (0, 40), method=Taylor(), precision="extended", samples=1).final
-    found = propagate(KEPLER, start, (0, 40), method=WisdomHolman(), step=2.0, samples=1).final
+    true = propagate(KEPLER, (0, 40), start, method=Taylor(), precision="extended", samples=1).final
+    found = propagate(KEPLER, (0, 40), start, method=WisdomHolman(), step=2.0, samples=1).final
     assert abs(found - true).max() < 1e-13
 
 
@@ -253,7 +253,7 @@ def test_a_perturbed_centre_has_its_order():
     oblate = System(KEPLER.H - sp.Rational(1, 10**6) / sp.sqrt(x**2 + y**2) ** 3, KEPLER.q, KEPLER.p)
     start = kepler_start(0.3)
     errors = [
-        abs(propagate(oblate, start, (0, 60), method=SABA(2), step=h, samples=400).energy_error).max()
+        abs(propagate(oblate, (0, 60), start, method=SABA(2), step=h, samples=400).energy_error).max()
         for h in (0.1, 0.05)
     ]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.2)
@@ -264,11 +264,11 @@ def test_the_harmonic_oscillator_is_exact_for_any_step():
     oscillator = System(
         sum(p**2 for p in HENON_HEILES.p) / 2 + x**2 / 2 + 2 * y**2 + x * y / 3, (x, y), HENON_HEILES.p
     )
-    motion = propagate(oscillator, [1.0, 0.5, 0.0, 0.3], (0, 10_000), method=SABA(1), step=1.0, samples=20)
+    motion = propagate(oscillator, (0, 10_000), [1.0, 0.5, 0.0, 0.3], method=SABA(1), step=1.0, samples=20)
     # Far below the rounding unit of the state: its round-off is carried along in full.
     assert abs(motion.energy_error).max() < 1e-18
-    true = propagate(oscillator, [1.0, 0.5, 0.0, 0.3], (0, 100), precision="extended", samples=1).final
-    found = propagate(oscillator, [1.0, 0.5, 0.0, 0.3], (0, 100), method=SABA(1), step=5.0, samples=1).final
+    true = propagate(oscillator, (0, 100), [1.0, 0.5, 0.0, 0.3], precision="extended", samples=1).final
+    found = propagate(oscillator, (0, 100), [1.0, 0.5, 0.0, 0.3], method=SABA(1), step=5.0, samples=1).final
     assert abs(found - true).max() < 1e-14
 
 
@@ -291,7 +291,7 @@ def test_a_small_cubic_part_makes_saba_better_than_verlet():
     start = [0.01 * a for a in HENON_HEILES_START]
     error = {
         method: abs(
-            propagate(HENON_HEILES, start, (0, 100), method=method, step=0.2, samples=100).energy_error
+            propagate(HENON_HEILES, (0, 100), start, method=method, step=0.2, samples=100).energy_error
         ).max()
         for method in (Splitting("verlet"), SABA(1))
     }
@@ -326,9 +326,9 @@ KINETIC = (x.momentum**2 + y.momentum**2) / 2
     ],
 )
 def test_what_has_no_solvable_part_is_refused(system, method, message):
+    y0 = [0.5] * (2 * len(system.q)) if len(system.q) < 3 else list(np.linspace(0.1, 2, 24))
     with pytest.raises(UnsolvableError, match=message):
-        propagate(system, [0.5] * (2 * len(system.q)) if len(system.q) < 3 else list(np.linspace(0.1, 2, 24)),
-                  (0, 1), method=method, step=0.1)  # fmt: skip
+        propagate(system, (0, 1), y0, method=method, step=0.1)
 
 
 def test_wrong_methods_are_refused():

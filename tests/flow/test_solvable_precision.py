@@ -111,7 +111,7 @@ def test_steps_of_planets_are_those_of_sixty_digits(coordinates):
         true = [a for row in (*q, *p) for a in row]
         for precision, floor in FLOORS.items():
             found = propagate(
-                system, start, (0, 2 * STEP), method=WisdomHolman(coordinates=coordinates), step=STEP,
+                system, (0, 2 * STEP), start, method=WisdomHolman(coordinates=coordinates), step=STEP,
                 precision=precision, samples=1,
             )  # fmt: skip
             ends = zip(found.y[:, -1].tolist(), found.carried[:, -1].tolist(), true, strict=True)
@@ -125,7 +125,7 @@ def test_steps_of_planets_are_those_of_sixty_digits(coordinates):
 def test_keplers_motion_ends_at_the_round_off_of_each_precision(precision):
     n = 1_000
     motion = propagate(
-        KEPLER, kepler_start(0.25), (0, n), method=WisdomHolman(), step=1.0, precision=precision, samples=20
+        KEPLER, (0, n), kepler_start(0.25), method=WisdomHolman(), step=1.0, precision=precision, samples=20
     )
     error, floor = abs(motion.energy_error).max(), FLOORS[precision]
     # Sums and products of pairs of doubles are not rounded to nearest: 0.4 units a step, always to one side.
@@ -141,7 +141,7 @@ def test_the_harmonic_oscillator_ends_at_the_round_off_of_each_precision(precisi
     )
     n = 1_000
     motion = propagate(
-        oscillator, [1.0, 0.5, 0.0, 0.25], (0, n), method=SABA(1), step=1.0, precision=precision, samples=20
+        oscillator, (0, n), [1.0, 0.5, 0.0, 0.25], method=SABA(1), step=1.0, precision=precision, samples=20
     )
     # Rounding is a function of a state that returns: a drift. Compensated, it is carried along in full.
     bound = n**0.5 / 100 if precision == "compensated" else n
@@ -155,7 +155,7 @@ def test_orders_go_on_below_doubles(precision):
     errors = [
         abs(
             propagate(
-                system, start, (0, 2), method=method, step=h, precision=precision, samples=8
+                system, (0, 2), start, method=method, step=h, precision=precision, samples=8
             ).energy_change
         ).max()
         for h in (1 / 8, 1 / 16)
@@ -167,9 +167,9 @@ def test_orders_go_on_below_doubles(precision):
 
 def test_planets_in_extended_numbers_agree_with_heyoka_in_quadruple():
     system, _, start = exact_start()
-    true = propagate(system, start, (0, 2), method=Taylor(), precision="quad", samples=1)
+    true = propagate(system, (0, 2), start, method=Taylor(), precision="quad", samples=1)
     found = propagate(
-        system, start, (0, 2), method=SABA("10-6-4"), step=1 / 128, precision="extended", samples=1
+        system, (0, 2), start, method=SABA("10-6-4"), step=1 / 128, precision="extended", samples=1
     )
     high, low = found.y[:, -1] - true.y[:, -1], found.carried[:, -1] - true.carried[:, -1]
     assert abs(high + low).max() < 2e-18
@@ -179,7 +179,7 @@ def test_planets_in_extended_numbers_agree_with_heyoka_in_quadruple():
 def test_the_motion_does_not_depend_on_where_it_is_looked_at(precision):
     system, _, start = exact_start()
     arguments = {"method": WisdomHolman(corrector=5), "step": 0.125, "precision": precision}
-    once, often = (propagate(system, start, (0, 4), samples=n, **arguments) for n in (1, 16))
+    once, often = (propagate(system, (0, 4), start, samples=n, **arguments) for n in (1, 16))
     np.testing.assert_array_equal(once.y[:, -1], often.y[:, -1])
     np.testing.assert_array_equal(once.carried[:, -1], often.carried[:, -1])
 
@@ -187,9 +187,9 @@ def test_the_motion_does_not_depend_on_where_it_is_looked_at(precision):
 def test_an_ensemble_gives_the_bits_of_single_orbits():
     starts = np.array([kepler_start(e) for e in (0.125, 0.5, 0.75)]).T
     arguments = {"method": SABA(2), "step": 0.5, "samples": 1, "precision": "extended"}
-    together = propagate(KEPLER, starts, (0, 10), **arguments)
+    together = propagate(KEPLER, (0, 10), starts, **arguments)
     for k in range(3):
-        alone = propagate(KEPLER, starts[:, k], (0, 10), **arguments)
+        alone = propagate(KEPLER, (0, 10), starts[:, k], **arguments)
         np.testing.assert_array_equal(together.final[:, k], alone.final)
 
 
@@ -201,7 +201,7 @@ def test_commutators_in_double_double():
     errors = [
         abs(
             propagate(
-                small, [0.125, 0.25, 0.25, 0.125], (0, 8), method=SABA(8, commutator=True), step=h, samples=16,
+                small, (0, 8), [0.125, 0.25, 0.25, 0.125], method=SABA(8, commutator=True), step=h, samples=16,
                 precision="double-double",
             ).energy_change
         ).max()

@@ -15,8 +15,8 @@ MOMENTUM = {"L": x * py - y * px, "r2": x**2 + y**2}
 @pytest.mark.parametrize("method", [Splitting("verlet"), Splitting("srkn-6b"), RK4(), Gauss(3)], ids=str)
 def test_statistics_of_every_step_are_those_of_all_samples(method, precision):
     arguments = {"method": method, "step": 0.05, "precision": precision, "observables": MOMENTUM}
-    few = propagate(KEPLER, kepler_start(0.4), (0, 20), samples=4, cadence=1, **arguments)
-    every = propagate(KEPLER, kepler_start(0.4), (0, 20), samples=400, **arguments)
+    few = propagate(KEPLER, (0, 20), kepler_start(0.4), samples=4, cadence=1, **arguments)
+    every = propagate(KEPLER, (0, 20), kepler_start(0.4), samples=400, **arguments)
     np.testing.assert_array_equal(few.y, every.y[:, ::100])
     assert list(few.statistics) == ["energy", "L", "r2"]
     for name, change in {"energy": every.energy_change, **every.changes}.items():
@@ -43,8 +43,8 @@ def test_statistics_in_other_precisions_are_finer_than_the_state(precision, orbi
         "precision": precision,
         "observables": MOMENTUM,
     }
-    few = propagate(KEPLER, start, (0, 4), samples=2, cadence=1, **arguments)
-    every = propagate(KEPLER, start, (0, 4), samples=40, **arguments)
+    few = propagate(KEPLER, (0, 4), start, samples=2, cadence=1, **arguments)
+    every = propagate(KEPLER, (0, 4), start, samples=40, **arguments)
     for name, change in {"energy": every.energy_change, **every.changes}.items():
         blocks, found = change[1:].reshape(2, 20, orbits), few.statistics[name]
         floor = FLOORS[precision] + 1e-15 * abs(blocks).max()
@@ -56,7 +56,7 @@ def test_statistics_in_other_precisions_are_finer_than_the_state(precision, orbi
 
 def test_running_extremes_rise_and_end_at_the_largest_of_all():
     motion = propagate(
-        KEPLER, kepler_start(0.4), (0, 100), method=Splitting("verlet"), step=0.05, samples=20, cadence=1
+        KEPLER, (0, 100), kepler_start(0.4), method=Splitting("verlet"), step=0.05, samples=20, cadence=1
     )
     found = motion.statistics["energy"]
     assert (np.diff(found.running) >= 0).all()
@@ -67,8 +67,8 @@ def test_running_extremes_rise_and_end_at_the_largest_of_all():
 @pytest.mark.parametrize("cadence", [3, 7, 25])
 def test_a_cadence_takes_every_so_many_steps_counted_from_the_start(cadence):
     arguments = {"method": Splitting("verlet"), "step": 0.05}
-    few = propagate(PENDULUM, [1.0, 0.0], (0, 10), samples=2, cadence=cadence, **arguments)
-    every = propagate(PENDULUM, [1.0, 0.0], (0, 10), samples=200, **arguments)
+    few = propagate(PENDULUM, (0, 10), [1.0, 0.0], samples=2, cadence=cadence, **arguments)
+    every = propagate(PENDULUM, (0, 10), [1.0, 0.0], samples=200, **arguments)
     np.testing.assert_array_equal(few.y[:, -1], every.y[:, -1])
     steps = np.arange(201)
     for k in range(2):
@@ -90,10 +90,10 @@ def test_statistics_of_ensembles_are_those_of_each_orbit():
         "cadence": 2,
         "observables": MOMENTUM,
     }
-    together = propagate(KEPLER, many, (0, 6), **arguments)
+    together = propagate(KEPLER, (0, 6), many, **arguments)
     assert together.statistics["L"].mean.shape == (3, 70)
     for orbit in (0, 33, 69):
-        alone = propagate(KEPLER, many[:, orbit], (0, 6), **arguments)
+        alone = propagate(KEPLER, (0, 6), many[:, orbit], **arguments)
         np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
         for name in ("energy", "L", "r2"):
             np.testing.assert_array_equal(
@@ -107,8 +107,8 @@ def test_statistics_of_ensembles_are_those_of_each_orbit():
 def test_a_long_run_shows_extremes_that_samples_miss():
     motion = propagate(
         KEPLER,
-        kepler_start(0.6),
         (0, 200 * np.pi),
+        kepler_start(0.6),
         method=Splitting("verlet"),
         step=np.pi / 500,
         samples=100,
@@ -131,7 +131,7 @@ def test_a_long_run_shows_extremes_that_samples_miss():
 def test_what_cannot_be_followed_is_refused(arguments, message):
     right = {"method": Splitting("verlet"), "step": 0.1, "samples": 10}
     with pytest.raises(ValueError, match=message):
-        propagate(KEPLER, kepler_start(0.1), (0, 10), **{**right, **arguments})
+        propagate(KEPLER, (0, 10), kepler_start(0.1), **{**right, **arguments})
 
 
 @pytest.mark.slow
@@ -143,7 +143,7 @@ def test_round_off_of_the_energy_is_a_random_walk(method, steps, a_period):
     many = np.array(kepler_start(0.2))[:, np.newaxis] * (1 + 1e-3 * np.arange(orbits))
     chosen = Gauss(8) if method == "gauss" else Splitting(method)
     h = 2 * np.pi / a_period
-    motion = propagate(KEPLER, many, (0, steps * h), method=chosen, step=h, samples=64, cadence=steps // 6400)
+    motion = propagate(KEPLER, (0, steps * h), many, method=chosen, step=h, samples=64, cadence=steps // 6400)
     end = motion.energy_error[-1]
     assert np.sqrt((end**2).mean()) < (0.5 if method == "gauss" else 0.2) * u * steps**0.5
     assert abs(end.mean()) < 3.5 * end.std() / orbits**0.5

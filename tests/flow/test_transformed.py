@@ -17,7 +17,7 @@ RADIUS = sp.sqrt(x**2 + y**2)
 
 
 def motion(e, method, step, span=(0, 20 * np.pi + 1), **arguments):
-    return propagate(KEPLER, kepler_start(e), span, method=method, step=step * (1 - e), **arguments)
+    return propagate(KEPLER, span, kepler_start(e), method=method, step=step * (1 - e), **arguments)
 
 
 @pytest.mark.parametrize("e", [0.9, 0.99, 0.999999])
@@ -36,7 +36,7 @@ def test_the_orbit_of_e_09_is_the_closed_form():
 
 def test_without_the_transformation_as_many_steps_fail():
     found = propagate(
-        KEPLER, kepler_start(0.9), (0, 20 * np.pi + 1), method=Splitting("kahan-li-8"), step=64 / 1000
+        KEPLER, (0, 20 * np.pi + 1), kepler_start(0.9), method=Splitting("kahan-li-8"), step=64 / 1000
     )
     assert abs(found.energy_error).max() > 1e-2
 
@@ -58,11 +58,11 @@ def test_verlet_stays_on_the_true_orbit_and_errs_in_time_only(e):
 def test_fitted_orders_of_splittings_for_three_bodies(name):
     system, masses = planets("0.1")
     start, span = planets_start(masses), (0, 6)
-    true = propagate(system, start, span, method=Taylor(), samples=1).final
+    true = propagate(system, span, start, method=Taylor(), samples=1).final
     method = TimeTransformed(Splitting(name))
     steps = np.array([0.06, 0.04, 0.03]) * (2 if method.order > 4 else 1)
     errors = [
-        abs(propagate(system, start, span, method=method, step=h, samples=4).final - true).max()
+        abs(propagate(system, span, start, method=method, step=h, samples=4).final - true).max()
         for h in steps
     ]
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(method.order, abs=0.35)
@@ -106,7 +106,7 @@ def test_the_map_in_the_fictitious_time_is_symplectic(method):
 @pytest.mark.parametrize("method", [LOGARITHMIC, TimeTransformed(Gauss(8), RADIUS)], ids=str)
 def test_there_and_back(method):
     there = motion(0.9, method, 0.1, span=(0, 10))
-    back = propagate(KEPLER, there.final, (10, 0), method=method, step=0.005)
+    back = propagate(KEPLER, (10, 0), there.final, method=method, step=0.005)
     assert abs(back.t[-1]) < 1e-15
     assert abs(back.final - kepler_start(0.9)).max() < 2e-10
 
@@ -114,10 +114,10 @@ def test_there_and_back(method):
 def test_a_driven_system_in_its_own_time():
     driven = System(KEPLER.H.subs(RADIUS, RADIUS) - sp.cos(KEPLER.t) / 50, KEPLER.q, KEPLER.p)
     tide = System(KEPLER.H - (2 + sp.cos(KEPLER.t)) / RADIUS / 20, KEPLER.q, KEPLER.p)
-    true = propagate(tide, kepler_start(0.5), (0, 10), samples=1).final
-    found = propagate(tide, kepler_start(0.5), (0, 10), method=LOGARITHMIC, step=0.01).final
+    true = propagate(tide, (0, 10), kepler_start(0.5), samples=1).final
+    found = propagate(tide, (0, 10), kepler_start(0.5), method=LOGARITHMIC, step=0.01).final
     assert abs(found - true).max() < 1e-11
-    assert not propagate(driven, kepler_start(0.5), (0, 1), method=LOGARITHMIC, step=0.01).autonomous
+    assert not propagate(driven, (0, 1), kepler_start(0.5), method=LOGARITHMIC, step=0.01).autonomous
 
 
 def test_samples_are_evenly_spaced_in_steps_and_no_more_than_twice_as_many():
@@ -134,8 +134,8 @@ def test_samples_are_evenly_spaced_in_steps_and_no_more_than_twice_as_many():
 def test_a_motion_whose_last_step_ends_at_the_end_has_that_state(samples):
     # With g = 1 the fictitious time is the time: 84 steps of 1/8 end at 10.5, thinned out or not.
     method = TimeTransformed(Gauss(2), sp.Integer(1))
-    found = propagate(PENDULUM, [1.0, 0.0], (0, 10.5), method=method, step=0.125, samples=samples)
-    plain = propagate(PENDULUM, [1.0, 0.0], (0, 10.5), method=Gauss(2), step=0.125, samples=1)
+    found = propagate(PENDULUM, (0, 10.5), [1.0, 0.0], method=method, step=0.125, samples=samples)
+    plain = propagate(PENDULUM, (0, 10.5), [1.0, 0.0], method=Gauss(2), step=0.125, samples=1)
     assert found.t[-1] == 10.5
     assert found.steps == plain.steps == 84
     assert abs(found.final - plain.final).max() < 1e-14
@@ -163,15 +163,15 @@ def test_the_end_is_met_to_the_rounding_of_time(precision, bits, forward):
 )
 def test_what_cannot_be_transformed_is_refused(system, start, method, message):
     with pytest.raises(ValueError, match=message):
-        propagate(system, start, (0, 1), method=method, step=0.01)
+        propagate(system, (0, 1), start, method=method, step=0.01)
 
 
 def test_steps_and_other_arguments_are_checked():
     for step in (None, 0.0, -1.0, float("nan")):
         with pytest.raises(ValueError, match="size in t of its first step"):
-            propagate(KEPLER, kepler_start(0.5), (0, 1), method=LOGARITHMIC, step=step)
+            propagate(KEPLER, (0, 1), kepler_start(0.5), method=LOGARITHMIC, step=step)
     with pytest.raises(ValueError, match="no length"):
-        propagate(KEPLER, kepler_start(0.5), (1, 1), method=LOGARITHMIC, step=0.1)
+        propagate(KEPLER, (1, 1), kepler_start(0.5), method=LOGARITHMIC, step=0.1)
     for foreign, message in (
         ({"cadence": 3}, "no statistics inside the loop"),
         ({"dense": True}, "no polynomials"),
@@ -180,7 +180,7 @@ def test_steps_and_other_arguments_are_checked():
         ({"times": [0.5], "samples": 3}, "give one of them"),
     ):
         with pytest.raises(ValueError, match=message):
-            propagate(KEPLER, kepler_start(0.5), (0, 1), method=LOGARITHMIC, step=0.1, **foreign)
+            propagate(KEPLER, (0, 1), kepler_start(0.5), method=LOGARITHMIC, step=0.1, **foreign)
 
 
 def test_methods_without_a_transformation_of_theirs_are_refused():

@@ -26,7 +26,7 @@ DISTANCE = sp.sqrt(x**2 + y**2)
 @pytest.mark.parametrize("method", [Splitting("verlet"), Splitting("kahan-li-8"), RK4()], ids=str)
 def test_a_step_over_a_collision_is_flagged_with_its_time(method, step):
     with pytest.warns(AccuracyWarning, match="jumped over a collision") as caught:
-        propagate(KEPLER, RADIAL, (0, 3), method=method, step=step, samples=300)
+        propagate(KEPLER, (0, 3), RADIAL, method=method, step=step, samples=300)
     t = float(str(caught[0].message).split("up to t = ")[1].split()[0])
     between_samples = max(step, 3 / 300)
     # The computed fall may end a step before the true one, and the jump is seen at the sample after it.
@@ -35,7 +35,7 @@ def test_a_step_over_a_collision_is_flagged_with_its_time(method, step):
 
 def test_a_jump_over_a_collision_is_flagged_where_the_energy_has_changed_by_half_of_its_terms():
     with pytest.warns(AccuracyWarning, match="jumped over a collision") as caught:
-        motion = propagate(KEPLER, RADIAL, (0, 3), method=Splitting("verlet"), step=0.01, samples=300)
+        motion = propagate(KEPLER, (0, 3), RADIAL, method=Splitting("verlet"), step=0.01, samples=300)
     wrong = abs(motion.energy_change) > 0.5  # at the start the terms of H are 0, 0 and 1
     first = int(np.argmax(wrong))
     assert not wrong[:first].any()
@@ -50,13 +50,13 @@ def test_a_jump_over_a_collision_is_flagged_where_the_energy_has_changed_by_half
 def test_a_motion_that_ends_before_the_collision_is_not_flagged():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        propagate(KEPLER, RADIAL, (0, FALL_TIME - 0.1), method=Splitting("verlet"), step=0.01)
+        propagate(KEPLER, (0, FALL_TIME - 0.1), RADIAL, method=Splitting("verlet"), step=0.01)
 
 
 def test_only_the_orbit_that_jumped_is_named():
     start = np.array([kepler_start(0.2), RADIAL, kepler_start(0.4)]).T
     with pytest.warns(AccuracyWarning, match="of orbit 1 changes"):
-        propagate(KEPLER, start, (0, 3), method=Splitting("verlet"), step=0.01)
+        propagate(KEPLER, (0, 3), start, method=Splitting("verlet"), step=0.01)
 
 
 def verlets_energy_error(e, h):
@@ -77,7 +77,7 @@ def verlets_energy_error(e, h):
 def test_large_but_honest_errors_are_not_flagged(step):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        coarse = propagate(KEPLER, kepler_start(0.6), (0, 60), method=Splitting("verlet"), step=step)
+        coarse = propagate(KEPLER, (0, 60), kepler_start(0.6), method=Splitting("verlet"), step=step)
     # At the pericentre the planet turns by v h/r = 5 h in a step: the next order is up to (5 h)²/2 as large.
     expected = pytest.approx(verlets_energy_error(0.6, step), rel=(5 * step) ** 2 / 2)
     assert abs(coarse.energy_error).max() == expected
@@ -87,13 +87,13 @@ def test_the_energy_of_a_driven_system_may_change_unflagged():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         driven = System(PENDULUM.H * sp.cos(PENDULUM.t), PENDULUM.q, PENDULUM.p)
-        propagate(driven, [1.0, 0.5], (0, 3), method=Gauss(3), step=0.1)
+        propagate(driven, (0, 3), [1.0, 0.5], method=Gauss(3), step=0.1)
 
 
 @pytest.mark.parametrize(("stages", "step"), [(1, 0.01), (4, 0.02), (6, 0.05)])
 def test_gauss_methods_stop_at_the_step_that_does_not_converge(stages, step):
     with pytest.raises(NonFiniteStateError, match="do not converge") as caught:
-        propagate(KEPLER, RADIAL, (0, 3), method=Gauss(stages), step=step)
+        propagate(KEPLER, (0, 3), RADIAL, method=Gauss(stages), step=step)
     # The iteration contracts by ρ h √(2/r³), ρ the spectral radius of the method's matrix; a hundred times that must
     # bring changes below 2⁻²⁰, so it fails from 0.87 on. From there the fall takes (√2/3) r^(3/2) still, and the last
     # stage may be a step ahead.
@@ -107,7 +107,7 @@ def test_gauss_methods_stop_at_the_step_that_does_not_converge(stages, step):
 @pytest.mark.parametrize("method", [Taylor(), DOP853()], ids=str)
 def test_adaptive_methods_follow_a_fall_to_the_collision(method):
     with pytest.raises(NonFiniteStateError) as caught:
-        propagate(KEPLER, RADIAL, (0, 3), method=method)
+        propagate(KEPLER, (0, 3), RADIAL, method=method)
     # Steps shrink with the time that is left, down to its rounding; DOP853's steps err by 1e-12 each.
     assert caught.value.time == pytest.approx(FALL_TIME, abs=1e-11)
     assert np.isfinite(caught.value.state).all()
@@ -121,7 +121,7 @@ def test_adaptive_methods_follow_a_fall_to_the_collision(method):
 )
 def test_an_event_stops_a_motion_before_the_collision(method, how):
     near = Event(DISTANCE - sp.Rational(1, 20), -1, "stop", "too close")
-    motion = propagate(KEPLER, RADIAL, (0, 3), method=method, events=[near], **how)
+    motion = propagate(KEPLER, (0, 3), RADIAL, method=method, events=[near], **how)
     assert motion.stopped
     assert motion.final[0] == pytest.approx(0.05, abs=1e-12)
     # t = √(r(1 − r)/2) + √½ arccos √r for a fall from rest at distance 1.
@@ -146,7 +146,7 @@ def test_a_domain_left_is_an_error_in_every_method_and_precision():
     ]
     for method, how in cases:
         with pytest.raises(NonFiniteStateError, match="after t = 0") as caught:
-            propagate(edge, [0.0, 2.0], (0, 10), method=method, **how)
+            propagate(edge, (0, 10), [0.0, 2.0], method=method, **how)
         assert 0.3 < caught.value.time < 0.6
         assert np.isfinite(caught.value.state).all()
         assert 0.9 < caught.value.state[0] < 1.003
@@ -156,15 +156,15 @@ def test_an_observable_outside_its_domain_is_an_error():
     with pytest.raises(ArithmeticError, match="not finite"):
         propagate(
             KEPLER,
-            kepler_start(0.1),
             (0, 3),
+            kepler_start(0.1),
             method=Splitting("verlet"),
             step=0.1,
             observables={"l": sp.log(x)},
         )
     with pytest.raises(ArithmeticError, match="not finite"):
         propagate(
-            KEPLER, kepler_start(0.1), (0, 1.7), method=Splitting("verlet"), step=0.1, samples=1, cadence=1,
+            KEPLER, (0, 1.7), kepler_start(0.1), method=Splitting("verlet"), step=0.1, samples=1, cadence=1,
             observables={"l": sp.log(x)},
         )  # fmt: skip
 
@@ -207,4 +207,4 @@ def test_wrong_words_are_refused_at_once(wrong, error, message):
 @pytest.mark.parametrize("tolerance", [0.0, -1e-3, 1.5, NAN])
 def test_tolerances_that_make_no_sense(tolerance):
     with pytest.raises(ValueError, match="tolerance"):
-        propagate(PENDULUM, [1.0, 0.0], (0, 1), tolerance=tolerance)
+        propagate(PENDULUM, (0, 1), [1.0, 0.0], tolerance=tolerance)

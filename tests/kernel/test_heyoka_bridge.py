@@ -66,6 +66,6 @@ def test_a_motion_starts_where_a_power_vanishes(power):
     """heyoka's series of x ** 3 divides by x; from x = 0 the motion is that of another method all the same."""
     q, p = sp.symbols("q p", real=True)
     hamiltonian = Hamiltonian(p**2 / 2 + q**2 / 2 + q**power / power, q, p)
-    motion = propagate(hamiltonian, [0.0, 0.5], (0.0, 3.0), samples=1)
-    other = propagate(hamiltonian, [0.0, 0.5], (0.0, 3.0), method=Gauss(6), step=0.01, samples=1)
+    motion = propagate(hamiltonian, (0.0, 3.0), [0.0, 0.5], samples=1)
+    other = propagate(hamiltonian, (0.0, 3.0), [0.0, 0.5], method=Gauss(6), step=0.01, samples=1)
     np.testing.assert_allclose(motion.final, other.final, atol=1e-13)

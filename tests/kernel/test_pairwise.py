@@ -97,8 +97,8 @@ def test_loops_give_the_written_out_motion(
     def end() -> np.ndarray:
         motion = propagate(
             H,
-            start(len(q))[:, 0],
             (0, 1),
+            start(len(q))[:, 0],
             method=Splitting(scheme),
             step=0.01,
             precision=precision,
@@ -120,9 +120,9 @@ def test_lanes_give_the_bits_of_one_orbit() -> None:
     H = Hamiltonian(sp.Add(*(s.momentum**2 / 2 for s in q)) + attraction(bodies), q, [s.momentum for s in q])
     states = start(len(q), 11)
     settings = {"method": Splitting("verlet"), "step": 0.01, "samples": 3}
-    together = propagate(H, states, (0, 1), **settings)
+    together = propagate(H, (0, 1), states, **settings)
     for orbit in (0, 10):
-        alone = propagate(H, states[:, orbit], (0, 1), **settings)
+        alone = propagate(H, (0, 1), states[:, orbit], **settings)
         np.testing.assert_array_equal(together.y[:, :, orbit], alone.y)
 
 

@@ -77,8 +77,8 @@ def test_the_figure_eight_closes_after_its_period():
     scene = find("figure-eight")
     motion = propagate(
         scene.hamiltonian,
-        scene.state(),
         (0.0, scene.period),
+        scene.state(),
         method=Splitting("kahan-li-8"),
         step=scene.period / 6000.0,
         samples=3,
@@ -96,8 +96,8 @@ def test_integrals_stay_along_a_run(name):
     constants = scene.constants()
     motion = propagate(
         scene.hamiltonian,
-        scene.state(),
         (0.0, 200.0 * scene.period),
+        scene.state(),
         method=Splitting("kahan-li-8"),
         step=scene.period / 400.0,
         observables=constants,
@@ -106,8 +106,8 @@ def test_integrals_stay_along_a_run(name):
         assert np.abs(change).max() < 1e-11
     twin = propagate(
         scene.hamiltonian,
-        scene.state(),
         (0.0, 20.0 * scene.period),
+        scene.state(),
         method=Splitting("kahan-li-8"),
         step=scene.period / 400.0,
         observables={"twin": scene.p[0] ** 3},
@@ -137,8 +137,8 @@ def test_the_linear_chain_swings_in_its_lowest_mode():
     y = scene.state()
     half = propagate(
         scene.hamiltonian,
-        y,
         (0.0, scene.period / 2.0),
+        y,
         method=Splitting("kahan-li-8"),
         step=0.1,
         parameters=scene.values,
@@ -152,8 +152,8 @@ def test_the_chain_gives_energy_to_its_second_mode():
     scene = find("fput")
     motion = propagate(
         scene.hamiltonian,
-        scene.state(),
         (0.0, 170.0 * scene.period),
+        scene.state(),
         method=Splitting("blanes-moan-4"),
         step=0.2,
         parameters=scene.values,

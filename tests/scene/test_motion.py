@@ -66,8 +66,8 @@ def test_hamiltonian_scenes_move_as_by_gauss(name):
     motion = run(scene, periods=1.0, samples=3)
     other = propagate(
         scene.hamiltonian,
-        scene.state(),
         (0.0, scene.period),
+        scene.state(),
         method=Gauss(6),
         step=scene.period / 400.0,
         parameters=scene.values,

@@ -35,7 +35,7 @@ starts = { there = [1.0, 0.0, 0.1, 0.7] }
 system = "plane"
 method = ["verlet", "taylor"]
 step = 0.05
-until = 100.0
+span = 100.0
 precision = ["double", "quad"]
 observables = ["energy", { area = "x*p_y - y*p_x" }]
 
@@ -57,7 +57,7 @@ def test_a_formula_is_judged_as_drift_judges_it():
         CASE.hamiltonian,
         CASE.state,
         methods=[RK4()],
-        until=200.0,
+        span=200.0,
         step=0.05,
         samples=600,
         parameters={"k": 2.0},
@@ -129,7 +129,7 @@ def test_what_can_not_be_followed_is_said_before_anything_runs(written, told):
             method=Splitting("verlet"),
             start=[[1.0, 0.0, 0.1, 0.7]],
             step=0.1,
-            until=10.0,
+            span=10.0,
             observables=written,
         )
 
@@ -142,6 +142,6 @@ def test_the_energy_is_always_judged():
 
 def test_adaptive_methods_take_no_precision_of_fixed_steps():
     study = Study.of(
-        system="kepler", method=Taylor(), precision=["double", "compensated", "extended"], until=1.0
+        system="kepler", method=Taylor(), precision=["double", "compensated", "extended"], span=1.0
     )
     assert [case.precision for case in study.cases] == [None, "extended"]

@@ -63,8 +63,8 @@ def test_samples_in_step_with_an_oscillation_do_not_make_it_a_drift():
     assert advance(QUARTIC).numbers["verdict"] == "bounded"
     motion = propagate(
         QUARTIC.hamiltonian,
-        QUARTIC.state,
         (0.0, QUARTIC.span),
+        QUARTIC.state,
         method=Gauss(2),
         step=0.1,
         samples=QUARTIC.samples,
@@ -87,8 +87,8 @@ def test_parts_of_fixed_steps_are_the_run_in_one_piece(method, precision):
     case = replace(KEPLER, method=method, precision=precision)
     whole = propagate(
         case.hamiltonian,
-        case.state,
         (0.0, case.span),
+        case.state,
         method=method,
         step=case.step,
         precision=precision,
@@ -122,8 +122,8 @@ def test_the_error_is_that_since_the_start_of_the_run():
         point = found
     whole = propagate(
         case.hamiltonian,
-        case.state,
         (0.0, 15.0),
+        case.state,
         method=RK4(),
         step=0.02,
         parameters=case.values,
@@ -171,7 +171,7 @@ def test_a_motion_driven_in_time_goes_on_where_it_stopped_and_is_where_propagate
     assert whole.numbers == stopped.numbers
     values, span = {**case.values}, (0.0, case.span)
     found = propagate(
-        case.hamiltonian, case.state, span, method=case.method, step=case.step, parameters=values,
+        case.hamiltonian, span, case.state, method=case.method, step=case.step, parameters=values,
         precision=case.precision,
     )  # fmt: skip
     np.testing.assert_allclose(whole.numbers["final"], found.y[:, -1], rtol=1e-9, atol=1e-9)

@@ -76,7 +76,9 @@ CASES = [
 @pytest.mark.parametrize(("name", "start", "periods", "accuracy", "observable", "methods"), CASES)
 def test_a_choice_is_kept_when_it_is_run(name, start, periods, accuracy, observable, methods):
     scene = find(name)
-    choice = choose(scene, start, periods * scene.period, accuracy, observable, methods=methods)
+    choice = choose(
+        scene, periods * scene.period, start, accuracy=accuracy, observable=observable, methods=methods
+    )
     assert choice.reached
     whole = pilot(choice.question, choice.chosen.setting, choice.span)
     assert whole.bound <= accuracy
@@ -89,7 +91,7 @@ def test_a_choice_is_kept_when_it_is_run(name, start, periods, accuracy, observa
 
 def test_the_choice_is_the_cheapest_candidate_that_keeps_the_accuracy():
     scene = find("toda")
-    choice = choose(scene, None, 1e3 * scene.period, 1e-6)
+    choice = choose(scene, 1e3 * scene.period, accuracy=1e-6)
     able = [each for each in choice.candidates if each.keeps]
     assert choice.predicted_cost == min(each.predicted_cost for each in able)
     assert len({str(each.method) for each in choice.candidates}) > 10
@@ -121,7 +123,7 @@ def test_splittings_by_solvable_parts_are_candidates_where_something_disturbs_th
 def test_planets_are_cheaper_by_their_keplerian_motions():
     scene = find("outer-solar-system")
     methods = [Splitting("srkn-6b"), "wisdom-holman", "saba-4"]
-    choice = choose(scene, None, 300.0 * scene.period, 1e-6, methods=methods)
+    choice = choose(scene, 300.0 * scene.period, accuracy=1e-6, methods=methods)
     assert str(choice.method) in DISTURBED
     assert pilot(choice.question, choice.chosen.setting, choice.span).bound <= 1e-6
 
@@ -152,7 +154,7 @@ def test_close_encounters_are_followed_by_steps_that_vary():
     scene = find("kepler")
     steady = [Splitting("srkn-6b")]
     varying = [TimeTransformed(method) for method in (Splitting("verlet"), Splitting("kahan-li-8"))]
-    choice = choose(scene, "e=0.9", 200.0, 1e-7, methods=[*steady, *varying])
+    choice = choose(scene, 200.0, "e=0.9", accuracy=1e-7, methods=[*steady, *varying])
     assert isinstance(choice.method, TimeTransformed)
     whole = pilot(choice.question, choice.chosen.setting, choice.span)
     assert whole.bound <= 1e-7
@@ -164,11 +166,18 @@ def test_close_encounters_are_followed_by_steps_that_vary():
 def test_positions_are_compared_at_the_same_instants_whatever_the_steps():
     scene = find("kepler")
     choice = choose(
-        scene, "e=0.9", 50.0, 1e-5, "position", methods=[TimeTransformed(Splitting("kahan-li-8"))]
+        scene,
+        50.0,
+        "e=0.9",
+        accuracy=1e-5,
+        observable="position",
+        methods=[TimeTransformed(Splitting("kahan-li-8"))],
     )
     assert choice.reached
     motion = choice.run(samples=50)
-    exact = choose(scene, "e=0.9", 50.0, 1e-9, "position", methods=[Taylor()]).run(samples=50)
+    exact = choose(scene, 50.0, "e=0.9", accuracy=1e-9, observable="position", methods=[Taylor()]).run(
+        samples=50
+    )
     size = np.linalg.norm(exact.q, axis=0).max()
     assert np.linalg.norm(motion.q[:, -1] - exact.q[:, -1]) <= 1e-5 * size
 
@@ -188,7 +197,7 @@ def test_steps_follow_the_order_of_the_method():
     """Bounded errors ∝ h²: an accuracy a hundred times finer takes a tenth of the step."""
     scene = find("henon-heiles")
     steps = [
-        choose(scene, None, 2e3 * scene.period, accuracy, methods=[Splitting("verlet")]).step
+        choose(scene, 2e3 * scene.period, accuracy=accuracy, methods=[Splitting("verlet")]).step
         for accuracy in (1e-3, 1e-5)
     ]
     assert steps[0] / steps[1] == pytest.approx(10.0, rel=0.15)
@@ -198,7 +207,7 @@ def test_steps_of_runge_kutta_follow_the_span():
     """Its energy is lost in proportion to h⁵ t: 32 times the span takes half the step."""
     scene = find("henon-heiles")
     steps = [
-        choose(scene, None, periods * scene.period, 1e-5, methods=[RK4()]).step
+        choose(scene, periods * scene.period, accuracy=1e-5, methods=[RK4()]).step
         for periods in (500.0, 16000.0)
     ]
     assert steps[0] / steps[1] == pytest.approx(2.0, rel=0.15)
@@ -207,7 +216,12 @@ def test_steps_of_runge_kutta_follow_the_span():
 def test_what_no_method_keeps_is_said():
     scene = find("henon-heiles")
     choice = choose(
-        scene, "chaotic", 3e3 * scene.period, 1e-6, "position", methods=[Splitting("kahan-li-8"), Taylor()]
+        scene,
+        3e3 * scene.period,
+        "chaotic",
+        accuracy=1e-6,
+        observable="position",
+        methods=[Splitting("kahan-li-8"), Taylor()],
     )
     assert not choice.reached
     assert "no method can promise" in str(choice)
@@ -217,8 +231,8 @@ def test_what_no_method_keeps_is_said():
 
 def test_the_best_that_can_be_reached_is_told():
     scene = find("kepler")
-    choice = choose(scene, None, 300.0 * scene.period, 1e-6, methods=[RK4()])
-    finest = choose(scene, None, 300.0 * scene.period, 1e-17, methods=[RK4()])
+    choice = choose(scene, 300.0 * scene.period, accuracy=1e-6, methods=[RK4()])
+    finest = choose(scene, 300.0 * scene.period, accuracy=1e-17, methods=[RK4()])
     assert choice.reached
     assert not finest.reached
     assert "no method keeps it; the best reaches" in str(finest)
@@ -226,14 +240,14 @@ def test_the_best_that_can_be_reached_is_told():
 
 def test_more_digits_are_taken_where_doubles_do_not_suffice():
     scene = find("henon-heiles")
-    choice = choose(scene, None, 50.0 * scene.period, 1e-17, methods=[Splitting("kahan-li-8"), Taylor()])
+    choice = choose(scene, 50.0 * scene.period, accuracy=1e-17, methods=[Splitting("kahan-li-8"), Taylor()])
     assert choice.reached
     assert choice.precision in ("extended", "quad", "double-double")
 
 
 def test_a_choice_runs():
     scene = find("simple-pendulum")
-    choice = choose(scene, "small", 300.0 * scene.period, 1e-6, methods=FEW)
+    choice = choose(scene, 300.0 * scene.period, "small", accuracy=1e-6, methods=FEW)
     motion = choice.run(samples=500)
     assert motion.t[-1] == pytest.approx(300.0 * scene.period)
     assert np.abs(motion.energy_error).max() <= 1e-6
@@ -245,7 +259,9 @@ def test_a_hamiltonian_of_ones_own_with_an_integral():
     H = (x.momentum**2 + y.momentum**2 + x**2 + y**2) / 2 + (x**2 + y**2) ** 2 / 8
     motion = Hamiltonian(H, [x, y], [x.momentum, y.momentum])
     spin = x * y.momentum - y * x.momentum
-    choice = choose(motion, [1.0, 0.0, 0.0, 0.5], 2000.0, 1e-9, "spin", integral=spin, methods=FEW)
+    choice = choose(
+        motion, 2000.0, [1.0, 0.0, 0.0, 0.5], accuracy=1e-9, observable="spin", integral=spin, methods=FEW
+    )
     assert choice.reached
     assert pilot(choice.question, choice.chosen.setting, 2000.0).bound <= 1e-9
 
@@ -263,7 +279,7 @@ def test_a_hamiltonian_of_ones_own_with_an_integral():
 def test_requests_that_make_no_sense(options, told):
     request = {"span": 100.0, "accuracy": 1e-6, **options}
     with pytest.raises(StudyError, match=told):
-        choose(find("kepler"), None, **request)
+        choose(find("kepler"), **request)
 
 
 def test_a_driven_motion_is_chosen_for_by_its_position():
@@ -273,8 +289,15 @@ def test_a_driven_motion_is_chosen_for_by_its_position():
     H = x.momentum**2 / 2 + x**2 / 2 - x * sp.cos(time / 3) / 4
     driven = Hamiltonian(H, [x], [x.momentum])
     with pytest.raises(StudyError, match="H depends on t"):
-        choose(driven, [1.0, 0.0], 300.0, 1e-6)
-    choice = choose(driven, [1.0, 0.0], 300.0, 1e-6, "position", methods=[Splitting("srkn-6b"), Taylor()])
+        choose(driven, 300.0, [1.0, 0.0], accuracy=1e-6)
+    choice = choose(
+        driven,
+        300.0,
+        [1.0, 0.0],
+        accuracy=1e-6,
+        observable="position",
+        methods=[Splitting("srkn-6b"), Taylor()],
+    )
     motion = choice.run(samples=200)
     # x″ + x = cos(t/3)/4 has the solution (9/32) cos(t/3) + (23/32) cos t.
     exact = 9.0 / 32.0 * np.cos(motion.t / 3.0) + 23.0 / 32.0 * np.cos(motion.t)
@@ -285,7 +308,7 @@ def test_a_motion_that_can_not_be_followed():
     (x,) = coordinates("x")
     falling = Hamiltonian(x.momentum**2 / 2 - 1 / x, [x], [x.momentum])
     with pytest.raises(StudyError, match="the motion can't be followed"):
-        choose(falling, [1.0, 0.0], 10.0, 1e-6)
+        choose(falling, 10.0, [1.0, 0.0], accuracy=1e-6)
 
 
 @pytest.mark.parametrize("rung", range(3, 19))

@@ -20,7 +20,7 @@ STUDY = Study.of(
     system=["henon-heiles", "simple-pendulum"],
     method=[Splitting("verlet"), Gauss(2), Taylor()],
     step=[0.05, 0.1],
-    until=300.0,
+    span=300.0,
     samples=512,
     parts=4,
 )
@@ -82,7 +82,7 @@ def test_a_cluster_of_which_a_worker_is_killed_gives_the_same(tmp_path, cluster)
         status = run_study(STUDY, store, client.get_executor(), progress=kill_one, checkpoint_seconds=0.0)
         assert len(client.scheduler_info()["workers"]) == 1
         file = tmp_path / "small.toml"
-        file.write_text('[[study]]\nsystem = "henon-heiles"\nmethod = "verlet"\nstep = 0.1\nuntil = 300\n')
+        file.write_text('[[study]]\nsystem = "henon-heiles"\nmethod = "verlet"\nstep = 0.1\nspan= 300\n')
         assert main(["study", "run", str(file), "--dask", client.scheduler.address]) == 0
     assert (status.finished, status.failed, status.pending) == (10, 0, 0)
     assert len(legs) == 40  # each part came back once

@@ -74,11 +74,11 @@ def test_rows_tell_their_cost(galaxy):
 
 def test_a_study_is_what_propagate_and_drift_say():
     scene = find("simple-pendulum")
-    study = drift_study(scene, "small", methods=[RK4()], until=400.0, step=0.1, samples=2000)
+    study = drift_study(scene, "small", methods=[RK4()], span=400.0, step=0.1, samples=2000)
     motion = propagate(
         scene.hamiltonian,
-        scene.state("small"),
         (0.0, 400.0),
+        scene.state("small"),
         method=RK4(),
         step=0.1,
         parameters=scene.values,
@@ -90,8 +90,8 @@ def test_a_study_is_what_propagate_and_drift_say():
 
 def test_parameters_replace_those_of_the_scene():
     scene = find("harmonic-oscillator")
-    soft = drift_study(scene, methods=[RK4()], until=100.0, step=0.01, parameters={"k": 0.1})
-    stiff = drift_study(scene, methods=[RK4()], until=100.0, step=0.01, parameters={"k": 100.0})
+    soft = drift_study(scene, methods=[RK4()], span=100.0, step=0.01, parameters={"k": 0.1})
+    stiff = drift_study(scene, methods=[RK4()], span=100.0, step=0.01, parameters={"k": 100.0})
     assert soft.rows[0].drift.bound < 1e-3 * stiff.rows[0].drift.bound
 
 
@@ -127,7 +127,7 @@ def test_a_collision_is_a_row_with_the_reason():
 def test_a_hamiltonian_of_ones_own():
     (x,) = coordinates("x")
     quartic = Hamiltonian(x.momentum**2 / 2 + x**4 / 4, [x], [x.momentum])
-    study = drift_study(quartic, [1.0, 0.0], methods=[Splitting("verlet")], until=2000.0, step=0.05)
+    study = drift_study(quartic, [1.0, 0.0], methods=[Splitting("verlet")], span=2000.0, step=0.05)
     assert study.rows[0].drift.verdict is Growth.BOUNDED
     assert study.period is None
     assert "drift per unit of time" in drift_table(study)
@@ -139,9 +139,9 @@ def test_requests_that_make_no_sense():
     with pytest.raises(StudyError, match="does not tell its period"):
         drift_study(free, [0.0, 1.0], methods=[RK4()])
     with pytest.raises(StudyError, match="give step="):
-        drift_study(free, [0.0, 1.0], methods=[RK4()], until=10.0)
+        drift_study(free, [0.0, 1.0], methods=[RK4()], span=10.0)
     with pytest.raises(StudyError, match="no starts of its own"):
-        drift_study(free, methods=[Taylor()], until=10.0)
+        drift_study(free, methods=[Taylor()], span=10.0)
     with pytest.raises(StudyError, match="no method"):
         drift_study(find("kepler"), methods=[])
     with pytest.raises(StudyError, match="positive, finite duration"):
@@ -193,7 +193,7 @@ def test_a_value_with_error_reads_back_to_within_its_error(value, error):
 def test_a_start_given_by_velocities_keeps_them_whatever_the_mass():
     """Its momenta follow from the mass that was asked for, not from the scene's own."""
     scene = find("simple-pendulum")
-    asked = {"methods": [Gauss(3)], "until": 20.0, "step": 0.02, "samples": 512}
+    asked = {"methods": [Gauss(3)], "span": 20.0, "step": 0.02, "samples": 512}
     start = next(s.name for s in scene.starts if any(s.v or ()))
     by_value, changed = (
         drift_study(scene, start, parameters={"m": 3.0}, **asked),

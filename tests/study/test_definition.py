@@ -27,7 +27,7 @@ def test_a_study_from_a_file(tmp_path):
         system = "simple-pendulum"
         method = "taylor"
         tolerance = [1e-8, 1e-12]
-        until = 50.0
+        span = 50.0
         parameters = { l = 2.0 }
         """
     )
@@ -45,7 +45,7 @@ def test_a_study_from_a_file(tmp_path):
         ),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk5'\nstep=1\nperiods=1", "no method is written rk5"),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nperiods=1", "RK4 needs a size of steps: give step"),
-        ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nstep=1", "duration as periods or as until"),
+        ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nstep=1", "duration as periods or as span"),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nsteps=1\nperiods=1", "unknown key 'steps'"),
         ("[[study]]\nsystem = 'kepler'\nperiods=1", "'method' is missing"),
         ("system = 'kepler'", "holds \\[\\[study\\]\\] tables"),
@@ -84,14 +84,14 @@ start = ["near", "far", [1.0, 0.5]]
 parameters = { k = [1.0, 2.0, 3.0], m = 4 }
 method = "rk4"
 step = 0.1
-until = 50
+span = 50
 
 [[study]]
 system = "coupled"
 start = [[1.0, 0.5, 0.0, 0.0]]
 method = "verlet"
 step = 0.1
-until = 50
+span = 50
 """
 
 
@@ -120,7 +120,7 @@ def test_hamiltonians_and_scenes_from_python():
         start=[[1.0, 0.0]],
         method=[Splitting("verlet"), Taylor()],
         step=0.1,
-        until=10.0,
+        span=10.0,
     )
     assert [case.values for case in study.cases] == [{"k": 1.0}] * 2 + [{"k": 4.0}] * 2
     assert str(study.cases[0].hamiltonian.p_dot[0]) == "-k*x**3"
@@ -129,13 +129,13 @@ def test_hamiltonians_and_scenes_from_python():
         start=[[1.0, 0.0]],
         method=RK4(),
         step=0.1,
-        until=10.0,
+        span=10.0,
     )
     assert [case.system_name for case in scenes.cases] == ["simple-pendulum", "free"]
 
 
 def test_shares_are_the_study():
-    study = Study.of(system="kepler", method="rk4", step=[0.01, 0.02, 0.03, 0.04, 0.05], until=10.0)
+    study = Study.of(system="kepler", method="rk4", step=[0.01, 0.02, 0.03, 0.04, 0.05], span=10.0)
     shares = [study.share(k, 3).cases for k in (1, 2, 3)]
     assert sorted(case.step for share in shares for case in share) == [0.01, 0.02, 0.03, 0.04, 0.05]
     assert [len(share) for share in shares] == [2, 2, 1]
@@ -143,7 +143,7 @@ def test_shares_are_the_study():
         study.share(4, 3)
 
 
-PLAIN = "method='rk4'\nstep=0.1\nuntil=50\n"
+PLAIN = "method='rk4'\nstep=0.1\nspan=50\n"
 
 
 @pytest.mark.parametrize(
@@ -174,8 +174,8 @@ PLAIN = "method='rk4'\nstep=0.1\nuntil=50\n"
         (f"[[study]]\nsystem='kepler'\nparameters={{ g = 1 }}\n{PLAIN}", "kepler has no parameter 'g'"),
         (f"[[study]]\nsystem='kepler'\nsamples=100\n{PLAIN}", "100 samples are too few .* at least 256"),
         (f"[[study]]\nsystem='kepler'\nparts=0\n{PLAIN}", "parts = 0: give a whole number"),
-        ("[[study]]\nsystem='kepler'\nmethod='rk4'\nstep=-1\nuntil=5", "a step of -1.0 makes no sense"),
-        ("[[study]]\nsystem='kepler'\nmethod='rk4'\nstep=1\nuntil=inf", "a time of inf makes no sense"),
+        ("[[study]]\nsystem='kepler'\nmethod='rk4'\nstep=-1\nspan=5", "a step of -1.0 makes no sense"),
+        ("[[study]]\nsystem='kepler'\nmethod='rk4'\nstep=1\nspan=inf", "a time of inf makes no sense"),
     ],
 )
 def test_what_is_wrong_with_a_system_or_a_case_is_named(tmp_path, text, message):

@@ -22,8 +22,8 @@ START = np.array([1.0, 0.5])
 @pytest.mark.parametrize("method", [Splitting("verlet"), Splitting("kahan-li-8"), Gauss(3), RK4()])
 def test_the_steps_are_those_of_the_original(method):
     timed = driven(SHAKEN)
-    with_time = propagate(timed.hamiltonian, timed.state(START), (0.0, 30.0), method=method, step=0.05)
-    alone = propagate(SHAKEN, START, (0.0, 30.0), method=method, step=0.05)
+    with_time = propagate(timed.hamiltonian, (0.0, 30.0), timed.state(START), method=method, step=0.05)
+    alone = propagate(SHAKEN, (0.0, 30.0), START, method=method, step=0.05)
     np.testing.assert_allclose(timed.original(with_time.y), alone.y, atol=1e-13)
     np.testing.assert_allclose(with_time.q[1], with_time.t, atol=1e-13)
 
@@ -31,7 +31,7 @@ def test_the_steps_are_those_of_the_original(method):
 def test_what_is_lost_is_the_work_done_from_outside():
     """Second route: −p_τ is ∫ ∂H/∂t dt by Simpson's rule over a motion with many samples."""
     timed = driven(SHAKEN)
-    motion = propagate(timed.hamiltonian, timed.state(START), (0.0, 10.0), method=Taylor(), samples=2000)
+    motion = propagate(timed.hamiltonian, (0.0, 10.0), timed.state(START), method=Taylor(), samples=2000)
     power = motion.q[0] * np.sin(2.0 * motion.t) / 2.0
     h = motion.t[1] - motion.t[0]
     work = h / 3.0 * (power[0] + power[-1] + 4.0 * power[1:-1:2].sum() + 2.0 * power[2:-1:2].sum())
@@ -41,7 +41,7 @@ def test_what_is_lost_is_the_work_done_from_outside():
 
 def test_symplectic_methods_keep_the_energy_less_the_work_and_runge_kutta_does_not():
     study = drift_study(
-        SHAKEN, START, methods=[Splitting("verlet"), Gauss(2), RK4()], step=0.1, until=3000.0, samples=2**14
+        SHAKEN, START, methods=[Splitting("verlet"), Gauss(2), RK4()], step=0.1, span=3000.0, samples=2**14
     )
     verlet, gauss, runge_kutta = (row.drift for row in study.rows)
     assert verlet.verdict is Growth.BOUNDED
@@ -58,7 +58,7 @@ def test_functions_of_the_time_can_be_followed():
     right, wrong = y.momentum + time**2 / 2, y.momentum + time**2 / 4
     for functions, bound in (({"momentum": right}, 1e-12), ({"momentum": wrong}, None)):
         (row,) = drift_study(
-            falling, [0.0, 1.0], methods=[Gauss(2)], step=0.01, until=10.0, samples=512, observables=functions
+            falling, [0.0, 1.0], methods=[Gauss(2)], step=0.01, span=10.0, samples=512, observables=functions
         ).rows
         assert (row.drift.bound < 1e-12) == (bound is not None)
 

@@ -27,7 +27,7 @@ STUDY = Study.of(
     parameters={"l": [1.0, 2.0]},
     method=[Splitting("verlet"), Taylor()],
     step=0.05,
-    until=100.0,
+    span=100.0,
     samples=512,
 )
 
@@ -37,7 +37,7 @@ def store(tmp_path_factory):
     """Eight finished cases, one that failed, one that is pending."""
     store = Store(tmp_path_factory.mktemp("export") / "study.sqlite")
     run_study(STUDY, store)
-    run_study(Study.of(system="double-pendulum", method="verlet", step=0.1, until=50.0), store)
+    run_study(Study.of(system="double-pendulum", method="verlet", step=0.1, span=50.0), store)
     later = Case("kepler", RK4(), span=50.0, step=0.05, parts=4)
     store.add_cases({key_of(later): json.dumps(later.to_dict())})
     store.save_checkpoint(key_of(later), 1, "…")

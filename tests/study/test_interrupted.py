@@ -20,7 +20,7 @@ LONG = Study.of(
     system=["henon-heiles", "kepler"],
     method=[Splitting("kahan-li-8"), Gauss(2), Taylor()],
     step=0.05,
-    until=400.0,
+    span=400.0,
     samples=512,
     parts=16,
 )

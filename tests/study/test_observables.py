@@ -64,7 +64,7 @@ def test_the_residual_of_a_constraint_is_an_observable():
             bead,
             [1.0, 0.0, 0.0, 1.0],
             methods=[Taylor()],
-            until=200.0,
+            span=200.0,
             samples=4096,
             parameters={"k": stiffness},
             observables={"residual": residual},
@@ -89,11 +89,11 @@ def test_the_variation_is_the_difference_of_nearby_orbits():
     scene, span, size = find("henon-heiles"), 20.0, 1e-6
     tangent = tangent_of(scene.hamiltonian, scene.state())
     how = {"method": Splitting("kahan-li-6"), "step": 0.1, "samples": 1}
-    varied = propagate(tangent.hamiltonian, tangent.y0, (0.0, span), **how).final
+    varied = propagate(tangent.hamiltonian, (0.0, span), tangent.y0, **how).final
     n = 2
     aside = np.array([size] * n + [0.0] * n)
     ends = [
-        propagate(scene.hamiltonian, scene.state() + s * aside, (0.0, span), **how).final for s in (-1.0, 1.0)
+        propagate(scene.hamiltonian, (0.0, span), scene.state() + s * aside, **how).final for s in (-1.0, 1.0)
     ]
     difference = (ends[1] - ends[0]) / (2.0 * size)
     np.testing.assert_allclose(varied[n : 2 * n], difference[:n], rtol=1e-6)

@@ -20,9 +20,8 @@ def galaxy():
     methods = [Splitting("verlet"), Splitting("kahan-li-8"), RK4(), Taylor(), Splitting("blanes-moan-4")]
     return work_precision(
         find("henon-heiles"),
-        None,
         20.0,
-        methods,
+        methods=methods,
         steps=(0.2, 0.1, 0.05),
         tolerances=[1e-6, 1e-12],
         repetitions=2,
@@ -47,11 +46,11 @@ def test_the_position_error_is_the_distance_from_the_closed_form():
     scene = find("harmonic-oscillator")
     k, m = scene.values["k"], scene.values["m"]
     span, step = 7.3, 0.0073
-    found = work_precision(scene, None, span, [Splitting("verlet")], steps=[step], repetitions=1).rows[0]
+    found = work_precision(scene, span, methods=[Splitting("verlet")], steps=[step], repetitions=1).rows[0]
     motion = propagate(
         scene.hamiltonian,
-        scene.state(),
         (0.0, span),
+        scene.state(),
         method=Splitting("verlet"),
         step=step,
         parameters=scene.values,
@@ -83,7 +82,7 @@ def test_time_is_that_of_the_steps_and_not_of_samples(monkeypatch):
 
     monkeypatch.setattr("canon.study.choose.work_precision.propagate", watched)
     found = work_precision(
-        find("henon-heiles"), None, 30.0, [Splitting("verlet")], steps=[0.01], repetitions=3
+        find("henon-heiles"), 30.0, methods=[Splitting("verlet")], steps=[0.01], repetitions=3
     )
     assert kept == [1000, 1000, 1, 1, 1]
     assert found.rows[0].cpu_seconds == min(seconds[2:])
@@ -91,7 +90,7 @@ def test_time_is_that_of_the_steps_and_not_of_samples(monkeypatch):
 
 def test_a_run_that_fails_is_a_row_with_the_reason():
     found = work_precision(
-        find("double-pendulum"), None, 3.0, [Splitting("verlet"), RK4()], steps=[0.01], repetitions=1
+        find("double-pendulum"), 3.0, methods=[Splitting("verlet"), RK4()], steps=[0.01], repetitions=1
     )
     verlet, runge_kutta = found.rows
     assert "does not split" in verlet.failure
@@ -102,15 +101,15 @@ def test_a_run_that_fails_is_a_row_with_the_reason():
 def test_requests_that_make_no_sense():
     scene = find("henon-heiles")
     with pytest.raises(StudyError, match="RK4 takes steps of given sizes"):
-        work_precision(scene, None, 10.0, [RK4()], tolerances=[1e-6])
+        work_precision(scene, 10.0, methods=[RK4()], tolerances=[1e-6])
     with pytest.raises(StudyError, match="give tolerances"):
-        work_precision(scene, None, 10.0, [DOP853()], steps=[0.1])
+        work_precision(scene, 10.0, methods=[DOP853()], steps=[0.1])
     with pytest.raises(StudyError, match="at least once"):
-        work_precision(scene, None, 10.0, [RK4()], steps=[0.1], repetitions=0)
+        work_precision(scene, 10.0, methods=[RK4()], steps=[0.1], repetitions=0)
     (x,) = coordinates("x")
     falling = Hamiltonian(x.momentum**2 / 2 - 1 / x, [x], [x.momentum])
     with pytest.raises(StudyError, match="the reference could not be run"):
-        work_precision(falling, [1.0, 0.0], 10.0, [RK4()], steps=[0.1])
+        work_precision(falling, 10.0, [1.0, 0.0], methods=[RK4()], steps=[0.1])
 
 
 def resonance(errors):
@@ -135,7 +134,7 @@ def test_a_step_that_stands_out_from_its_neighbours_is_resonant():
 
 def test_time_transformed_methods_have_their_order_of_the_step():
     method = TimeTransformed(Splitting("verlet"))
-    found = work_precision(find("kepler"), None, 1.0, [method], steps=[0.004, 0.002], repetitions=1)
+    found = work_precision(find("kepler"), 1.0, methods=[method], steps=[0.004, 0.002], repetitions=1)
     assert [row.tolerance for row in found.rows] == [None, None]
     errors = [row.position_error for row in found.rows]
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.02)
@@ -145,9 +144,8 @@ def test_precisions_side_by_side():
     """Single precision stops at its round-off, doubles go on with the order of the method."""
     found = work_precision(
         find("henon-heiles"),
-        None,
         20.0,
-        [Splitting("kahan-li-8"), Taylor()],
+        methods=[Splitting("kahan-li-8"), Taylor()],
         steps=iter([0.4, 0.1]),
         tolerances=[1e-9],
         precision=["single", "double"],

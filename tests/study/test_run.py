@@ -211,4 +211,4 @@ def test_methods_that_are_no_text_are_refused(method):
     with pytest.raises(ValueError, match="a study takes"):
         _ = method.written
     with pytest.raises(StudyError, match="a study takes"):
-        Study.of(system="kepler", method=method, step=0.1, until=10.0)
+        Study.of(system="kepler", method=method, step=0.1, span=10.0)

@@ -78,8 +78,8 @@ class FlowJacobian:
 
 def flow_jacobian(
     hamiltonian: HamiltonianSystem,
+    t_span: tuple[float | Fraction, float | Fraction],
     y0: Sequence[Any] | npt.NDArray[Any],
-    t_span: tuple[float, float],
     *,
     method: MethodGiven | None = None,
     step: float | None = None,
@@ -114,14 +114,14 @@ def flow_jacobian(
     >>> import sympy
     >>> (x,) = coordinates("x")
     >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
-    >>> coarse = flow_jacobian(pendulum, [1.0, 0.0], (0, 50), method=Splitting("verlet"), step=0.5)
+    >>> coarse = flow_jacobian(pendulum, (0, 50), [1.0, 0.0], method=Splitting("verlet"), step=0.5)
     >>> coarse.final.shape, bool(coarse.symplecticity_defect[-1] < 1e-13)
     ((2, 2), True)
     """
     if samples is None and times is None:
         samples = 1
     task = task_of(
-        hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
+        hamiltonian, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times,
     )  # fmt: skip
     if not task.single:
@@ -210,8 +210,8 @@ def _defect(M: npt.NDArray[Any], one: int) -> Any:
 
 def reversal_error(
     hamiltonian: HamiltonianSystem,
+    t_span: tuple[float | Fraction, float | Fraction],
     y0: Sequence[Any] | npt.NDArray[Any],
-    t_span: tuple[float, float],
     *,
     method: MethodGiven | None = None,
     step: float | None = None,
@@ -226,7 +226,7 @@ def reversal_error(
 
     Parameters
     ----------
-    hamiltonian, y0, t_span, method, step, tolerance, precision, parameters
+    hamiltonian, t_span, y0, method, step, tolerance, precision, parameters
         As :func:`canon.propagate` takes them.
 
     Examples
@@ -236,14 +236,14 @@ def reversal_error(
     >>> (x,) = coordinates("x")
     >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
     >>> far = [
-    ...     abs(reversal_error(pendulum, [1.0, 0.0], (0, 50), method=method, step=0.25)).max()
+    ...     abs(reversal_error(pendulum, (0, 50), [1.0, 0.0], method=method, step=0.25)).max()
     ...     for method in (Splitting("verlet"), RK4())
     ... ]
     >>> bool(far[0] < 1e-13), bool(far[1] > 1e-3)
     (True, True)
     """
     there = propagate(
-        hamiltonian, y0, t_span, method=method, step=step, tolerance=tolerance, precision=precision,
+        hamiltonian, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=1,
     )  # fmt: skip
     task, kept = there.origin

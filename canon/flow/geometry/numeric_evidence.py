@@ -153,8 +153,8 @@ def brackets_at_points(
 
 def symplectic_flow(
     motion: HamiltonianSystem | VectorField,
-    y0: Sequence[Any],
     t_span: tuple[float, float],
+    y0: Sequence[Any],
     *,
     parameters: Mapping[Symbol | str, Any] = MappingProxyType({}),
     samples: int = 100,
@@ -168,10 +168,10 @@ def symplectic_flow(
     ----------
     motion
         A Hamiltonian, or a vector field on (q, p) that is claimed to be Hamiltonian.
-    y0
-        The starting state (q, p), shape (2n,).
     t_span
         First and last time.
+    y0
+        The starting state (q, p), shape (2n,).
     parameters
         A number for every parameter.
     samples
@@ -190,7 +190,7 @@ def symplectic_flow(
     >>> q, p = symbols("q p", real=True)
     >>> from canon.mechanics.hamilton.vector_field import VectorField
     >>> damped = VectorField((p, -q - p/10), (q, p))
-    >>> print(symplectic_flow(damped, [1, 0], (0, 5)).text)
+    >>> print(symplectic_flow(damped, (0, 5), [1, 0]).text)
     MᵀJM − J reaches 0.39 over t = 0 … 5, ... times the round-off expected: the flow is not symplectic
     """
     import heyoka as hy
@@ -199,7 +199,7 @@ def symplectic_flow(
     n = field.half()
     pairs = field.heyoka_pairs()
     states, steps = carried(
-        field, hy.var_ode_sys(pairs, hy.var_args.vars, order=1), field.state(y0), t_span, samples, 2 * n
+        field, hy.var_ode_sys(pairs, hy.var_args.vars, order=1), t_span, field.state(y0), samples, 2 * n
     )
     M = states[:, 2 * n :].reshape(-1, 2 * n, 2 * n)
     J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
@@ -218,8 +218,8 @@ def symplectic_flow(
 
 def bilinear_covariant(
     motion: HamiltonianSystem | VectorField,
-    y0: Sequence[Any],
     t_span: tuple[float, float],
+    y0: Sequence[Any],
     *,
     variations: Sequence[Sequence[Any]] | None = None,
     parameters: Mapping[Symbol | str, Any] = MappingProxyType({}),
@@ -233,7 +233,7 @@ def bilinear_covariant(
 
     Parameters
     ----------
-    motion, y0, t_span, parameters, samples
+    motion, t_span, y0, parameters, samples
         As for :func:`symplectic_flow`, with the same errors.
     variations
         The two at the start, each of shape (2n,); drawn at random with ``seed`` where not given.
@@ -246,7 +246,7 @@ def bilinear_covariant(
     >>> from sympy import cos, symbols
     >>> q, p = symbols("q p", real=True)
     >>> pendulum = Hamiltonian(p**2/2 - cos(q), q, p)
-    >>> bilinear_covariant(pendulum, [1, 0], (0, 20)).speaks
+    >>> bilinear_covariant(pendulum, (0, 20), [1, 0]).speaks
     'for'
     """
     field = vector_field_system(motion, parameters)
@@ -258,7 +258,7 @@ def bilinear_covariant(
         if len(start) != 2 or not start.any(axis=1).all():
             raise ValueError(f"variations = {start.tolist()}: the covariant is of two that are not zero")
     y = np.concatenate([field.state(y0), *start])
-    states, steps = carried(field, field.heyoka_pairs(variations=2), y, t_span, samples, 2)
+    states, steps = carried(field, field.heyoka_pairs(variations=2), t_span, y, samples, 2)
     d, D = states[:, 2 * n : 4 * n], states[:, 4 * n :]
     with np.errstate(over="ignore", invalid="ignore"):
         terms = np.hstack([d[:, n:] * D[:, :n], -D[:, n:] * d[:, :n]])
@@ -278,8 +278,8 @@ def bilinear_covariant(
 def integral_drift(
     integral: Expr,
     motion: HamiltonianSystem | VectorField,
-    y0: Sequence[Any],
     t_span: tuple[float, float],
+    y0: Sequence[Any],
     *,
     parameters: Mapping[Symbol | str, Any] = MappingProxyType({}),
     samples: int = 100,
@@ -294,7 +294,7 @@ def integral_drift(
     ----------
     integral
         I as a function of the variables, t and the parameters.
-    motion, y0, t_span, parameters, samples
+    motion, t_span, y0, parameters, samples
         As for :func:`symplectic_flow`, with the same errors; a vector field may have any number of variables.
 
     Examples
@@ -303,9 +303,9 @@ def integral_drift(
     >>> from sympy import cos, symbols
     >>> q, p = symbols("q p", real=True)
     >>> pendulum = Hamiltonian(p**2/2 - cos(q), q, p)
-    >>> integral_drift(pendulum.H, pendulum, [1, 0], (0, 20)).speaks
+    >>> integral_drift(pendulum.H, pendulum, (0, 20), [1, 0]).speaks
     'for'
-    >>> print(integral_drift(pendulum.H + q/100, pendulum, [1, 0], (0, 20)).text)
+    >>> print(integral_drift(pendulum.H + q/100, pendulum, (0, 20), [1, 0]).text)
     the claimed integral changes by 0.02 over t = 0 … 20, ... times the round-off expected, ...
     """
     field = vector_field_system(motion, parameters)
@@ -314,7 +314,7 @@ def integral_drift(
         raise ValueError(
             f"the claimed integral {integral} holds no variable of the motion: nothing can drift"
         )
-    states, steps = carried(field, field.heyoka_pairs(), field.state(y0), t_span, samples)
+    states, steps = carried(field, field.heyoka_pairs(), t_span, field.state(y0), samples)
     if (states == states[0]).all():
         raise ValueError(f"nothing moves from {list(y0)}: start away from equilibrium")
     times = np.linspace(float(t_span[0]), float(t_span[1]), samples + 1)

@@ -118,8 +118,8 @@ def vector_field_system(
 def carried(
     field: VectorFieldSystem,
     equations: Any,
-    y0: Array,
     t_span: tuple[float, float],
+    y0: Array,
     samples: int,
     variations: int = 0,
 ) -> tuple[Array, int]:

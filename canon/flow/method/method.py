@@ -280,7 +280,7 @@ class TimeTransformed:
     >>> near = kepler.start("e=0.9")
     >>> method = TimeTransformed(Splitting("verlet"))
     >>> motion = propagate(
-    ...     kepler.hamiltonian, [*near.q, *near.p], (0, 10), method=method, step=1e-4, parameters=kepler.values
+    ...     kepler.hamiltonian, (0, 10), [*near.q, *near.p], method=method, step=1e-4, parameters=kepler.values
     ... )
     >>> bool(abs(motion.energy_error).max() < 1e-14)
     True

@@ -182,7 +182,7 @@ class WisdomHolman(SolvableSplitting):
     >>> planets = find("outer-solar-system")
     >>> start = planets.start("1994")
     >>> motion = propagate(
-    ...     planets.hamiltonian, [*start.q, *start.p], (0, 100_000), method=WisdomHolman(corrector=7), step=200.0,
+    ...     planets.hamiltonian, (0, 100_000), [*start.q, *start.p], method=WisdomHolman(corrector=7), step=200.0,
     ...     parameters=planets.values,
     ... )
     >>> bool(abs(motion.energy_error).max() < 3e-8)

@@ -60,7 +60,7 @@ class Event:
     >>> (x,) = coordinates("x")
     >>> falling = Hamiltonian(x.momentum**2 / 2 + x, [x], [x.momentum])
     >>> motion = propagate(
-    ...     falling, [0.5, 0.0], (0, 6), method=Splitting("verlet"), step=0.01, events=[Event(x, -1, "bounce")]
+    ...     falling, (0, 6), [0.5, 0.0], method=Splitting("verlet"), step=0.01, events=[Event(x, -1, "bounce")]
     ... )
     >>> [round(met.t, 9) for met in motion.events], bool(abs(motion.energy_error).max() < 1e-14)
     ([1.0, 3.0, 5.0], True)

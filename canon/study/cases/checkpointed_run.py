@@ -243,8 +243,8 @@ def _run(
         warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
         return propagate(
             case.hamiltonian if timed is None else timed.hamiltonian,
+            span,
             np.array(state, dtype=object),
-            span,  # pyright: ignore[reportArgumentType] - times may be exact
             method=case.method,
             step=step,
             tolerance=case.tolerance,

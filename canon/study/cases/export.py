@@ -55,7 +55,7 @@ def rows_of(store: Store) -> list[dict[str, Any]]:
     >>> from canon.study.cases.store import Store
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     store = Store(f"{folder}/study.sqlite")
-    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=[0.1, 0.2], until=200.0), store)
+    ...     _ = run_study(Study.of(system="henon-heiles", method="rk4", step=[0.1, 0.2], span=200.0), store)
     ...     [(row["method"], row["steps"], row["verdict"]) for row in rows_of(store)]
     [('RK4', 2000, 'secular'), ('RK4', 1000, 'secular')]
     """

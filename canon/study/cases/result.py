@@ -88,7 +88,7 @@ def results_of(store: Store | str | Path) -> list[Result]:
     >>> from canon import Study, run_study
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = f"{folder}/study.sqlite"
-    ...     _ = run_study(Study.of(system="henon-heiles", method="verlet", step=0.1, until=200.0), file)
+    ...     _ = run_study(Study.of(system="henon-heiles", method="verlet", step=0.1, span=200.0), file)
     ...     [(result.state.value, result.setting, result.numbers["verdict"]) for result in results_of(file)]
     [('finished', 'verlet, h = 0.1', 'bounded')]
     """

@@ -29,7 +29,7 @@ AXES = ("system", "start", "method", "step", "steps_per_period", "tolerance", "p
 FEWEST_USUAL, MOST_SAMPLES = 4096, 2**15
 """Samples of a run unless asked for: about 16 a period, within these limits."""
 
-LENGTHS = ("periods", "until", "samples", "parts", "parameters", "observables")
+LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables")
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Study:
             ``system`` (a scene or its name, a :class:`canon.study.motion.hamiltonian_text.Formula`, a Hamiltonian),
             ``start``, ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
             of values (a state is a list in that list; steps are for methods of fixed step, tolerances for
-            the others); ``parameters``: a value or a list of values each; ``periods`` or ``until``,
+            the others); ``parameters``: a value or a list of values each; ``periods`` or ``span``,
             ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
             ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these.
 
@@ -82,7 +82,7 @@ class Study:
 
         Examples
         --------
-        >>> whole = Study.of(system="kepler", method="rk4", step=[0.01, 0.02, 0.03], until=10.0)
+        >>> whole = Study.of(system="kepler", method="rk4", step=[0.01, 0.02, 0.03], span=10.0)
         >>> [case.step for case in whole.share(1, 2).cases], [case.step for case in whole.share(2, 2).cases]
         ([0.01, 0.03], [0.02])
         """
@@ -129,8 +129,8 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> 
             raise StudyError(
                 f"{where}: {name!r} is missing; a study has at least system, method and a duration"
             )
-    if ("periods" in table) == ("until" in table):
-        raise StudyError(f"{where}: give the duration as periods or as until, and not as both")
+    if ("periods" in table) == ("span" in table):
+        raise StudyError(f"{where}: give the duration as periods or as span, and not as both")
     if "step" in table and "steps_per_period" in table:
         raise StudyError(f"{where}: give step or steps_per_period, and not both")
     try:
@@ -183,8 +183,8 @@ def _case(
         step = _known(period, "steps_per_period") / float(chosen["steps_per_period"])
     if stepped and step is None:
         raise ValueError(f"{method} needs a size of steps: give step or steps_per_period")
-    until = table.get("until")
-    span = float(until) if until is not None else float(table["periods"]) * _known(period, "periods")
+    span = table.get("span")
+    span = float(span) if span is not None else float(table["periods"]) * _known(period, "periods")
     start = chosen["start"]
     case = Case(
         system=system,
@@ -221,7 +221,7 @@ def _usual_samples(span: float, period: float | None) -> int:
 def _known(period: float | None, what: str) -> float:
     if period is None:
         raise ValueError(
-            f"{what} needs the system's period: write period = … in its table, or use until and step"
+            f"{what} needs the system's period: write period = … in its table, or use span and step"
         )
     return period
 

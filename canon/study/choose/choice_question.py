@@ -90,8 +90,8 @@ class Question:
             warnings.simplefilter("ignore", AccuracyWarning)  # its energy error is looked at here
             return propagate(
                 self.hamiltonian,
-                self.y0,
                 (0.0, duration),
+                self.y0,
                 method=setting.method,
                 step=setting.step,
                 tolerance=setting.tolerance,

@@ -65,7 +65,7 @@ def choice_table(choice: ChosenAmong) -> str:
     --------
     >>> from canon import choose
     >>> from canon.scene import find
-    >>> print(choice_table(choose(find("henon-heiles"), None, 1e4, 1e-3)).splitlines()[0])
+    >>> print(choice_table(choose(find("henon-heiles"), 1e4, accuracy=1e-3)).splitlines()[0])
     Hénon–Heiles: a star in the meridian plane of a galaxy
     """
     head = ("method", "order", "step", "precision", "error", "evaluations", "CPU", "")

@@ -118,8 +118,8 @@ class Choice:
         asked = self.question
         return propagate(
             asked.hamiltonian,
-            asked.y0,
             (0.0, self.span),
+            asked.y0,
             method=self.method,
             step=self.step,
             tolerance=self.tolerance,
@@ -141,11 +141,11 @@ class Choice:
 
 def choose(
     system: Scene | HamiltonianSystem,
-    y0: ArrayLike | str | None,
     span: float,
+    y0: ArrayLike | str | None = None,
+    *,
     accuracy: float,
     observable: str = "energy",
-    *,
     integral: Expr | None = None,
     parameters: Mapping[Symbol | str, float] | None = None,
     methods: Sequence[MethodGiven] | None = None,
@@ -159,10 +159,12 @@ def choose(
 
     Parameters
     ----------
-    system, y0
-        A scene and a start or state (q, p) (None for its default), or a Hamiltonian and a state.
+    system
+        A scene or a Hamiltonian.
     span
         Duration, in units of time.
+    y0
+        The starting state (q, p); of a scene also the name of a start, its default one where not given.
     accuracy
         Largest error allowed at any time, relative to the value at the start (absolute where that is zero).
     observable
@@ -185,7 +187,7 @@ def choose(
     Examples
     --------
     >>> from canon.scene import find
-    >>> choice = choose(find("henon-heiles"), None, span=1e5, accuracy=1e-4)
+    >>> choice = choose(find("henon-heiles"), span=1e5, accuracy=1e-4)
     >>> choice.reached, choice.predicted_error < 1e-4, choice.predicted_cost < 1.0
     (True, True, True)
     """

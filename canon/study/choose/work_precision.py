@@ -116,10 +116,10 @@ class WorkPrecision:
 
 def work_precision(
     system: Scene | HamiltonianSystem,
-    y0: ArrayLike | str | None,
     span: float,
-    methods: Sequence[MethodGiven],
+    y0: ArrayLike | str | None = None,
     *,
+    methods: Sequence[MethodGiven],
     steps: Iterable[float] = (),
     tolerances: Iterable[float] = (),
     precision: str | Sequence[str] | None = None,
@@ -131,10 +131,12 @@ def work_precision(
 
     Parameters
     ----------
-    system, y0
-        A scene and a start or state (q, p), or a Hamiltonian and a state.
+    system
+        A scene or a Hamiltonian.
     span
         Duration in units of time; short enough that the motion can be followed to its end.
+    y0
+        The starting state (q, p); of a scene also the name of a start, its default one where not given.
     methods
         The methods, as values or by name.
     steps, tolerances
@@ -162,7 +164,7 @@ def work_precision(
     --------
     >>> from canon import RK4
     >>> from canon.scene import find
-    >>> found = work_precision(find("henon-heiles"), None, 30.0, [RK4()], steps=[0.2, 0.1], repetitions=1)
+    >>> found = work_precision(find("henon-heiles"), 30.0, methods=[RK4()], steps=[0.2, 0.1], repetitions=1)
     >>> round(math.log2(found.rows[0].position_error / found.rows[1].position_error))
     4
     """
@@ -217,8 +219,8 @@ def _trials(
 def _run(subject: Subject, trial: Trial, span: float, samples: int) -> Trajectory:
     return propagate(
         subject.hamiltonian,
-        subject.state,
         (0.0, span),
+        subject.state,
         method=trial.method,
         step=trial.step,
         tolerance=trial.tolerance,
@@ -283,7 +285,7 @@ def work_table(work: WorkPrecision) -> str:
     --------
     >>> from canon import RK4, work_precision
     >>> from canon.scene import find
-    >>> print(work_table(work_precision(find("henon-heiles"), None, 5.0, [RK4()], steps=[0.1])).splitlines()[1])
+    >>> print(work_table(work_precision(find("henon-heiles"), 5.0, methods=[RK4()], steps=[0.1])).splitlines()[1])
     t = 0 … 5
     """
     head = ("method", "step", "precision", "energy error", "position error", "evaluations", "CPU", "")

@@ -124,8 +124,8 @@ class Run:
             warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
             return propagate(
                 self.hamiltonian,
-                self.y0,
                 (0.0, duration),
+                self.y0,
                 method=self.method,
                 step=self.step,
                 tolerance=self.tolerance,
@@ -142,8 +142,8 @@ class Run:
 
 def drift_row(
     hamiltonian: HamiltonianSystem,
-    y0: Array,
     span: float,
+    y0: Array,
     method: Method,
     *,
     samples: int,

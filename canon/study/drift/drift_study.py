@@ -107,7 +107,7 @@ def drift_study(
     step: float | None = None,
     tolerance: float | None = None,
     periods: float = 1000.0,
-    until: float | None = None,
+    span: float | None = None,
     period: float | None = None,
     precision: str | None = None,
     parameters: Mapping[Symbol | str, float] | None = None,
@@ -135,7 +135,7 @@ def drift_study(
         Step of the methods of fixed step; about a fiftieth of the period if left out.
     tolerance
         Tolerance of the adaptive methods, in place of their own.
-    periods, until
+    periods, span
         Duration in periods, or in units of time.
     period
         Period of the motion; the scene's if left out.
@@ -184,9 +184,8 @@ def drift_study(
     if not chosen:
         raise StudyError("no method to study: name at least one")
     known_period = period if period is not None else subject.period
-    span = _checked(
-        "run over a time", "duration", until if until is not None else _span(periods, known_period)
-    )
+    whole = span if span is not None else _span(periods, known_period)
+    span = _checked("run over a time", "duration", whole)
     h = _checked("step", "one", step if step is not None else _usual_step(chosen, known_period))
     kept = samples if samples is not None else _usual_samples(span, known_period)
     if kept < FEWEST:
@@ -269,7 +268,7 @@ def _cadence(step: float | None, period: float | None) -> int:
 
 def _span(periods: float, period: float | None) -> float:
     if period is None:
-        raise StudyError("a Hamiltonian does not tell its period: give period=, or the duration as until=")
+        raise StudyError("a Hamiltonian does not tell its period: give period=, or the duration as span=")
     return periods * period
 
 
