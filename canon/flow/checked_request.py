@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
-__all__ = ["hamilton_equations_of", "parted_by_orbit", "task_of", "task_with"]
+__all__ = ["hamilton_equations_of", "parted_by_orbit", "task_of", "task_with", "two_ends"]
 
 _KEPT = 64
 """Systems kept for the next call."""
@@ -62,7 +62,7 @@ def task_of(
     """Return the task of :func:`canon.flow.propagate.propagate`, which documents the arguments and errors."""
     fixed, varying = parted_by_orbit(parameters or {})
     system = hamilton_equations_of(hamiltonian, fixed, tuple(varying))
-    ends = _two_ends(t_span, y0)
+    ends = two_ends(t_span, y0)
     given, single = _with_parameters(y0, len(hamiltonian.q), varying)
 
     def in_fictitious_time(method: TimeTransformed) -> ExtendedSystem:
@@ -224,7 +224,8 @@ def _with_parameters(
     return (states[0], states[1]), False
 
 
-def _two_ends(t_span: Any, y0: Any) -> tuple[Fraction, Fraction]:
+def two_ends(t_span: Any, y0: Any) -> tuple[Fraction, Fraction]:
+    """Return the first and the last time, exactly; a state in their place is refused where that can be seen."""
     if np.shape(t_span) != (2,):
         raise ValueError(
             f"t_span = {t_span}: give the first and the last time, (t0, t1), and after it the state y0"

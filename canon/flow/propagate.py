@@ -1,13 +1,13 @@
-"""Propagation: from a Hamiltonian and a starting state to a trajectory."""
+"""Propagation: from a system and a starting state to a trajectory."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.checked_request import hamilton_equations_of, task_of
+from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.run.hamiltonian_system import HamiltonianSystem
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.flow.system_request import is_hamiltonian, system_task
+from canon.flow.system_request import any_task
 from canon.flow.trajectory import Interrupted, Trajectory, carried_out
 from canon.progress import reporting
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.event import Event
+    from canon.flow.system.recognised_system import MovableSystem
 
 __all__ = [
     "HamiltonianSystem", "Interrupted", "NonFiniteStateError", "Trajectory", "is_separable", "propagate",
@@ -27,9 +28,9 @@ __all__ = [
 
 
 def propagate(
-    hamiltonian: HamiltonianSystem,
+    system: MovableSystem,
     t_span: tuple[float | Fraction, float | Fraction],
-    y0: Sequence[float] | npt.NDArray[Any],
+    y0: Sequence[Any] | npt.NDArray[Any] | Mapping[Any, Any] | str | None = None,
     *,
     method: MethodGiven | None = None,
     step: float | None = None,
@@ -44,17 +45,28 @@ def propagate(
     dense: bool = False,
     progress: Callable[[float], None] | bool | None = None,
 ) -> Trajectory:
-    """Integrate Hamilton's equations from a starting state.
+    """Integrate the equations of motion of any system from a starting state.
 
     Parameters
     ----------
-    hamiltonian
-        The Hamiltonian, in any consistent units.
+    system
+        In any consistent units, with its state y0 in this order:
+
+        - a Hamiltonian: (q, p);
+        - a Lagrangian with its forces, or a ``ConstrainedLagrangian``: (q, q̇). Constraints are differentiated and
+          stabilised, so that they stay kept to round-off; those that follow from others at the start are left out;
+        - ``GibbsAppell``, SymPy's ``KanesMethod``: (q, u) with the quasi-velocities u;
+        - ``NewtonEuler``: (q, q̇), the reactions being known along the motion by their names;
+        - a ``Routhian``: (q, s, q̇, p) with the ignored coordinates s, which are reconstructed, and their momenta;
+        - a ``VectorField``, or heyoka's list of pairs (variable, right-hand side): their variables;
+        - SymPy's ``LagrangesMethod``: (q, q̇);
+        - a scene or its name: (q, p) where a Hamiltonian says all, else (q, q̇); its parameters have values already.
     t_span
         The first and the last time; the last may be the earlier one.
     y0
-        The starting state (q, p), shape (2n,), or many of them, shape (2n, orbits). Floats are taken for the
-        numbers they are; text, fractions and long doubles keep what a double would lose.
+        The starting state, shape (2n,), or many of them, shape (2n, orbits); or a number for each variable by symbol or
+        name, ``{theta: 0.1, "theta_dot": 0}``. Floats are taken for the numbers they are; text, fractions and long
+        doubles keep what a double would lose. Of a scene: the name of one of its starts, the first where not given.
     method
         ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
         not given. By exactly solvable parts: ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that
@@ -101,7 +113,9 @@ def propagate(
     Returns
     -------
     Trajectory
-        Sampled states, energies evaluated in higher precision than the states, and the cost. Many orbits
+        Sampled states, energies evaluated in higher precision than the states, and the cost. What moves is read
+        by name, ``motion["theta"]``. Where forces or the time do work, that is integrated along, and
+        ``energy_error`` is the defect of the energy balance. Many orbits
         run side by side in SIMD lanes and on threads (splittings and RK4) and give arrays with a last axis
         for the orbits. Time-transformed orbits have steps of their own and run one by one, their states kept at
         common times.
@@ -109,7 +123,11 @@ def propagate(
     Raises
     ------
     KeyError
-        A parameter of H has no value.
+        A parameter has no value or a value is for no parameter, a variable no start; nothing has such a name.
+    TypeError
+        What was given is no system that moves.
+    ValueError
+        A start is not on the constraints, or the equations do not determine the accelerations there.
     ValueError
         The state's shape is wrong or it is not finite; a step is missing or makes no sense; the Hamiltonian
         is not separable and the method a splitting.
@@ -131,22 +149,24 @@ def propagate(
     ... )
     >>> motion.steps, bool(abs(motion.energy_error).max() < 1e-8)
     (10000, True)
+
+    A Lagrangian with damping, and a scene:
+
+    >>> from canon import Lagrangian
+    >>> L = Lagrangian(theta.dot**2 / 2 + g * sympy.cos(theta), [theta], forces=[-theta.dot / 5])
+    >>> damped = propagate(L, (0, 20), {theta: 1, theta.dot: 0}, parameters={g: 9.81})
+    >>> float(damped["theta"][-1].round(6)), bool(abs(damped.energy_error).max() < 1e-14)
+    (-0.125459, True)
+    >>> propagate("rolling-disc", (0, 1)).residuals.shape
+    (4, 1001)
     """
-    if not is_hamiltonian(hamiltonian):
-        task, moving = system_task(
-            hamiltonian, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
-            parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,
-            events=events, dense=dense,
-        )  # fmt: skip
-        with reporting(progress) as report:
-            return carried_out(task, report, moving=moving)
-    task = task_of(
-        hamiltonian, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
+    task, moving = any_task(
+        system, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,
         events=events, dense=dense,
     )  # fmt: skip
     with reporting(progress) as report:
-        return carried_out(task, report)
+        return carried_out(task, report, moving=moving)
 
 
 def is_separable(hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, Any]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,18 +10,19 @@ import numpy as np
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.flow.checked_request import parted_by_orbit, task_with
+from canon.flow.checked_request import parted_by_orbit, task_of, task_with, two_ends
 from canon.flow.method.method_text import method_of
 from canon.flow.system.first_order_motion import moving_system
 from canon.flow.system.parameter_values import check_parameters
 from canon.flow.system.recognised_system import recognised
+from canon.flow.system.scene_door import is_scene, opened
 from canon.flow.system.start_of_motion import check_constraints, state_in_order
 from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import exact_number, exact_numbers
 from canon.mechanics.algebra.dynamicsymbols import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from fractions import Fraction
 
     import numpy.typing as npt
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
     from canon.flow.system.first_order_motion import FirstOrderMotion, MovingSystem
     from canon.flow.task import Task
 
-__all__ = ["is_hamiltonian", "system_task"]
+__all__ = ["any_task", "is_hamiltonian"]
 
 
 def is_hamiltonian(system: Any) -> bool:
@@ -40,38 +42,62 @@ def is_hamiltonian(system: Any) -> bool:
     return all(hasattr(system, name) for name in ("H", "q", "p", "t"))
 
 
-def system_task(
+def any_task(
     system: Any,
     t_span: tuple[float | Fraction, float | Fraction],
     y0: Any,
     *,
-    method: MethodGiven | None = None,
     parameters: Mapping[Symbol | str, Any] | None = None,
-    observables: Mapping[str, Expr] | None = None,
-    events: Sequence[Event] = (),
     **settings: Any,
-) -> tuple[Task, MovingSystem]:
-    """Return the task of :func:`canon.flow.propagate.propagate` for a system without a Hamiltonian, and the system.
+) -> tuple[Task, MovingSystem | None]:
+    """Return the task of :func:`canon.flow.propagate.propagate`, and what the system is where it is no Hamiltonian.
 
     Raises
     ------
     TypeError, KeyError, ValueError
         As ``propagate`` documents them.
     """
-    found, given = recognised(system), dict(parameters or {})
+    scene = is_scene(system)
+    if scene:
+        system, y0, parameters = opened(system, y0, parameters or {})
+    if not is_hamiltonian(system):
+        return _system_task(system, t_span, y0, parameters or {}, of_scene=scene, **settings)
+    if isinstance(y0, Mapping):
+        y0 = state_in_order(y0, (*system.q, *system.p))
+    return task_of(system, t_span, y0, parameters=parameters, **settings), None
+
+
+def _system_task(
+    system: Any,
+    t_span: tuple[float | Fraction, float | Fraction],
+    y0: Any,
+    parameters: Mapping[Symbol | str, Any],
+    *,
+    of_scene: bool,
+    method: MethodGiven | None = None,
+    observables: Mapping[str, Expr] | None = None,
+    events: Sequence[Event] = (),
+    **settings: Any,
+) -> tuple[Task, MovingSystem]:
+    """Return the task of a system without a Hamiltonian; a scene may have parameters that do not matter."""
+    ends = two_ends(t_span, y0)
+    found, given = recognised(system), dict(parameters)
     variables = (*found.state, found.t)
     observed = {name: _plain(f, variables) for name, f in (observables or {}).items()}
     met = tuple(_plain_event(event, variables) for event in events)
     named = {str(key) for key in given}
     functions = [*observed.values(), *(event.function for event in met)]
     others = {s for f in functions for s in f.free_symbols if str(s) in named and isinstance(s, Symbol)}
+    others |= {s for s in found.unneeded if s.name in named}
+    if of_scene:
+        kept = {s.name for s in (*found.parameters, *others)}
+        given = {key: value for key, value in given.items() if str(key) in kept}
     check_parameters(given, found.parameters, variables, others=others - {*variables})
     fixed, varying = parted_by_orbit(given)
     states = _exact(state_in_order(y0, found.state))
     orbits = _orbits(states, varying, np.shape(y0))
     single = states[0].ndim == 1 and not varying
-    begin, _ = (float(exact_number(t, "t_span")) for t in t_span)
-    start: dict[Symbol, Any] = {found.t: begin}
+    start: dict[Symbol, Any] = {found.t: float(ends[0])}
     by_name = {s.name: s for s in (*found.parameters, *others)}
     start |= {by_name[str(key)]: float(exact_number(value, str(key))) for key, value in fixed.items()}
     start |= {by_name[name]: values.astype(np.float64) for name, values in varying.items()}
@@ -85,7 +111,7 @@ def system_task(
     task = task_with(
         moving.equations,
         full,
-        t_span,
+        ends,
         single=single,
         method=chosen,
         observables=observed,
@@ -180,8 +206,8 @@ _FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss")
 
 def _check_method(method: Method, moving: MovingSystem) -> None:
     """Refuse methods that are made for Hamiltonians."""
-    if method.family in _FOR_ANY_SYSTEM:
-        return
-    raise ValueError(
-        f"{method} is made for a Hamiltonian and does not apply to a {moving.kind}: Taylor, DOP853, RK4 and Gauss do"
-    )
+    if method.family not in _FOR_ANY_SYSTEM:
+        raise ValueError(
+            f"{method} is made for a Hamiltonian and does not apply to a {moving.kind}; "
+            "Taylor, DOP853, RK4 and Gauss do"
+        )

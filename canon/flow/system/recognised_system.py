@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.symbol import velocity
@@ -22,8 +22,28 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from sympy import Expr, Symbol
+    from sympy.physics.mechanics import KanesMethod, LagrangesMethod
 
+    from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.system.first_order_motion import FirstOrderMotion
+    from canon.flow.system.scene_door import SceneLike
+    from canon.mechanics.lagrange.body import Body
+
+    MovableSystem = (
+        HamiltonianSystem
+        | Lagrangian
+        | ConstrainedLagrangian
+        | Routhian
+        | GibbsAppell
+        | QuasiMotion
+        | NewtonEuler
+        | VectorField
+        | LagrangesMethod
+        | KanesMethod
+        | Sequence[tuple[Any, Any]]
+        | SceneLike
+        | str
+    )
 
 __all__ = ["RecognisedSystem", "recognised"]
 
@@ -40,12 +60,15 @@ class RecognisedSystem:
         The symbols that need a number.
     derived
         The equations, from numbers for the state, t and the parameters at the start.
+    unneeded
+        Symbols of what was given that the equations do not hold, such as a mass that drops out.
     """
 
     state: tuple[Symbol, ...]
     t: Symbol
     parameters: tuple[Symbol, ...]
     derived: Callable[[Mapping[Symbol, float]], FirstOrderMotion]
+    unneeded: tuple[Symbol, ...] = ()
 
 
 def recognised(system: Any) -> RecognisedSystem:
@@ -78,7 +101,8 @@ def recognised(system: Any) -> RecognisedSystem:
         kinematics = system.kinematics
         said = (*kinematics.q_dot, system.gibbs_function, *system.forces)
         state, hidden = (*kinematics.q, *kinematics.u), kinematics.u_dot
-        return _with(state, kinematics.t, said, lambda start: appell_motion(system, start), hidden)
+        found = _with(state, kinematics.t, said, lambda start: appell_motion(system, start), hidden)
+        return replace(found, unneeded=_of_bodies(system.bodies))
     if isinstance(system, QuasiMotion):
         kinematics = system.kinematics
         said, state = (*kinematics.q_dot, *system.equations), (*kinematics.q, *kinematics.u)
@@ -107,6 +131,12 @@ def _of_lagrangian(system: Lagrangian | ConstrainedLagrangian) -> RecognisedSyst
     said = (lagrangian.L, *lagrangian.forces, *holonomic, *nonholonomic)
     state = (*lagrangian.q, *lagrangian.velocities)
     return _with(state, lagrangian.t, said, lambda start: lagrangian_motion(system, start))
+
+
+def _of_bodies(bodies: Sequence[Body]) -> tuple[Symbol, ...]:
+    """Return the symbols of masses and inertias."""
+    used: set[Any] = set().union(*(body.m.free_symbols | body.inertia.free_symbols for body in bodies))
+    return tuple(used)
 
 
 def _with(
