@@ -14,6 +14,7 @@ from canon import (
     DOP853,
     RK4,
     ConstrainedLagrangian,
+    Event,
     Gauss,
     Lagrangian,
     Splitting,
@@ -21,6 +22,8 @@ from canon import (
     parameters,
     propagate,
 )
+from canon.scene import SceneError, find
+from canon.scene.scene_motion import run
 from tests.flow.moving_systems import CASES
 
 t = sp.Symbol("t", real=True)
@@ -193,3 +196,92 @@ def test_no_energy_is_known_of_a_vector_field() -> None:
     with pytest.raises(AttributeError, match="no energy is known"):
         _ = motion.energy
     assert motion.error_estimate().relative[-1] < 1e-12
+
+
+@pytest.mark.parametrize("name", ["unicycle", "damped-oscillator", "pendulum-multiplier", "driven-duffing"])
+def test_scenes_move_by_value_and_by_name(name: str) -> None:
+    scene = find(name)
+    named = propagate(name, y0=None, t_span=(0, scene.period), samples=20)
+    value = propagate(scene, y0=scene.starts[0].name, t_span=(0, scene.period), samples=20)
+    np.testing.assert_array_equal(named.y, value.y)
+    along = run(scene, periods=1.0, samples=20)
+    np.testing.assert_allclose(named.q, along.q, rtol=1e-11, atol=1e-11)
+    assert abs(named.energy_error).max() < 1e-13
+
+
+def test_a_scene_without_forces_moves_by_its_hamiltonian() -> None:
+    scene = find("kepler")
+    named = propagate("kepler", y0=None, t_span=(0, 1), method=Splitting("verlet"), step=0.01)
+    given = propagate(
+        scene.hamiltonian,
+        y0=scene.state(),
+        t_span=(0, 1),
+        method=Splitting("verlet"),
+        step=0.01,
+        parameters=scene.values,
+    )
+    np.testing.assert_array_equal(named.y, given.y)
+    by_name = dict(
+        zip((s.name for s in (*scene.hamiltonian.q, *scene.hamiltonian.p)), scene.state(), strict=True)
+    )
+    again = propagate(scene, y0=by_name, t_span=(0, 1), method=Splitting("verlet"), step=0.01)
+    np.testing.assert_array_equal(again.y, given.y)
+    np.testing.assert_allclose(again["x_dot"], again.v[0])
+
+
+def test_scenes_and_parameters_that_are_not_there() -> None:
+    with pytest.raises(SceneError, match="kepler"):
+        propagate("keppler", y0=None, t_span=(0, 1))
+    with pytest.raises(KeyError, match="unicycle has no parameter q"):
+        propagate("unicycle", y0=None, t_span=(0, 1), parameters={"q": 1})
+    with pytest.raises(TypeError, match="is no system that can be propagated"):
+        propagate(sp.Symbol("x"), y0=[0, 1], t_span=(0, 1))
+
+
+def test_backward_runs_events_dense_output_and_resumption() -> None:
+    case = CASES["a damped driven pendulum"]
+    given = {"y0": case.y0, "parameters": case.values}
+    whole = propagate(case.system, t_span=(0, 4), dense=True, events=[Event(theta)], **given)
+    back = propagate(case.system, t_span=(4, 0), y0=whole.final, parameters=case.values)
+    np.testing.assert_allclose(back.final, case.y0, rtol=1e-12, atol=1e-12)
+    half = propagate(case.system, t_span=(0, 2), **given)
+    np.testing.assert_allclose(half.resume(4).final, whole.final, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(whole(2.0), half.final, rtol=1e-12, atol=1e-12)
+    assert abs(half.resume(4).energy_error).max() < 1e-13
+    assert whole.events
+    assert max(abs(whole(met.t)[0]) for met in whole.events) < 1e-13
+    observed = propagate(case.system, t_span=(0, 2), observables={"power": -c * theta.dot**2}, **given)
+    np.testing.assert_allclose(observed["power"], -0.4 * observed.v[0] ** 2, rtol=1e-14)
+
+
+@pytest.mark.parametrize(("method", "step"), [("taylor", None), ("RK4", 0.01), ("DOP853", None)])
+def test_orbits_side_by_side_with_parameters_of_their_own(method: str, step: float | None) -> None:
+    near = (
+        1e-9 if method == "DOP853" else 1e-12
+    )  # its steps are chosen by all variables, the parameters among them
+    case, damping = CASES["a damped driven pendulum"], np.array([0.1, 0.4, 0.9])
+    given = {"y0": case.y0, "t_span": (0, 2), "method": method, "step": step, "samples": 10}
+    fan = propagate(case.system, parameters=case.values | {c: damping}, **given)
+    assert fan.y.shape == (2, 11, 3)
+    for i, each in enumerate(damping):
+        alone = propagate(case.system, parameters=case.values | {c: float(each)}, **given)
+        np.testing.assert_allclose(fan.y[:, :, i], alone.y, rtol=near, atol=near)
+        np.testing.assert_allclose(fan.work[:, i], alone.work, rtol=10 * near, atol=near)
+
+
+def test_constraints_that_depend_on_one_another_at_the_start_only() -> None:
+    crossing = ConstrainedLagrangian(Lagrangian((x.dot**2 + y.dot**2) / 2, [x, y]), [y - x**2, y + x**2])
+    with pytest.raises(ValueError, match="does not follow from them at t ="):
+        propagate(crossing, y0=(0, 0, 1, 0), t_span=(0, 1))
+
+
+def test_a_degenerate_lagrangian_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"singular at the start along x_dot, y_dot.*Use fewer coordinates"):
+        propagate(Lagrangian((x.dot + y.dot) ** 2 / 2 - x**2, [x, y]), y0=(1, 0, 0, 0), t_span=(0, 1))
+
+
+def test_residuals_stay_at_round_off_over_long_spans() -> None:
+    case = CASES["a double pendulum in Cartesian coordinates"]
+    motion = propagate(case.system, y0=case.y0, t_span=(0, 200), parameters=case.values, samples=200)
+    assert abs(motion.residuals).max() < 1e-13
+    assert abs(motion.energy_error).max() < 1e-12
