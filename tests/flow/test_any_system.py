@@ -201,7 +201,7 @@ def test_no_energy_is_known_of_a_vector_field() -> None:
 @pytest.mark.parametrize("name", ["unicycle", "damped-oscillator", "pendulum-multiplier", "driven-duffing"])
 def test_scenes_move_by_value_and_by_name(name: str) -> None:
     scene = find(name)
-    named = propagate(name, y0=None, t_span=(0, scene.period), samples=20)
+    named = propagate(name, (0, scene.period), samples=20)
     value = propagate(scene, y0=scene.starts[0].name, t_span=(0, scene.period), samples=20)
     np.testing.assert_array_equal(named.y, value.y)
     along = run(scene, periods=1.0, samples=20)
@@ -211,7 +211,7 @@ def test_scenes_move_by_value_and_by_name(name: str) -> None:
 
 def test_a_scene_without_forces_moves_by_its_hamiltonian() -> None:
     scene = find("kepler")
-    named = propagate("kepler", y0=None, t_span=(0, 1), method=Splitting("verlet"), step=0.01)
+    named = propagate("kepler", (0, 1), method=Splitting("verlet"), step=0.01)
     given = propagate(
         scene.hamiltonian,
         y0=scene.state(),
@@ -231,9 +231,9 @@ def test_a_scene_without_forces_moves_by_its_hamiltonian() -> None:
 
 def test_scenes_and_parameters_that_are_not_there() -> None:
     with pytest.raises(SceneError, match="kepler"):
-        propagate("keppler", y0=None, t_span=(0, 1))
+        propagate("keppler", (0, 1))
     with pytest.raises(KeyError, match="unicycle has no parameter q"):
-        propagate("unicycle", y0=None, t_span=(0, 1), parameters={"q": 1})
+        propagate("unicycle", (0, 1), parameters={"q": 1})
     with pytest.raises(TypeError, match="is no system that can be propagated"):
         propagate(sp.Symbol("x"), y0=[0, 1], t_span=(0, 1))
 
