@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from canon.exercise.question.answer import other_variables
 from canon.exercise.question.answer_values import without_value
-from canon.exercise.question.constraint_manifold import EmptyDomainError
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
 from canon.exercise.sheet.key_shapes import faults
@@ -19,6 +18,7 @@ from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim, ClaimError
 from canon.expression.symbols.user_input import NotFiniteError, given_kind
+from canon.mechanics.algebra.constraint_manifold import EmptyDomainError
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 

@@ -70,6 +70,8 @@ from .lagrange.body import euler_rotation as euler_rotation
 from .lagrange.body import is_scleronomic as is_scleronomic
 from .lagrange.body import kinetic_energy as kinetic_energy
 from .lagrange.constraint import ConstrainedLagrangian as ConstrainedLagrangian
+from .lagrange.constraint_system import is_integrable as is_integrable
+from .lagrange.constraint_system import positional_freedom as positional_freedom
 from .lagrange.dependence import DependentConstraintsError as DependentConstraintsError
 from .lagrange.force import charge_term as charge_term
 from .lagrange.force import damper as damper
@@ -85,9 +87,7 @@ from .lagrange.force import potential_forces as potential_forces
 from .lagrange.force import rayleigh_forces as rayleigh_forces
 from .lagrange.force import spring as spring
 from .lagrange.frobenius import Pfaffian as Pfaffian
-from .lagrange.frobenius import is_integrable as is_integrable
 from .lagrange.frobenius import pfaffian as pfaffian
-from .lagrange.frobenius import positional_freedom as positional_freedom
 from .lagrange.lagrangian import Lagrangian as Lagrangian
 from .lagrange.newton_euler import Load as Load
 from .lagrange.newton_euler import NewtonEuler as NewtonEuler

@@ -27,6 +27,7 @@ from canon.mechanics.lagrange.body import (
     kinetic_form,
 )
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.constraint_system import is_integrable, positional_freedom
 from canon.mechanics.lagrange.force import (
     charge_term,
     damper,
@@ -37,7 +38,7 @@ from canon.mechanics.lagrange.force import (
     lagrangian_of_bodies,
     rayleigh_forces,
 )
-from canon.mechanics.lagrange.frobenius import integrals, is_integrable, positional_freedom
+from canon.mechanics.lagrange.frobenius import integrals
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler
 from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velocities, maggi_equations

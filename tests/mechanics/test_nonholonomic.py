@@ -2,10 +2,13 @@
 
 import pytest
 import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from canon.expression.symbols.symbol import coordinates, parameters, time
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-from canon.mechanics.lagrange.frobenius import integrals, is_integrable, pfaffian, positional_freedom
+from canon.mechanics.lagrange.constraint_system import is_integrable, positional_freedom
+from canon.mechanics.lagrange.frobenius import integrals, pfaffian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
 from canon.proof.domain.domain import Domain
@@ -181,3 +184,41 @@ def test_positions_that_can_be_reached():
     assert positional_freedom(rolling_disc()) == 4
     ring = Lagrangian(x.dot**2 + y.dot**2, [x, y])
     assert positional_freedom(ConstrainedLagrangian(ring, holonomic=[x**2 + y**2 - R**2])) == 1
+
+
+def test_constraints_are_integrable_where_the_positions_are_that_other_constraints_allow():
+    """ẋ = z ẏ turns by dz ∧ dy; on z = 0 it is ẋ = 0, on z = t it is not integrable, and dz = dt counts."""
+    L = Lagrangian((x.dot**2 + y.dot**2 + theta.dot**2) / 2, [x, y, theta])
+    rolling = x.dot - theta * y.dot
+    assert is_integrable(ConstrainedLagrangian(L, nonholonomic=[rolling])).fails
+    on_a_place = ConstrainedLagrangian(L, holonomic=[theta], nonholonomic=[rolling])
+    assert is_integrable(on_a_place).holds
+    assert positional_freedom(on_a_place) == 1
+    assert is_integrable(ConstrainedLagrangian(L, holonomic=[theta - time], nonholonomic=[rolling])).fails
+
+
+def test_every_branch_of_a_constraint_is_looked_at():
+    """θ² = 1 has the branches θ = 1 and θ = −1: ẋ = (θ − 1) ẏ is integrable on both, ẋ = φ (θ − 1) ẏ on one only."""
+    q = [x, y, theta, phi]
+    L = Lagrangian(sum(s.dot**2 for s in q) / 2, q)
+    flat = ConstrainedLagrangian(L, holonomic=[theta**2 - 1], nonholonomic=[x.dot - (theta - 1) * y.dot])
+    bent = ConstrainedLagrangian(
+        L, holonomic=[theta**2 - 1], nonholonomic=[x.dot - phi * (theta - 1) * y.dot]
+    )
+    assert is_integrable(flat).holds
+    assert is_integrable(bent).fails
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.lists(st.integers(-2, 2), min_size=6, max_size=6))
+def test_frobenius_agrees_with_the_wedge_product(n):
+    """One form in three variables is integrable exactly where ω ∧ dω = 0, a second route without branches."""
+    z = (x, y, theta)
+    form = [1 + n[0] * y + n[1] * theta**2, n[2] * x + n[3] * theta * y, 2 + n[4] * x * y + n[5] * y**2]
+    L = Lagrangian(sum(s.dot**2 for s in z) / 2, z)
+    found = is_integrable(
+        ConstrainedLagrangian(L, nonholonomic=[sum(a * s.dot for a, s in zip(form, z, strict=True))])
+    )
+    curl = [form[(k + 2) % 3].diff(z[(k + 1) % 3]) - form[(k + 1) % 3].diff(z[(k + 2) % 3]) for k in range(3)]
+    wedge = sp.expand(sum(a * c for a, c in zip(map(sp.sympify, form), curl, strict=True)))
+    assert found.holds if wedge == 0 else found.fails

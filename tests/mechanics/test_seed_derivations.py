@@ -7,8 +7,9 @@ from canon.expression.symbols.symbol import coordinates, parameters, time, time_
 from canon.mechanics.hamilton.hamiltonian import hamiltonian
 from canon.mechanics.lagrange.body import Particle
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.constraint_system import is_integrable
 from canon.mechanics.lagrange.force import do_no_work, generalized_forces, lagrangian_of_bodies
-from canon.mechanics.lagrange.frobenius import integrals, is_integrable
+from canon.mechanics.lagrange.frobenius import integrals
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian
 from canon.proof.equivalence import equivalent_equations

@@ -15,9 +15,8 @@ from sympy import Expr, Symbol
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis
 from canon.exercise.diagnose.effort import PROOF_SECONDS
-from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.expression.symbols.symbol import Coordinate, Rate
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import Domain

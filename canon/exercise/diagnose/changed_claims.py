@@ -18,8 +18,9 @@ from canon.exercise.diagnose.screening import screening
 from canon.exercise.diagnose.slips import common_slips, slipped, variants
 from canon.exercise.sheet.kind import Shape, named_function
 from canon.exercise.sheet.reading import InvalidClaim
-from canon.exercise.sheet.sympy_trees import arguments, size, symbols_of
 from canon.expression.symbols.symbol import velocity
+from canon.mechanics.algebra.substitution import size, symbols_of
+from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -14,9 +14,8 @@ from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.diagnose.repair import is_wrong, repairs
 from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.question import Part, SameEquations
-from canon.exercise.sheet.sympy_trees import replaced, symbols_of
 from canon.mechanics.algebra.linear import SingularMatrixError
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
 
@@ -157,4 +156,4 @@ def _repaired(
 
 
 def _with(reading: Reading, part: Part, right: Expr) -> Reading:
-    return reading.with_instead(part.key, replaced(right, part.written))
+    return reading.with_instead(part.key, exchanged(right, part.written))

@@ -16,8 +16,8 @@ from flint import acb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.expression.symbols.symbol import Rate
+from canon.mechanics.algebra.substitution import symbols_of
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, value
 

@@ -13,8 +13,9 @@ from flint import acb, arb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef, Derivative, Subs
 
-from canon.exercise.sheet.sympy_trees import arguments, replaced
+from canon.mechanics.algebra.substitution import exchanged
 from canon.proof.domain.balls import value
+from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -57,18 +58,18 @@ class Examples:
     def _example(self, unknown: Expr) -> Expr:
         if isinstance(unknown, Subs):
             inner, variables, points = cast("tuple[Expr, tuple[Expr, ...], tuple[Expr, ...]]", unknown.args)
-            return replaced(self._example(inner), dict(zip(variables, points, strict=True)))
+            return exchanged(self._example(inner), dict(zip(variables, points, strict=True)))
         if isinstance(unknown, AppliedUndef):
             places, polynomial = self._polynomials[unknown.func]
-            return replaced(polynomial, dict(zip(places, arguments(unknown), strict=True)))
+            return exchanged(polynomial, dict(zip(places, arguments(unknown), strict=True)))
         inner, *rest = arguments(unknown)
         by = cast("list[tuple[Symbol, int]]", rest)
         if isinstance(inner, AppliedUndef) and _by_places(inner, [s for s, _ in by]):
             places, polynomial = self._polynomials[inner.func]
             slope = polynomial.diff(*((places[arguments(inner).index(s)], n) for s, n in by))
-            return replaced(slope, dict(zip(places, arguments(inner), strict=True)))
+            return exchanged(slope, dict(zip(places, arguments(inner), strict=True)))
         for node in inner.atoms(AppliedUndef):
-            inner = replaced(inner, {node: self._example(node)})
+            inner = exchanged(inner, {node: self._example(node)})
         return inner.diff(*by)
 
 

@@ -22,7 +22,7 @@ from sympy.core.function import AppliedUndef
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.lost_factor import Monomials
 from canon.exercise.diagnose.slips import of_one_coefficient, variants
-from canon.exercise.sheet.sympy_trees import size, symbols_of
+from canon.mechanics.algebra.substitution import size, symbols_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.kinks import vanishes_off_kinks
 

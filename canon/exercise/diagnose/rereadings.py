@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.reading import Reading
-from canon.exercise.sheet.sympy_trees import replaced
+from canon.mechanics.algebra.substitution import exchanged
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -44,7 +44,7 @@ def inverse_map(reading: Reading) -> Iterator[Trial]:
     inverted = read_anew(reading, {**keys, "inverse_map": {k: ["0"] * len(symbols[0]) for k in "qp"}})
     for part, name in (("Q", "q"), ("P", "p")):
         for i, f in enumerate(reading.inside(f"map.{part}", reading.claim.keys["map"][part])):
-            inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", replaced(f, swap))
+            inverted = inverted.with_instead(f"inverse_map.{name}[{i}]", exchanged(f, swap))
     yield inverted, Change.of(Mistake.INVERSE_MAP)
 
 

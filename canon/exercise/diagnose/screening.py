@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 from flint import acb
 
 from canon.exercise.diagnose.point_derivatives import BITS, Examples, Neighbourhood
-from canon.exercise.question.constraint_manifold import EmptyDomainError
 from canon.exercise.sheet.kind import named_function
 from canon.exercise.sheet.reading import InvalidClaim
+from canon.mechanics.algebra.constraint_manifold import EmptyDomainError
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision
 from canon.proof.domain.verdict import Undecided

@@ -10,7 +10,8 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.diagnose.change import Change, Mistake
-from canon.exercise.sheet.sympy_trees import arguments, replaced, symbols_of
+from canon.mechanics.algebra.substitution import exchanged, symbols_of
+from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -107,7 +108,7 @@ def slipped(expression: Expr, slip: Mapping[Expr, Expr]) -> Expr | None:
     (x**2 - x, None)
     """
     try:
-        return replaced(expression, dict(slip))
+        return exchanged(expression, dict(slip))
     except (TypeError, ValueError):  # such as a derivative by −x, or a comparison with i
         return None
 

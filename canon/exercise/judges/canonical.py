@@ -10,7 +10,6 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.question.answer import open_brackets
-from canon.exercise.question.constraint_manifold import EmptyDomainError, inhabited, on_manifold, transported
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.generating_answer import generating_function_of
 from canon.exercise.question.implicit_point import refuted_at_a_point, solved_somewhere
@@ -24,6 +23,7 @@ from canon.exercise.question.question import (
     wrong_variables,
 )
 from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, inhabited, on_manifold, transported
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.bracket import lagrange_bracket, lie_bracket, poisson_bracket, symplectic_unit
 from canon.mechanics.hamilton.pfaffian_form import bilinear_covariant, displacements

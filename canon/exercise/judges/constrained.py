@@ -12,13 +12,12 @@ from sympy.core.function import AppliedUndef
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.answer import equations_missing
-from canon.exercise.question.constraint_manifold import on_manifold
 from canon.exercise.question.question import Determines, Part, Question, Same, SameEquations, Tells
-from canon.exercise.sheet.sympy_trees import replaced
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.constraint_manifold import on_manifold
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.proof.domain.domain import Domain
 
 if TYPE_CHECKING:
@@ -26,8 +25,8 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
-    from canon.exercise.question.constraint_manifold import Branch
     from canon.exercise.sheet.reading import Reading
+    from canon.mechanics.algebra.constraint_manifold import Branch
 
 __all__ = ["is_one_of", "jets_of", "multiplier_holonomic", "nonholonomic", "with_jets"]
 
@@ -82,7 +81,7 @@ def _on_every_motion(
     jets = jets_of((*system, *manifold, *claims), t, reading.domain)
     functions = {symbol: function for function, symbol in jets.items()}
     system, rates, claims, manifold = (
-        [replaced(e, jets) for e in given] for given in (system, rates, claims, manifold)
+        [exchanged(e, jets) for e in given] for given in (system, rates, claims, manifold)
     )
     open_ = {i: claim for i, claim in enumerate(claims) if not is_one_of(claim, system)} or {0: sp.S.Zero}
     domain = with_jets(reading.domain, jets)
@@ -114,7 +113,7 @@ def _on_any_motion(
     """Return the question whether claims hold on every motion that the constraints allow, whatever moves it."""
     here = [substitute(rate, branch.values) for rate in rates]
     slopes = sp.Matrix([[rate.diff(a) for a in accelerations] for rate in here])
-    rest = sp.Matrix([replaced(rate, dict.fromkeys(accelerations, sp.S.Zero)) for rate in here])
+    rest = sp.Matrix([exchanged(rate, dict.fromkeys(accelerations, sp.S.Zero)) for rate in here])
     echelon = eliminate(slopes, rest, branch.domain)
     rows = echelon.rows[: echelon.rank]
     bound = [accelerations[j] for j in echelon.pivots]

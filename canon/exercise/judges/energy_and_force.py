@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.constraint_manifold import check_whole, inhabited, on_manifold
 from canon.exercise.question.given_bodies import check_real, given_bodies, given_forces
 from canon.exercise.question.question import Part, Question, Same
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.algebra.constraint_manifold import check_whole, inhabited, on_manifold
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.lagrange.body import kinetic_energy as energy_of_bodies
 from canon.mechanics.lagrange.force import potential_forces

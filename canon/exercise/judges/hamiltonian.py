@@ -10,10 +10,10 @@ from sympy import Expr, Symbol
 from canon.exercise.judges.conserved import NOT_OF_THE_STATE, same_everywhere, system_of
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
-from canon.exercise.question.constraint_manifold import on_manifold, transported
 from canon.exercise.question.continuous_answer import constants_are_continuous
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
 from canon.expression.symbols.symbol import acceleration, velocity
+from canon.mechanics.algebra.constraint_manifold import on_manifold, transported
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian

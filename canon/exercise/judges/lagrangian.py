@@ -10,7 +10,6 @@ from sympy import Expr, Symbol
 
 from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.answer import stay_open
-from canon.exercise.question.constraint_manifold import transported
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.question import (
     Determines,
@@ -24,6 +23,7 @@ from canon.exercise.question.question import (
 )
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian as routh

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.constraint_manifold import EmptyDomainError
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.parameter_system import Family, covers, families
 from canon.exercise.question.question import (
@@ -25,8 +24,9 @@ from canon.exercise.question.question import (
 )
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim
-from canon.exercise.sheet.sympy_trees import replaced
+from canon.mechanics.algebra.constraint_manifold import EmptyDomainError
 from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.algebra.substitution import exchanged
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
@@ -237,7 +237,7 @@ def _found(
 def _certainly_beyond(family: Family, claimed: Family, inner: Reading) -> bool:
     """Whether a family certainly has points that are none of another one."""
     for s, value in claimed.items():
-        part = Part(str(s), replaced(value, family), family.get(s, s))
+        part = Part(str(s), exchanged(value, family), family.get(s, s))
         if decide(Differ(part, inner.domain, ""), Deadline.after(1.0)).holds:
             return True
     return False

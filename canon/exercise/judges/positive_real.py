@@ -16,7 +16,7 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.exercise.question.question import Question, Stated
-from canon.exercise.sheet.sympy_trees import replaced, symbols_of
+from canon.mechanics.algebra.substitution import exchanged, symbols_of
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.verdict import Counterexample, Status, Undecided, Verdict
 from canon.proof.kinks import OffKinks, off_kinks
@@ -88,7 +88,7 @@ def is_positive_real_at(above: sp.Poly, below: sp.Poly) -> _Fault | None:
 def _judged(above: sp.Poly, below: sp.Poly, s: Symbol, off: OffKinks, *, negated: bool) -> Verdict:
     parameters = [x for x in symbols_of(above.as_expr(), below.as_expr()) if x != s]
     for point in off.strictly.points(parameters, POINTS, seed=5) if parameters else ({},):
-        pair = [sp.Poly(replaced(f.as_expr(), point), s) for f in (above, below)]
+        pair = [sp.Poly(exchanged(f.as_expr(), point), s) for f in (above, below)]
         if pair[1].is_zero or not all(c.is_Rational for f in pair for c in f.all_coeffs()):
             continue
         fault = is_positive_real_at(*(sp.Poly(f, s, domain="QQ") for f in pair))

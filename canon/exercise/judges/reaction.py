@@ -16,7 +16,12 @@ from canon.exercise.judges.constrained import is_one_of, jets_of, with_jets
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.answer import stay_open
-from canon.exercise.question.constraint_manifold import (
+from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.implicit_point import refuted_at_a_point
+from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
+from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.constraint_manifold import (
     Branch,
     EmptyDomainError,
     check_not_empty,
@@ -24,14 +29,8 @@ from canon.exercise.question.constraint_manifold import (
     inhabited,
     on_manifold,
 )
-from canon.exercise.question.deadline import Deadline
-from canon.exercise.question.implicit_point import refuted_at_a_point
-from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
-from canon.exercise.question.solve_for_symbol import named
-from canon.exercise.sheet.sympy_trees import replaced, symbols_of
-from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
-from canon.expression.symbols.user_input import counted
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.solve_for_symbol import named
+from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
@@ -60,11 +59,11 @@ class _Motion:
 
     def seen(self, f: Expr) -> Expr:
         """Return an expression on the motion."""
-        return substitute(replaced(f, self.jets), {**self.branch.values, **self.solution})
+        return substitute(exchanged(f, self.jets), {**self.branch.values, **self.solution})
 
     def part(self, name: str, claimed: Expr, right: Expr, key: str) -> Part:
         """Return a claimed value beside the right one; what the claim may hold of the motion is put in."""
-        value = replaced(claimed, self.jets)
+        value = exchanged(claimed, self.jets)
         known = {s: f for s, f in self.solution.items() if value.has(s)}
         written = {symbol: function for function, symbol in self.jets.items()}
         return Part(name, value, right, {**self.branch.values, **known}, key, written)
@@ -162,12 +161,12 @@ def _motions(
     rates = [time_derivative(f, q, t) for f in integrals]
     held_at = (*positions, *held)
     jets = jets_of((*system, *held_at, *integrals, *rates, *claims), t, reading.domain)
-    held_at, integrals = (tuple(replaced(f, jets) for f in some) for some in (held_at, integrals))
-    directions = directions.applyfunc(lambda f: replaced(f, jets))
+    held_at, integrals = (tuple(exchanged(f, jets) for f in some) for some in (held_at, integrals))
+    directions = directions.applyfunc(lambda f: exchanged(f, jets))
     domain = with_jets(reading.domain, jets)
-    check_whole([*(replaced(f, jets) for f in constraints), *integrals], v, domain)
+    check_whole([*(exchanged(f, jets) for f in constraints), *integrals], v, domain)
     for branch in inhabited(_with_integrals(on_manifold(held_at, domain, (t,), v), integrals, v, t)):
-        here = [substitute(replaced(e, jets), branch.values) for e in system]
+        here = [substitute(exchanged(e, jets), branch.values) for e in system]
         motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions, jets)
         _check_constant(reading, rates, motion)
         yield motion

@@ -13,7 +13,6 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judges.energy_and_force import shown_short
-from canon.exercise.question.constraint_manifold import transported
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import (
     Determines,
@@ -26,10 +25,10 @@ from canon.exercise.question.question import (
     more_than_zero,
 )
 from canon.exercise.question.series_expansion import check_analytic, coefficient, without_kinks
-from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.expression.symbols.user_input import counted
-from canon.mechanics.algebra.substitution import exchanged, substitute
+from canon.mechanics.algebra.constraint_manifold import transported
+from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold

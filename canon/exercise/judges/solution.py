@@ -14,11 +14,11 @@ from canon.exercise.judges.conserved import motion_of
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.judges.invariance import is_instead
 from canon.exercise.question.answer import stay_open
-from canon.exercise.question.constraint_manifold import transported
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, fails
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
+from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
 from canon.mechanics.algebra.substitution import substitute

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.sheet.sympy_trees import replaced
 from canon.mechanics.algebra.linear import solve
+from canon.mechanics.algebra.substitution import exchanged
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +38,6 @@ def solved(
     """
     at_rest = dict.fromkeys(unknowns, sp.S.Zero)
     matrix = sp.Matrix([[equation.diff(u) for u in unknowns] for equation in system])
-    right = sp.Matrix([-replaced(equation, at_rest) for equation in system])
+    right = sp.Matrix([-exchanged(equation, at_rest) for equation in system])
     found = cast("list[Expr]", solve(matrix, right, domain).flat())
     return dict(zip(unknowns, found, strict=True))

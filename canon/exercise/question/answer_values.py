@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.exercise.question.constraint_manifold import EmptyDomainError, inhabited, on_manifold
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import KINDS
 from canon.expression.as_written import as_written
 from canon.expression.symbols.symbol import Coordinate, time_derivative, velocity
 from canon.expression.text.tokens import LanguageError
+from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, inhabited, on_manifold
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.definedness.definedness import lack_beside, lack_of_value
 from canon.proof.definedness.formula_around import put_in

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.exercise.sheet.sympy_trees import symbols_of
+from canon.mechanics.algebra.substitution import symbols_of
 from canon.proof.domain.verdict import Status, Undecided, Verdict
 from canon.proof.equivalence import NotAffineError, Stray, not_affine, systems_compared, without_solution
 from canon.proof.kinks import off_kinks, vanishes_off_kinks

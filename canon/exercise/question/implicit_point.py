@@ -17,7 +17,7 @@ from flint import acb, arb, arb_mat
 from sympy import Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.exercise.sheet.sympy_trees import symbols_of
+from canon.mechanics.algebra.substitution import symbols_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Counterexample, Status, Verdict

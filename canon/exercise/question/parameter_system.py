@@ -16,15 +16,14 @@ import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.exercise.question.solve_for_symbol import real_solutions
-from canon.exercise.sheet.sympy_trees import arguments, replaced, symbols_of
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.solve_for_symbol import real_solutions
+from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.proof.analytic import proved_sign
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
 from canon.proof.trees.polynomial import polynomial_factors
-from canon.proof.trees.sympy_types import rational
+from canon.proof.trees.sympy_types import arguments, rational
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
@@ -183,7 +182,7 @@ def _of_factor(factor: Expr, free: Sequence[Symbol], domain: Domain) -> list[Fam
         slope = factor.diff(s)
         if slope.has(s):
             continue
-        regular: Family = {s: sp.cancel(-replaced(factor, {s: sp.S.Zero}) / slope)}
+        regular: Family = {s: sp.cancel(-exchanged(factor, {s: sp.S.Zero}) / slope)}
         if not slope.has(*free):
             return [regular]
         others = [t for t in free if slope.has(t)]
@@ -215,7 +214,7 @@ def _independent(residual: Expr) -> Iterator[Expr]:
     unknown = [f for f in residual.atoms(sp.Derivative, sp.Subs, AppliedUndef) if f.has(AppliedUndef)]
     outer = [f for f in unknown if not any(f is not g and g.has(f) for g in unknown)]
     names: dict[Expr, Symbol] = {f: sp.Dummy("f") for f in sorted(outer, key=sp.default_sort_key)}
-    numerator = sp.numer(sp.together(replaced(residual, names))) if names else residual
+    numerator = sp.numer(sp.together(exchanged(residual, names))) if names else residual
     if not names:
         yield residual
         return

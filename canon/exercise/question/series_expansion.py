@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.sheet.sympy_trees import arguments, replaced
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -113,7 +113,7 @@ def without_kinks(f: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> Expr
         if there in ("+", "-"):
             side = sp.S.One if there == "+" else sp.S.NegativeOne
             known[part] = side if isinstance(part, sp.sign) else side * u
-    return replaced(f, known)
+    return exchanged(f, known)
 
 
 def coefficient(f: Expr, epsilon: Symbol, k: int) -> Expr:
@@ -147,7 +147,7 @@ def _with_series(f: Expr, epsilon: Symbol, order: int) -> Expr:
         if part.has(epsilon) and substitute(small, {epsilon: sp.S.Zero}) == 0:
             inner = _with_series(small, epsilon, order)
             known[part] = sp.Add(*(_term(part, j) * inner**j for j in range(order + 1)))
-    return replaced(f, known)
+    return exchanged(f, known)
 
 
 def _term(part: Expr, j: int) -> Expr:

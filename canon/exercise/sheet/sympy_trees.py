@@ -1,28 +1,16 @@
-"""SymPy's expression trees with static types."""
+"""Expressions as a sheet writes them, derivatives at a place among them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import sympy as sp
-from sympy import Expr, Symbol
+from sympy import Expr
 
 from canon.expression.symbols.magnitude import written
+from canon.proof.trees.sympy_types import by_name
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-__all__ = ["arguments", "replaced", "shown", "size", "symbols_of"]
-
-
-def arguments(f: Expr) -> tuple[Expr, ...]:
-    """Return the arguments of an expression."""
-    return cast("tuple[Expr, ...]", f.args)
-
-
-def replaced(f: Expr, values: Mapping[Symbol, Expr] | Mapping[Expr, Expr]) -> Expr:
-    """Return f with subexpressions replaced all at once."""
-    return cast("Expr", f.xreplace(dict(values)))
+__all__ = ["shown"]
 
 
 def shown(item: object) -> str:
@@ -55,7 +43,7 @@ def _by_a_symbol(there: sp.Subs) -> Expr:
         and derivative.variables == places.args
     ):
         place = cast("Expr", values.args[0])
-        for s in symbols_of(place):
+        for s in by_name(place):
             slope = place.diff(s)
             if abs(slope) == 1 and not derivative.expr.has(s):
                 return slope * sp.Derivative(derivative.expr.xreplace({places.args[0]: place}), s)
@@ -72,9 +60,3 @@ def size(f: Expr) -> int:
     7
     """
     return sum(1 for _ in sp.preorder_traversal(f))
-
-
-def symbols_of(*expressions: Expr) -> list[Symbol]:
-    """Return the symbols of some expressions by name."""
-    found = {s for f in expressions for s in f.free_symbols if isinstance(s, Symbol)}
-    return sorted(found, key=lambda s: s.name)

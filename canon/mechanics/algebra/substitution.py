@@ -12,7 +12,7 @@ from canon.expression.symbols.user_input import given_expression
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-__all__ = ["as_tuple", "entry", "exchanged", "shortened", "size", "substitute"]
+__all__ = ["as_tuple", "entry", "exchanged", "shortened", "size", "substitute", "symbols_of"]
 
 
 def substitute(f: Expr, values: Mapping[sp.Symbol, Expr]) -> Expr:
@@ -81,3 +81,9 @@ def size(f: sp.Basic) -> int:
             sizes[node] = 1 + sum(sizes[part] for part in node.args)
             stack.pop()
     return sizes[f]
+
+
+def symbols_of(*expressions: Expr) -> list[sp.Symbol]:
+    """Return the symbols of some expressions by name."""
+    found = {s for f in expressions for s in f.free_symbols if isinstance(s, sp.Symbol)}
+    return sorted(found, key=lambda s: s.name)

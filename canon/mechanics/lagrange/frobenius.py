@@ -25,9 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-    from canon.proof.domain.verdict import Verdict
 
-__all__ = ["Pfaffian", "exterior_derivative", "integrals", "is_integrable", "pfaffian", "positional_freedom"]
+__all__ = ["Pfaffian", "exterior_derivative", "integrals", "pfaffian"]
 
 Row = tuple[Expr, ...]
 
@@ -70,8 +69,9 @@ class Pfaffian:
             for i, j in pairs
         )
 
+    @cached_property
     def derived(self) -> Pfaffian:
-        """Return the combinations of the constraints whose curvature vanishes on allowed displacements."""
+        """The combinations of the constraints whose curvature vanishes on allowed displacements."""
         rows = [list(values) for _, values in self.curvatures]
         if not rows:
             return self
@@ -92,7 +92,7 @@ class Pfaffian:
         """The combinations that are integrable: as many positions are restricted as it has rows."""
         part = self
         while part.forms:
-            smaller = part.derived()
+            smaller = part.derived
             if smaller is part:
                 break
             part = smaller
@@ -105,37 +105,6 @@ def pfaffian(constrained: ConstrainedLagrangian, domain: Domain | None = None) -
     A, rests = constrained.directions, constrained.rests
     forms = tuple((*A.row(a), rests[a]) for a in range(first, A.rows))
     return Pfaffian(forms, (*constrained.lagrangian.q, constrained.lagrangian.t), as_domain(domain))
-
-
-def is_integrable(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> Verdict:
-    """Tell whether the nonholonomic constraints of a system are holonomic in disguise, all of them.
-
-    Returns
-    -------
-    Verdict
-        HOLDS where positions are restricted; FAILS where the constraints are truly nonholonomic, with a
-        counterexample: a point where two allowed displacements do not close.
-
-    Examples
-    --------
-    >>> from canon import Lagrangian, coordinates
-    >>> from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-    >>> from sympy import cos, sin
-    >>> x, y, theta = coordinates("x y theta")
-    >>> L = Lagrangian((x.dot**2 + y.dot**2 + theta.dot**2)/2, [x, y, theta])
-    >>> blade = ConstrainedLagrangian(L, nonholonomic=[x.dot*sin(theta) - y.dot*cos(theta)])
-    >>> rolling = ConstrainedLagrangian(L, nonholonomic=[x.dot - theta.dot])
-    >>> is_integrable(blade).status.name, is_integrable(rolling).status.name
-    ('FAILS', 'HOLDS')
-    """
-    forms = pfaffian(constrained, domain)
-    given = constrained.nonholonomic
-    claims = [
-        (f"dω of {given[a]} vanishes on allowed displacements {i + 1} and {j + 1}", value)
-        for (i, j), values in forms.curvatures
-        for a, value in enumerate(values)
-    ]
-    return all_vanish(claims, "the constraints on velocities restrict positions", domain)
 
 
 def integrals(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> tuple[Expr, ...]:
@@ -168,30 +137,6 @@ def integrals(constrained: ConstrainedLagrangian, domain: Domain | None = None) 
         if len(found) == len(part.forms):
             break
     return tuple(found)
-
-
-def positional_freedom(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> int:
-    """Return the dimension of the positions that can be reached: coordinates less restrictions of positions.
-
-    Truly nonholonomic constraints restrict none; those that are holonomic in disguise do.
-
-    Examples
-    --------
-    A unicycle reaches every place in every heading, although one velocity is barred:
-
-    >>> from canon import Lagrangian, coordinates
-    >>> from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-    >>> from sympy import tan
-    >>> x, y, theta = coordinates("x y theta")
-    >>> L = Lagrangian((x.dot**2 + y.dot**2 + theta.dot**2)/2, [x, y, theta])
-    >>> unicycle = ConstrainedLagrangian(L, nonholonomic=[y.dot - x.dot*tan(theta)])
-    >>> positional_freedom(unicycle), unicycle.degrees_of_freedom
-    (3, 2)
-    """
-    restricted = len(constrained.holonomic)
-    if constrained.nonholonomic:
-        restricted += len(pfaffian(constrained, domain).holonomic_part.forms)
-    return len(constrained.lagrangian.q) - restricted
 
 
 def exterior_derivative(form: Row, z: Sequence[Symbol], X: Row, Y: Row) -> Expr:

@@ -2,36 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import time as clock
+from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.constraint_manifold import (
+from canon.expression.symbols.symbol import time_derivative, velocity
+from canon.mechanics.algebra.all_vanish import vanish_together
+from canon.mechanics.algebra.constraint_manifold import (
     Branch,
     EmptyDomainError,
     check_not_empty,
     inhabited,
     on_manifold,
 )
-from canon.exercise.question.question import Part, Same, decide
-from canon.expression.symbols.symbol import time_derivative, velocity
 from canon.mechanics.algebra.linear import eliminate
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.lagrange.frobenius import Pfaffian, exterior_derivative
 from canon.proof.continuity.smooth import PIECED, without_pieces
-from canon.proof.domain.domain import Domain
+from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from canon.exercise.question.deadline import Deadline
+    from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 
-__all__ = ["ConstraintSystem"]
+__all__ = ["ConstraintSystem", "is_integrable", "positional_freedom"]
+
+SECONDS = 10.0
+"""Time for the questions about a system."""
 
 
 @dataclass(frozen=True)
@@ -46,17 +50,17 @@ class ConstraintSystem:
         f(q, t) = 0, g(q, q̇, t) = 0 and h = 0 at the edge of an inequality.
     domain
         Where they are meant.
-    deadline
-        When the questions should be answered.
+    until
+        When the questions should be answered, on the clock of ``time.monotonic``.
 
     Examples
     --------
     >>> from canon import Domain, coordinates
-    >>> from canon.exercise.question.deadline import Deadline
+    >>> import time as clock
     >>> x, y, theta = q = coordinates("x y theta")
     >>> blade = x.dot * sp.sin(theta) - y.dot * sp.cos(theta)
     >>> t = sp.Symbol("t", real=True)
-    >>> system = ConstraintSystem(q, t, (), (blade,), (), Domain(), Deadline.after(10))
+    >>> system = ConstraintSystem(q, t, (), (blade,), (), Domain(), clock.monotonic() + 10)
     >>> system.integrable.status.name, system.freedom("velocities"), system.freedom("positions")
     ('FAILS', 2, 3)
     """
@@ -67,7 +71,7 @@ class ConstraintSystem:
     velocities: tuple[Expr, ...]
     inequalities: tuple[Expr, ...]
     domain: Domain
-    deadline: Deadline
+    until: float
 
     @property
     def rates(self) -> tuple[Expr, ...]:
@@ -105,13 +109,13 @@ class ConstraintSystem:
         self.check_consistent()
         branches = self.branches
         verdicts = (
-            decide(
-                Same(tuple(Part("dω on allowed displacements", c) for c in self._curvatures(b)), b.domain),
-                self.deadline,
-            )
-            for b in branches
+            self._vanish("dω on allowed displacements", self._curvatures(b), b.domain) for b in branches
         )
         return all_hold(verdicts, "the constraints are integrable")
+
+    def _vanish(self, name: str, expressions: Iterable[Expr], domain: Domain) -> Verdict:
+        left = max(0.05, self.until - clock.monotonic())
+        return vanish_together(tuple(expressions), domain, left).about(name)
 
     def _curvatures(self, branch: Branch) -> Iterator[Expr]:
         """Yield dω(X, Y) where the constraints hold, for a basis of the displacements that are allowed there.
@@ -145,10 +149,9 @@ class ConstraintSystem:
             )
         [g] = list(self.velocities)
         v = [velocity(x) for x in self.q]
-        bends = tuple(Part("the curvature of the set of velocities", c) for c in _second_form(g, v))
-        parts = [(replace(bend, through=b.values), b.domain) for bend in bends for b in self.branches]
-        for part, domain in parts:
-            flat = decide(Same((part,), domain), self.deadline)
+        for bend, b in product(_second_form(g, v), self.branches):
+            here = substitute(bend, b.values)
+            flat = self._vanish("the curvature of the set of velocities", [here], b.domain)
             if flat.fails:
                 return flat
         raise Undecided(
@@ -199,7 +202,7 @@ class ConstraintSystem:
         except EmptyDomainError:
             return
         for b in edge:
-            yield decide(Same((Part("∂/∂t", h.diff(self.t), through=b.values),), b.domain), self.deadline)
+            yield self._vanish("∂/∂t", [substitute(h.diff(self.t), b.values)], b.domain)
 
     def _check_regular(self) -> None:
         """Refuse constraints such as (x − t)² = 0, whose derivatives vanish where they hold."""
@@ -219,10 +222,8 @@ class ConstraintSystem:
         wanted = [e for e in expressions if e != 0]
         if not wanted:
             return Verdict(Status.HOLDS, name, "structure")
-        parts = [[Part(name, e, through=b.values) for e in wanted] for b in self.branches]
         verdicts = (
-            decide(Same(tuple(some), b.domain), self.deadline)
-            for some, b in zip(parts, self.branches, strict=True)
+            self._vanish(name, [substitute(e, b.values) for e in wanted], b.domain) for b in self.branches
         )
         return all_hold(verdicts, name)
 
@@ -250,6 +251,69 @@ class ConstraintSystem:
                 "eliminate positions with those that hold no velocities"
             )
         return len(self.forms.holonomic_part.forms)
+
+
+def is_integrable(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> Verdict:
+    """Tell whether the constraints of a system are holonomic together, those on velocities in disguise.
+
+    They are looked at where they hold, branch by branch: ẋ = z ẏ is integrable on z = 0, though not off it.
+
+    Returns
+    -------
+    Verdict
+        HOLDS where positions are restricted; FAILS where the constraints are truly nonholonomic, with a
+        counterexample: a point where two allowed displacements do not close.
+
+    Raises
+    ------
+    Undecided
+        Where the constraints contradict each other, could not be solved, or hold functions with pieces.
+
+    Examples
+    --------
+    >>> from canon import Lagrangian, coordinates
+    >>> from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+    >>> from sympy import cos, sin
+    >>> x, y, theta = coordinates("x y theta")
+    >>> L = Lagrangian((x.dot**2 + y.dot**2 + theta.dot**2)/2, [x, y, theta])
+    >>> blade = ConstrainedLagrangian(L, nonholonomic=[x.dot*sin(theta) - y.dot*cos(theta)])
+    >>> rolling = ConstrainedLagrangian(L, nonholonomic=[x.dot - theta.dot])
+    >>> is_integrable(blade).status.name, is_integrable(rolling).status.name
+    ('FAILS', 'HOLDS')
+    """
+    return _system_of(constrained, domain).integrable
+
+
+def positional_freedom(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> int:
+    """Return the dimension of the positions that can be reached: coordinates less restrictions of positions.
+
+    Truly nonholonomic constraints restrict none; those that are holonomic in disguise do.
+
+    Raises
+    ------
+    Undecided
+        Where it was not decided which combinations of the constraints are integrable.
+
+    Examples
+    --------
+    A unicycle reaches every place in every heading, although one velocity is barred:
+
+    >>> from canon import Lagrangian, coordinates
+    >>> from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+    >>> from sympy import tan
+    >>> x, y, theta = coordinates("x y theta")
+    >>> L = Lagrangian((x.dot**2 + y.dot**2 + theta.dot**2)/2, [x, y, theta])
+    >>> unicycle = ConstrainedLagrangian(L, nonholonomic=[y.dot - x.dot*tan(theta)])
+    >>> positional_freedom(unicycle), unicycle.degrees_of_freedom
+    (3, 2)
+    """
+    return _system_of(constrained, domain).freedom("positions")
+
+
+def _system_of(constrained: ConstrainedLagrangian, domain: Domain | None) -> ConstraintSystem:
+    q, t = constrained.lagrangian.q, constrained.lagrangian.t
+    holonomic, nonholonomic = constrained.holonomic, constrained.nonholonomic
+    return ConstraintSystem(q, t, holonomic, nonholonomic, (), as_domain(domain), clock.monotonic() + SECONDS)
 
 
 def _second_form(g: Expr, v: Sequence[Symbol]) -> Iterator[Expr]:

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.sheet.sympy_trees import arguments, replaced, symbols_of
+from canon.mechanics.algebra.substitution import exchanged, symbols_of
 from canon.proof.domain.reality import certainly_real
 from canon.proof.trees.polynomial import polynomial_factors
+from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -84,7 +85,7 @@ def polynomial_roots(equation: Expr, unknown: Expr) -> list[Root] | None:
     """
     x = sp.Dummy("x", real=True)
     try:
-        poly = sp.Poly(replaced(equation, {unknown: x}), x)
+        poly = sp.Poly(exchanged(equation, {unknown: x}), x)
     except sp.PolynomialError:
         return None
     if any(c.has(x) for c in poly.all_coeffs()) or poly.degree() < 1:
@@ -114,7 +115,7 @@ def named(value: Expr) -> Expr:
     >>> named(2 * sp.pi * sp.Dummy("n", integer=True))
     2*pi*n
     """
-    return replaced(value, {n: sp.Symbol(n.name, integer=True) for n in value.atoms(sp.Dummy)})
+    return exchanged(value, {n: sp.Symbol(n.name, integer=True) for n in value.atoms(sp.Dummy)})
 
 
 def _solved(equation: Expr, symbol: Symbol, layers: int) -> list[Root] | None:
@@ -176,7 +177,7 @@ def _by_one_function(factor: Expr, kernels: list[Expr]) -> tuple[Expr, list[Expr
         poly = sp.Poly(factor, kernel)
         if all(power % 2 == 0 for (power,) in poly.monoms()):
             even = sp.Add(*(c * square ** (power // 2) for (power,), c in poly.terms()))
-            return sp.expand(replaced(even, {square: 1 - other**2})), [other]
+            return sp.expand(exchanged(even, {square: 1 - other**2})), [other]
     return factor, kernels
 
 
@@ -196,7 +197,7 @@ def _by_half_angle(factor: Expr, kernels: list[Expr], symbol: Symbol, layers: in
     }
     if not certainly_real(angle):
         return None
-    numerator = sp.numer(sp.together(replaced(factor, values)))
+    numerator = sp.numer(sp.together(exchanged(factor, values)))
     found: list[Root] = []
     for part, _ in polynomial_factors(numerator):
         roots = polynomial_roots(part, tangent) if part.has(tangent) else []
@@ -207,7 +208,7 @@ def _by_half_angle(factor: Expr, kernels: list[Expr], symbol: Symbol, layers: in
             if further is None:
                 return None
             found += [deeper.inside(root.conditions) for deeper in further]
-    if replaced(factor, {sp.sin(angle): sp.S.Zero, sp.cos(angle): sp.S.NegativeOne}) == 0:
+    if exchanged(factor, {sp.sin(angle): sp.S.Zero, sp.cos(angle): sp.S.NegativeOne}) == 0:
         opposite = _solved(angle - sp.pi - _turns(2), symbol, layers - 1)
         if opposite is None:
             return None
@@ -273,7 +274,7 @@ def _turns_told_apart(root: Root, symbol: Symbol, domain: Domain) -> Iterator[Ro
         yield root
         return
     (n,) = turns
-    start, step = replaced(root.value, {n: sp.S.Zero}), root.value.diff(n)
+    start, step = exchanged(root.value, {n: sp.S.Zero}), root.value.diff(n)
     if not (start.is_number and start.is_real and step.is_number and step.is_nonzero):
         yield root
         return

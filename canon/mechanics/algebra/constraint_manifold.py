@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.solve_for_symbol import Root, real_solutions
-from canon.exercise.sheet.sympy_trees import symbols_of
 from canon.expression.symbols.symbol import velocity
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.solve_for_symbol import Root, real_solutions
+from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.proof.analytic import proved_sign
 from canon.proof.definedness.definedness import lack_of_value
 from canon.proof.definedness.formula_around import put_in
@@ -144,7 +143,7 @@ def inhabited(branches: Iterable[Branch]) -> list[Branch]:
     >>> inhabited(on_manifold([x**2 + y**2 + 1], Domain()))
     Traceback (most recent call last):
         ...
-    canon.exercise.question.constraint_manifold.EmptyDomainError: no point satisfies the constraints, ...
+    canon.mechanics.algebra.constraint_manifold.EmptyDomainError: no point satisfies the constraints, ...
     """
     found = [b for b in branches if not _without_point(b.domain)]
     if not found:
@@ -162,7 +161,7 @@ def check_not_empty(constraints: Sequence[Expr], q: Sequence[Symbol], t: Symbol,
     >>> check_not_empty([x, x - 1], [x], sp.Symbol("t", real=True), Domain())
     Traceback (most recent call last):
         ...
-    canon.exercise.question.constraint_manifold.EmptyDomainError: no point satisfies the constraints, ...
+    canon.mechanics.algebra.constraint_manifold.EmptyDomainError: no point satisfies the constraints, ...
     """
     rates = [velocity(x) for x in q]
     try:
