@@ -107,7 +107,7 @@ def henon_heiles() -> Case:
 
 def fput(n: int) -> Case:
     """A chain with fixed ends, H = Σ p²/2 + Σ d²/2 + d³/12 of the neighbours' distances d."""
-    q = coordinates(" ".join(f"x{i}" for i in range(n)))
+    q = coordinates(" ".join(f"x{i}" for i in range(n)) + ",")
     ends = [sp.Integer(0), *q, sp.Integer(0)]
     distances = [right - left for left, right in itertools.pairwise(ends)]
     H = sp.Add(*(s.momentum**2 / 2 for s in q), *(d**2 / 2 + d**3 / 12 for d in distances))
@@ -118,7 +118,7 @@ def fput(n: int) -> Case:
 def bodies(count: int) -> Case:
     """Equal masses but one, on a helix, attracting each other by Newton's law."""
     masses = (1.0, *[1e-3] * (count - 1))
-    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xyz"))
+    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xyz") + ",")
     H = sp.Add(*(q[k].momentum ** 2 / (2 * sp.Rational(masses[k // 3])) for k in range(3 * count)))
     for i in range(count):
         for j in range(i):

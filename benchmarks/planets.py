@@ -10,7 +10,8 @@ import argparse
 import statistics
 from typing import TYPE_CHECKING
 
-from canon import SABA, SBAB, Splitting, WisdomHolman, propagate
+from canon import SABA, Splitting, WisdomHolman, propagate
+from canon.flow import SBAB
 from canon.scene import find
 
 if TYPE_CHECKING:

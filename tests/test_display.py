@@ -13,13 +13,13 @@ x = symbols("x", real=True)
 
 def examples():
     """One value of every public type whose fields would fill a screen."""
-    (theta,) = canon.coordinates("theta")
+    theta = canon.coordinates("theta")
     pendulum = canon.Hamiltonian(theta.momentum**2 / 2 - cos(theta), [theta], [theta.momentum])
     scene = find("henon-heiles")
     methods = [canon.Splitting("verlet"), canon.RK4()]
     motion = canon.propagate(scene.hamiltonian, (0, 100), scene.state(), method=methods[0], step=0.1)
     claim = {"id": "c", "kind": "equality-only", "lhs": "x", "rhs": "x", "parameters": {"x": "real"}}
-    sheet = canon.Sheet("A sheet", (canon.Claim("c", "equality-only", claim),))
+    sheet = canon.exercise.Sheet("A sheet", (canon.exercise.Claim("c", "equality-only", claim),))
     choice = canon.choose(scene, 100.0, accuracy=1e-3, methods=methods)
     crossed = canon.propagate(
         pendulum, (0, 10), [1.0, 0.0], method=canon.Taylor(), events=[canon.Event(theta)]
@@ -45,7 +45,7 @@ def examples():
         "judgement": canon.check(sheet).judgements[0],
         "error": motion.error_estimate(),
         "crossing": crossed.events[0],
-        "witness": canon.symplectic_flow(pendulum, (0, 1), [1.0, 0.0]),
+        "witness": canon.flow.symplectic_flow(pendulum, (0, 1), [1.0, 0.0]),
         "candidate": choice.candidates[0],
         "result": results[0],
         "body": canon.RigidBody(x, (), (x, x, x), rotation=eye(3)),
@@ -81,7 +81,7 @@ def test_a_notebook_shows_tables_and_escapes_them(shown):
         page = shown[name]._repr_html_()
         assert page.startswith("<pre style="), name
         assert "script" not in page
-    hostile = canon.Verdict(canon.Status.FAILS, "<script>alert(1)</script>")
+    hostile = canon.Verdict(canon.proof.Status.FAILS, "<script>alert(1)</script>")
     assert "<script>" not in hostile._repr_html_()
     assert "FAILS" in hostile._repr_html_()
 
@@ -95,7 +95,7 @@ def test_a_picture_shows_itself_in_a_notebook(shown):
 
 
 def test_systems_are_shown_as_formulas():
-    (r,), (m, g) = canon.coordinates("r"), canon.parameters("m g", positive=True)
+    r, (m, g) = canon.coordinates("r"), canon.parameters("m g", positive=True)
     fall = canon.GibbsAppell([canon.Particle(m, [r])], [r], V=m * g * r)
     assert fall._repr_latex_() == (
         r"$\displaystyle \begin{aligned}S &= \frac{m \ddot{r}^{2}}{2} \\ "

@@ -6,23 +6,22 @@ import sympy as sp
 import canon
 from canon import (
     CanonicalTransformation,
-    Claim,
     ConstrainedLagrangian,
     Domain,
     GeneratingFunction,
     GibbsAppell,
     Hamiltonian,
-    ImplicitTransformation,
     Lagrangian,
     Particle,
-    Sheet,
     VectorField,
     coordinates,
     parameters,
 )
+from canon.exercise import Claim, Sheet
 from canon.exercise.sheet.sheet import sheet_from
+from canon.mechanics import ImplicitTransformation
 
-(q,) = coordinates("q")
+q = coordinates("q")
 p = q.momentum
 x, y = sp.symbols("x y", real=True)
 H = Hamiltonian(p**2 / 2 + q**2 / 2, [q], [p])
@@ -80,10 +79,10 @@ WRONG = [
     (lambda: parameters("m", positive="yes"), TypeError, "True or False"),
     (lambda: parameters("m", positive=True, negative=True), ValueError, "at once"),
     (lambda: canon.time_derivative("x", [q]), TypeError, "f should be an expression"),
-    (lambda: canon.parse_expression("x", {}), TypeError, "write Scope"),
+    (lambda: canon.expression.parse_expression("x", {}), TypeError, "write Scope"),
     (lambda: canon.noether_charge(H, [1]), TypeError, "the system should be a Lagrangian"),
     (lambda: canon.noether_charge(L, 1), TypeError, "xi should be a list"),
-    (lambda: canon.is_gauge_equivalent(L, H), TypeError, "should be a Lagrangian"),
+    (lambda: canon.mechanics.is_gauge_equivalent(L, H), TypeError, "should be a Lagrangian"),
     (lambda: canon.routhian(H, [q]), TypeError, "should be a Lagrangian"),
     (lambda: canon.kinetic_energy([q], [q]), TypeError, r"write Particle\(m"),
     (lambda: GibbsAppell([3], [q]), TypeError, r"write Particle\(m"),
@@ -102,10 +101,10 @@ WRONG = [
     (lambda: canon.check(3), TypeError, "should be a Sheet"),
     (lambda: canon.check(Sheet("", ()), jobs=0), ValueError, "1 or more"),
     (lambda: canon.judge({"id": "a"}), TypeError, "should be a Claim"),
-    (lambda: canon.judge(Claim("a", "equality-onyl", {})), canon.InvalidClaim, "is equality-only meant"),
-    (lambda: canon.judge(Claim("a", "equality-only", {"lhs": "1"})), canon.InvalidClaim, "key rhs: missing"),
+    (lambda: canon.judge(Claim("a", "equality-onyl", {})), canon.exercise.InvalidClaim, "is equality-only meant"),
+    (lambda: canon.judge(Claim("a", "equality-only", {"lhs": "1"})), canon.exercise.InvalidClaim, "key rhs: missing"),
     (lambda: canon.read_sheet(3), TypeError, "path of the sheet"),
-    (lambda: sheet_from(b'[[claim]]\nlhs = "$\\sin x$"', toml=True), canon.SheetError, "single quotes"),
+    (lambda: sheet_from(b'[[claim]]\nlhs = "$\\sin x$"', toml=True), canon.exercise.SheetError, "single quotes"),
 ]  # fmt: skip
 
 
@@ -155,7 +154,7 @@ def test_a_claim_about_no_point_is_invalid(domain, said):
     keys = {"lhs": "x", "rhs": "x + 1", "parameters": {"x": "real"}, "domain": domain}
     claim = Claim("a", "equality-only", keys)
     if said:
-        with pytest.raises(canon.InvalidClaim, match=said):
+        with pytest.raises(canon.exercise.InvalidClaim, match=said):
             canon.judge(claim)
     else:
         assert canon.judge(claim).fails

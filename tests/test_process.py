@@ -32,7 +32,7 @@ STANDARD = (
 JUDGE = """
 import canon
 keys = {"lhs": "$\\\\sin(2 x)$", "rhs": "2*sin(x)*cos(x)", "parameters": {"x": "real"}}
-print(canon.check(canon.Sheet("s", (canon.Claim("a", "equality-only", keys),))).counts)
+print(canon.check(canon.exercise.Sheet("s", (canon.exercise.Claim("a", "equality-only", keys),))).counts)
 canon.expect("equality-only", **keys)
 """
 PROVE = """

@@ -173,7 +173,7 @@ def redundant() -> object:
 
 
 def nearly_dependent(gap: float) -> Outcome:
-    z = coordinates("z")[0]
+    z = coordinates("z")
     free = derivation([Particle(sp.Integer(1), (x, y, z))], [x, y, z], field=(0, 0, -10))
     e = sp.Rational(gap)
     try:
@@ -212,7 +212,7 @@ def long_run(*, projected: bool) -> Outcome:
         if projected:
             state = np.concatenate(motion.projected(state[:2], state[2:], 0.0))
     values, rates = motion.residual(state[:2], state[2:], 0.0)
-    (theta,) = coordinates("theta")
+    theta = coordinates("theta")
     H = Hamiltonian(theta.momentum**2 / 2 - 10 * sp.cos(theta), [theta], [theta.momentum])
     angle = propagate(
         H,

@@ -14,13 +14,13 @@ from canon import (
     Event,
     Gauss,
     Hamiltonian,
-    NonFiniteStateError,
     Splitting,
     TimeTransformed,
     WisdomHolman,
     coordinates,
     propagate,
 )
+from canon.flow import NonFiniteStateError
 from extremes.numeric_tools import (
     Problem,
     by_taylor,

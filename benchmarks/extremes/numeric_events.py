@@ -8,7 +8,8 @@ import numpy as np
 import sympy as sp
 from mpmath import mp, mpf
 
-from canon import Event, Hamiltonian, NonFiniteStateError, Splitting, coordinates, propagate
+from canon import Event, Hamiltonian, Splitting, coordinates, propagate
+from canon.flow import NonFiniteStateError
 from extremes.row import Outcome, Row, refused
 
 if TYPE_CHECKING:

@@ -195,7 +195,7 @@ def _ball(count: int) -> tuple[Hamiltonian, np.ndarray]:
     rng = np.random.default_rng(7)
     places = rng.normal(size=(count, 2)) * 0.5
     speeds = rng.normal(size=(count, 2)) * 0.3
-    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xy"))
+    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xy") + ",")
     p = [c.momentum for c in q]
     m, soft = sp.Rational(1, count), sp.Rational(1, 400)
     kinetic = sp.Add(*[c**2 / (2 * m) for c in p])
@@ -250,7 +250,7 @@ def bodies_by_rebound() -> Outcome:
 
 
 def lattice(n: int, alpha: float) -> Outcome:
-    q = coordinates(" ".join(f"q{i}" for i in range(n)))
+    q = coordinates(" ".join(f"q{i}" for i in range(n)) + ",")
     p = [c.momentum for c in q]
     ends = [sp.S.Zero, *q, sp.S.Zero]
     stretch = [b - a for a, b in itertools.pairwise(ends)]

@@ -10,7 +10,6 @@ import sympy as sp
 from canon import (
     Event,
     Hamiltonian,
-    NonFiniteStateError,
     Splitting,
     Taylor,
     TimeTransformed,
@@ -19,13 +18,14 @@ from canon import (
     parameters,
     propagate,
 )
+from canon.flow import NonFiniteStateError
 from extremes.row import Row, refused
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 x, y = coordinates("x y")
-(k,) = parameters("k", positive=True)
+k = parameters("k", positive=True)
 SPRING = Hamiltonian(x.momentum**2 / 2 + k * x**2 / 2, [x], [x.momentum])
 VERLET = {"method": Splitting("verlet"), "step": 0.1}
 NAN, INF = float("nan"), float("inf")

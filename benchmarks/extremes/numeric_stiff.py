@@ -9,7 +9,8 @@ import numpy as np
 import sympy as sp
 from mpmath import mp, mpf
 
-from canon import RK4, Gauss, Hamiltonian, NonFiniteStateError, Splitting, coordinates, propagate
+from canon import RK4, Gauss, Hamiltonian, Splitting, coordinates, propagate
+from canon.flow import NonFiniteStateError
 from extremes.numeric_tools import Problem, by_taylor, motion_row
 from extremes.row import Row, refused
 

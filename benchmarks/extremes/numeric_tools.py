@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from canon import AccuracyWarning, Hamiltonian, NonFiniteStateError, Taylor, propagate
+from canon import AccuracyWarning, Hamiltonian, Taylor, propagate
+from canon.flow import NonFiniteStateError
 from extremes.row import Outcome, Row, shown
 
 if TYPE_CHECKING:

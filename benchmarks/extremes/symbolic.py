@@ -332,7 +332,7 @@ def _large() -> Iterator[Row]:
     def pendulum() -> Outcome:
         from canon import Lagrangian, coordinates, parameters
 
-        q = coordinates(" ".join(f"q{k}" for k in range(40)))
+        q = coordinates(" ".join(f"q{k}" for k in range(40)) + ",")
         g, l = parameters("g l", positive=True)
         X = Y = sp.S.Zero
         T = V = sp.S.Zero
@@ -478,7 +478,8 @@ NAMES = ("I", "E", "N", "S", "Q", "O", "C", "pi", "beta", "gamma", "zeta", "lamb
 
 def _names() -> Iterator[Row]:
     def named(name: str) -> Outcome:
-        from canon import Claim, judge
+        from canon import judge
+        from canon.exercise import Claim
 
         one = Claim(
             "a", "constant-of-motion",
@@ -527,7 +528,8 @@ LOOKALIKES: Mapping[str, tuple[str, str]] = {
 
 def _sheets() -> Iterator[Row]:
     def lookalike(text: str) -> Outcome:
-        from canon import Claim, InvalidClaim, judge
+        from canon import judge
+        from canon.exercise import Claim, InvalidClaim
 
         keys = {"lhs": text, "rhs": "12345", "parameters": dict.fromkeys("abolx", "real")}
         try:
@@ -545,7 +547,8 @@ def _sheets() -> Iterator[Row]:
         )
 
     def thousands() -> Outcome:
-        from canon import Claim, Sheet, check
+        from canon import check
+        from canon.exercise import Claim, Sheet
 
         count = 3000
         claims = tuple(
@@ -565,7 +568,8 @@ def _sheets() -> Iterator[Row]:
     yield Row("claims-3000", "3000 claims in one sheet, every seventh wrong", thousands, limit=400.0)
 
     def bomb(text: str, words: str) -> Outcome:
-        from canon import Claim, Sheet, check
+        from canon import check
+        from canon.exercise import Claim, Sheet
 
         start = time.monotonic()
         sheet = Sheet("b", (Claim("a", "equality-only", {"lhs": text, "rhs": "1"}, budget=5.0),))

@@ -30,7 +30,7 @@ def proof():
     held = vanishes(sp.sin(x)**2 + sp.cos(x)**2 - 1).status.value
     return held, vanishes(sp.sin(2*x) - 2*sp.sin(x)).status.value
 def motion(method=None, precision="double"):
-    (q,) = coordinates("q")
+    q = coordinates("q")
     p = q.momentum
     pendulum = Hamiltonian(p**2/2 - sp.cos(q), [q], [p])
     step = None if isinstance(method, Taylor) else 0.05
@@ -85,7 +85,7 @@ def _move(k: int) -> str:
 
     from canon import Hamiltonian, Splitting, coordinates, propagate
 
-    (q,) = coordinates("q")
+    q = coordinates("q")
     pendulum = Hamiltonian(q.momentum**2 / 2 - sp.cos(q), [q], [q.momentum])
     found = propagate(
         pendulum, (0.0, 50.0), (1.0 + k / 100, 0.5), method=Splitting("blanes-moan-4"), step=0.05
@@ -191,7 +191,7 @@ def _ended() -> Iterator[Row]:
     def interrupted_motion() -> Outcome:
         script = USES + (
             "motion()\nprint('ready', flush=True)\n"
-            "(q,) = coordinates('q')\n"
+            "q = coordinates('q')\n"
             "try:\n    propagate(Hamiltonian(q.momentum**2/2 - sp.cos(q), [q], [q.momentum]), (1.25, 0.5), "
             "(0.0, 1e8), method=Splitting('verlet'), step=0.01, samples=3)\n"
             "except BaseException as e:\n    print(type(e).__name__, flush=True)\n"

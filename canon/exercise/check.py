@@ -49,7 +49,7 @@ def check(sheet: str | Path | Sheet, jobs: int = 1) -> Report:
 
     Examples
     --------
-    >>> from canon import Claim, Sheet
+    >>> from canon.exercise import Claim, Sheet
     >>> keys = {"lhs": "sin(2*x)", "rhs": "2*sin(x)*cos(x)", "parameters": {"x": "real"}}
     >>> report = check(Sheet("one", (Claim("a", "equality-only", keys),)))
     >>> report.counts

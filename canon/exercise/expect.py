@@ -107,7 +107,7 @@ def _written_by_sympy(value: Any, q: list[str]) -> Any:
         return [_written(item, q) for item in value]
     if isinstance(value, sp.Expr):
         clocked = q and value.has(AppliedUndef)
-        return str(plain(value, coordinates(" ".join(q))) if clocked else value)
+        return str(plain(value, [coordinates(name) for name in q]) if clocked else value)
     if isinstance(value, list | tuple):
         return [_written(item, q) for item in value]
     return str(value)

@@ -94,7 +94,7 @@ def judge(claim: Claim) -> Verdict:
 
     Examples
     --------
-    >>> from canon import Claim
+    >>> from canon.exercise import Claim
     >>> print(judge(Claim("a", "equality-only", {"lhs": "sin(t)**2", "rhs": "1 - cos(t)**2"})))
     HOLDS ...
     """

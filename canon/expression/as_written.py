@@ -38,7 +38,7 @@ def as_written(text: str, scope: Scope) -> Expr:
     --------
     >>> from canon import parameters
     >>> from canon.expression.text.scope import Scope
-    >>> (x,) = parameters("x")
+    >>> x = parameters("x")
     >>> as_written("x + 0/x", Scope({"x": x}))
     x + 0/x
     """

@@ -148,7 +148,7 @@ class ErrorEstimate:
 def error_estimate(
     task: Task, samples: Samples, energy_change: Array, orbits: Sequence[int] | None = None
 ) -> ErrorEstimate:
-    """Return the error of a motion by a companion run; see :meth:`canon.Trajectory.error_estimate`.
+    """Return the error of a motion by a companion run; see :meth:`canon.flow.Trajectory.error_estimate`.
 
     Parameters
     ----------

@@ -141,8 +141,8 @@ def propagate(
     --------
     >>> from canon import Hamiltonian, Splitting, coordinates, parameters, propagate
     >>> import sympy
-    >>> (theta,) = coordinates("theta")
-    >>> (g,) = parameters("g", positive=True)
+    >>> theta = coordinates("theta")
+    >>> g = parameters("g", positive=True)
     >>> pendulum = Hamiltonian(theta.momentum**2 / 2 - g * sympy.cos(theta), [theta], [theta.momentum])
     >>> motion = propagate(
     ...     pendulum, (0, 1000), [1.0, 0.0], method=Splitting("kahan-li-8"), step=0.1, parameters={g: 9.81}

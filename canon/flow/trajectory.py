@@ -195,7 +195,7 @@ class Trajectory:
         Examples
         --------
         >>> from canon import Lagrangian, coordinates, propagate
-        >>> (x,) = coordinates("x")
+        >>> x = coordinates("x")
         >>> spring, start = Lagrangian(x.dot**2 / 2 - x**2 / 2, [x]), {"x": 1, "x_dot": 0}
         >>> motion = propagate(spring, y0=start, t_span=(0, 1), samples=2)
         >>> motion["x"].round(6), motion[x**2 + x.dot**2].round(6)
@@ -326,7 +326,7 @@ class Trajectory:
         --------
         >>> from canon import Hamiltonian, Splitting, coordinates, propagate
         >>> import sympy
-        >>> (x,) = coordinates("x")
+        >>> x = coordinates("x")
         >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
         >>> motion = propagate(pendulum, (0, 100), [1.0, 0.0], method=Splitting("verlet"), step=0.1)
         >>> estimate = motion.error_estimate()
@@ -395,7 +395,7 @@ class Trajectory:
         --------
         >>> from canon import Hamiltonian, Splitting, coordinates, propagate
         >>> import sympy
-        >>> (x,) = coordinates("x")
+        >>> x = coordinates("x")
         >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
         >>> chosen = {"method": Splitting("verlet"), "step": 0.125}
         >>> half = propagate(pendulum, (0, 10), [1.0, 0.0], samples=10, **chosen)

@@ -181,7 +181,7 @@ def multiplier(number: int = 1) -> Symbol:
     """
     from canon.expression.symbols.symbol import parameters
 
-    return parameters(f"lambda{number}")[0]
+    return parameters(f"lambda{number}")
 
 
 def near(name: str, known: Iterable[str]) -> str:

@@ -48,7 +48,9 @@ def reduced(scene: Scene, start: str | None = None) -> Scene:
     if not ignored:
         raise SceneError(f"no coordinate of {scene.name} is ignorable, so nothing can be left out")
     names = [s.momentum.name for s in scene.q if s in ignored]
-    found = routhian(scene.lagrangian, [s for s in scene.q if s in ignored], parameters(" ".join(names)))
+    found = routhian(
+        scene.lagrangian, [s for s in scene.q if s in ignored], [parameters(name) for name in names]
+    )
     chosen = scene.start(start)
     n, state = len(scene.q), scene.state(chosen)
     kept = [i for i, s in enumerate(scene.q) if s not in ignored]

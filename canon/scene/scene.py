@@ -129,7 +129,7 @@ class Scene:
         """The coordinates as symbols."""
         from canon.expression.symbols.symbol import coordinates
 
-        return coordinates(self.coordinates)
+        return coordinates(f"{self.coordinates},")
 
     @cached_property
     def p(self) -> tuple[Symbol, ...]:
@@ -141,7 +141,7 @@ class Scene:
         """Coordinates, parameters and the time ``t`` as symbols, by name."""
         from canon.expression.symbols.symbol import parameters, time
 
-        constants = [parameters(c.name, **{c.sign: True})[0] for c in self.parameters]
+        constants = [parameters(c.name, **{c.sign: True}) for c in self.parameters]
         return SimpleNamespace(**{s.name: s for s in (time, *self.q, *constants)})
 
     @property

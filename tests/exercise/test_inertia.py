@@ -42,7 +42,7 @@ T = (
 def lagrange(T):
     """Return Lagrange's equations of T as text: a route that knows no Appell function."""
     q = coordinates("psi theta")
-    names = {s.name: s for s in (*q, *parameters(" ".join(TENSOR)))}
+    names = {s.name: s for s in (*q, *parameters(" ".join(TENSOR) + ","))}
     return [str(equation) for equation in Lagrangian(parse_expression(T, Scope(names)), q).equations]
 
 

@@ -265,7 +265,7 @@ def test_whole_numbers_have_no_kinks():
 
 def test_the_library_leaves_out_kinks_where_it_differentiates_and_only_there():
     assert vanishes(sp.sign(x) ** 2 - 1).fails
-    (s,) = coordinates("s")
+    s = coordinates("s")
     moduli = Lagrangian(s.dot**2 / 2 - abs(s), [s])
     pieces = Lagrangian(s.dot**2 / 2 - sp.Piecewise((s, s > 0), (-s, True)), [s])
     half = Lagrangian(s.dot**2 / 2 - sp.Piecewise((s, s > 0), (0, True)), [s])

@@ -262,7 +262,7 @@ def test_what_is_said_of_the_library_stays():
 
     from canon import Hamiltonian, coordinates, parameters
 
-    (q,), (p,) = coordinates("q"), parameters("p")
+    q, p = coordinates("q"), parameters("p")
     assert is_constant_of_motion(sp.Integer(7), Hamiltonian(p**2 / 2, [q], [p])).holds
 
 

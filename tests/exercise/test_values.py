@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from canon import Claim, InvalidClaim, judge
+from canon import judge
+from canon.exercise import Claim, InvalidClaim
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.reading import Reading
 from canon.exercise.sheet.sheet import sheet_from

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from canon import coordinates, parameters, time, time_derivative
 from canon.expression.symbols.symbol import Rate, without_dynamicsymbols
 
-(THETA,) = coordinates("theta")
-EVERY_KIND = (THETA, THETA.dot, THETA.ddot, THETA.momentum, *parameters("m"))
+THETA = coordinates("theta")
+EVERY_KIND = (THETA, THETA.dot, THETA.ddot, THETA.momentum, parameters("m"))
 
 
 def test_a_coordinate_knows_its_rates_and_momentum():
@@ -26,20 +26,28 @@ def test_a_coordinate_knows_its_rates_and_momentum():
 
 
 def test_assumptions_reach_the_coordinate_and_not_its_rate():
-    (r,) = coordinates("r", positive=True)
+    r = coordinates("r", positive=True)
     assert r.is_positive
     assert r.dot.is_positive is None
 
 
 def test_rates_print_with_dots_in_latex():
-    (theta,) = coordinates("theta")
+    theta = coordinates("theta")
     assert sp.latex(theta.dot) == r"\dot{\theta}"
     assert sp.latex(theta.ddot**2) == r"\ddot{\theta}^{2}"
 
 
 def test_symbols_survive_pickling():
-    (r,) = coordinates("r", positive=True)
+    r = coordinates("r", positive=True)
     assert pickle.loads(pickle.dumps(r.dot + r)) == r.dot + r
+
+
+@pytest.mark.parametrize("make", [coordinates, parameters])
+def test_one_name_gives_one_symbol_and_several_a_tuple(make):
+    alone = make("x")
+    assert isinstance(alone, sp.Symbol)
+    assert make("x,") == (alone,)
+    assert make("x, y") == make("x y") == (alone, make("y"))
 
 
 @pytest.mark.parametrize("names", ["", "  ", "x y x"])
@@ -52,7 +60,7 @@ def test_parameters_take_assumptions():
     m, a = parameters("m a", positive=True)
     assert m.is_positive
     assert a.is_positive
-    (b,) = parameters("b")
+    b = parameters("b")
     assert b.is_real
     assert b.is_positive is None
 
@@ -72,7 +80,7 @@ def test_time_derivative_agrees_with_functions_of_time(a, b, c, d):
 
 
 def test_time_derivative_is_not_the_partial_one():
-    (x,) = coordinates("x")
+    x = coordinates("x")
     assert time_derivative(x**2, [x]) != sp.diff(x**2, time)
 
 

@@ -11,7 +11,6 @@ from canon import (
     Event,
     Gauss,
     Hamiltonian,
-    NonFiniteStateError,
     Splitting,
     Taylor,
     TimeTransformed,
@@ -19,6 +18,7 @@ from canon import (
     coordinates,
     propagate,
 )
+from canon.flow import NonFiniteStateError
 
 x, y = coordinates("x y")
 KEPLER = Hamiltonian(

@@ -16,7 +16,7 @@ from canon.flow.adaptive.state_unit import state_unit
 from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.run.sampling_plan import adaptive_plan, sampling
 
-(x,) = coordinates("x")
+x = coordinates("x")
 
 
 def moving(V: sp.Expr) -> Hamiltonian:
@@ -120,7 +120,7 @@ def test_a_starting_energy_of_round_off_is_none(method):
 
 
 def test_a_parabola_has_no_energy_and_a_starting_energy_that_is_small_is_one():
-    y = coordinates("y")[0]
+    y = coordinates("y")
     kepler = Hamiltonian(
         (x.momentum**2 + y.momentum**2) / 2 - 1 / sp.sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum]
     )

@@ -26,7 +26,7 @@ from canon.kernel.schemes.perturbed_schemes import saba
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.scene import find
 
-(x,) = coordinates("x")
+x = coordinates("x")
 PENDULUM = Hamiltonian(x.momentum**2 / 2 - sp.cos(x), [x], [x.momentum])
 MOTION = {"y0": [1.0, 0.0], "t_span": (0, 5)}
 

@@ -3,19 +3,11 @@
 import pytest
 import sympy as sp
 
-from canon import (
-    Event,
-    Hamiltonian,
-    NonFiniteStateError,
-    Splitting,
-    Taylor,
-    coordinates,
-    parameters,
-    propagate,
-)
+from canon import Event, Hamiltonian, Splitting, Taylor, coordinates, parameters, propagate
+from canon.flow import NonFiniteStateError
 
-(x,) = coordinates("x")
-(k,) = parameters("k", positive=True)
+x = coordinates("x")
+k = parameters("k", positive=True)
 SPRING = Hamiltonian(x.momentum**2 / 2 + k * x**2 / 2, [x], [x.momentum])
 METHODS = [{"method": Taylor()}, {"method": Splitting("verlet"), "step": 0.1}]
 

@@ -22,7 +22,7 @@ from tests.flow.systems import (
 )
 
 VERLET = Splitting("verlet")
-(u,) = coordinates("u")
+u = coordinates("u")
 m, k = parameters("m k", positive=True)
 OSCILLATOR = System(u.momentum**2 / (2 * m) + k * u**2 / 2, (u,), (u.momentum,))
 

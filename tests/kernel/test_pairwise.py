@@ -31,7 +31,7 @@ def system_of(potential: sp.Expr, q: tuple[sp.Symbol, ...]) -> HamiltonEquations
 
 
 def plane(count: int = BODIES) -> list[tuple[sp.Symbol, sp.Symbol]]:
-    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xy"))
+    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xy") + ",")
     return list(zip(q[::2], q[1::2], strict=True))
 
 

@@ -17,14 +17,14 @@ from canon.kernel.program.operation_families import families_of
 
 def chain(n):
     """A chain with fixed ends, cubic springs, and a push that depends on time where asked."""
-    q = coordinates(" ".join(f"x{i}" for i in range(n)))
+    q = coordinates(" ".join(f"x{i}" for i in range(n)) + ",")
     ends = [sp.Integer(0), *q, sp.Integer(0)]
     springs = [(b - a) ** 2 / 2 + (b - a) ** 3 / 12 for a, b in itertools.pairwise(ends)]
     return q, sp.Add(*(s.momentum**2 / 2 for s in q), *springs)
 
 
 def bodies(count):
-    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xyz"))
+    q = coordinates(" ".join(f"{c}{i}" for i in range(count) for c in "xyz") + ",")
     H = sp.Add(*(s.momentum**2 / 2 for s in q))
     for i in range(count):
         for j in range(i):
@@ -34,7 +34,7 @@ def bodies(count):
 
 def toda(n):
     """Bonds hold functions, which are not to be computed twice."""
-    q = coordinates(" ".join(f"x{i}" for i in range(n)))
+    q = coordinates(" ".join(f"x{i}" for i in range(n)) + ",")
     bonds = [sp.exp(a - b) for a, b in itertools.pairwise(q)]
     return q, sp.Add(*(s.momentum**2 / 2 for s in q), *bonds)
 

@@ -7,18 +7,18 @@ import sympy as sp
 from canon.expression.symbols.symbol import coordinates, parameters
 from canon.mechanics.lagrange.body import Particle, PlanarBody, RigidBody, euler_rotation
 
-(g,) = parameters("g", positive=True)
+g = parameters("g", positive=True)
 
 
 def planar_pendulum(n, on_cart=False):
     """Point masses on n massless links, perhaps hung from a cart; gravity (0, −g)."""
-    q = coordinates(" ".join(f"theta{i}" for i in range(n)))
-    l = parameters(" ".join(f"l{i}" for i in range(n)), positive=True)
-    m = parameters(" ".join(f"m{i}" for i in range(n)), positive=True)
+    q = coordinates(" ".join(f"theta{i}" for i in range(n)) + ",")
+    l = parameters(" ".join(f"l{i}" for i in range(n)) + ",", positive=True)
+    m = parameters(" ".join(f"m{i}" for i in range(n)) + ",", positive=True)
     x, y, bodies = sp.S.Zero, sp.S.Zero, []
     if on_cart:
-        (x,) = coordinates("x")
-        bodies.append(Particle(*parameters("M", positive=True), (x, sp.S.Zero)))
+        x = coordinates("x")
+        bodies.append(Particle(parameters("M", positive=True), (x, sp.S.Zero)))
     for angle, length, mass in zip(q, l, m, strict=True):
         place = bodies[-1].r if bodies else (x, y)
         bodies.append(Particle(mass, (place[0] + length * sp.sin(angle), place[1] - length * sp.cos(angle))))
@@ -27,7 +27,7 @@ def planar_pendulum(n, on_cart=False):
 
 def rods(n):
     """Uniform rods of one length hung from one another."""
-    q = coordinates(" ".join(f"theta{i}" for i in range(n)))
+    q = coordinates(" ".join(f"theta{i}" for i in range(n)) + ",")
     m, l = parameters("m l", positive=True)
     x, y, bodies = sp.S.Zero, sp.S.Zero, []
     for angle in q:
@@ -39,8 +39,8 @@ def rods(n):
 
 def spherical_chain(n):
     """Point masses on n links in space."""
-    theta = coordinates(" ".join(f"theta{i}" for i in range(n)))
-    phi = coordinates(" ".join(f"phi{i}" for i in range(n)))
+    theta = coordinates(" ".join(f"theta{i}" for i in range(n)) + ",")
+    phi = coordinates(" ".join(f"phi{i}" for i in range(n)) + ",")
     m, l = parameters("m l", positive=True)
     place, bodies = (sp.S.Zero,) * 3, []
     for a, b in zip(theta, phi, strict=True):
@@ -77,9 +77,9 @@ def spatial_arm():
 def n_body(n):
     """Gravitating points in space; the potential energy comes beside."""
     names = [f"{axis}{i}" for i in range(n) for axis in "xyz"]
-    q = coordinates(" ".join(names))
-    m = parameters(" ".join(f"m{i}" for i in range(n)), positive=True)
-    (G,) = parameters("G", positive=True)
+    q = coordinates(" ".join(names) + ",")
+    m = parameters(" ".join(f"m{i}" for i in range(n)) + ",", positive=True)
+    G = parameters("G", positive=True)
     places = [q[3 * i : 3 * i + 3] for i in range(n)]
     V = sp.Add(
         *(
@@ -92,7 +92,7 @@ def n_body(n):
 
 def spring_chain(n):
     """Equal masses on a line between springs."""
-    q = coordinates(" ".join(f"x{i}" for i in range(n)))
+    q = coordinates(" ".join(f"x{i}" for i in range(n)) + ",")
     m, k = parameters("m k", positive=True)
     V = sp.Add(*(k * (b - a) ** 2 / 2 for a, b in pairwise(q)))
     return [Particle(m, (s,)) for s in q], q, V

@@ -181,7 +181,7 @@ def test_inertia_wheel_pendulum():
 
 
 def test_mass_spring_with_actuator():
-    (q,) = coordinates("q")
+    q = coordinates("q")
     driven = lagrangian_of_bodies([Particle(m, (q,))], [q], k * (q - y0) ** 2 / 2, forces=[tau])
     agrees(driven, [m * q.ddot + k * (q - y0) - tau], [m * q.dot + k * (q - y0) - tau])
 
@@ -299,7 +299,7 @@ def test_equilibrium_by_virtual_work():
 
 def test_lagranges_equations_keep_their_form_under_affine_maps():
     """The notes' invariance: q = a Q + c with constants; equations map into one another."""
-    (Y,) = coordinates("Y")
+    Y = coordinates("Y")
     V = sp.Function("V")(x)
     old = Lagrangian(m * x.dot**2 / 2 - V, [x])
     new = embedded(old, {x: a * Y + c}, [Y])

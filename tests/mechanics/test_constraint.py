@@ -16,9 +16,9 @@ from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
 m, g, l, R, I, J, I1, I2, a, b, k, w = parameters("m g l R I J I1 I2 a b k w", positive=True)
-(alpha,) = parameters("alpha")
+alpha = parameters("alpha")
 x, y, z, s, theta, phi, psi, q1, q2, q3 = coordinates("x y z s theta phi psi q1 q2 q3")
-(r,) = coordinates("r", positive=True)
+r = coordinates("r", positive=True)
 sin, cos, tan = sp.sin, sp.cos, sp.tan
 
 
@@ -251,7 +251,7 @@ def test_leaving_the_hemisphere():
 
 def test_leaving_the_hemisphere_sideways():
     """With a spin about the vertical: λ = 3 m g cos θ − 2 E/a, by energy alone (Newton: m v²/a inwards)."""
-    phi, start, spin = (*coordinates("phi"), *parameters("start spin", positive=True))
+    phi, start, spin = (coordinates("phi"), *parameters("start spin", positive=True))
     T = m * (r.dot**2 + r**2 * theta.dot**2 + r**2 * sin(theta) ** 2 * phi.dot**2) / 2
     free = Lagrangian(T - m * g * r * cos(theta), [r, theta, phi])
     sphere = ConstrainedLagrangian(free, holonomic=[r - a])

@@ -155,7 +155,7 @@ def test_plain_symbols_are_taken_at_the_door():
 
 
 def test_forces_enter_on_the_right():
-    (x,) = coordinates("x")
+    x = coordinates("x")
     damped = Lagrangian(m * x.dot**2 / 2 - k * x**2 / 2, [x], forces=[-a * x.dot])
     assert vanishes(damped.equations[0] - (m * x.ddot + a * x.dot + k * x)).holds
     assert vanishes(damped.equations[0] - (m * x.ddot - a * x.dot + k * x)).fails
@@ -163,8 +163,8 @@ def test_forces_enter_on_the_right():
 
 def test_a_moving_support_enters_through_time():
     """A bead on a wire that rotates with θ = ω t: r̈ − ω² r = 0."""
-    (r,) = coordinates("r")
-    (w,) = parameters("omega")
+    r = coordinates("r")
+    w = parameters("omega")
     x, y = r * sp.cos(w * time), r * sp.sin(w * time)
     v = [time_derivative(s, [r]) for s in (x, y)]
     bead = Lagrangian(m * (v[0] ** 2 + v[1] ** 2) / 2, [r])
@@ -173,15 +173,15 @@ def test_a_moving_support_enters_through_time():
 
 def test_energy_changes_by_explicit_time_and_forces():
     """dE/dt = −∂L/∂t + Q q̇ along the motion."""
-    (x,) = coordinates("x")
+    x = coordinates("x")
     driven = Lagrangian(m * x.dot**2 / 2 - k * x**2 * sp.cos(time) / 2, [x], forces=[-a * x.dot**3])
     rate = time_derivative(driven.jacobi_energy, [x]).xreplace({x.ddot: driven.accelerations[0]})
     assert vanishes(rate - (-driven.L.diff(time) - a * x.dot**4)).holds
 
 
 def test_relativistic_particle():
-    (x,) = coordinates("x")
-    (c,) = parameters("c", positive=True)
+    x = coordinates("x")
+    c = parameters("c", positive=True)
     particle = Lagrangian(-m * c**2 * sp.sqrt(1 - x.dot**2 / c**2) - k * x, [x])
     gamma = 1 / sp.sqrt(1 - x.dot**2 / c**2)
     assert vanishes(particle.accelerations[0] + k / (m * gamma**3)).holds

@@ -15,7 +15,7 @@ from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
 m, g, l, R, I, J, I1, I2, a, k, w = parameters("m g l R I J I1 I2 a k w", positive=True)
-(alpha,) = parameters("alpha")
+alpha = parameters("alpha")
 x, y, z, theta, phi, psi = coordinates("x y z theta phi psi")
 sin, cos, tan = sp.sin, sp.cos, sp.tan
 

@@ -11,7 +11,7 @@ from canon.mechanics.lagrange.body import RigidBody
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 m, g, h, a, b, A, B, C = parameters("m g h a b A B C", positive=True)
-(D,) = parameters("D")
+D = parameters("D")
 x, y, yaw, pitch, roll = coordinates("x y yaw pitch roll")
 
 STONE = {m: 1.0, g: 9.8, h: 1.0, a: 8.0, b: 2.0, A: 1.5, B: 8.0, C: 8.5, D: 0.8}

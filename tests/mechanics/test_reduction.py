@@ -83,7 +83,7 @@ def test_a_coordinate_that_enters_cannot_be_ignored():
 
 def test_tension_of_the_pendulum():
     """f = r − l: λ = −(tension) = −(m l θ̇² + m g cos θ)."""
-    (r,) = coordinates("r", positive=True)
+    r = coordinates("r", positive=True)
     L = Lagrangian(m * (r.dot**2 + r**2 * theta.dot**2) / 2 + m * g * r * sp.cos(theta), [r, theta])
     pendulum = ConstrainedLagrangian(L, holonomic=[r - l])
     on = {r: l, r.dot: sp.S.Zero}
@@ -95,7 +95,7 @@ def test_tension_of_the_pendulum():
 
 
 def test_hoop_rolling_down_an_incline():
-    (alpha,) = parameters("alpha")
+    alpha = parameters("alpha")
     L = Lagrangian(M * x.dot**2 / 2 + M * r0**2 * theta.dot**2 / 2 + M * g * x * sp.sin(alpha), [x, theta])
     hoop = ConstrainedLagrangian(L, holonomic=[r0 * theta - x])
     assert vanishes(hoop.accelerations[0] - g * sp.sin(alpha) / 2).holds
@@ -104,7 +104,7 @@ def test_hoop_rolling_down_an_incline():
 
 
 def test_knife_edge_on_an_incline():
-    (alpha,) = parameters("alpha")
+    alpha = parameters("alpha")
     L = Lagrangian(
         m * (x.dot**2 + y.dot**2) / 2 + J * theta.dot**2 / 2 + m * g * x * sp.sin(alpha), [x, y, theta]
     )
@@ -136,7 +136,7 @@ def test_constraints_that_are_refused(make, words):
 
 
 def test_generalized_forces_of_a_damper():
-    (d,) = parameters("d", positive=True)
+    d = parameters("d", positive=True)
     place = (l * sp.sin(theta), -l * sp.cos(theta))
     drag = [-d * time_derivative(s, [theta]) for s in place]
     assert vanishes(generalized_forces([drag], [place], [theta])[0] + d * l**2 * theta.dot).holds
@@ -161,7 +161,7 @@ def test_gibbs_appell_agrees_with_lagrange():
 def test_gibbs_appell_in_quasi_velocities_agrees_with_multipliers():
     """The knife edge with its forward speed u and its turning rate w."""
     u, w = sp.symbols("u w", real=True)
-    (alpha,) = parameters("alpha")
+    alpha = parameters("alpha")
     V = -m * g * x * sp.sin(alpha)
     blade = GibbsAppell(
         [PlanarBody(m, (x, y), J, theta)],
@@ -196,7 +196,7 @@ def test_noether_charges_are_constant():
 
 
 def test_poissons_theorem_makes_new_integrals():
-    z = coordinates("z")[0]
+    z = coordinates("z")
     q, p = (x, y, z), (x.momentum, y.momentum, z.momentum)
     kepler = Hamiltonian(sum(s**2 for s in p) / 2 - k / sp.sqrt(x**2 + y**2 + z**2), q, p)
     Lx, Ly = y * p[2] - z * p[1], z * p[0] - x * p[2]

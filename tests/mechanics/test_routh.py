@@ -22,7 +22,7 @@ from canon.proof.vanish import vanishes
 
 m, g, l, a, b, d, c, k, I1, I3, M = parameters("m g l a b d c k I1 I3 M", positive=True)
 x, y, z, theta, phi, psi, q1, q2 = coordinates("x y z theta phi psi q1 q2")
-(r,) = coordinates("r", positive=True)
+r = coordinates("r", positive=True)
 P = sp.Symbol("P", real=True)
 
 

@@ -131,7 +131,7 @@ def test_hamiltons_equations():
 
 def augmented(L, rule):
     """L* = L + λ f with the velocity form f of a constraint, λ a coordinate of its own."""
-    (lam,) = coordinates("lam")
+    lam = coordinates("lam")
     return Lagrangian(L.L + lam * rule, [*L.q, lam]), lam
 
 
@@ -222,4 +222,4 @@ def test_small_angles_of_the_spherical_particle():
     same(gravity.diff(theta).xreplace({theta: sp.S.Zero}), g * r_)
 
 
-(r_,) = coordinates("r", positive=True)
+r_ = coordinates("r", positive=True)

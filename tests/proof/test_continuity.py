@@ -278,7 +278,7 @@ def test_the_library_minds_jumps():
 
 
 def test_gauge_terms_and_symmetries_of_the_library_mind_jumps():
-    (s,) = coordinates("s")
+    s = coordinates("s")
     free = Lagrangian(s.dot**2 / 2, [s])
     assert is_gauge_equivalent(free, Lagrangian(s.dot**2 / 2 + s * s.dot, [s]), s**2 / 2).holds
     assert is_gauge_equivalent(free, Lagrangian(s.dot**2 / 2 + s * s.dot, [s]), s**2 / 2 + sign(s)).fails

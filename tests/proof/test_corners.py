@@ -26,7 +26,8 @@ from sympy import (
     tan,
 )
 
-from canon import Claim, Domain, equal, judge
+from canon import Domain, equal, judge
+from canon.exercise import Claim
 from canon.proof.refute.corners import corner_points, places_of_change
 from canon.proof.trees.anatomy import anatomy
 

@@ -4,14 +4,8 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from canon import (
-    CanonicalTransformation,
-    Hamiltonian,
-    Lagrangian,
-    coordinates,
-    is_constant_of_motion,
-    is_gauge_equivalent,
-)
+from canon import CanonicalTransformation, Hamiltonian, Lagrangian, coordinates, is_constant_of_motion
+from canon.mechanics import is_gauge_equivalent
 from canon.proof.domain.domain import Domain
 from canon.proof.kinks import off_kinks
 
@@ -41,7 +35,7 @@ def test_verdicts_of_mechanics_leave_out_kinks_and_mind_jumps():
 
 
 def test_slopes_that_differ_from_piece_to_piece_are_no_gauge():
-    (s,) = coordinates("s")
+    s = coordinates("s")
     v = s.dot
     rest = Lagrangian(v**2 / 2, [s])
 

@@ -40,7 +40,7 @@ GONE = {
     "not above zero and not below",
 }  # fmt: skip
 """Forms that SymPy evaluates to honest expressions."""
-(q,), p, (kappa,) = coordinates("q"), Momentum("p", real=True), parameters("kappa")
+q, p, kappa = coordinates("q"), Momentum("p", real=True), parameters("kappa")
 SCOPE = Scope({"q": q, "p": p, "kappa": kappa})
 H = Hamiltonian((p**2 + q**2) / 2, q, p)
 ENERGY = "p**2 + q**2"

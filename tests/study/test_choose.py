@@ -285,7 +285,7 @@ def test_requests_that_make_no_sense(options, told):
 def test_a_driven_motion_is_chosen_for_by_its_position():
     from canon import time
 
-    (x,) = coordinates("x")
+    x = coordinates("x")
     H = x.momentum**2 / 2 + x**2 / 2 - x * sp.cos(time / 3) / 4
     driven = Hamiltonian(H, [x], [x.momentum])
     with pytest.raises(StudyError, match="H depends on t"):
@@ -305,7 +305,7 @@ def test_a_driven_motion_is_chosen_for_by_its_position():
 
 
 def test_a_motion_that_can_not_be_followed():
-    (x,) = coordinates("x")
+    x = coordinates("x")
     falling = Hamiltonian(x.momentum**2 / 2 - 1 / x, [x], [x.momentum])
     with pytest.raises(StudyError, match="the motion can't be followed"):
         choose(falling, 10.0, [1.0, 0.0], accuracy=1e-6)

@@ -125,7 +125,7 @@ def test_a_collision_is_a_row_with_the_reason():
 
 
 def test_a_hamiltonian_of_ones_own():
-    (x,) = coordinates("x")
+    x = coordinates("x")
     quartic = Hamiltonian(x.momentum**2 / 2 + x**4 / 4, [x], [x.momentum])
     study = drift_study(quartic, [1.0, 0.0], methods=[Splitting("verlet")], span=2000.0, step=0.05)
     assert study.rows[0].drift.verdict is Growth.BOUNDED
@@ -134,7 +134,7 @@ def test_a_hamiltonian_of_ones_own():
 
 
 def test_requests_that_make_no_sense():
-    (x,) = coordinates("x")
+    x = coordinates("x")
     free = Hamiltonian(x.momentum**2 / 2, [x], [x.momentum])
     with pytest.raises(StudyError, match="does not tell its period"):
         drift_study(free, [0.0, 1.0], methods=[RK4()])

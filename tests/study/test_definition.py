@@ -43,7 +43,7 @@ def test_a_study_from_a_file(tmp_path):
             "[[study]]\nsystem = 'keplr'\nmethod='rk4'\nstep=1\nperiods=1",
             "study 1: there is no scene 'keplr'; did you mean kepler",
         ),
-        ("[[study]]\nsystem = 'kepler'\nmethod='rk5'\nstep=1\nperiods=1", "no method is written rk5"),
+        ("[[study]]\nsystem = 'kepler'\nmethod='rk5'\nstep=1\nperiods=1", "no method is called .rk5"),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nperiods=1", "RK4 needs a size of steps: give step"),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nstep=1", "duration as periods or as span"),
         ("[[study]]\nsystem = 'kepler'\nmethod='rk4'\nsteps=1\nperiods=1", "unknown key 'steps'"),
@@ -112,7 +112,7 @@ def test_own_hamiltonians_starts_and_parameters_in_a_file(tmp_path):
 
 
 def test_hamiltonians_and_scenes_from_python():
-    (x,), (k,) = coordinates("x"), parameters("k", positive=True)
+    x, k = coordinates("x"), parameters("k", positive=True)
     own = Hamiltonian(x.momentum**2 / 2 + k * x**4 / 4, [x], [x.momentum])
     study = Study.of(
         system=own,

@@ -17,7 +17,7 @@ KEPLER = {"span": 400.0, "y0": [0.4, 0.0, 0.0, 2.0]}
 
 
 def pendulum():
-    (x,) = coordinates("x")
+    x = coordinates("x")
     return Hamiltonian(x.momentum**2 / 2 - sp.cos(x), [x], [x.momentum])
 
 
@@ -134,7 +134,7 @@ def test_what_was_followed_inside_the_loop_is_judged_by_every_step():
 
 
 def test_what_is_no_error_is_refused():
-    (x,) = coordinates("x")
+    x = coordinates("x")
     driven = Hamiltonian(x.momentum**2 / 2 + x**2 / 2 - x * sp.cos(time / 3), [x], [x.momentum])
     motion = propagate(driven, t_span=(0, 100), y0=[1.0, 0.0], method=Taylor(), samples=1000)
     with pytest.raises(ValueError, match="H depends on t, so its change is no error; drift_study"):

@@ -14,7 +14,7 @@ from canon.study.drift.drift_study import drift_study
 from canon.study.errors import StudyError
 from canon.study.motion.extended_phase_space import driven
 
-(X,) = coordinates("x")
+X = coordinates("x")
 SHAKEN = Hamiltonian(X.momentum**2 / 2 + X**2 / 2 - X * sp.cos(2 * time) / 4, [X], [X.momentum])
 START = np.array([1.0, 0.5])
 
@@ -53,7 +53,7 @@ def test_symplectic_methods_keep_the_energy_less_the_work_and_runge_kutta_does_n
 
 def test_functions_of_the_time_can_be_followed():
     """For H = p²/2 + t x the momentum p + t²/2 is constant; p + t²/4 is not."""
-    (y,) = coordinates("y")
+    y = coordinates("y")
     falling = Hamiltonian(y.momentum**2 / 2 + time * y, [y], [y.momentum])
     right, wrong = y.momentum + time**2 / 2, y.momentum + time**2 / 4
     for functions, bound in (({"momentum": right}, 1e-12), ({"momentum": wrong}, None)):

@@ -106,7 +106,7 @@ def test_requests_that_make_no_sense():
         work_precision(scene, 10.0, methods=[DOP853()], steps=[0.1])
     with pytest.raises(StudyError, match="at least once"):
         work_precision(scene, 10.0, methods=[RK4()], steps=[0.1], repetitions=0)
-    (x,) = coordinates("x")
+    x = coordinates("x")
     falling = Hamiltonian(x.momentum**2 / 2 - 1 / x, [x], [x.momentum])
     with pytest.raises(StudyError, match="the reference could not be run"):
         work_precision(falling, 10.0, [1.0, 0.0], methods=[RK4()], steps=[0.1])

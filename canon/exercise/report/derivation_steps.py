@@ -42,7 +42,7 @@ def steps(finding: Finding) -> tuple[Step, ...]:
 
     Examples
     --------
-    >>> from canon import Claim
+    >>> from canon.exercise import Claim
     >>> from canon.exercise.judge import examine
     >>> claim = {"q": ["x"], "p": ["p"], "pairs": [{"f": "x**2", "g": "p", "value": "2*x"}]}
     >>> for text, formula in steps(examine(Claim("a", "poisson-bracket", claim))):

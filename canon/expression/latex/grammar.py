@@ -117,7 +117,7 @@ def parse_latex(text: str, scope: Scope) -> Node:
     --------
     >>> from canon import coordinates, parameters
     >>> from canon.expression.parse import Scope, parse_equation
-    >>> (theta,), (g, l) = coordinates("theta"), parameters("g l")
+    >>> theta, (g, l) = coordinates("theta"), parameters("g l")
     >>> scope = Scope({"theta": theta, "g": g, "l": l})
     >>> formula = parse_equation(r"$\ddot\theta + \frac{g}{l}\sin\theta = 0$", scope)
     >>> formula == parse_equation("theta_ddot + g/l*sin(theta)", scope)

@@ -111,20 +111,20 @@ class Momentum(Moving):
     __slots__ = ()
 
 
-def coordinates(names: str, **assumptions: bool) -> tuple[Coordinate, ...]:
+def coordinates(names: str, **assumptions: bool) -> Any:
     """Make generalized coordinates from their names.
 
     Parameters
     ----------
     names
-        Names separated by spaces or commas.
+        Names separated by spaces or commas, as :func:`sympy.symbols` takes them.
     **assumptions
         SymPy assumptions such as ``positive=True``; real unless said otherwise.
 
     Returns
     -------
-    tuple of Coordinate
-        Always a tuple, also for a single name.
+    Coordinate or tuple of Coordinate
+        One coordinate of one name, a tuple of several; of ``"x,"`` a tuple of one.
 
     Examples
     --------
@@ -134,23 +134,23 @@ def coordinates(names: str, **assumptions: bool) -> tuple[Coordinate, ...]:
     (theta_dot, theta_ddot, p_theta)
     """
     assumed = _assumed(names, assumptions)
-    return tuple(Coordinate(name, **assumed) for name in _split(names))
+    return _one_or_all(names, [Coordinate(name, **assumed) for name in _split(names)])
 
 
-def parameters(names: str, **assumptions: bool) -> tuple[Symbol, ...]:
+def parameters(names: str, **assumptions: bool) -> Any:
     """Make parameters (masses, lengths, constants) from their names.
 
     Parameters
     ----------
     names
-        Names separated by spaces or commas.
+        Names separated by spaces or commas, as :func:`sympy.symbols` takes them.
     **assumptions
         SymPy assumptions such as ``positive=True``; real unless said otherwise.
 
     Returns
     -------
-    tuple of sympy.Symbol
-        Always a tuple, also for a single name.
+    sympy.Symbol or tuple of sympy.Symbol
+        One parameter of one name, a tuple of several; of ``"m,"`` a tuple of one.
 
     Examples
     --------
@@ -160,7 +160,11 @@ def parameters(names: str, **assumptions: bool) -> tuple[Symbol, ...]:
     True
     """
     assumed = _assumed(names, assumptions)
-    return tuple(Symbol(name, **assumed) for name in _split(names))
+    return _one_or_all(names, [Symbol(name, **assumed) for name in _split(names)])
+
+
+def _one_or_all(names: str, made: list[Any]) -> Any:
+    return made[0] if len(made) == 1 and "," not in names else tuple(made)
 
 
 def velocity(q: Symbol) -> Rate:
@@ -186,7 +190,7 @@ def time_derivative(f: Expr, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     Examples
     --------
     >>> from canon import coordinates
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> time_derivative(x * x.dot, [x])
     x*x_ddot + x_dot**2
     """

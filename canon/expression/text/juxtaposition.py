@@ -33,7 +33,7 @@ def parse_juxtaposed(text: str, scope: Scope) -> Node:
     --------
     >>> from canon import coordinates, parameters
     >>> from canon.expression.parse import Scope, parse_expression
-    >>> (theta,), (m, g, l) = coordinates("theta"), parameters("m g l")
+    >>> theta, (m, g, l) = coordinates("theta"), parameters("m g l")
     >>> scope = Scope({s.name: s for s in (theta, m, g, l)}, implicit=True)
     >>> parse_expression("2 m g l (1 - cos(theta))", scope) == parse_expression("2*m*g*l*(1 - cos(theta))", scope)
     True

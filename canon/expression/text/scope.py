@@ -43,8 +43,9 @@ class Scope:
 
     Examples
     --------
-    >>> from canon import coordinates, parse_expression
-    >>> (theta,) = coordinates("theta")
+    >>> from canon import coordinates
+    >>> from canon.expression import parse_expression
+    >>> theta = coordinates("theta")
     >>> parse_expression("theta'' + 0.5*sin(theta)", Scope({"theta": theta}))
     theta_ddot + sin(theta)/2
     """

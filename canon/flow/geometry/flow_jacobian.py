@@ -112,7 +112,7 @@ def flow_jacobian(
     --------
     >>> from canon import Hamiltonian, Splitting, coordinates
     >>> import sympy
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
     >>> coarse = flow_jacobian(pendulum, (0, 50), [1.0, 0.0], method=Splitting("verlet"), step=0.5)
     >>> coarse.final.shape, bool(coarse.symplecticity_defect[-1] < 1e-13)
@@ -233,7 +233,7 @@ def reversal_error(
     --------
     >>> from canon import Hamiltonian, RK4, Splitting, coordinates
     >>> import sympy
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> pendulum = Hamiltonian(x.momentum**2 / 2 - sympy.cos(x), [x], [x.momentum])
     >>> far = [
     ...     abs(reversal_error(pendulum, (0, 50), [1.0, 0.0], method=method, step=0.25)).max()

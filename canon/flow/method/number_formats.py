@@ -53,7 +53,7 @@ def unit_round_off(precision: str) -> float:
     Parameters
     ----------
     precision
-        A keyword, or a number of decimal digits as text, as :class:`canon.Trajectory` has it.
+        A keyword, or a number of decimal digits as text, as :class:`canon.flow.Trajectory` has it.
 
     Raises
     ------

@@ -57,7 +57,7 @@ class Event:
     Examples
     --------
     >>> from canon import Event, Hamiltonian, Splitting, coordinates, propagate
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> falling = Hamiltonian(x.momentum**2 / 2 + x, [x], [x.momentum])
     >>> motion = propagate(
     ...     falling, (0, 6), [0.5, 0.0], method=Splitting("verlet"), step=0.01, events=[Event(x, -1, "bounce")]

@@ -80,7 +80,7 @@ def lagrangian_motion(
     Examples
     --------
     >>> from canon import Lagrangian, coordinates
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> damped = Lagrangian(x.dot**2 / 2 - x**2 / 2, [x], forces=[-x.dot / 10])
     >>> motion = lagrangian_motion(damped, {x: 1.0, x.dot: 0.0})
     >>> [motion.graph.to_sympy(node) for node in motion.rates], motion.graph.to_sympy(motion.power)

@@ -82,7 +82,7 @@ def recognised(system: Any) -> RecognisedSystem:
     Examples
     --------
     >>> from canon import Lagrangian, coordinates, parameters
-    >>> (x,), (k,) = coordinates("x"), parameters("k", positive=True)
+    >>> x, k = coordinates("x"), parameters("k", positive=True)
     >>> found = recognised(Lagrangian(x.dot**2 / 2 - k * x**2 / 2, [x]))
     >>> found.state, found.parameters
     ((x, x_dot), (k,))

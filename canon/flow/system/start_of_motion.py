@@ -45,7 +45,7 @@ def state_in_order(y0: Any, state: Sequence[Symbol]) -> Any:
     Examples
     --------
     >>> from canon import coordinates
-    >>> (theta,) = coordinates("theta")
+    >>> theta = coordinates("theta")
     >>> state_in_order({"theta_dot": 0, theta: 0.1}, [theta, theta.dot])
     [0.1, 0]
     """

@@ -157,7 +157,7 @@ def check_not_empty(constraints: Sequence[Expr], q: Sequence[Symbol], t: Symbol,
     Examples
     --------
     >>> from canon import coordinates
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> check_not_empty([x, x - 1], [x], sp.Symbol("t", real=True), Domain())
     Traceback (most recent call last):
         ...

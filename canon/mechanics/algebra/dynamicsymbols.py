@@ -70,7 +70,7 @@ def plain_places(
     --------
     >>> from canon import coordinates
     >>> from sympy.physics.mechanics import dynamicsymbols
-    >>> (x,), (s,) = coordinates("x"), coordinates("s")
+    >>> x, s = coordinates("x"), coordinates("s")
     >>> plain_places({dynamicsymbols("x"): 2*dynamicsymbols("s")}, [x], [s])
     {x: 2*s}
     """
@@ -94,7 +94,7 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     --------
     >>> from canon import coordinates
     >>> from sympy.physics.mechanics import dynamicsymbols
-    >>> (theta,) = coordinates("theta")
+    >>> theta = coordinates("theta")
     >>> plain(dynamicsymbols("theta", 1) ** 2 + dynamicsymbols("theta"), [theta]) == theta.dot**2 + theta
     True
     """

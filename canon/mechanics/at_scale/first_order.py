@@ -130,7 +130,7 @@ def canonical_derivation(
     --------
     >>> from canon import coordinates, parameters
     >>> from canon.mechanics.lagrange.body import Particle
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> m, k = parameters("m k", positive=True)
     >>> spring = canonical_derivation([Particle(m, (x,))], [x], k*x**2/2)
     >>> spring.graph.to_sympy(spring.hamiltonian)

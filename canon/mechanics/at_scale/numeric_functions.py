@@ -55,7 +55,7 @@ def acceleration_function(
     >>> from canon import coordinates, parameters
     >>> from canon.mechanics.lagrange.body import Particle
     >>> from canon.mechanics.at_scale.second_order import derivation
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> m, k = parameters("m k", positive=True)
     >>> spring = derivation([Particle(m, (x,))], [x], k*x**2/2)
     >>> acceleration_function(spring, {m: 2.0, k: 8.0})([0.5], [0.0], 0.0)

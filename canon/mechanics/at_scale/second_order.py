@@ -132,7 +132,7 @@ def derivation(
     >>> from canon import coordinates, parameters
     >>> from canon.mechanics.lagrange.body import Particle
     >>> from sympy import cos, sin
-    >>> (theta,) = coordinates("theta")
+    >>> theta = coordinates("theta")
     >>> m, l, g = parameters("m l g", positive=True)
     >>> bob = Particle(m, (l*sin(theta), -l*cos(theta)))
     >>> pendulum = derivation([bob], [theta], field=(0, -g))
@@ -181,7 +181,7 @@ def derivation_of_lagrangian(lagrangian: Lagrangian) -> SecondOrderEquations:
     Examples
     --------
     >>> from canon import Lagrangian, coordinates, parameters
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> m, k = parameters("m k", positive=True)
     >>> oscillator = derivation_of_lagrangian(Lagrangian(m*x.dot**2/2 - k*x**4/4, [x]))
     >>> [oscillator.graph.to_sympy(node) for node in oscillator.nodes]

@@ -53,7 +53,7 @@ class Hamiltonian:
     Examples
     --------
     >>> from canon import coordinates, parameters
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> m, k = parameters("m k", positive=True)
     >>> oscillator = Hamiltonian(x.momentum**2/(2*m) + k*x**2/2, [x], [x.momentum])
     >>> oscillator.q_dot, oscillator.p_dot
@@ -200,7 +200,7 @@ def hamiltonian(
     --------
     >>> from canon import coordinates, parameters
     >>> (r, phi) = coordinates("r phi")
-    >>> (m,) = parameters("m", positive=True)
+    >>> m = parameters("m", positive=True)
     >>> hamiltonian(Lagrangian(m*(r.dot**2 + r**2*phi.dot**2)/2, [r, phi])).H
     p_phi**2/(2*m*r**2) + p_r**2/(2*m)
     """
@@ -240,7 +240,7 @@ def lagrangian(hamiltonian: Hamiltonian, domain: Domain | None = None) -> Lagran
     Examples
     --------
     >>> from canon import coordinates
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> lagrangian(Hamiltonian(x.momentum**2/6, x, x.momentum)).L
     3*x_dot**2/2
     """
@@ -273,7 +273,7 @@ def is_hamiltonian_of(
     Examples
     --------
     >>> from canon import coordinates
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> L = Lagrangian(x.dot**2/2 - x**2, [x])
     >>> is_hamiltonian_of(L, x.momentum**2/2 + x**2, [x.momentum]).status.name
     'HOLDS'

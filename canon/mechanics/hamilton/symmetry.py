@@ -157,7 +157,7 @@ def is_symmetry(
     Examples
     --------
     >>> from canon import Lagrangian, coordinates, time as t
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> boost = is_symmetry(Lagrangian(x.dot**2/2, [x]), [t], K=x)
     >>> boost.status.name
     'HOLDS'
@@ -247,7 +247,7 @@ def have_same_equations(first: Lagrangian, second: Lagrangian, domain: Domain | 
     Examples
     --------
     >>> from canon import Lagrangian, coordinates
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> oscillator = Lagrangian(x.dot**2/2 - x**2/2, [x])
     >>> have_same_equations(oscillator, Lagrangian(x.dot**2 - x**2, [x])).status.name
     'HOLDS'

@@ -225,7 +225,7 @@ def kinetic_energy(bodies: Sequence[Body], q: Sequence[Symbol], t: Symbol = time
 
     >>> from canon import coordinates, parameters, time as t
     >>> from sympy import cos, sin
-    >>> (s,) = coordinates("s")
+    >>> s = coordinates("s")
     >>> m, w = parameters("m w", positive=True)
     >>> T = kinetic_energy([Particle(m, (s*cos(w*t), s*sin(w*t), s**2))], [s])
     >>> (T - m*((1 + 4*s**2)*s.dot**2 + w**2*s**2)/2).expand().trigsimp()
@@ -290,7 +290,7 @@ def kinetic_form(T: Expr, q: Sequence[Symbol]) -> KineticForm:
     --------
     >>> from canon import coordinates, parameters
     >>> r, theta = coordinates("r theta")
-    >>> (m,) = parameters("m", positive=True)
+    >>> m = parameters("m", positive=True)
     >>> kinetic_form(m*(r.dot**2 + r**2*theta.dot**2)/2, [r, theta]).A
     Matrix([
     [m,      0],
@@ -325,7 +325,7 @@ def is_scleronomic(
     Examples
     --------
     >>> from canon import coordinates, time as t
-    >>> (s,) = coordinates("s")
+    >>> s = coordinates("s")
     >>> is_scleronomic([Particle(1, (s, s**2))]).status.name, is_scleronomic([Particle(1, (s + t,))]).status.name
     ('HOLDS', 'FAILS')
     """

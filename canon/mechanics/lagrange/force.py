@@ -299,7 +299,7 @@ def lagrangian_of_bodies(
     --------
     >>> from canon import coordinates, parameters
     >>> from canon.mechanics.lagrange.body import Particle
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> m, k, c = parameters("m k c", positive=True)
     >>> lagrangian_of_bodies([Particle(m, (x,))], [x], k*x**2/2, dissipation=c*x.dot**2/2).equations
     (c*x_dot + k*x + m*x_ddot,)

@@ -48,7 +48,7 @@ class Lagrangian:
     --------
     >>> from canon import coordinates, parameters
     >>> from sympy import cos
-    >>> (theta,) = coordinates("theta")
+    >>> theta = coordinates("theta")
     >>> m, l, g = parameters("m l g", positive=True)
     >>> pendulum = Lagrangian(m*l**2*theta.dot**2/2 + m*g*l*cos(theta), [theta])
     >>> pendulum.equations

@@ -105,7 +105,7 @@ class NewtonEuler:
 
     >>> from canon import coordinates, parameters
     >>> from sympy import cos, sin, symbols
-    >>> (theta,) = coordinates("theta")
+    >>> theta = coordinates("theta")
     >>> m, l, g = parameters("m l g", positive=True)
     >>> S = symbols("S", real=True)
     >>> bob = Particle(m, (l*sin(theta), -l*cos(theta)))

@@ -78,7 +78,7 @@ def ignorable_directions(
     --------
     >>> from canon import Lagrangian, coordinates, parameters
     >>> x, y = coordinates("x y")
-    >>> (k,) = parameters("k", positive=True)
+    >>> k = parameters("k", positive=True)
     >>> ignorable_directions(Lagrangian(x.dot**2 + y.dot**2 - k*(x - y)**2, [x, y]))
     ((1, 1),)
     """
@@ -116,7 +116,7 @@ def adapted(lagrangian: Lagrangian, domain: Domain | None = None) -> Adapted:
     --------
     >>> from canon import Lagrangian, coordinates, parameters
     >>> x, y = coordinates("x y")
-    >>> (k,) = parameters("k", positive=True)
+    >>> k = parameters("k", positive=True)
     >>> pair = adapted(Lagrangian((x.dot**2 + y.dot**2)/2 - k*(x - y)**2/2, [x, y]))
     >>> pair.ignorable, pair.lagrangian.L
     ((x,), -k*y_rel**2/2 + x_dot**2/2 + (x_dot + y_rel_dot)**2/2)

@@ -208,7 +208,7 @@ def routhian(
     --------
     >>> from canon import Lagrangian, coordinates, parameters
     >>> r, phi = coordinates("r phi")
-    >>> (m,) = parameters("m", positive=True)
+    >>> m = parameters("m", positive=True)
     >>> central = routhian(Lagrangian(m*(r.dot**2 + r**2*phi.dot**2)/2, [r, phi]))
     >>> central.R, central.effective_potential
     (m*r_dot**2/2 - p_phi**2/(2*m*r**2), p_phi**2/(2*m*r**2))

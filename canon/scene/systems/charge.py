@@ -39,7 +39,7 @@ def in_fields(potentials: Callable[[SimpleNamespace], Sequence[Expr]]) -> Callab
     >>> from canon import Lagrangian, coordinates, parameters
     >>> from sympy import Function
     >>> q = coordinates("x y z")
-    >>> (m,) = parameters("m", positive=True)
+    >>> m = parameters("m", positive=True)
     >>> s = SimpleNamespace(m=m, **{x.name: x for x in q})
     >>> L = in_fields(lambda s: [Function(name)(*q) for name in "ABCV"])(s)
     >>> Lagrangian(L, q).equations[0].coeff(q[1].dot)

@@ -75,7 +75,7 @@ def _read(case: Case, name: str, text: str) -> Expr:
 
     constants: tuple[Symbol, ...]
     if isinstance(case.system, Formula):
-        constants = tuple(parameters(constant)[0] for constant, _ in case.system.parameters)
+        constants = tuple(parameters(constant) for constant, _ in case.system.parameters)
     else:
         constants = tuple(find(case.system).values_by_symbol())
     symbols = (*case.hamiltonian.q, *case.hamiltonian.p, *constants)

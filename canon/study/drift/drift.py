@@ -162,7 +162,7 @@ def drift(
     A motion knows more:
 
     >>> from canon import Hamiltonian, Splitting, coordinates, propagate
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> quartic = Hamiltonian(x.momentum**2 / 2 + x**4 / 4, [x], [x.momentum])
     >>> verlet = {"method": Splitting("verlet"), "step": 0.05}
     >>> motion = propagate(quartic, t_span=(0, 1000), y0=[1.0, 0.0], samples=4096, **verlet)

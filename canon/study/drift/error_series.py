@@ -80,7 +80,7 @@ def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None
     Examples
     --------
     >>> from canon import Hamiltonian, Splitting, coordinates, propagate
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> oscillator = Hamiltonian(x.momentum**2 / 2 + x**2 / 2, [x], [x.momentum])
     >>> verlet = {"method": Splitting("verlet"), "step": 0.1}
     >>> motion = propagate(oscillator, t_span=(0, 300), y0=[1.0, 0.0], samples=300, **verlet)

@@ -62,7 +62,7 @@ def driven(hamiltonian: HamiltonianSystem) -> Driven:
     --------
     >>> from canon import Hamiltonian, coordinates
     >>> from canon.expression.symbols.symbol import time
-    >>> (x,) = coordinates("x")
+    >>> x = coordinates("x")
     >>> shaken = Hamiltonian(x.momentum**2 / 2 - x * time, [x], [x.momentum])
     >>> driven(shaken).hamiltonian.H
     p_tau - tau*x + p_x**2/2

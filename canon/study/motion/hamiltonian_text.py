@@ -179,7 +179,7 @@ def formula_of(
     Examples
     --------
     >>> from canon import Hamiltonian, coordinates, parameters
-    >>> (x,), (k,) = coordinates("x"), parameters("k", positive=True)
+    >>> x, k = coordinates("x"), parameters("k", positive=True)
     >>> formula_of(Hamiltonian(x.momentum**2/2 + k*x**4/4, [x], [x.momentum]), parameters={"k": 2.0}).H
     'k*x**4/4 + p_x**2/2'
     """
@@ -222,7 +222,7 @@ def hamiltonian_of(formula: Formula) -> Hamiltonian:
     try:
         q = [Coordinate(name, real=True) for name in formula.q]
         p = [Momentum(name, real=True) for name in formula.p]
-        constants = [parameters(name)[0] for name, _ in formula.parameters]
+        constants = [parameters(name) for name, _ in formula.parameters]
         scope = Scope({symbol.name: symbol for symbol in (*q, *p, *constants)})
         H = parse_expression(formula.H, scope)
     except LanguageError as error:
