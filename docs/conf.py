@@ -118,6 +118,7 @@ RETURNED = {
         "flow.run.event.Crossing",
         "flow.geometry.flow_jacobian.FlowJacobian",
         "flow.method.solvable_splitting.SolvableSplitting",
+        "flow.trajectory.Energies",
         "flow.trajectory.Statistics",
         "flow.geometry.numeric_evidence.Witness",
         "kernel.solvable.kepler_terms.UnsolvableError",
