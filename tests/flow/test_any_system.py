@@ -19,6 +19,7 @@ from canon import (
     Lagrangian,
     Splitting,
     coordinates,
+    flow_jacobian,
     parameters,
     propagate,
 )
@@ -285,3 +286,19 @@ def test_residuals_stay_at_round_off_over_long_spans() -> None:
     motion = propagate(case.system, y0=case.y0, t_span=(0, 200), parameters=case.values, samples=200)
     assert abs(motion.residuals).max() < 1e-13
     assert abs(motion.energy_error).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    "name", ["a damped driven pendulum", "Lorenz's equations", "Chaplygin's sleigh by Gibbs and Appell"]
+)
+@pytest.mark.parametrize(("method", "step"), [("taylor", None), ("RK4", 1 / 64)])
+def test_jacobians_are_the_quotients_of_differences(name: str, method: str, step: float | None) -> None:
+    case = CASES[name]
+    given = {"t_span": (0, 1), "parameters": case.values, "method": method, "step": step, "samples": 1}
+    M = flow_jacobian(case.system, y0=case.y0, **given).final
+    assert M.shape == (len(case.y0), len(case.y0))
+    for j, beside in enumerate(1e-5 * np.eye(len(case.y0))):
+        ahead, behind = (
+            propagate(case.system, y0=np.array(case.y0) + d, **given).final for d in (beside, -beside)
+        )
+        np.testing.assert_allclose(M[:, j], (ahead - behind) / 2e-5, rtol=1e-6, atol=1e-7)

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
-from canon.flow.checked_request import task_of
 from canon.flow.geometry.solvable_jacobian import solvable_jacobian
 from canon.flow.geometry.transformed_jacobian import transformed_jacobian
 from canon.flow.propagate import propagate
 from canon.flow.run.sampling_plan import Plan, fixed_plan
+from canon.flow.system.scene_door import is_scene, opened
+from canon.flow.system_request import any_task
 from canon.flow.trajectory import carried_out
 from canon.kernel.program.variational import variational
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.system.recognised_system import MovableSystem
 
 __all__ = ["FlowJacobian", "flow_jacobian", "reversal_error", "symplecticity_defect"]
 
@@ -77,9 +79,9 @@ class FlowJacobian:
 
 
 def flow_jacobian(
-    hamiltonian: HamiltonianSystem,
+    system: MovableSystem,
     t_span: tuple[float | Fraction, float | Fraction],
-    y0: Sequence[Any] | npt.NDArray[Any],
+    y0: Sequence[Any] | npt.NDArray[Any] | Mapping[Any, Any] | str | None = None,
     *,
     method: MethodGiven | None = None,
     step: float | None = None,
@@ -97,10 +99,12 @@ def flow_jacobian(
 
     Parameters
     ----------
-    hamiltonian, t_span, method, step, tolerance, precision, parameters, samples, times
-        As :func:`canon.propagate` takes them; one sample, at the end, where neither samples nor times are given.
+    system, t_span, method, step, tolerance, precision, parameters, samples, times
+        As :func:`canon.propagate` takes them; one sample, at the end, where neither samples nor times are given. Of
+        systems other than Hamiltonians M is the derivative in their own variables, as (q, q̇), in which nothing need be
+        symplectic; under constraints it holds for variations that keep them.
     y0
-        One starting state (q, p), shape (2n,).
+        One starting state, (q, p) of a Hamiltonian, shape (2n,).
 
     Raises
     ------
@@ -120,8 +124,8 @@ def flow_jacobian(
     """
     if samples is None and times is None:
         samples = 1
-    task = task_of(
-        hamiltonian, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
+    task, moving = any_task(
+        system, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times,
     )  # fmt: skip
     if not task.single:
@@ -129,23 +133,29 @@ def flow_jacobian(
             "the Jacobian is made of one orbit at a time: give one state and one set of parameters"
         )
     if task.fictitious is not None:
-        return FlowJacobian(*transformed_jacobian(task, hamiltonian, parameters or {}))
+        given = opened(cast("Any", system), y0, parameters or {}) if is_scene(system) else None
+        frame, values = (system, parameters or {}) if given is None else (given.system, given.parameters)
+        return FlowJacobian(*transformed_jacobian(task, cast("HamiltonianSystem", frame), values))
     if task.method.solvable is not None:
         t, motion, slopes = solvable_jacobian(task)
         return FlowJacobian(t, motion, slopes, np.zeros_like(slopes))
-    size = len(y0)
+    size, rows = len(task.states[0]), task.system.rows
+    # What is integrated along unseen depends on the start too, and is shown here on the way only.
+    whole = task.system if moving is None else replace(task.system, varying=0, spare=0)
     # Orbits side by side, one variation each; where steps adapt, all variations of one orbit.
     orbits, columns = (size, 1) if task.method.engine.takes_step else (1, size)
     made = replace(
         task,
-        system=variational(task.system, columns),
+        system=variational(whole, columns),
         states=(_varied(task.states[0], orbits, columns), _varied(task.states[1], orbits, columns, unit=0.0)),
         single=False,
     )
     found = carried_out(made)
     y, M = _parted(found.y, size, columns)
     _, low = _parted(found.carried, size, columns)
-    return FlowJacobian(found.t, y, M, low)
+    if moving is None:
+        return FlowJacobian(found.t, y, M, low)
+    return FlowJacobian(found.t, y[rows], M[rows][:, rows], low[rows][:, rows])
 
 
 def _varied(state: Array, orbits: int, columns: int, unit: float = 1.0) -> Array:
@@ -209,9 +219,9 @@ def _defect(M: npt.NDArray[Any], one: int) -> Any:
 
 
 def reversal_error(
-    hamiltonian: HamiltonianSystem,
+    system: MovableSystem,
     t_span: tuple[float | Fraction, float | Fraction],
-    y0: Sequence[Any] | npt.NDArray[Any],
+    y0: Sequence[Any] | npt.NDArray[Any] | Mapping[Any, Any] | str | None = None,
     *,
     method: MethodGiven | None = None,
     step: float | None = None,
@@ -226,7 +236,7 @@ def reversal_error(
 
     Parameters
     ----------
-    hamiltonian, t_span, y0, method, step, tolerance, precision, parameters
+    system, t_span, y0, method, step, tolerance, precision, parameters
         As :func:`canon.propagate` takes them.
 
     Examples
@@ -243,7 +253,7 @@ def reversal_error(
     (True, True)
     """
     there = propagate(
-        hamiltonian, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
+        system, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=1,
     )  # fmt: skip
     task, kept = there.origin
