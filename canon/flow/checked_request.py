@@ -106,7 +106,7 @@ def task_with(
     start, end = (exact_number(t, "t_span") for t in t_span)
     wanted = sampling((start, end), samples, times)
     _check_start(system, given, start, precision)
-    check_magnitudes(system, given[0], start, method, precision)
+    check_magnitudes(system, given[0], (start, end), method, precision)
     frame = None
     if method.engine is FIXED_STEPS:
         plan = planned(wanted, step, method)

@@ -267,7 +267,7 @@ def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
         # An event that has ended the motion may end the companion a little later.
         t = plan.instants if samples.crossings and len(samples.t) < len(plan.instants) else samples.t
         ends = sorted({round(k * (len(t) - 1) / _SLICES) for k in range(1, _SLICES + 1)} - {0})
-        plan = Plan(plan.start, t, ends=tuple(ends))
+        plan = Plan(plan.start, t, ends=tuple(ends), exact=plan.exact)
         given = "double" if task.method.engine.takes_step else task.precision_name
         for precision, bits in _wider_taylor(given):
             better = replace(task, method=Taylor(), plan=plan, precision=precision)
@@ -283,7 +283,7 @@ def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
 
 def _wider_taylor(given: str) -> list[tuple[str | int, int]]:
     ladder: list[tuple[str | int, int]] = [("extended", 63), ("quad", 112), (50, 166)]
-    names = ["double", *(str(name) for name, _ in ladder)]
+    names = ["double", "extended", "quad"]
     if given not in names:
         return [(int(given) + 16, math.floor((int(given) + 16) / math.log10(2)))]
     left = ladder[names.index(given) :]

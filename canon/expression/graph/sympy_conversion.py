@@ -43,7 +43,8 @@ def from_sympy(arena: Arena, expression: Expr) -> int:
     """Return the node of a SymPy expression."""
     # The memo goes by identity: hashing a deep SymPy expression recurses.
     done: dict[int, int] = {}
-    waiting: list[Any] = [sp.sympify(expression, strict=True)]
+    whole: Any = sp.sympify(expression, strict=True)
+    waiting: list[Any] = [whole]
     while waiting:
         current = waiting[-1]
         if not isinstance(current, sp.Expr) or isinstance(current, (sp.Piecewise, sp.Max, sp.Min)):
@@ -55,7 +56,7 @@ def from_sympy(arena: Arena, expression: Expr) -> int:
         waiting.pop()
         if id(current) not in done:
             done[id(current)] = _node(arena, current, [done[id(a)] for a in current.args])
-    return done[id(expression)]
+    return done[id(whole)]
 
 
 def _node(arena: Arena, expression: Any, operands: list[int]) -> int:

@@ -69,8 +69,8 @@ def taylor_motion(
     compiling = time.perf_counter()
     number = heyoka_number(precision)
     first = 0 if so_far is None else len(so_far.t) - 1
-    grid = np.array([number(Fraction(t)) for t in plan.instants[first:].tolist()])
-    t0, span = Fraction(float(plan.instants[first])), grid[-1] - grid[0]
+    grid = np.array([number(plan.last(k)) for k in range(first, len(plan.instants))])
+    t0, span = plan.last(first), grid[-1] - grid[0]
     unit = state_unit(system, states[0] if so_far is None else so_far.y[:, 0], plan)
     taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward, unit=unit)
     orbits = orbits_of(system, states, t0, method, number, taylor_events, span)

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.kernel.program.hamilton_equations import exact_number
+
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy.typing as npt
 
     from canon.array import Array
 
 __all__ = ["Plan", "Sampling", "adaptive_plan", "fictitious_plan", "fixed_plan", "sampling", "steps_over"]
+
+_LATEST, _MOST_STEPS = Fraction(10**300), 2**62
+"""Times and steps that can still be told from the next ones."""
 
 _SLICES = 20
 """Parts a run of an adaptive method is done in, between which progress is reported and an interruption heard."""
@@ -79,17 +87,22 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
     ((1.0, 2.5), [0, 4, 10, 40])
     """
     start, end = t_span
+    if max(abs(start), abs(end)) > _LATEST:
+        raise ValueError("t_span reaches beyond 1e300: measure time in other units")
     if start == end:
         raise ValueError(
             f"t_span = ({float(start)}, {float(end)}) has no length: give a start and another end"
         )
     if times is None:
-        if samples is not None and (samples < 1 or samples != int(samples)):
-            raise ValueError(f"samples={samples}: keep at least one state after the first")
+        if samples is not None and not (1 <= samples <= _MOST_STEPS and samples == int(samples)):
+            raise ValueError(f"samples={samples}: keep at least one state after the first, a whole number")
         return Sampling(start, end, 1000 if samples is None else int(samples))
     if samples is not None:
         raise ValueError(f"samples={samples} and times: give one of them")
-    given = np.asarray(times, dtype=np.float64)
+    try:
+        given = np.asarray(times, dtype=np.float64)
+    except (OverflowError, ValueError, TypeError) as wrong:
+        raise ValueError(f"times: give a list of finite numbers ({wrong})") from wrong
     if given.ndim != 1 or not given.size or not np.isfinite(given).all():
         raise ValueError(f"times of shape {given.shape}: give a list of finite numbers")
     forward = 1 if end > start else -1
@@ -115,7 +128,7 @@ def steps_over(start: Fraction, end: Fraction, step: float | None, method: objec
     start, end
         First and last time.
     step
-        The wanted size, positive in either direction of time.
+        The wanted size, positive in either direction of time; or negative back in time, as the motion has it.
     method
         What takes the steps, for messages.
 
@@ -131,9 +144,14 @@ def steps_over(start: Fraction, end: Fraction, step: float | None, method: objec
     """
     if step is None:
         raise ValueError(f"{method} takes fixed steps: give step=, in the units of time")
-    if not (math.isfinite(step) and step > 0):
+    size = exact_number(step, "step")
+    ratio = Fraction(-1) if not size else (abs(end - start) if size > 0 else end - start) / size
+    if ratio < 0:
         raise ValueError(f"step={step}: give a positive number; the direction of time follows from t_span")
-    ratio = abs(end - start) / Fraction(step)
+    if ratio > _MOST_STEPS:
+        raise ValueError(
+            f"step={step}: the span of {float(end - start):.3g} is more than 2⁶² such steps; take longer ones"
+        )
     nearest = max(1, round(ratio))
     # A span that is a whole number of steps up to the rounding of its ends and of the step counts as one.
     return nearest if abs(ratio - nearest) <= nearest * Fraction(1, 10**9) else math.ceil(ratio)
@@ -156,6 +174,8 @@ class Plan:
     wanted
         Of a time-transformed method that is to keep states after evenly many steps: about how many. Then the instants
         are the first and the last time.
+    exact
+        Of an adaptive method: the exact times of samples whose instants are rounded, such as the ends of the span.
     """
 
     start: Fraction
@@ -164,6 +184,7 @@ class Plan:
     stops: tuple[int, ...] = ()
     ends: tuple[int, ...] = ()
     wanted: int = 0
+    exact: Mapping[int, Fraction] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def forward(self) -> int:
@@ -190,7 +211,9 @@ class Plan:
         if self.h is None:
             instants, last = more.instants(), len(self.instants) - 1
             ends = tuple(last + end for end in _slices(len(instants) - 1))
-            return replace(self, instants=np.append(self.instants, instants[1:]), ends=self.ends + ends)
+            whole = np.append(self.instants, instants[1:])
+            exact = {**self.exact, **_rounded({len(whole) - 1: more.end})}
+            return replace(self, instants=whole, ends=self.ends + ends, exact=exact)
         ratio = (more.end - more.start) / self.h
         steps = round(ratio)
         if not steps or abs(ratio - steps) > abs(steps) * Fraction(1, 10**9):
@@ -205,11 +228,9 @@ class Plan:
 
     def last(self, samples: int) -> Fraction:
         """Return the exact time of a sample."""
-        return (
-            Fraction(float(self.instants[samples]))
-            if self.h is None
-            else self.start + self.stops[samples] * self.h
-        )
+        if self.h is not None:
+            return self.start + self.stops[samples] * self.h
+        return self.exact.get(samples, Fraction(float(self.instants[samples])))
 
 
 def fixed_plan(start: Fraction, h: Fraction, stops: tuple[int, ...]) -> Plan:
@@ -223,7 +244,9 @@ def fixed_plan(start: Fraction, h: Fraction, stops: tuple[int, ...]) -> Plan:
 def adaptive_plan(wanted: Sampling) -> Plan:
     """Return the plan of a run in steps that the method chooses."""
     instants = wanted.instants()
-    return Plan(wanted.start, instants, ends=tuple(_slices(len(instants) - 1)))
+    last = len(instants) - 1
+    exact = _rounded({0: wanted.start, last: wanted.end})
+    return Plan(wanted.start, instants, ends=tuple(_slices(last)), exact=exact)
 
 
 def fictitious_plan(wanted: Sampling, *, named: bool) -> Plan:
@@ -232,6 +255,11 @@ def fictitious_plan(wanted: Sampling, *, named: bool) -> Plan:
         return adaptive_plan(wanted)
     ends = np.array([float(wanted.start), float(wanted.end)])
     return Plan(wanted.start, ends, ends=(1,), wanted=wanted.samples)
+
+
+def _rounded(times: Mapping[int, Fraction]) -> dict[int, Fraction]:
+    """Return those of some times that doubles round."""
+    return {sample: t for sample, t in times.items() if Fraction(float(t)) != t}
 
 
 def _slices(samples: int) -> list[int]:

@@ -150,7 +150,13 @@ class ExtendedSystem:
         physical, graph = self.physical, self.physical.graph
         values = zip(physical.inputs, (*state, t), strict=True)
         point = {graph.symbol(symbol): graph.number(value) for symbol, value in values}
-        nodes = graph.substitute([physical.hamiltonian, self.rate], point)
+        try:
+            nodes = graph.substitute([physical.hamiltonian, self.rate], point)
+        except ZeroDivisionError:
+            raise ValueError(
+                f"dt/ds = {self.words} has no value at the start, and time-transformed methods need it positive along "
+                "the motion: add a constant to V that makes it negative, or give another g"
+            ) from None
         energy, rate = (exact_value(graph, node) for node in nodes)
         if not rate > 0:
             raise ValueError(

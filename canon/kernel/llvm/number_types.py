@@ -159,9 +159,21 @@ def _is_x86() -> bool:
 
 
 def double_pair(value: Fraction) -> tuple[float, float]:
-    """Return an exact number as a sum of two doubles."""
+    """Return an exact number as a sum of two doubles.
+
+    Raises
+    ------
+    ValueError
+        Doubles hold no number of that size.
+    """
     n, d = value.numerator, value.denominator
-    high = n / d
+    try:
+        high = n / d
+    except OverflowError:
+        size = n.bit_length() - d.bit_length()
+        raise ValueError(
+            f"a number of about 1e{size * 0.30103:.0f} is beyond 1e308: choose other units"
+        ) from None
     a, b = high.as_integer_ratio()
     # Quotients of whole numbers are rounded correctly, and quicker than fractions are subtracted.
     return high, (n * b - a * d) / (d * b)

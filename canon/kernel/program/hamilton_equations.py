@@ -235,11 +235,13 @@ def exact_number(value: Any, what: str) -> Fraction:
     if isinstance(value, bool):
         raise ValueError(f"{what} = {value} is no number; give one, such as 9.81 or Rational(1, 10)")
     try:
-        return (
-            Fraction(value)
-            if isinstance(value, str | int | Fraction)
-            else Fraction(*value.as_integer_ratio())
-        )
+        if isinstance(value, str | int | Fraction):
+            return Fraction(value)
+        if hasattr(value, "man_exp"):  # mpmath's, which are binary numbers too
+            if not (mantissa := int(value.man_exp[0])) and value != 0:
+                raise ValueError("infinite, or no number")
+            return Fraction(-mantissa if value < 0 else mantissa) * Fraction(2) ** value.man_exp[1]
+        return Fraction(*value.as_integer_ratio())
     except (ValueError, OverflowError, AttributeError):
         raise ValueError(f"{what} = {value!r} is no finite real number") from None
 

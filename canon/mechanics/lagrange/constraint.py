@@ -95,7 +95,7 @@ class ConstrainedLagrangian:
         q = self.lagrangian.q
         rows = [[f.diff(s) for s in q] for f in self.holonomic]
         rows += [[g.diff(velocity(s)) for s in q] for g in self.nonholonomic]
-        return sp.ImmutableDenseMatrix(rows)
+        return sp.ImmutableDenseMatrix(len(rows), len(q), [slope for row in rows for slope in row])
 
     @cached_property
     def differentiated(self) -> tuple[Expr, ...]:
