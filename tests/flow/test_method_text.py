@@ -77,6 +77,12 @@ def test_another_name_is_refused_with_those_that_are_near(name, digit):
         method_named("§§§§")
 
 
+@pytest.mark.parametrize("wrong", ["gauss-9", "gauss-0", "SABA 9", "sbab-100"])
+def test_a_wrong_number_of_stages_is_told_as_such(wrong):
+    with pytest.raises(ValueError, match="the number of stages is 1 … 8"):
+        method_named(wrong)
+
+
 def test_the_words_of_a_method_name_it():
     for method in (Gauss(6), RK4(), Taylor(), Splitting("kahan-li-8"), SABA(5), SABA("8-6-4"), SBAB(2)):
         assert method_named(str(method)) == method

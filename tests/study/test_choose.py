@@ -10,10 +10,11 @@ import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates
 from canon.flow.method.method import TimeTransformed
+from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import WisdomHolman
 from canon.scene import find
 from canon.study.choose.candidate import candidate_methods
-from canon.study.choose.choice_question import Question, Setting
+from canon.study.choose.choice_question import Question
 from canon.study.choose.error_law import expected_error
 from canon.study.choose.pilot_run import Pilot, pilot
 from canon.study.choose.tolerance_search import tolerance_at

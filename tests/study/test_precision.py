@@ -80,7 +80,7 @@ def test_time_is_that_of_the_steps_and_not_of_samples(monkeypatch):
         seconds.append(found.cpu_seconds)
         return found
 
-    monkeypatch.setattr("canon.study.choose.work_precision.propagate", watched)
+    monkeypatch.setattr("canon.study.motion.quiet_run.propagate", watched)
     found = work_precision(
         find("henon-heiles"), 30.0, methods=[Splitting("verlet")], steps=[0.01], repetitions=3
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import re
 from difflib import get_close_matches
 from fractions import Fraction
 from functools import partial
@@ -26,6 +27,8 @@ MethodGiven = Method | type[Method] | str
 
 _EIGHT = range(1, 9)
 """Stages of SABA and SBAB methods."""
+
+_NUMBERED = re.compile(r"(gauss|saba|sbab)([0-9]{1,3})")
 
 _CHOICES = {"corrector", "commutator", "coordinates"}
 """What a splitting by solvable parts may say beside its name."""
@@ -73,6 +76,11 @@ def method_named(name: str) -> Method:
     methods = {_folded(known): make for known, make in _named().items()}
     if (make := methods.get(_folded(name))) is not None:
         return make()
+    if (numbered := _NUMBERED.fullmatch(_folded(name))) is not None:
+        family, stages = numbered.groups()
+        return {"gauss": Gauss, "saba": SABA, "sbab": SBAB}[family](
+            int(stages)
+        )  # which says how many there are
     spelled = {_folded(known): known for known in _named()}
     near = [spelled[each] for each in get_close_matches(_folded(name[:60]), spelled, n=3, cutoff=0.6)]
     there = f"did you mean {' or '.join(near)}?" if near else f"there are {_those_there_are()}"

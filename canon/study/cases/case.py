@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.method_text import method_from
+from canon.flow.method.setting import Setting
 from canon.scene import find
 from canon.study.motion.hamiltonian_text import Formula, hamiltonian_of
 from canon.version import __version__
@@ -76,6 +77,11 @@ class Case:
     precision: str | None = None
     parts: int | None = None
     observables: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def setting(self) -> Setting:
+        """Method, step or tolerance, and precision."""
+        return Setting(self.method, self.step, self.tolerance, self.precision)
 
     @property
     def system_name(self) -> str:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.method.number_formats import unit_round_off
-from canon.study.drift.drift import drift
+from canon.study.drift.drift import judged_series
 from canon.study.drift.envelope import envelope_of
 
 if TYPE_CHECKING:
@@ -38,9 +36,7 @@ def judged_energy(t: Array, change: Array, energy: float, steps: int, precision:
     """
     relative = energy != 0.0
     error = change / (abs(energy) if relative else 1.0)
-    unit = unit_round_off(precision)
-    roundoff = unit * math.sqrt(steps) if relative else None
-    found = drift(t, error, roundoff=roundoff, resolution=unit)
+    found = judged_series(t, error, steps, precision, relative=relative)
     curve = envelope_of(t, error, CURVE)
     return {
         **_numbers(found),
@@ -54,9 +50,7 @@ def judged_observable(
     t: Array, change: Sequence[float], of: Observable, steps: int, precision: str
 ) -> dict[str, Any]:
     """Return the same for another observable, without curve and means."""
-    unit = unit_round_off(precision)
-    roundoff = unit * math.sqrt(steps) if of.relative else None
-    found = drift(t, np.array(change) / of.unit, roundoff=roundoff, resolution=unit)
+    found = judged_series(t, np.array(change) / of.unit, steps, precision, relative=of.relative)
     return {**_numbers(found), "relative": of.relative}
 
 

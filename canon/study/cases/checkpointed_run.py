@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import math
 import time
-import warnings
 from dataclasses import asdict, dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -19,14 +18,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
-from canon.flow.propagate import propagate
-from canon.flow.run.observables_along import AccuracyWarning
 from canon.flow.run.sampling_plan import steps_over
 from canon.study.cases.case import part_count
 from canon.study.cases.case_numbers import judged_energy, judged_observable
 from canon.study.cases.case_observables import followed
 from canon.study.drift.sample_times import is_resolved, scattered
 from canon.study.motion.extended_phase_space import driven
+from canon.study.motion.quiet_run import run_quietly
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -239,21 +237,16 @@ def _run(
     along: Sequence[Observable] = (),
 ) -> Trajectory:
     timed = _with_time(case)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
-        return propagate(
-            case.hamiltonian if timed is None else timed.hamiltonian,
-            span,
-            np.array(state, dtype=object),
-            method=case.method,
-            step=step,
-            tolerance=case.tolerance,
-            precision=case.precision,
-            parameters={**case.values},
-            samples=samples if times is None else None,
-            times=times,
-            observables={of.name: of.expression for of in along if of.expression is not None},
-        )
+    return run_quietly(
+        case.hamiltonian if timed is None else timed.hamiltonian,
+        span,
+        np.array(state, dtype=object),
+        replace(case.setting, step=step),
+        parameters={**case.values},
+        samples=samples,
+        times=times,
+        along=along,
+    )
 
 
 def _evenly(case: Case) -> bool:

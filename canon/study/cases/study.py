@@ -14,7 +14,7 @@ from canon.scene import Scene, SceneError, find
 from canon.study.cases.case import Case, key_of
 from canon.study.cases.case_observables import followed, observables_from
 from canon.study.drift.drift import FEWEST
-from canon.study.drift.drift_study import SAMPLES_PER_PERIOD
+from canon.study.drift.sample_times import FEWEST_USUAL, usual_samples
 from canon.study.errors import StudyError
 from canon.study.motion.hamiltonian_text import Formula, formula_from, formula_of
 
@@ -26,8 +26,8 @@ __all__ = ["Study", "read_study"]
 
 AXES = ("system", "start", "method", "step", "steps_per_period", "tolerance", "precision")
 
-FEWEST_USUAL, MOST_SAMPLES = 4096, 2**15
-"""Samples of a run unless asked for: about 16 a period, within these limits."""
+MOST_SAMPLES = 2**15
+"""Samples of a run unless more are asked for."""
 
 LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables")
 
@@ -186,11 +186,12 @@ def _case(
     span = table.get("span")
     span = float(span) if span is not None else float(table["periods"]) * _known(period, "periods")
     start = chosen["start"]
+    usual = usual_samples(span, period, MOST_SAMPLES, unknown=FEWEST_USUAL)
     case = Case(
         system=system,
         method=method,
         span=span,
-        samples=int(table["samples"]) if "samples" in table else _usual_samples(span, period),
+        samples=int(table.get("samples", usual)),
         start=tuple(map(float, start)) if isinstance(start, list | tuple) else start,
         parameters=parameters,
         step=float(step) if stepped else None,
@@ -210,12 +211,6 @@ def _period(system: str | Formula, parameters: tuple[tuple[str, float], ...]) ->
             raise ValueError(f"{system.name} has no parameter {missing[0]!r}")
         return system.period
     return find(system).with_parameters(**dict(parameters)).period
-
-
-def _usual_samples(span: float, period: float | None) -> int:
-    """Return enough samples to see the oscillation of an error of which the period is known."""
-    wanted = 0.0 if period is None else SAMPLES_PER_PERIOD * span / period
-    return int(min(MOST_SAMPLES, max(FEWEST_USUAL, wanted)))
 
 
 def _known(period: float | None, what: str) -> float:

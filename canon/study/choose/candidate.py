@@ -11,18 +11,19 @@ from sympy import Pow
 
 from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
+from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
 from canon.flow.propagate import is_separable
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
-from canon.study.choose.choice_question import Question, Setting
 from canon.study.choose.error_law import expected_error, order_of
 from canon.study.choose.pilot_run import Pilot, pilot, seconds_per_time
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.kernel.program.hamilton_equations import HamiltonEquations
+    from canon.study.choose.choice_question import Question
 
 __all__ = [
     "HOPELESS",
@@ -212,7 +213,7 @@ def candidate_of(question: Question, tried: TriedSetting, accuracy: float, note:
         method=setting.method,
         step=setting.step,
         tolerance=setting.tolerance,
-        precision=setting.precision,
+        precision=setting.arithmetic,
         predicted_error=tried.error,
         predicted_cost=tried.cost,
         evaluations=found.evaluations * question.span / found.span,
@@ -227,7 +228,7 @@ def nothing(setting: Setting, reason: str) -> Candidate:
         setting.method,
         None,
         None,
-        setting.precision,
+        setting.arithmetic,
         predicted_error=math.inf,
         predicted_cost=math.inf,
         evaluations=math.inf,

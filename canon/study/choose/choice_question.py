@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from canon.flow.method.adaptive_methods import Taylor
-from canon.flow.propagate import propagate
-from canon.flow.run.observables_along import AccuracyWarning
+from canon.flow.method.setting import Setting
 from canon.kernel.llvm.number_types import EXTENDED
+from canon.study.motion.observables import Observable
+from canon.study.motion.quiet_run import run_quietly
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,38 +17,16 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.array import Array
-    from canon.flow.method.method import Method
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
 
-__all__ = ["PLACES", "Question", "Setting"]
+__all__ = ["PLACES", "Question"]
 
 PLACES = 64
 """Times at which positions are compared with those of the reference."""
 
 REFERENCE, FINE_REFERENCE = Taylor(1e-19), Taylor(1e-28)
 """Methods of the references for positions."""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A method with its step or tolerance and its arithmetic, the way ``propagate`` takes them."""
-
-    method: Method
-    step: float | None = None
-    tolerance: float | None = None
-    precision: str = "compensated"
-
-    @property
-    def knob(self) -> float:
-        """The step, or the tolerance of an adaptive method."""
-        return self.step if self.step is not None else self.tolerance or 2.0**-52
-
-    def turned(self, knob: float) -> Setting:
-        """Return the setting with another step or tolerance."""
-        if self.method.engine.takes_step:
-            return replace(self, step=knob)
-        return replace(self, tolerance=knob)
 
 
 @dataclass(frozen=True)
@@ -86,22 +62,18 @@ class Question:
         times: Array | None = None,
     ) -> Trajectory:
         """Return a run of that duration from the start; its samples are even unless times are named."""
-        with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
-            warnings.simplefilter("ignore", AccuracyWarning)  # its energy error is looked at here
-            return propagate(
-                self.hamiltonian,
-                (0.0, duration),
-                self.y0,
-                method=setting.method,
-                step=setting.step,
-                tolerance=setting.tolerance,
-                precision=setting.precision,
-                parameters=self.values,
-                samples=samples if times is None else None,
-                times=times,
-                cadence=cadence,
-                observables=None if self.integral is None else {self.observable: self.integral},
-            )
+        along = () if self.integral is None else (Observable(self.observable, self.integral),)
+        return run_quietly(
+            self.hamiltonian,
+            (0.0, duration),
+            self.y0,
+            setting,
+            parameters=self.values,
+            samples=samples,
+            times=times,
+            along=along,
+            cadence=cadence,
+        )
 
     def positions(self, duration: float, precision: str) -> tuple[Array, Array]:
         """Return the reference's coordinates at PLACES + 1 even times as sums of doubles, each (n, times).

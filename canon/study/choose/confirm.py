@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
+from canon.flow.method.setting import Setting
 from canon.study.choose.candidate import MARGIN, Candidate, candidate_of, tried_with
-from canon.study.choose.choice_question import Question, Setting
 from canon.study.choose.error_law import order_of
 from canon.study.choose.pilot_run import pilot_share
 from canon.study.choose.step_search import LONGEST_PILOT
 from canon.study.choose.tolerance_search import ADAPTIVE_MARGIN, last_rung, tolerance_at
+
+if TYPE_CHECKING:
+    from canon.study.choose.choice_question import Question
 
 __all__ = ["confirmed", "double_instead"]
 
@@ -64,7 +68,7 @@ def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: 
             order = order_of(tried.pilot)
             factor = (MARGIN * accuracy / tried.error) ** (1.0 / order) if tried.error < math.inf else 0.5
             setting = setting.turned(setting.knob * min(NEIGHBOUR, max(factor, SHORTEST_STRIDE)))
-        elif setting.knob > tolerance_at(last_rung(setting.precision)):
+        elif setting.knob > tolerance_at(last_rung(setting.arithmetic)):
             setting = setting.turned(setting.knob * math.exp(-2.0))  # one order of Taylor's method
         else:
             break

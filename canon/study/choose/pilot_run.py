@@ -11,8 +11,9 @@ import numpy as np
 
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, SCIPY
+from canon.flow.method.setting import Setting
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.study.choose.choice_question import PLACES, Question, Setting
+from canon.study.choose.choice_question import PLACES, Question
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
@@ -184,7 +185,7 @@ def _against_reference(question: Question, setting: Setting, duration: float) ->
     elif setting.method.engine is FIXED_STEPS:
         steps = PLACES * max(1, round(duration / setting.knob / PLACES))
         setting = replace(setting, step=duration / steps)
-    true, rest = question.positions(duration, setting.precision)
+    true, rest = question.positions(duration, setting.arithmetic)
     found = question.run(setting, duration, PLACES, times=times)
     if found.t.size == PLACES:
         true, rest = true[:, 1:], rest[:, 1:]

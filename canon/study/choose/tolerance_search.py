@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.flow.method.setting import Setting
 from canon.study.choose.candidate import (
     HOPELESS,
     PILOTS,
@@ -15,11 +16,11 @@ from canon.study.choose.candidate import (
     nothing,
     tried_with,
 )
-from canon.study.choose.choice_question import Question, Setting
 from canon.study.choose.pilot_run import pilot_share
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
+    from canon.study.choose.choice_question import Question
 
 __all__ = ["ADAPTIVE_MARGIN", "last_rung", "searched_tolerance", "tolerance_at"]
 

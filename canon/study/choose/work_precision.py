@@ -12,12 +12,13 @@ from canon.display import preformatted
 from canon.expression.symbols.user_input import counted
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.method_text import method_of
-from canon.flow.propagate import propagate
+from canon.flow.method.setting import Setting
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.study.choose.choice_table import duration_in_words
 from canon.study.choose.resonance import resonant_steps
 from canon.study.drift.drift_table import aligned
 from canon.study.errors import StudyError
+from canon.study.motion.quiet_run import run_quietly
 from canon.study.motion.studied_motion import Subject, subject_of
 
 if TYPE_CHECKING:
@@ -171,80 +172,62 @@ def work_precision(
     if repetitions < 1:
         raise StudyError(f"repetitions = {repetitions}: run each method at least once")
     several = (precision,) if precision is None or isinstance(precision, str) else tuple(precision)
-    trials = _trials(tuple(map(method_of, methods)), several, tuple(steps), tuple(tolerances))
+    settings = _settings(tuple(map(method_of, methods)), several, tuple(steps), tuple(tolerances))
     subject = subject_of(system, y0, parameters)
     try:
-        reference = _run(subject, Trial(REFERENCE, precision="quad"), span, SAMPLES).q[:, -1]
+        reference = _run(subject, Setting(REFERENCE, precision="quad"), span, SAMPLES).q[:, -1]
     except (NonFiniteStateError, ValueError) as error:
         raise StudyError(f"the reference could not be run: {error}") from error
     rows: list[WorkRow] = []
-    for number, trial in enumerate(trials, 1):
-        rows.append(_row(subject, trial, span, repetitions, reference))
+    for number, setting in enumerate(settings, 1):
+        rows.append(_row(subject, setting, span, repetitions, reference))
         if progress is not None:
-            progress(number / len(trials))
+            progress(number / len(settings))
     return WorkPrecision(subject.title, span, tuple(_marked(rows)))
 
 
-@dataclass(frozen=True)
-class Trial:
-    """What is measured: a method with its step or tolerance and its arithmetic."""
-
-    method: Method
-    step: float | None = None
-    tolerance: float | None = None
-    precision: str | None = None
-
-
-def _trials(
+def _settings(
     methods: Sequence[Method],
     precisions: Sequence[str | None],
     steps: Sequence[float],
     tolerances: Sequence[float],
-) -> list[Trial]:
+) -> list[Setting]:
     """Return what is measured of all methods, of each the precision rising."""
-    found: list[Trial] = []
+    found: list[Setting] = []
     for method in methods:
         if method.engine.takes_step:
             if not steps:
                 raise StudyError(f"{method} takes steps of given sizes: give steps")
             falling = sorted(steps, reverse=True)
-            found += [Trial(method, step, precision=each) for each in precisions for step in falling]
+            found += [Setting(method, step, precision=each) for each in precisions for step in falling]
         elif not tolerances:
             raise StudyError(f"{method} chooses its steps by a tolerance: give tolerances")
         else:
-            found += [Trial(method, tolerance=each) for each in sorted(tolerances, reverse=True)]
+            found += [Setting(method, tolerance=each) for each in sorted(tolerances, reverse=True)]
     return found
 
 
-def _run(subject: Subject, trial: Trial, span: float, samples: int) -> Trajectory:
-    return propagate(
-        subject.hamiltonian,
-        (0.0, span),
-        subject.state,
-        method=trial.method,
-        step=trial.step,
-        tolerance=trial.tolerance,
-        precision=trial.precision,
-        parameters=subject.values,
-        samples=samples,
+def _run(subject: Subject, setting: Setting, span: float, samples: int) -> Trajectory:
+    return run_quietly(
+        subject.hamiltonian, (0.0, span), subject.state, setting, parameters=subject.values, samples=samples
     )
 
 
 def _row(
-    subject: Subject, trial: Trial, span: float, repetitions: int, reference: NDArray[np.float64]
+    subject: Subject, setting: Setting, span: float, repetitions: int, reference: NDArray[np.float64]
 ) -> WorkRow:
     """Return what it costs and how far it is off; a run that fails with the reason."""
     try:
-        found = _run(subject, trial, span, SAMPLES)
-        timed = [_run(subject, trial, span, samples=1) for _ in range(repetitions)]
-        return _measured(found, timed, trial.tolerance, reference)
+        found = _run(subject, setting, span, SAMPLES)
+        timed = [_run(subject, setting, span, samples=1) for _ in range(repetitions)]
+        return _measured(found, timed, setting.tolerance, reference)
     except (NonFiniteStateError, ValueError) as error:
         return WorkRow(
-            trial.method,
-            trial.step,
-            trial.tolerance,
+            setting.method,
+            setting.step,
+            setting.tolerance,
             failure=str(error),
-            precision=trial.precision or "",
+            precision=setting.arithmetic,
         )
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
+from canon.flow.method.number_formats import unit_round_off
 from canon.flow.trajectory import Trajectory
 from canon.study.drift.block_means import WIDTH, Blocks, block_means
 from canon.study.drift.drift_verdict import Drift, Growth
@@ -25,7 +27,9 @@ from canon.study.drift.growth import (
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FEWEST", "Drift", "Growth", "drift"]
+    from canon.array import Array
+
+__all__ = ["FEWEST", "Drift", "Growth", "drift", "judged_series"]
 
 WINDOWS = 32
 """Windows from which slopes and walks are found."""
@@ -179,6 +183,22 @@ def drift(
             "drift(motion) takes a motion that propagate returned; of a series give times and errors"
         )
     return _drift(*_checked(t, error), roundoff, resolution, diverged, false_alarm)
+
+
+def judged_series(t: Array, error: Array, steps: int, precision: str, *, relative: bool) -> Drift:
+    """Judge an error series whose run's steps and precision tell what rounding would do to it.
+
+    Parameters
+    ----------
+    t, error
+        As :func:`drift` takes them.
+    steps, precision
+        Of the run.
+    relative
+        Whether the error is relative; what rounding does to another is not known.
+    """
+    unit = unit_round_off(precision)
+    return drift(t, error, roundoff=unit * math.sqrt(steps) if relative else None, resolution=unit)
 
 
 def _drift(

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import math
-import warnings
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from canon.flow.method.engine import FIXED_STEPS
-from canon.flow.method.number_formats import unit_round_off
-from canon.flow.propagate import propagate
-from canon.flow.run.observables_along import AccuracyWarning
-from canon.study.drift.drift import Growth, drift
+from canon.flow.method.setting import Setting
+from canon.study.drift.drift import Growth, judged_series
 from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, tangent_of
+from canon.study.motion.quiet_run import run_quietly
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -103,11 +100,8 @@ class Run:
     hamiltonian: HamiltonianSystem
     y0: Array
     span: float
-    method: Method
+    setting: Setting
     samples: int
-    step: float | None = None
-    tolerance: float | None = None
-    precision: str | None = None
     parameters: Mapping[Symbol | str, float] | None = None
     cadence: int | None = None
 
@@ -120,24 +114,17 @@ class Run:
         progress: Callable[[float], None] | None = None,
     ) -> Trajectory:
         """Return a run of that duration."""
-        with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
-            warnings.simplefilter("ignore", AccuracyWarning)  # the verdict says it
-            return propagate(
-                self.hamiltonian,
-                (0.0, duration),
-                self.y0,
-                method=self.method,
-                step=self.step,
-                tolerance=self.tolerance,
-                precision=self.precision,
-                parameters=self.parameters,
-                samples=samples,
-                cadence=cadence,
-                observables={
-                    each.name: each.expression for each in observables if each.expression is not None
-                },
-                progress=progress,
-            )
+        return run_quietly(
+            self.hamiltonian,
+            (0.0, duration),
+            self.y0,
+            self.setting,
+            parameters=self.parameters,
+            samples=samples,
+            along=observables,
+            cadence=cadence,
+            progress=progress,
+        )
 
 
 def drift_row(
@@ -157,7 +144,7 @@ def drift_row(
 
     The parameters are those of :func:`drift_study` and :func:`canon.flow.propagate.propagate`.
     """
-    run = Run(hamiltonian, y0, span, method, samples, step, tolerance, precision, parameters)
+    run = Run(hamiltonian, y0, span, Setting(method, step, tolerance, precision), samples, parameters)
     return drift_rows(run, (Observable(ENERGY),), progress)[0]
 
 
@@ -179,7 +166,7 @@ def drift_rows(
         if len(along) < len(observables):
             rows[SYMPLECTICITY] = _symplecticity(run, found, seconds)
     except (ArithmeticError, ValueError) as failed:
-        lost = DriftRow(run.method, run.step, np.empty(0), np.empty(0), failure=str(failed))
+        lost = DriftRow(run.setting.method, run.setting.step, np.empty(0), np.empty(0), failure=str(failed))
         return [replace(lost, observable=each.name) for each in observables]
     return [rows[each.name] for each in observables]
 
@@ -194,10 +181,8 @@ def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftR
     if found.statistics:
         seen = found.statistics[observable.name]
         t, error, largest = (t[1:] + t[:-1]) / 2.0, seen.mean / unit, (seen.largest / unit).max(axis=0)
-    smallest = unit_round_off(found.precision)
-    roundoff = smallest * math.sqrt(found.steps) if relative else None
     judged = [
-        replace(drift(t, series, roundoff=roundoff, resolution=smallest), bound=float(bound))
+        replace(judged_series(t, series, found.steps, found.precision, relative=relative), bound=float(bound))
         for series, bound in zip(np.atleast_2d(error.T), np.atleast_1d(largest), strict=True)
     ]
     worst = max(range(len(judged)), key=lambda k: (SEVERITY.index(judged[k].verdict), judged[k].bound))
@@ -236,7 +221,7 @@ def _seconds_of_steps(found: Trajectory, run: Run) -> float:
     Keeping a sample costs a method of fixed step as much as a thousand cheap steps do; so a part of the run is
     timed again without samples. Its steps all cost the same.
     """
-    if run.method.engine is not FIXED_STEPS or found.step is None:
+    if found.method.engine is not FIXED_STEPS or found.step is None:
         return found.cpu_seconds
     part = min(found.steps, TIMED_STEPS)
     again = min(run(part * found.step, 1).cpu_seconds for _ in range(2))

@@ -14,10 +14,12 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.method.method_text import method_of
+from canon.flow.method.setting import Setting
 from canon.flow.propagate import is_separable
 from canon.study.drift.drift import FEWEST
 from canon.study.drift.drift_rows import DriftRow, Run, drift_row, drift_rows
 from canon.study.drift.drift_table import drift_table
+from canon.study.drift.sample_times import GOLDEN, SAMPLES_PER_PERIOD, usual_samples
 from canon.study.errors import StudyError
 from canon.study.motion.extended_phase_space import driven
 from canon.study.motion.observables import ENERGY, observables_of
@@ -37,17 +39,12 @@ if TYPE_CHECKING:
 
 __all__ = ["DriftRow", "DriftStudy", "StudyError", "drift_row", "drift_study"]
 
-GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
-
 STEPS_PER_PERIOD = 48.0 + GOLDEN
 """Steps in a period where no step is given: about 50, but never in step with the motion.
 
 A whole number of steps in a period meets the pericentre at nearly the same phase for a long time, and its
 slow shift then looks like a drift.
 """
-
-SAMPLES_PER_PERIOD = 14.0 + GOLDEN
-"""Samples in a period where no number is given: enough to see its oscillation, and not in step with it."""
 
 MOST_SAMPLES = 2**17
 """Samples that are kept at most unless more are asked for."""
@@ -187,7 +184,11 @@ def drift_study(
     whole = span if span is not None else _span(periods, known_period)
     span = _checked("run over a time", "duration", whole)
     h = _checked("step", "one", step if step is not None else _usual_step(chosen, known_period))
-    kept = samples if samples is not None else _usual_samples(span, known_period)
+    kept = (
+        samples
+        if samples is not None
+        else usual_samples(span, known_period, MOST_SAMPLES, unknown=MOST_SAMPLES)
+    )
     if kept < FEWEST:
         raise StudyError(f"{kept} samples are too few to judge growth: keep at least {FEWEST}")
     followed = observables_of(subject.system, subject.hamiltonian, observables, subject.state, subject.values)
@@ -202,11 +203,13 @@ def drift_study(
             hamiltonian,
             starts,
             span,
-            method,
+            Setting(
+                method,
+                step=h if stepped else None,
+                tolerance=None if stepped else tolerance,
+                precision=method.engine.understood(precision),
+            ),
             BLOCKS_KEPT if watched else kept,
-            step=h if stepped else None,
-            tolerance=None if stepped else tolerance,
-            precision=method.engine.understood(precision),
             parameters=subject.values,
             cadence=_cadence(h, known_period) if watched else None,
         )
@@ -281,8 +284,3 @@ def _usual_step(methods: Sequence[Method], period: float | None) -> float | None
             f"{stepped[0]} takes steps of a given size: give step=, or period= to take about a fiftieth of it"
         )
     return None
-
-
-def _usual_samples(span: float, period: float | None) -> int:
-    wanted = SAMPLES_PER_PERIOD * span / period if period is not None else math.inf
-    return int(min(MOST_SAMPLES, max(16 * FEWEST, wanted)))

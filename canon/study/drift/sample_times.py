@@ -7,6 +7,7 @@ than a resolved oscillation does, so scattered times are for the others alone.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,10 +15,31 @@ import numpy as np
 if TYPE_CHECKING:
     from canon.array import Array
 
-__all__ = ["is_resolved", "scattered"]
+__all__ = ["FEWEST_USUAL", "GOLDEN", "SAMPLES_PER_PERIOD", "is_resolved", "scattered", "usual_samples"]
+
+GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
+
+SAMPLES_PER_PERIOD = 14.0 + GOLDEN
+"""Samples in a period where no number is given: enough to see its oscillation, and not in step with it."""
+
+FEWEST_USUAL = 4096
+"""Samples of a run at least, unless fewer are asked for."""
 
 RESOLVED = 0.5
 """Correlation of neighbouring samples above which they resolve a series: six of a sine a turn."""
+
+
+def usual_samples(span: float, period: float | None, most: int, *, unknown: int) -> int:
+    """Return about 16 samples a period, within limits; where no period is known a number for that.
+
+    Examples
+    --------
+    >>> usual_samples(1000.0, 1.0, 2**15, unknown=4096), usual_samples(1000.0, None, 2**15, unknown=4096)
+    (15618, 4096)
+    """
+    return (
+        unknown if period is None else int(min(most, max(FEWEST_USUAL, SAMPLES_PER_PERIOD * span / period)))
+    )
 
 
 def is_resolved(error: Array, every: int) -> bool:
