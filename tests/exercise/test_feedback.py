@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.exercise.diagnose.effort import Effort
-from canon.exercise.diagnose.repair import repair
+from canon.exercise.diagnose.repairs.repair import repair
+from canon.exercise.diagnose.repairs.slips import variants
 from canon.exercise.diagnose.right_answer import corrected
-from canon.exercise.diagnose.slips import variants
 from canon.exercise.judge import examine
 from canon.exercise.question.question import Part
 from canon.exercise.report.sentences import feedback
@@ -47,7 +47,7 @@ EXPECTED = {
     "F2-01a": "F has the wrong sign",
     "KH-02a": "K is H in the new variables; ∂F/∂t is missing: K = H + ∂F/∂t",
     "KH-02b": "the sign of ∂F/∂t in K is wrong: K = H + ∂F/∂t",
-    "CM-01b": "right for m = 1, but not in general",
+    "CM-01b": "in I the term -k*x/sqrt(x**2 + y**2) lacks the factor m",
     "CM-02a": "in I the sign of t*p/m is wrong",
     "LE-02b": "in F the sign of -m*v*x is wrong",
     "LE-04a": "L1 and L2 have the same equations of motion, but L2 − L1 is not dF/dt of any F(q, t)",

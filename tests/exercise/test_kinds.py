@@ -12,9 +12,10 @@ import pytest
 
 import canon.exercise
 from canon.exercise import judge as judging
-from canon.exercise.diagnose import rereadings, screen_tests
+from canon.exercise.diagnose import rereadings
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import Proof
+from canon.exercise.diagnose.repairs import screen_tests
 from canon.exercise.question import answer_values
 from canon.exercise.report.sentences import OF_A_COMPONENT, SENTENCES, feedback
 from canon.exercise.sheet import key_shapes, kind, kinds

@@ -8,13 +8,13 @@ from flint import acb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.exercise.diagnose.changed_claims import _answers
+from canon.exercise.diagnose.changed_claims import answers_of
 from canon.exercise.diagnose.diagnosis import judged_to_hold
 from canon.exercise.diagnose.diagnosis_search import diagnosis
 from canon.exercise.diagnose.effort import Effort
-from canon.exercise.diagnose.point_derivatives import BITS, Examples, Neighbourhood
-from canon.exercise.diagnose.repair import repair
-from canon.exercise.diagnose.screening import screening
+from canon.exercise.diagnose.repairs.point_derivatives import BITS, Examples, Neighbourhood
+from canon.exercise.diagnose.repairs.repair import repair
+from canon.exercise.diagnose.repairs.screening import screening
 from canon.exercise.judge import examine
 from canon.exercise.question.question import Part
 from canon.exercise.report.sentences import feedback, sentence
@@ -51,7 +51,7 @@ def test_true_claims_pass_and_most_false_ones_do_not(kind):
     passed = {True: [], False: []}
     for claim in read_sheet(CLAIMS / f"{kind}.json").claims:
         reading = Reading(claim)
-        screen = screening(reading, dict(_answers(reading)))
+        screen = screening(reading, dict(answers_of(reading)))
         if screen is not None:
             passed[claim.expect == "holds"].append(screen.passes({}))
     assert all(passed[True])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass, replace
 
-__all__ = ["Change", "Mistake"]
+__all__ = ["Change", "Mistake", "rank"]
 
 
 class Mistake(enum.Enum):
@@ -22,6 +22,7 @@ class Mistake(enum.Enum):
     FACTOR_MISSING = enum.auto()  # where, the factor
     DIVISOR_MISSING = enum.auto()  # where, the divisor
     FACTOR_SUPERFLUOUS = enum.auto()  # the factor, where
+    UPSIDE_DOWN = enum.auto()  # where, the fraction
     # what stands in a term: what was written, what is right
     FUNCTION = enum.auto()
     FUNCTION_MISSING = enum.auto()
@@ -99,3 +100,33 @@ class Change:
     def at(self, place: str) -> Change:
         """Return the change as one of a component."""
         return replace(self, place=place)
+
+
+_PLAIN = {
+    Mistake.WRONG_SIGN: 0, Mistake.TERM_SIGN: 0,
+    Mistake.WRONG_FACTOR: 1, Mistake.TERM_FACTOR: 1, Mistake.TERM_MISSING: 1, Mistake.FUNCTION: 1,
+    Mistake.EXPONENT: 1, Mistake.FACTOR_MISSING: 2, Mistake.FUNCTION_MISSING: 2, Mistake.UPSIDE_DOWN: 2,
+    Mistake.SYMBOL: 2, Mistake.ARGUMENT: 2, Mistake.SIGN_OF: 2, Mistake.TERM_SUPERFLUOUS: 2,
+}  # fmt: skip
+_RARE = 3
+_NATURAL = {"1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2", "-1/2", "-2", "6", "1/6", "8", "1/8"}
+"""Factors that people lose; 8/7 is none."""
+
+
+def rank(change: Change) -> int:
+    """Return how far back a change stands among those that would all make an answer right: the likeliest first.
+
+    Examples
+    --------
+    >>> rank(Change.of(Mistake.TERM_SIGN, "x")), rank(Change.of(Mistake.TERM_FACTOR, "x", "8/7"))
+    (0, 5)
+    """
+    found = _PLAIN.get(change.mistake, _RARE)
+    if (
+        change.mistake in (Mistake.TERM_FACTOR, Mistake.WRONG_FACTOR)
+        and str(change.items[-1]) not in _NATURAL
+    ):
+        found = 5
+    if change.mistake is Mistake.FACTOR_MISSING and getattr(change.items[-1], "is_Symbol", False):
+        found = 1
+    return found + 2 * change.everywhere + (change.inside is not None)

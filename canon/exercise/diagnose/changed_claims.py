@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import replace
-from itertools import chain, groupby
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -12,14 +10,11 @@ import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
-from canon.exercise.diagnose.repair import is_wrong
+from canon.exercise.diagnose.repairs.screening import screening
 from canon.exercise.diagnose.rereadings import read_anew
-from canon.exercise.diagnose.screening import screening
-from canon.exercise.diagnose.slips import common_slips, slipped, variants
 from canon.exercise.sheet.kind import Shape, named_function
 from canon.exercise.sheet.reading import InvalidClaim
-from canon.expression.symbols.symbol import velocity
-from canon.mechanics.algebra.substitution import size, symbols_of
+from canon.mechanics.algebra.substitution import symbols_of
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
@@ -33,8 +28,8 @@ if TYPE_CHECKING:
 __all__ = [
     "another_gauge",
     "another_reading",
-    "one_change",
-    "one_change_of_two",
+    "answers_of",
+    "only_for",
     "only_where",
     "right_where",
     "staggered_step",
@@ -69,7 +64,7 @@ def another_gauge(wrong: WrongAnswer) -> Iterator[Diagnosis]:
 
 
 def only_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
-    """Yield a region, or a value of a parameter, for which the claim does hold.
+    """Yield a region in which the claim does hold.
 
     It may hold for more: that it holds only there is not proved, and not said.
     """
@@ -89,6 +84,13 @@ def only_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
             trial = read_anew(reading, {**keys, "parameters": {**assumed, symbol.name: word}})
             if _is_somewhere(trial) and _could_hold(trial) and judged_to_hold(trial, effort):
                 yield Diagnosis.of(Mistake.ONLY_WHERE, symbol, sign, repaired=trial)
+
+
+def only_for(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield a parameter that was taken to be one: the claim holds for that value of it."""
+    reading, effort = wrong.reading, wrong.effort
+    keys = reading.claim.keys
+    assumed = dict(keys.get("parameters", {}))
     variables = {
         name for key in ("q", "p", "x", "variables", "new_q", "new_p") for name in _names(keys.get(key))
     }
@@ -105,7 +107,7 @@ def only_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
 def right_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield a condition under which the claim does hold: the sign of a denominator, of a difference, a bound."""
     reading, effort = wrong.reading, wrong.effort
-    expressions = [f for _, f in _answers(reading)]
+    expressions = [f for _, f in answers_of(reading)]
     for g in _dividing(expressions):
         for sign in (">", "<"):
             if not effort.spend(SCREEN_STEPS):
@@ -153,65 +155,12 @@ def _dividing(expressions: Sequence[Expr]) -> list[Expr]:
     return list(found)[:MOST_DIVIDING]
 
 
-def one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
-    """Yield one change in the answer that makes the whole claim right."""
-    yield from _one_change(wrong.within(0.75))
-
-
-def one_change_of_two(wrong: WrongAnswer) -> Iterator[Diagnosis]:
-    """Yield one change in F or L₂; where both are answered, half of the time is left to L₂ as a component."""
-    yield from _one_change(wrong.within(0.5 if wrong.reading.has("F") else 0.75))
-
-
-def _one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
-    reading, effort, suspects = wrong.reading, wrong.effort, _suspects(wrong)
-    answers = sorted(_answers(reading), key=lambda answer: _rank(answer[0], suspects))
-    screen = screening(reading, dict(answers))
-    cost = sum(size(f) for _, f in answers)
-    symbols = tuple(reading.scope.names.values())
-    groups = groupby(sorted(answers, key=lambda a: _outer(a[0])), key=lambda a: _outer(a[0]))
-    for key, group in groups:
-        items = list(group)
-        if len(items) > 1:
-            for slip, change in common_slips([e for _, e in items], symbols):
-                if not effort.spend(cost):
-                    return
-                slipped_all = {name: slipped(expression, slip) for name, expression in items}
-                changed = {name: new for name, new in slipped_all.items() if new is not None}
-                if len(changed) < len(items) or (screen is not None and not screen.passes(changed)):
-                    continue
-                trial = reading
-                for name, new in changed.items():
-                    trial = trial.with_instead(name, new)
-                if judged_to_hold(trial, effort):
-                    yield Diagnosis((change.at(key),), trial)
-    for number, (key, expression) in enumerate(answers, 1):
-        share = effort.share(1.0 if number == len(answers) else 0.5)
-        for new, change in chain(_rescaled(key, expression), _named(key, variants(expression, symbols))):
-            if not share.spend(cost):
-                break
-            if _trivial(key, new, reading) or (screen is not None and not screen.passes({key: new})):
-                continue
-            trial = reading.with_instead(key, new)
-            if judged_to_hold(trial, share, wrong.finding.held if key == "K" else 0):
-                yield Diagnosis((change,), trial)
-
-
-def _suspects(wrong: WrongAnswer) -> list[str]:
-    """Return the names in brackets that are wrong, the most frequent first."""
-    counts: Counter[str] = Counter()
-    for part in wrong.parts:
-        if part.bracket_of and is_wrong(part, wrong.domain):
-            counts.update(part.bracket_of)
-    return [name for name, _ in counts.most_common()]
-
-
 def staggered_step(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield that new momenta or coordinates belong in place of the old ones: a step of one after that of the other."""
     reading = wrong.reading
     if not reading.has("Q"):
         return
-    answers = dict(_answers(reading))
+    answers = dict(answers_of(reading))
     screen = screening(reading, answers)
     for changed, change in _staggered(reading, answers):
         if screen is None or screen.passes(changed):
@@ -238,32 +187,7 @@ def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[
             yield staggered, new.at(here)
 
 
-def _outer(key: str) -> str:
-    """Return the part of a key before the component: P of P[0], solution of solution.q."""
-    if key.startswith("pairs"):
-        return key
-    return "solution" if key.startswith("solution.") else key.partition("[")[0]
-
-
-def _rank(key: str, suspects: Sequence[str]) -> int:
-    """Return how far back in the line of suspects a component stands: P[1] is called P2, or P if it is alone."""
-    letter, _, index = key.removeprefix("map.").partition("[")
-    names = (letter, f"{letter}{int(index[:-1]) + 1}" if index.endswith("]") else letter)
-    return min((i for i, suspect in enumerate(suspects) if suspect in names), default=len(suspects))
-
-
-def _rescaled(key: str, expression: Expr) -> Iterator[tuple[Expr, Change]]:
-    yield -expression, Change.of(Mistake.WRONG_SIGN, place=key)
-    simple = map(sp.Rational, ("1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2"))
-    for factor in (*simple, 2 * sp.pi, 1 / (2 * sp.pi)):
-        yield factor * expression, Change.of(Mistake.WRONG_FACTOR, factor, place=key)
-
-
-def _named(key: str, found: Iterator[tuple[Expr, Change]]) -> Iterator[tuple[Expr, Change]]:
-    return ((new, change.at(key)) for new, change in found)
-
-
-def _answers(reading: Reading) -> Iterator[tuple[str, Expr]]:
+def answers_of(reading: Reading) -> Iterator[tuple[str, Expr]]:
     """Yield the expressions in which a change is tried, by keys such as ``Q[0]``."""
     for key in reading.kind.repaired:
         outer, _, inner = key.partition(".")
@@ -290,17 +214,10 @@ def _of_brackets(reading: Reading, key: str) -> Iterator[tuple[str, Expr]]:
         yield from zip((f"{key}[{i}].{name}" for name in ("value", "f", "g")), (value, f, g), strict=True)
 
 
-def _trivial(key: str, answer: Expr, reading: Reading) -> bool:
-    """Whether an answer under a key says nothing any more: a constant of the motion that is constant anyway."""
-    variables = {s for key in ("q", "p", "x") if reading.is_names(key) for s in reading.symbols(key)}
-    rates = {velocity(s) for s in variables}
-    return key in reading.kind.varying and not answer.free_symbols & (variables | rates)
-
-
 def _could_hold(reading: Reading) -> bool:
     """Whether values at points leave it open that a claim holds."""
     try:
-        screen = screening(reading, dict(_answers(reading)))
+        screen = screening(reading, dict(answers_of(reading)))
     except InvalidClaim:
         return False
     return screen is None or screen.passes({})

@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
-from canon.exercise.diagnose.derived_part import new_hamiltonian_part, second_lagrangian_part
+from canon.exercise.diagnose.derived_part import (
+    generating_part,
+    new_hamiltonian_part,
+    second_lagrangian_part,
+)
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis
 from canon.exercise.diagnose.effort import PROOF_SECONDS
-from canon.exercise.diagnose.repair import is_wrong, repairs
+from canon.exercise.diagnose.repairs.repair import is_wrong, repairs
 from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.question import Part, SameEquations
 from canon.mechanics.algebra.linear import SingularMatrixError
@@ -29,7 +33,7 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
-__all__ = ["new_hamiltonian", "on_the_motion", "part_by_part", "second_lagrangian"]
+__all__ = ["generating_function", "new_hamiltonian", "on_the_motion", "part_by_part", "second_lagrangian"]
 
 MOST_TRIALS = 4
 """Proved repairs of one component that are tried in the whole claim."""
@@ -45,6 +49,12 @@ def new_hamiltonian(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield what is wrong with K, where the map is canonical."""
     for part in new_hamiltonian_part(wrong.reading) if wrong.finding.held else ():
         yield from _part_by_part(wrong.within(0.6), (part,), [()])
+
+
+def generating_function(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield what is wrong with F beside the one that generates the map, where that is found."""
+    for part in generating_part(wrong.finding):
+        yield from _part_by_part(wrong.within(0.4), (part,), [()])
 
 
 def second_lagrangian(wrong: WrongAnswer) -> Iterator[Diagnosis]:

@@ -10,7 +10,7 @@ from sympy.core.function import AppliedUndef
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, scaled
 from canon.exercise.diagnose.effort import PROOF_SECONDS
-from canon.exercise.diagnose.repair import common_ratio
+from canon.exercise.diagnose.repairs.repair import common_ratio
 from canon.mechanics.canonical.repair_hint import repair_hint
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.proof.kinks import vanishes_off_kinks

@@ -16,7 +16,7 @@ from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.question.affine_systems import solved
-from canon.exercise.question.question import Part
+from canon.exercise.question.question import Part, Same
 from canon.expression.symbols.symbol import time_derivative
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.mechanics.algebra.potential import potential
@@ -31,10 +31,11 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.exercise.diagnose.diagnosis import WrongAnswer
+    from canon.exercise.judge import Finding
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
-__all__ = ["new_hamiltonian_part", "second_lagrangian_part", "time_term"]
+__all__ = ["generating_part", "new_hamiltonian_part", "second_lagrangian_part", "time_term"]
 
 
 def new_hamiltonian_part(reading: Reading) -> Iterator[Part]:
@@ -99,6 +100,23 @@ def _linear_inverse(
         return solved([f - name for f, name in zip(images, names, strict=True)], z)
     except (SingularMatrixError, Undecided):
         return None
+
+
+def generating_part(finding: Finding) -> Iterator[Part]:
+    """Yield F beside a generating function of the map, with the constant that makes them alike at the origin."""
+    reading, question = finding.reading, finding.question
+    if not (isinstance(question, Same) and question.answer is not None and reading.has("F")):
+        return
+    try:
+        right = question.answer()
+    except (ValueError, Undecided):
+        return
+    if not isinstance(right, sp.Expr):
+        return
+    F = reading.expression("F")
+    variables = [s for key in ("q", "p", "new_q", "new_p") for s in reading.symbols(key)]
+    rest = substitute(F - right, dict.fromkeys(variables, sp.S.Zero))
+    yield Part("F", F, right if rest.has(sp.nan, sp.zoo, sp.oo) else right + rest, key="F")
 
 
 def second_lagrangian_part(reading: Reading) -> Part:

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["OUTER_SECONDS", "diagnosis"]
 
-OUTER_SECONDS = 8.0
-"""Outer limit of a search; its steps end it long before on a machine that is not overloaded."""
+OUTER_SECONDS = 60.0
+"""Outer limit of a search whose steps end it after a second or two on a machine that is not overloaded."""
 
 
 def diagnosis(finding: Finding, seconds: float = OUTER_SECONDS) -> Diagnosis | None:

@@ -12,7 +12,7 @@ __all__ = ["PROOF_SECONDS", "PROOF_STEPS", "STEPS", "Effort"]
 
 STEPS = 600_000
 """Steps for one diagnosis, which take a second or two where nothing is found."""
-PROOF_STEPS = 6_000
+PROOF_STEPS = 2_500
 """Steps that a proof or a judgement on a changed claim counts for."""
 PROOF_SECONDS = 3.0
 """Outer limit of one proof or judgement; most take some milliseconds."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["generating_function_of"]
 
-SECONDS = 0.5
+SECONDS = 3.0
 _OF_INVERSE = {1: 1, 2: 3, 3: 2, 4: 4}
 """Type of the generating function −F of the inverse map, where old and new variables change places."""
 

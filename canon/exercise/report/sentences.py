@@ -10,7 +10,7 @@ from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS, diagnosis
 from canon.exercise.sheet.sympy_trees import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from canon.exercise.diagnose.change import Change
     from canon.exercise.diagnose.diagnosis import Diagnosis
@@ -33,6 +33,10 @@ def times(factor: object) -> str:
     ('half', '3/2 times')
     """
     return {"1/2": "half", "2": "twice", "-1": "minus"}.get(str(factor), f"{factor} times")
+
+
+def _listed(items: Iterable[object]) -> str:
+    return ", ".join(map(shown, items))
 
 
 def _only_where(item: object, relation: str) -> str:
@@ -59,6 +63,7 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.FACTOR_MISSING: "the term {} lacks the factor {}",
         Mistake.DIVISOR_MISSING: "the term {} should be divided by {}",
         Mistake.FACTOR_SUPERFLUOUS: "the factor {} of {} does not belong",
+        Mistake.UPSIDE_DOWN: "{} is upside down: it should be {}",
         Mistake.FUNCTION: "{} should be {}",
         Mistake.FUNCTION_MISSING: "{} should be {}",
         Mistake.ARGUMENT: "{} should be {}",
@@ -72,12 +77,16 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.SYMBOLS_EXCHANGED: lambda node, a, b: (
             f"{f'in {shown(node)} the symbols ' if node is not None else ''}{a} and {b} should be exchanged"
         ),
-        Mistake.DERIVATIVE_NOT_TOTAL: "d/dt is a total derivative: the terms {} are missing",
+        Mistake.DERIVATIVE_NOT_TOTAL: lambda *terms: (
+            f"d/dt ∂L/∂q̇ is a total derivative: the terms {_listed(terms)} are missing"
+        ),
         Mistake.INNER_DERIVATIVE_MISSING: "the term {} lacks the inner derivative {}",
         Mistake.TIME_DERIVATIVE_MISSING: "K is H in the new variables; ∂F/∂t is missing: K = H + ∂F/∂t",
         Mistake.TIME_DERIVATIVE_SIGN: "the sign of ∂F/∂t in K is wrong: K = H + ∂F/∂t",
-        Mistake.MULTIPLIERS_OPPOSITE: "right with the opposite sign of {}; the convention here is "
-        "d/dt ∂L/∂q̇ − ∂L/∂q = Σ λ ∂f/∂q",
+        Mistake.MULTIPLIERS_OPPOSITE: lambda names: (
+            f"right with the opposite sign of {_listed(names)}; the convention here is "
+            "d/dt ∂L/∂q̇ − ∂L/∂q = Σ λ ∂f/∂q"
+        ),
         Mistake.RULE_OPPOSITE: lambda rules: (
             f"right under the opposite sign of a rule: here {' and '.join(map(str, rules))}"
         ),

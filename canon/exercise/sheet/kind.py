@@ -58,10 +58,13 @@ COMMON: Mapping[str, Shape] = MappingProxyType(
 
 USUAL = (
     "convention.opposite_sign",
+    "derivation.multipliers",
     "changed_claims.another_reading",
     "components.part_by_part",
+    "derivation.total_derivative",
     "changed_claims.only_where",
-    "changed_claims.one_change",
+    "one_change.anywhere",
+    "changed_claims.only_for",
     "asymptotic.right_to_an_order",
     "changed_claims.right_where",
 )
@@ -107,7 +110,8 @@ class Kind:
     repaired
         Keys in which one change is tried, where the claim is judged as a whole; ``map.P`` is P in the table map.
     screen
-        What tells wrong answers from values at points: a function in :mod:`canon.exercise.diagnose.screen_tests`.
+        What tells wrong answers from values at points: a function in
+        :mod:`canon.exercise.diagnose.repairs.screen_tests`.
     rereadings
         Other claims of the same formulas that may have been meant, in :mod:`canon.exercise.diagnose.rereadings`.
     opposite

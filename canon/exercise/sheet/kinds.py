@@ -16,7 +16,9 @@ __all__ = ["KINDS", "kind_of"]
 
 _T, _TS, _N = Shape.TEXT, Shape.TEXTS, Shape.NAMES
 _FIRST = ("changed_claims.another_reading", "components.part_by_part")
-_CHANGED = ("changed_claims.only_where", "changed_claims.one_change", "asymptotic.right_to_an_order")
+_CHANGED = ("changed_claims.only_where", "one_change.anywhere", "changed_claims.only_for")
+_OF_F = ("convention.rescaled", "convention.one_rule", *_FIRST, "components.generating_function")
+_AT_LAST = ("asymptotic.right_to_an_order", "changed_claims.right_where")
 _PHASE = {"q": _N, "p": _N}
 _NEW = {"new_q": _N, "new_p": _N}
 _LAGRANGE = {"q": _N, "L": _T}
@@ -37,10 +39,10 @@ _CANONICITY = Kind(
         *_FIRST,
         "changed_claims.only_where",
         "changed_claims.staggered_step",
-        "changed_claims.one_change",
-        "asymptotic.right_to_an_order",
+        "one_change.anywhere",
+        "changed_claims.only_for",
         "convention.variable_valence",
-        "changed_claims.right_where",
+        *_AT_LAST,
     ),
 )
 _GENERATING = Kind(
@@ -56,7 +58,7 @@ _GENERATING = Kind(
     repaired=("F", "map.Q", "map.P", "inverse_map.q", "inverse_map.p"),
     screen="generating",
     rereadings=("inverse_map", "other_type", "exchanged_map"),
-    diagnoses=("convention.rescaled", "convention.one_rule", *USUAL),
+    diagnoses=(*_OF_F, *_CHANGED, *_AT_LAST),
 )
 _MOTION = {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS}
 _CONSTRAINED = Kind(
@@ -130,6 +132,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             unknowns="S up to terms without accelerations, or the accelerations",
             derived=True,
             repaired=("S",),
+            screen="by_question",
         ),
         "poisson-bracket": Kind(
             "canonical.poisson_brackets",
@@ -193,7 +196,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
                 *_FIRST,
                 "components.new_hamiltonian",
                 *_CHANGED,
-                "changed_claims.right_where",
+                *_AT_LAST,
             ),
         ),
         "constant-of-motion": Kind(
@@ -208,7 +211,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             derived=True,
             repaired=("I",),
             screen="constant",
-            diagnoses=(*_FIRST, "derived_part.time_term", *_CHANGED, "changed_claims.right_where"),
+            diagnoses=(*_FIRST, "derived_part.time_term", *_CHANGED, *_AT_LAST),
         ),
         "lagrangian-equivalence": Kind(
             "lagrangian.lagrangian_equivalence",
@@ -224,7 +227,8 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             diagnoses=(
                 *_FIRST,
                 "changed_claims.only_where",
-                "changed_claims.one_change_of_two",
+                "one_change.in_one_of_two",
+                "changed_claims.only_for",
                 "asymptotic.right_to_an_order",
                 "changed_claims.another_gauge",
                 "changed_claims.right_where",
@@ -308,6 +312,8 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             one_of=(("solution",), ("rates",)),
             answer=("solution", "rates"),
             unknowns="the general solution (`constants`), or the one with given initial values of the whole state",
+            repaired=("solution", "rates"),
+            screen="motion",
         ),
         "linearisation": Kind(
             "small_quantities.linearisation",

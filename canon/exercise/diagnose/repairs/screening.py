@@ -11,34 +11,39 @@ from typing import TYPE_CHECKING
 
 from flint import acb
 
-from canon.exercise.diagnose.point_derivatives import BITS, Examples, Neighbourhood
+from canon.exercise.diagnose.repairs.point_derivatives import BITS, Examples, Neighbourhood
 from canon.exercise.sheet.kind import named_function
 from canon.exercise.sheet.reading import InvalidClaim
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError
 from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.algebra.substitution import size
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision
 from canon.proof.domain.verdict import Undecided
+from canon.proof.rungs.ladder import REFUSALS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from sympy import Expr
 
-    from canon.exercise.diagnose.screen_tests import Screened, Test
+    from canon.exercise.diagnose.repairs.screen_tests import Screened, Test
     from canon.exercise.sheet.reading import Reading
 
 __all__ = ["Screening", "screening"]
 
 POINTS = 2
+PARTS = 8
+"""Share of the nodes of an answer that is evaluated anew for a candidate, beside those that were before."""
 
 
 @dataclass(frozen=True)
 class Screening:
-    """The places at which candidates are looked at, and how."""
+    """The places at which candidates are looked at, how, and how many steps one of them takes."""
 
     answers: Mapping[str, Expr]
     test: Test
     places: Sequence[Neighbourhood]
+    steps: int = 0
 
     def passes(self, changed: Mapping[str, Expr]) -> bool:
         """Whether the claim could be right with some answers changed."""
@@ -51,7 +56,7 @@ class Screening:
                 return all(self.test(answer, place) for place in self.places)
         except Unmodelled:
             return True
-        except (Undefined, NotDecided, ZeroDivisionError):
+        except (Undefined, NotDecided, ZeroDivisionError, *REFUSALS):
             return False
 
 
@@ -68,9 +73,9 @@ def screening(reading: Reading, answers: Mapping[str, Expr]) -> Screening | None
     if not reading.kind.screen:
         return None
     try:
-        found: Screened | None = named_function("canon.exercise.diagnose.screen_tests", reading.kind.screen)(
-            reading
-        )
+        found: Screened | None = named_function(
+            "canon.exercise.diagnose.repairs.screen_tests", reading.kind.screen
+        )(reading)
     except (InvalidClaim, EmptyDomainError, SingularMatrixError, Undecided):
         return None
     if found is None:
@@ -81,4 +86,5 @@ def screening(reading: Reading, answers: Mapping[str, Expr]) -> Screening | None
             Neighbourhood({s: acb(int(v.p)) / acb(int(v.q)) for s, v in point.items()}, examples)
             for point in found.domain.points(found.symbols, POINTS, seed=23, but_functions=True)
         ]
-    return Screening(answers, found.test, places) if len(places) == POINTS else None
+    steps = found.steps + sum(map(size, answers.values())) * len(found.symbols) // PARTS
+    return Screening(answers, found.test, places, steps) if len(places) == POINTS else None

@@ -10,13 +10,14 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.diagnose.change import Change, Mistake
+from canon.expression.symbols.symbol import Coordinate
 from canon.mechanics.algebra.substitution import exchanged, symbols_of
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-__all__ = ["common_slips", "of_one_coefficient", "slipped", "variants"]
+__all__ = ["common_slips", "of_one_coefficient", "plain_variants", "slipped", "variants"]
 
 _FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
 _FAMILIES = (
@@ -55,7 +56,7 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     [('y + sin(x)', 'TERM_SIGN'), ('-y - sin(x)', 'TERM_SIGN'), ('-y + cos(x)', 'FUNCTION')]
     """
 
-    def exchanged(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    def another_symbol(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _exchanged(node, symbols)
 
     def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -66,14 +67,21 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     def multiplied_by_functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, functions)
 
-    first = (_signs, _functions, _factors, _together, _exponents, _by_another, _superfluous, exchanged)
-    for edits in (*first, multiplied, _dropped, _swapped, _shifted, multiplied_by_functions):
+    yield from plain_variants(expression)
+    rest = (_by_another, _superfluous, _unwrapped, another_symbol, multiplied, _dropped, _swapped, _shifted)
+    for edits in (*rest, multiplied_by_functions):
         yield from _one_place(expression, edits)
     if not expression.is_Add:
         for symbol in symbols:
             yield expression * symbol, _of(Mistake.FACTOR_MISSING, expression, symbol)
             yield expression / symbol, _of(Mistake.DIVISOR_MISSING, expression, symbol)
     yield from _everywhere(expression, symbols)
+
+
+def plain_variants(expression: Expr) -> Iterator[tuple[Expr, Change]]:
+    """Yield expressions that differ in a sign, a function, a number in front of a term or an exponent."""
+    for edits in (_signs, _functions, _factors, _together, _exponents):
+        yield from _one_place(expression, edits)
 
 
 def common_slips(
@@ -185,6 +193,16 @@ def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
             yield new, _of(Mistake.ARGUMENT, node, new)
 
 
+def _unwrapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """An angle that stands for its sine or tangent."""
+    places = arguments(node) if node.is_Mul or node.is_Add else ()
+    for angle in places:
+        if angle.is_Symbol or angle.is_Add or angle.is_Mul:
+            for function in (sp.sin, sp.tan, sp.sinh) if isinstance(angle, Coordinate) or node.is_Mul else ():
+                rest = node.func(*(function(p) if p == angle else p for p in places))
+                yield rest, _of(Mistake.FUNCTION_MISSING, angle, function(angle))
+
+
 def _exponents(node: Expr) -> Iterator[tuple[Expr, Change]]:
     if node.is_Add or node.is_Mul or node.is_Number:
         if node.is_Add:
@@ -264,6 +282,8 @@ def _multiplied(node: Expr, symbols: Sequence[Expr]) -> Iterator[tuple[Expr, Cha
             for symbol in symbols:
                 yield node - term + term * symbol, _of(Mistake.FACTOR_MISSING, term, symbol)
                 yield node - term + term / symbol, _of(Mistake.DIVISOR_MISSING, term, symbol)
+                if symbol.is_Symbol:
+                    yield node - term + term * symbol**2, _of(Mistake.FACTOR_MISSING, term, symbol**2)
 
 
 def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
@@ -273,10 +293,16 @@ def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[E
         if new is not None:
             yield new, change
     own = symbols_of(expression)
+    for angle in own:
+        if isinstance(angle, Coordinate):
+            yield (
+                _outside_of_functions(expression, angle),
+                _everywhere_of(Mistake.FUNCTION_MISSING, angle, sp.sin(angle)),
+            )
     for a, b in combinations(own, 2):
-        exchanged = slipped(expression, {a: b, b: a})
-        if exchanged is not None:
-            yield exchanged, _of(Mistake.SYMBOLS_EXCHANGED, None, a, b)
+        other = slipped(expression, {a: b, b: a})
+        if other is not None:
+            yield other, _of(Mistake.SYMBOLS_EXCHANGED, None, a, b)
     for old in own:
         for new in symbols:
             renamed = slipped(expression, {old: new}) if new != old else None
@@ -285,6 +311,15 @@ def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[E
     if expression.has(*_TWINS):
         for angle in _CONSTANTS:
             yield expression + angle, _of(Mistake.TERM_MISSING, angle)
+
+
+def _outside_of_functions(f: Expr, angle: Symbol) -> Expr:
+    """Return f with sin θ for θ, but for θ in the argument of a function."""
+    inside: dict[Expr, Expr] = {
+        cast("Expr", g): sp.Dummy() for g in f.atoms(sp.Function, sp.Derivative) if g.has(angle)
+    }
+    free = exchanged(exchanged(f, inside), {angle: sp.sin(angle)})
+    return exchanged(free, {d: g for g, d in inside.items()})
 
 
 def _repeated(expressions: Sequence[Expr]) -> list[Expr]:

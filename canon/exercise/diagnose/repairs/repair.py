@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -19,9 +19,10 @@ from flint import acb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.exercise.diagnose.change import Change, Mistake
-from canon.exercise.diagnose.lost_factor import Monomials
-from canon.exercise.diagnose.slips import of_one_coefficient, variants
+from canon.exercise.diagnose.change import Change, Mistake, rank
+from canon.exercise.diagnose.repairs.lost_factor import Monomials
+from canon.exercise.diagnose.repairs.slips import of_one_coefficient, variants
+from canon.expression.symbols.symbol import Rate
 from canon.mechanics.algebra.substitution import size, symbols_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.kinks import vanishes_off_kinks
@@ -39,6 +40,8 @@ POINTS = 3
 PRECISION = 128
 MOST_VARIANTS = 3_000
 MOST_TERMS = 6
+NODES_A_STEP = 3
+"""Nodes of an answer for a step of a candidate, most of which were evaluated for others before."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,11 @@ class Repair:
     right: Expr
     change: Change
     besides: Change | None = None
+
+    @property
+    def rank(self) -> int:
+        """How far back it stands among repairs that are right as well."""
+        return rank(self.change) + (0 if self.besides is None else 3 + rank(self.besides))
 
     @property
     def changes(self) -> tuple[Change, ...]:
@@ -80,17 +88,23 @@ def repairs(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = 
     screen = Screen(part, domain)
     if not screen.points:
         return
-    cost = size(part.claimed)
-    for candidate in _candidates(part, screen, hints):
-        if not effort.spend(cost):
+    cost = max(1, size(part.claimed) // NODES_A_STEP)
+    for family in _families(part, screen, hints):
+        passing: list[Repair] = []
+        for candidate in family:
+            if not effort.spend(cost):
+                break
+            if (
+                _says_something(part, candidate.right)
+                and screen.passes(candidate.right)
+                and not _says_only_zeros(part, candidate.right, screen)
+            ):
+                passing.append(candidate)
+        for candidate in sorted(passing, key=lambda candidate: candidate.rank):
+            if _is_right(part, candidate.right, domain, effort):
+                yield candidate
+        if effort.spent:
             return
-        if (
-            _says_something(part, candidate.right)
-            and screen.passes(candidate.right)
-            and not _says_only_zeros(part, candidate.right, screen)
-            and _is_right(part, candidate.right, domain, effort)
-        ):
-            yield candidate
 
 
 def common_ratio(parts: Sequence[Part], domain: Domain) -> Fraction | None:
@@ -114,7 +128,21 @@ def _is_right(part: Part, expression: Expr, domain: Domain, effort: Effort) -> b
     return vanishes_off_kinks(residual, domain, budget=effort.for_a_proof()).holds
 
 
-def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Repair]:
+def _families(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Iterator[Repair]]:
+    """Yield the candidates in groups; in each the likeliest that passes comes first, whatever its place there."""
+    yield chain(
+        _of_all(part, screen),
+        _terms_rescaled(part, screen),
+        _terms_missing(part, screen, hints),
+        _symbol_restored(part),
+        _monomials(part, screen),
+        _slips(part),
+    )
+    yield _two_slips(part, hints)
+
+
+def _of_all(part: Part, screen: Screen) -> Iterator[Repair]:
+    """The component as a whole: its sign, or a factor."""
     claimed, name = part.claimed, part.name
     if part.right != 0:
         factor = screen.ratio(part.right, claimed)
@@ -123,18 +151,34 @@ def _candidates(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[R
         elif factor is not None and factor != 0:
             right = sp.Rational(factor.numerator, factor.denominator) * claimed
             yield Repair(right, Change.of(Mistake.WRONG_FACTOR, factor, place=name))
-    yield from _terms_rescaled(part, screen)
-    yield from _terms_missing(part, screen, hints)
-    yield from _monomials(part, screen)
-    slips: list[tuple[Expr, Change]] = []
-    for new, change in islice(
-        variants(claimed, symbols_of(claimed, part.right, *part.through)), MOST_VARIANTS
-    ):
-        slips.append((new, change))
-        yield Repair(new, change.at(name))
-    for term in hints:  # a slip, and a term is missing besides
-        for new, change in slips:
-            yield Repair(new + term, Change.of(Mistake.TERM_MISSING, term, place=name), change.at(name))
+
+
+def _slips(part: Part) -> Iterator[Repair]:
+    """One slip at one place, or the same one everywhere."""
+    symbols = symbols_of(part.claimed, part.right, *part.through)
+    for new, change in islice(variants(part.claimed, symbols), MOST_VARIANTS):
+        yield Repair(new, change.at(part.name))
+
+
+def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[Repair]:
+    """A slip, and a term is missing besides."""
+    for term in hints:
+        for slip in _slips(part):
+            yield Repair(
+                slip.right + term, Change.of(Mistake.TERM_MISSING, term, place=part.name), slip.change
+            )
+
+
+def _symbol_restored(part: Part) -> Iterator[Repair]:
+    """A symbol that some terms have and others lack, such as a mass taken to be one in these."""
+    for terms in (sp.Add.make_args(part.claimed), sp.Add.make_args(sp.expand(part.claimed))):
+        for symbol in symbols_of(part.claimed, part.right, *part.through.values()):
+            without = [term for term in terms if not term.has(symbol)]
+            if len(without) > 1 and not isinstance(symbol, Rate):
+                lacking = sp.Add(*without)
+                for factor in (symbol, 1 / symbol, symbol**2, 1 / symbol**2):
+                    right = sp.Add(*terms) - lacking + factor * lacking
+                    yield Repair(right, Change.of(Mistake.FACTOR_MISSING, lacking, factor, place=part.name))
 
 
 def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -179,8 +223,30 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
         yield Repair(claimed - term, Change.of(Mistake.TERM_MISSING, -term, place=name))
     for term, products in factors:
         for factor in products:
-            lacks = Change.of(Mistake.FACTOR_MISSING, term, factor, place=name)
-            yield Repair(claimed - term + factor * term, lacks)
+            yield Repair(claimed - term + factor * term, lacking(term, factor).at(name))
+
+
+def lacking(term: Expr, factor: Expr) -> Change:
+    """Return in what way a term lacks a factor b/a: a stands for b in it, or a fraction is upside down.
+
+    Examples
+    --------
+    >>> c, x, y, g, l = sp.symbols("c x y g l")
+    >>> lacking(c * x, y / x)
+    Change(mistake=<Mistake.SYMBOL: ...>, items=(c*x, c*y), ...)
+    >>> lacking(l / g * x, g**2 / l**2).mistake.name, lacking(x, l).mistake.name
+    ('UPSIDE_DOWN', 'FACTOR_MISSING')
+    """
+    above, below = factor.as_numer_denom()
+    fraction = sp.sqrt(sp.powsimp(factor))
+    if below.is_Symbol and above.is_Symbol and below in sp.Mul.make_args(term):
+        return Change.of(Mistake.SYMBOL, term, factor * term)
+    symbols = fraction.free_symbols
+    if len(symbols) == 2 and all(abs(e) == 2 for e in factor.as_powers_dict().values()):
+        powers = term.as_powers_dict()
+        if all(powers.get(s, 0) * factor.as_powers_dict()[s] < 0 for s in symbols):
+            return Change.of(Mistake.UPSIDE_DOWN, term, factor * term)
+    return Change.of(Mistake.FACTOR_MISSING, term, factor)
 
 
 def _says_something(part: Part, right: Expr) -> bool:

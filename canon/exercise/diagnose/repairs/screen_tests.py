@@ -9,18 +9,23 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, TypeAlias
 
+import sympy as sp
 from flint import acb
 from sympy import Expr, Symbol
 
-from canon.exercise.diagnose.point_derivatives import small
+from canon.exercise.diagnose.repairs.point_derivatives import small
+from canon.exercise.judge import questions
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
-from canon.expression.symbols.symbol import velocity
+from canon.exercise.question.question import Same
+from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.algebra.substitution import substitute, symbols_of
+from canon.mechanics.lagrange.lagrangian import Lagrangian
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from canon.exercise.diagnose.point_derivatives import Neighbourhood
+    from canon.exercise.diagnose.repairs.point_derivatives import Neighbourhood
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
@@ -28,18 +33,22 @@ __all__ = [
     "Screened",
     "Test",
     "bilinear_covariant",
+    "by_question",
     "canonicity",
     "constant",
     "equality",
     "gauge",
     "generating",
     "lagrange_brackets",
+    "motion",
     "new_hamiltonian",
     "poisson_brackets",
     "solution",
 ]
 
 MOST_KNOWN = 4
+QUESTION_STEPS = 2_000
+"""Steps to derive anew what a judge compares."""
 
 Answers: TypeAlias = "Callable[[str], Expr]"
 """Gives the answer under a key."""
@@ -48,12 +57,13 @@ Test: TypeAlias = "Callable[[Answers, Neighbourhood], bool]"
 
 @dataclass(frozen=True)
 class Screened:
-    """The test of a claim's answers, what needs a value for it, where, and the expressions that are not answered."""
+    """The test of a claim's answers, what needs a value, where, what is not answered, and the steps of a candidate."""
 
     test: Test
     symbols: tuple[Symbol, ...]
     domain: Domain
     given: tuple[Expr, ...] = ()
+    steps: int = 0
 
 
 def _screened(
@@ -306,3 +316,83 @@ def solution(reading: Reading) -> Screened | None:
         return all(small([place.slope(f, t), -rate]) for f, rate in zip(motion, rates, strict=True))
 
     return _screened(reading, test, [H])
+
+
+def motion(reading: Reading) -> Screened | None:
+    """The functions of time, or the velocities, satisfy the equations of motion and the initial values."""
+    key, t = "solution" if reading.has("solution") else "rates", reading.time
+    given = {
+        s: f"{key}.{s.name}" for s in map(reading.scope.symbol, reading.claim.keys[key]) if s is not None
+    }
+    laws = _laws(reading)
+    known: dict[tuple[Expr, ...], list[Expr]] = {}
+
+    def test(answer: Answers, place: Neighbourhood) -> bool:
+        claimed = tuple(answer(name) for name in given.values())
+        if claimed not in known:
+            known.clear()
+            known[claimed] = _left_over(laws, dict(zip(given, claimed, strict=True)), reading, key == "rates")
+        return all(small([place.value(f)]) for f in known[claimed])
+
+    moving = [rate(s) for s in given for rate in (velocity, acceleration)]
+    return _screened(reading, test, laws, [t, *moving])
+
+
+def _laws(reading: Reading) -> list[Expr]:
+    """Return what vanishes along the motion, in accelerations or in rates."""
+    if reading.has("equations"):
+        return list(reading.equations("equations"))
+    if not reading.has("L"):
+        return [velocity(x) - f for x, f in motion_of(reading).items()]
+    q = reading.symbols("q")
+    forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
+    return [e - Q for e, Q in zip(Lagrangian(reading.expression("L"), q).equations, forces, strict=True)]
+
+
+def _left_over(
+    laws: Sequence[Expr], claimed: Mapping[Symbol, Expr], reading: Reading, are_rates: bool
+) -> list[Expr]:
+    """Return what is left of the laws and of the initial values with a motion put in."""
+    t = reading.time
+    if are_rates:
+        motion: dict[Symbol, Expr] = {velocity(x): f for x, f in claimed.items()}
+        rates = {x: time_derivative(f, tuple(claimed), t) for x, f in claimed.items()}
+        motion |= {acceleration(x): substitute(f, motion) for x, f in rates.items()}
+        return [substitute(e, motion) for e in laws]
+    motion = dict[Symbol, Expr](claimed)
+    for x, f in claimed.items():
+        motion |= {velocity(x): f.diff(t), acceleration(x): f.diff(t, 2)}
+    start = {t: reading.expression("t0", sp.S.Zero)}
+    initial = reading.table("initial") if reading.has("initial") else {}
+    found = [substitute(e, motion) for e in laws]
+    for name, value in initial.items():
+        s = reading.scope.symbol(name)
+        if s is not None and s in motion:
+            found.append(substitute(motion[s], start) - value)
+    return found
+
+
+def by_question(reading: Reading) -> Screened | None:
+    """What the judge compares first, derived anew for each candidate: for kinds without a law of their own here."""
+    keys = [key for key in reading.kind.repaired if reading.has(key)]
+    first = _compared(reading)
+    if first is None:
+        return None
+
+    def test(answer: Answers, place: Neighbourhood) -> bool:
+        trial = reading
+        for key in keys:
+            trial = trial.with_instead(key, answer(key))
+        here = _compared(trial)
+        return here is not None and all(
+            small([place.value(part.seen(part.claimed)), -place.value(part.right)]) for part in here.parts
+        )
+
+    symbols = symbols_of(*(f for part in first.parts for f in (part.seen(part.claimed), part.right)))
+    given = tuple(part.right for part in first.parts)
+    names = dict.fromkeys((*reading.scope.names.values(), reading.time, *symbols))
+    return Screened(test, tuple(names), first.domain, given, QUESTION_STEPS)
+
+
+def _compared(reading: Reading) -> Same | None:
+    return next((q for q in questions(reading) if isinstance(q, Same)), None)

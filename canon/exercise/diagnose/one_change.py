@@ -1,0 +1,171 @@
+"""One change in an answer that is judged as a whole: candidates are screened at points, ranked, and judged in turn."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from itertools import chain, groupby
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from canon.exercise.diagnose.change import Change, Mistake, rank
+from canon.exercise.diagnose.changed_claims import answers_of
+from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
+from canon.exercise.diagnose.repairs.lost_term import terms_lost
+from canon.exercise.diagnose.repairs.repair import is_wrong
+from canon.exercise.diagnose.repairs.screening import screening
+from canon.exercise.diagnose.repairs.slips import common_slips, plain_variants, slipped, variants
+from canon.expression.symbols.symbol import velocity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from sympy import Expr
+
+    from canon.exercise.diagnose.diagnosis import WrongAnswer
+    from canon.exercise.diagnose.effort import Effort
+    from canon.exercise.diagnose.repairs.screening import Screening
+    from canon.exercise.sheet.reading import Reading
+
+__all__ = ["anywhere", "in_one_of_two"]
+
+SHARE = 0.75
+"""Of the effort that is left, so that some is left to what is tried afterwards."""
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """Answers with one change."""
+
+    answers: Mapping[str, Expr]
+    change: Change
+    suspicion: int
+
+    @property
+    def order(self) -> tuple[int, int]:
+        """What is tried first: likely mistakes, and among these the suspected components."""
+        return rank(self.change), self.suspicion
+
+
+def anywhere(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield one change in the answer that makes the whole claim right."""
+    yield from _one_change(wrong.within(SHARE))
+
+
+def in_one_of_two(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield one change in F or L₂; where both are answered, half of the effort is left to L₂ as a component."""
+    yield from _one_change(wrong.within(0.5 if wrong.reading.has("F") else SHARE))
+
+
+def _one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    reading, effort = wrong.reading, wrong.effort
+    answers = dict(answers_of(reading))
+    screen = screening(reading, answers)
+    for groups in (_plain(wrong, answers), _others(wrong, answers)):
+        for candidate in sorted(_passing(groups, screen, effort), key=lambda candidate: candidate.order):
+            if effort.spent:
+                return
+            trial = reading
+            for key, new in candidate.answers.items():
+                trial = trial.with_instead(key, new)
+            if judged_to_hold(trial, effort, wrong.finding.held if "K" in candidate.answers else 0):
+                yield Diagnosis((candidate.change,), trial)
+
+
+def _passing(
+    groups: Sequence[Iterable[_Candidate]], screen: Screening | None, effort: Effort
+) -> list[_Candidate]:
+    """Return the candidates that values at points leave open; all of them where a kind has no screen."""
+    found: list[_Candidate] = []
+    for number, candidates in enumerate(groups):
+        share = effort.share(1 / (len(groups) - number + 1))
+        for candidate in candidates:
+            if screen is not None and not share.spend(screen.steps):
+                break
+            if screen is None or screen.passes(candidate.answers):
+                found.append(candidate)
+    return found
+
+
+def _plain(wrong: WrongAnswer, answers: Mapping[str, Expr]) -> list[Iterable[_Candidate]]:
+    """Return for each component, those suspected first, what is most often wrong: signs, numbers, functions, powers."""
+
+    def changes(key: str) -> Iterable[tuple[Expr, Change]]:
+        return chain(_rescaled(answers[key]), plain_variants(answers[key]))
+
+    return _of_components(wrong, answers, changes)
+
+
+def _others(wrong: WrongAnswer, answers: Mapping[str, Expr]) -> list[Iterable[_Candidate]]:
+    """Return for each component all other changes, and lost terms; then what may be wrong in all alike."""
+    reading = wrong.reading
+    symbols = tuple(reading.scope.names.values())
+
+    def changes(key: str) -> Iterable[tuple[Expr, Change]]:
+        return chain(variants(answers[key], symbols), terms_lost(reading, key, answers))
+
+    by_key = [(outer, list(keys)) for outer, keys in groupby(sorted(answers, key=_outer), key=_outer)]
+    common = [_common(outer, {key: answers[key] for key in keys}, symbols) for outer, keys in by_key]
+    return [*_of_components(wrong, answers, changes), *common]
+
+
+def _of_components(
+    wrong: WrongAnswer, answers: Mapping[str, Expr], changes: Callable[[str], Iterable[tuple[Expr, Change]]]
+) -> list[Iterable[_Candidate]]:
+    suspects = _suspects(wrong)
+
+    def candidates(key: str) -> Iterator[_Candidate]:
+        for new, change in changes(key):
+            if not _trivial(key, new, wrong.reading):
+                yield _Candidate({key: new}, change.at(key), _suspicion(key, suspects))
+
+    return [candidates(key) for key in sorted(answers, key=lambda key: _suspicion(key, suspects))]
+
+
+def _common(outer: str, items: Mapping[str, Expr], symbols: Sequence[sp.Symbol]) -> Iterator[_Candidate]:
+    """Yield what may be wrong in all components under a key alike."""
+    if len(items) < 2:
+        return
+    for slip, change in common_slips(list(items.values()), symbols):
+        changed = {key: slipped(f, slip) for key, f in items.items()}
+        whole = {key: new for key, new in changed.items() if new is not None}
+        if len(whole) == len(items):
+            yield _Candidate(whole, change.at(outer), 0)
+
+
+def _suspects(wrong: WrongAnswer) -> list[str]:
+    """Return the names in brackets that are wrong, the most frequent first."""
+    counts: Counter[str] = Counter()
+    for part in wrong.parts:
+        if part.bracket_of and is_wrong(part, wrong.domain):
+            counts.update(part.bracket_of)
+    return [name for name, _ in counts.most_common()]
+
+
+def _outer(key: str) -> str:
+    """Return the part of a key before the component: P of P[0], solution of solution.q."""
+    if key.startswith("pairs"):
+        return key
+    return key.partition("[")[0] if "[" in key else key.partition(".")[0]
+
+
+def _suspicion(key: str, suspects: Sequence[str]) -> int:
+    """Return how far back in the line of suspects a component stands: P[1] is called P2, or P if it is alone."""
+    letter, _, index = key.removeprefix("map.").partition("[")
+    names = (letter, f"{letter}{int(index[:-1]) + 1}" if index.endswith("]") else letter)
+    return min((i for i, suspect in enumerate(suspects) if suspect in names), default=len(suspects))
+
+
+def _rescaled(f: Expr) -> Iterator[tuple[Expr, Change]]:
+    yield -f, Change.of(Mistake.WRONG_SIGN)
+    simple = map(sp.Rational, ("1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2"))
+    for factor in (*simple, 2 * sp.pi, 1 / (2 * sp.pi)):
+        yield factor * f, Change.of(Mistake.WRONG_FACTOR, factor)
+
+
+def _trivial(key: str, answer: Expr, reading: Reading) -> bool:
+    """Whether an answer under a key says nothing any more: a constant of the motion that is constant anyway."""
+    variables = {s for key in ("q", "p", "x") if reading.is_names(key) for s in reading.symbols(key)}
+    rates = {velocity(s) for s in variables}
+    return key in reading.kind.varying and not answer.free_symbols & (variables | rates)

@@ -1,0 +1,2 @@
+from .repair import Repair as Repair
+from .screening import Screening as Screening
