@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Rational
 
-from canon.expression.parse import Builder, syntax_of
+from canon.expression.builder import Builder
+from canon.expression.parse import syntax_of
 from canon.expression.text import syntax
 from canon.expression.text.vocabulary import FUNCTIONS
 
@@ -44,8 +45,8 @@ def as_written(text: str, scope: Scope) -> Expr:
     """
     builder = _Unevaluated(text, scope)
     node = syntax_of(text, scope)
-    if isinstance(node, syntax.Comparison) and node.relations == ("=",):
-        left, right = (builder.expression(side) for side in node.operands)
+    if (sides := syntax.equation(node)) is not None:
+        left, right = map(builder.expression, sides)
         return _sum([left, _product([sp.S.NegativeOne, right])])
     return builder.expression(node)
 

@@ -1,2 +1,2 @@
+from .juxtaposition import parse_juxtaposed as parse_juxtaposed
 from .scope import Scope as Scope
-from .syntax import parse_syntax as parse_syntax

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from canon.expression.symbols.symbol import Coordinate, acceleration, time, velocity
+from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, acceleration, time, velocity
 from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Scope", "split"]
 
+_MAX_TOLD = 20
+"""Names that are told where one is not known."""
 _MAX_RUN = 40
 """Letters of a name that is still taken apart."""
 
@@ -39,7 +42,9 @@ class Scope:
     signs
         SymPy assumptions on the values of declared functions, where they are more than real.
     implicit
-        Whether factors may stand side by side, ``2 m g``, as :mod:`canon.expression.text.juxtaposition` reads them.
+        Whether letters after a number are always factors, ``2 m``, never a unit.
+    moving
+        Names of what changes in time, besides coordinates and momenta.
 
     Examples
     --------
@@ -55,6 +60,21 @@ class Scope:
     time: Symbol = time
     signs: Mapping[str, Mapping[str, bool]] = field(default_factory=lambda: MappingProxyType({}))
     implicit: bool = False
+    moving: frozenset[str] = frozenset()
+
+    @cached_property
+    def spelled(self) -> tuple[str, ...]:
+        """All names that may be typed: declared ones, functions, and rates as ``theta_dot_1`` or ``theta_1_dot``."""
+        found = [*self.names, *self.functions, self.time.name]
+        for name, symbol in self.names.items():
+            if isinstance(symbol, Coordinate):
+                found += [f"{name}_dot", f"{name}_ddot"]
+        return tuple(dict.fromkeys(found))
+
+    def moves(self, name: str) -> bool:
+        """Tell whether a name stands for what changes in time, or for the time."""
+        moving = isinstance(self.symbol(name), Coordinate | Momentum | Rate)
+        return moving or name in self.moving or name == self.time.name
 
     def symbol(self, name: str) -> Symbol | None:
         """Return the symbol of a declared name or of a coordinate's rate, None for any other name."""
@@ -75,13 +95,21 @@ class Scope:
     def near(self, name: str) -> str:
         """Return a remedy for an unknown name."""
         if name in OTHER_NAMES:
-            return f"write {OTHER_NAMES[name]}, or declare the name"
-        if self.implicit and (factors := split(name, self)):
+            return f"write {OTHER_NAMES[name]}"
+        if factors := split(name, self):
             return f"write {factors}"
         known = [*self.names, self.time.name, *self.functions, *FUNCTIONS, *CONSTANTS]
         known += [f"{n}_dot" for n, s in self.names.items() if isinstance(s, Coordinate)]
         close = difflib.get_close_matches(name[:60], known, n=1, cutoff=0.75)
-        return f"is {close[0]} meant?" if close else "declare it in parameters or functions"
+        if close:
+            return f"is {close[0]} meant?"
+        named = [*self.names, *self.functions]
+        more = f" and {len(named) - _MAX_TOLD} more" if len(named) > _MAX_TOLD else ""
+        return (
+            f"the names here are {', '.join(named[:_MAX_TOLD])}{more}"
+            if named
+            else "no names are declared here"
+        )
 
 
 def split(name: str, scope: Scope) -> str:

@@ -7,9 +7,12 @@ tokens, digits of a number, nesting.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from canon.expression.text.tokens import MAX_CHARACTERS, MAX_DIGITS, MAX_TOKENS, LanguageError, Token, tokens
+from canon.expression.text.tokens import MAX_CHARACTERS, MAX_DIGITS, MAX_TOKENS, LanguageError, Token
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = [
     "MAX_CHARACTERS",
@@ -26,7 +29,9 @@ __all__ = [
     "Product",
     "Sum",
     "Tuple",
-    "parse_syntax",
+    "children",
+    "equation",
+    "parts",
 ]
 
 MAX_NESTING = 64
@@ -114,15 +119,39 @@ Node: TypeAlias = Number | Name | Call | Tuple | Negative | Sum | Product | Powe
 _RELATIONS = ("<", "<=", ">", ">=", "!=", "==", "=")
 
 
-def parse_syntax(text: str) -> Node:
-    """Return the syntax tree of one expression, condition or equation.
+def children(node: Node) -> tuple[Node, ...]:
+    """Return the nodes directly inside a node."""
+    match node:
+        case Call(_, arguments):
+            return arguments
+        case Tuple(items) | Comparison(items):
+            return items
+        case Negative(operand):
+            return (operand,)
+        case Sum(pairs) | Product(pairs):
+            return tuple(part for _, part in pairs)
+        case Power(base, exponent):
+            return (base, exponent)
+        case _:
+            return ()
 
-    Raises
-    ------
-    LanguageError
-        Where the text is too large or not in the grammar.
-    """
-    return Parser(text, tokens(text)).whole()
+
+def parts(node: Node) -> Iterator[Node]:
+    """Yield a node and everything inside it."""
+    stack = [node]
+    while stack:
+        part = stack.pop()
+        yield part
+        stack += reversed(children(part))
+
+
+def equation(node: Node) -> tuple[Node, Node] | None:
+    """Return the sides of ``a = b``, ``a == b`` or ``Eq(a, b)``; None for anything else."""
+    match node:
+        case Comparison((left, right), ("=" | "==",)) | Call("Eq", (left, right)):
+            return left, right
+        case _:
+            return None
 
 
 class Parser:
@@ -157,8 +186,8 @@ class Parser:
         token = self.token
         if token.kind == "end":
             return node
-        if token.text in (")", ","):
-            raise self.fault(f"{token.text!r} without an opening '('")
+        if token.text in (")", ",", "]", "}"):
+            raise self.fault(f"{token.text!r} without an opening bracket")
         raise self.fault(f"an operator is missing before {token.text!r}", "write * for a product")
 
     def comparison(self) -> Node:

@@ -8,12 +8,18 @@ from __future__ import annotations
 import re
 import unicodedata
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-__all__ = ["GREEK", "LanguageError", "Token", "tokens"]
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+__all__ = ["GREEK", "Atom", "LanguageError", "Token", "tokens"]
 
 MAX_CHARACTERS = 50_000
 MAX_TOKENS = 20_000
 MAX_DIGITS = 1_000
+MAX_FAULTS = 5
+"""Most faults of one text that are told at once."""
 MAX_REASON = 300
 """Characters of a reason that are told; only a name in it can make it longer."""
 
@@ -31,20 +37,44 @@ class LanguageError(ValueError):
         What is wrong there.
     remedy
         What to write instead; empty where there is no single answer.
+    others
+        What else is wrong in the same text.
     """
 
-    def __init__(self, text: str, column: int, reason: str, remedy: str = "") -> None:
-        super().__init__(text, column, reason, remedy)
+    def __init__(
+        self, text: str, column: int, reason: str, remedy: str = "", others: tuple[LanguageError, ...] = ()
+    ) -> None:
+        super().__init__(text, column, reason, remedy, others)
         self.text = text
         self.column = column
         self.reason = reason
         self.remedy = remedy
+        self.others = others
+
+    @classmethod
+    def together(cls, faults: Sequence[LanguageError]) -> LanguageError:
+        """Return one error that tells several, the first of them first; what is said twice is told once."""
+        told: dict[tuple[str, str], LanguageError] = {}
+        for fault in sorted(faults, key=lambda fault: fault.column):
+            told.setdefault((fault.reason, fault.remedy), fault)
+        first, *others = told.values()
+        return cls(first.text, first.column, first.reason, first.remedy, tuple(others[: MAX_FAULTS - 1]))
 
     @property
     def message(self) -> str:
-        """Reason and remedy on one line, long names in them cut."""
+        """Reason and remedy on one line, long names in them cut, and after them those of the other faults."""
         reason = self.reason if len(self.reason) <= MAX_REASON else f"{self.reason[:MAX_REASON]}…"
-        return f"{reason}; {self.remedy}" if self.remedy else reason
+        told = f"{reason}; {self.remedy}" if self.remedy else reason
+        more = (
+            f"also column {o.column}: {o.reason if o.remedy == self.remedy else o.message}"
+            for o in self.others
+        )
+        return "; ".join((told, *more))
+
+    def at_home_in(self, text: str, place: Callable[[int], int] = int) -> LanguageError:
+        """Return the same error in the text it comes from, ``place`` telling the column there."""
+        others = tuple(other.at_home_in(text, place) for other in self.others)
+        return LanguageError(text, place(self.column), self.reason, self.remedy, others)
 
     def caret(self) -> str:
         """Return the text around the fault with a caret under the column."""
@@ -56,11 +86,24 @@ class LanguageError(ValueError):
         return f"column {self.column}: {self.message}\n{self.caret()}"
 
 
+_SUPER = "⁰¹²³⁴⁵⁶⁷⁸⁹"
+_SUB = dict(zip("₀₁₂₃₄₅₆₇₈₉ₐₑₕᵢⱼₖₗₘₙₒₚᵣₛₜᵤᵥₓ", "0123456789aehijklmnoprstuvx", strict=True))
+_VULGAR = "½¼¾⅓⅔⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞"
+_PRIMES = {"'": 1, "′": 1, "’": 1, "ʹ": 1, "´": 1, '"': 2, "″": 2, "”": 2, "‴": 3}
+_MARKS = {"\u0307": 1, "˙": 1, "\u0308": 2, "¨": 2}
+_LETTER = rf"(?:[^\W\d_{_SUPER}{_VULGAR}{''.join(_SUB)}ⁿ]|\\\[[A-Z][A-Za-z]{{1,20}}\])"
+_AFTER = (
+    rf"(?:{_LETTER}|[0-9_{''.join(_SUB)}{''.join(_MARKS)}{''.join(_PRIMES)}]|(?<=_)\{{[^{{}}\s]{{1,12}}\}})"
+)
 _TOKEN = re.compile(
-    r"(?P<space>\s+)"
+    r"(?P<space>[\s\u2061\u2062\u2063]+|'(?=diff\b)|\\(?=[*_^])"
+    r"|(?:np|numpy|math|sp|sympy|sm|smp|mpmath|cmath)\.(?=[A-Za-z])|\.(?=\s*$))"
+    r"|(?P<string>'[A-Za-z_]\w{0,40}'|\"[A-Za-z_]\w{0,40}\")"
     r"|(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
-    r"|(?P<name>[^\W\d][\w\u0307\u0308]*'*)"
-    r"|(?P<operator>\*\*|<=|>=|!=|==|[-+*/()<>=,−·×])"
+    rf"|(?P<vulgar>[{_VULGAR}])"
+    rf"|(?P<super>[⁺⁻]?[{_SUPER}]+|⁻?ⁿ)"
+    rf"|(?P<name>_{{0,2}}{_LETTER}{_AFTER}*|%(?:pi|e|i)(?!\w))"
+    r"|(?P<operator>\*\*|<=|>=|!=|==|:=|[-+*/^()\[\]{}|<>=,−–·×⋅∙•∗÷∕⁄√≤≥≠∂°])"
 )
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta", "η": "eta", "θ": "theta",
@@ -69,27 +112,54 @@ GREEK = {
     "Γ": "Gamma", "Δ": "Delta", "Θ": "Theta", "Λ": "Lambda", "Ξ": "Xi", "Π": "Pi", "Σ": "Sigma", "Υ": "Upsilon",
     "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega",
 }  # fmt: skip
-_ALIKE = {"−": "-", "·": "*", "×": "*"}
+_ALIKE = {"−": "-", "–": "-", "·": "*", "×": "*", "⋅": "*", "∙": "*", "•": "*", "∗": "*", "÷": "/", "∕": "/",
+          "⁄": "/", "≤": "<=", "≥": ">=", "≠": "!=", ":=": "="}  # fmt: skip
+_LETTERS = {**GREEK, "ℓ": "ell", "ℏ": "hbar", "ħ": "hbar", "ϵ": "epsilon", "ϱ": "rho", "ϖ": "pi", "ς": "sigma",
+            "µ": "mu", "∆": "Delta", "Ω": "Omega", "ℋ": "H", "ℒ": "L", "ı": "i"}  # fmt: skip
 _NOT_HERE = {
-    "^": "write ** for a power, and a unit as 9.81 [m/s^2]",
-    "[": "write ( ) for grouping; there is no indexing",
-    "{": "write ( ) for grouping",
     '"': "there are no string literals",
     "'": "a prime belongs directly after the name of a coordinate; there are no string literals",
     ".": "attributes are not part of the language; write 0.5 for a decimal",
     ":": "lambdas and slices are not part of the language",
-    "√": "write sqrt( )",
+    ";": "one expression is asked for here",
 }
 
 
 @dataclass(frozen=True, slots=True)
+class Atom:
+    """A letter or digit of a word, and the dots or primes on it; ``θ̇`` is ``theta`` with one."""
+
+    plain: str
+    rates: int
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
 class Token:
-    """A number, a name, an operator or the end; ``primes`` counts Newton's dots of a name."""
+    """A number, a word, an operator or the end.
+
+    Parameters
+    ----------
+    kind
+        ``number``, ``vulgar`` (½), ``super`` (²), ``name``, ``string``, ``operator`` or ``end``.
+    text
+        What it is in plain spelling.
+    column
+        Where it stands, counted from 1.
+    primes
+        Newton's dots, or primes, of a name.
+    tight
+        Whether nothing stands between it and the token before.
+    atoms
+        The letters and digits of a word.
+    """
 
     kind: str
     text: str
     column: int
     primes: int = 0
+    tight: bool = False
+    atoms: tuple[Atom, ...] = ()
 
 
 def tokens(text: str) -> list[Token]:
@@ -114,53 +184,102 @@ def tokens(text: str) -> list[Token]:
         )
     found: list[Token] = []
     at = 0
+    tight = False
     while at < len(text):
         match = _TOKEN.match(text, at)
         if match is None:
             raise _stray(text, at)
         if match.lastgroup != "space":
-            found.append(_token(text, match))
+            found.append(_token(text, match, tight))
             if len(found) > MAX_TOKENS:
                 raise LanguageError(
                     text, at + 1, f"more than {MAX_TOKENS} numbers, names and signs", "split the claim"
                 )
+        tight = match.lastgroup != "space"
         at = match.end()
     found.append(Token("end", "", len(text) + 1))
     return found
 
 
-def _token(text: str, match: re.Match[str]) -> Token:
-    column = match.start() + 1
+def _token(text: str, match: re.Match[str], tight: bool) -> Token:
+    column, kind = match.start() + 1, match.lastgroup or ""
     word = match.group()
-    if match.lastgroup == "number":
-        if sum(c.isdigit() for c in word) > MAX_DIGITS:
+    match kind:
+        case "number" if sum(c.isdigit() for c in word) > MAX_DIGITS:
             raise LanguageError(text, column, f"a number of more than {MAX_DIGITS} digits")
-        return Token("number", word, column)
-    if match.lastgroup == "name":
-        return _named(text, word, column)
-    return Token("operator", _ALIKE.get(word, word), column)
+        case "name" if word.startswith("%"):
+            return Token("name", word, column, tight=tight)
+        case "name":
+            atoms = tuple(_atoms(text, word, column))
+            primes = sum(atom.rates for atom in atoms)
+            return Token("name", "".join(atom.plain for atom in atoms), column, primes, tight, atoms)
+        case "super":
+            return Token(kind, unicodedata.normalize("NFKC", word).replace("−", "-"), column, tight=tight)
+        case "operator":
+            return Token(kind, _ALIKE.get(word, word), column, tight=tight)
+        case _:
+            return Token(kind, word, column, tight=tight)
 
 
-def _named(text: str, word: str, column: int) -> Token:
-    """Spell Greek letters and Newton's dots the plain way."""
-    primes = len(word) - len(word.rstrip("'"))
-    name = unicodedata.normalize("NFD", word.rstrip("'"))
-    if name.endswith(("\u0307\u0307", "\u0308")):
-        primes += 2
-    elif name.endswith("\u0307"):
-        primes += 1
-    plain = "".join(GREEK.get(c, c) for c in name.rstrip("\u0307\u0308"))
-    if not plain.isascii():
-        odd = next(i for i, c in enumerate(word) if not c.isascii() and c not in GREEK)
-        raise LanguageError(
-            text,
-            column + odd,
-            f"{word[odd]!r} (U+{ord(word[odd]):04X}) is not a letter of the language",
-            "write **2 for a power"
-            if unicodedata.category(word[odd]) == "No"
-            else "names are made of Latin or Greek letters, digits and _",
-        )
-    return Token("name", plain, column, primes)
+def _atoms(text: str, word: str, column: int) -> Iterator[Atom]:
+    """Yield the letters and digits of a word in plain spelling, subscripts as ``_1``."""
+    plain, rates, start = "", 0, column
+    lowered = False
+    for match in _LETTERS_OF_WORD.finditer(word):
+        letter, at = match.group(), column + match.start()
+        sub = _SUB.get(letter) or (letter[1:-1] if letter.startswith("{") else "")
+        marks = _rates(letter)
+        if marks:
+            rates += marks
+            continue
+        if plain:
+            yield Atom(plain, rates, start)
+            plain, rates = "", 0
+        if sub and not lowered and not letter.startswith("{"):
+            yield Atom("_", 0, at)
+        lowered = bool(sub)
+        start = at
+        if letter.startswith("{"):
+            yield from (Atom(_plain(text, c, at)[0], 0, at) for c in sub if c not in "_,")
+        elif sub:
+            plain = sub
+        else:
+            plain, rates = _plain(text, letter, at)
+    if plain:
+        yield Atom(plain, rates, start)
+
+
+_LETTERS_OF_WORD = re.compile(r"\\\[\w+\]|\{[^{}]*\}|.", re.DOTALL)
+
+
+def _rates(letter: str) -> int:
+    return _PRIMES.get(letter) or _MARKS.get(letter, 0)
+
+
+def _plain(text: str, letter: str, column: int) -> tuple[str, int]:
+    """Return the plain spelling of a letter, and how many dots it has in one character with it."""
+    if letter.startswith("\\["):
+        return _of_mathematica(letter), 0
+    if "\U0001d400" <= letter <= "\U0001d7ff":  # italic and bold letters, as they are copied from a page
+        letter = unicodedata.normalize("NFKC", letter)
+    base, *marks = unicodedata.normalize("NFD", letter)
+    plain = _LETTERS.get(letter) or _LETTERS.get(base, base)
+    if plain.isascii() and all(mark in _MARKS for mark in marks):
+        return plain, sum(_MARKS[mark] for mark in marks)
+    raise LanguageError(
+        text,
+        column,
+        f"{letter!r} (U+{ord(letter):04X}) is not a letter of the language",
+        "names are made of Latin or Greek letters, digits and _",
+    )
+
+
+def _of_mathematica(letter: str) -> str:
+    r"""Return the plain name of Mathematica's ``\[Theta]`` or ``\[CapitalPhi]``."""
+    name = letter[2:-1]
+    capital = name.startswith("Capital") and len(name) > 7
+    name = name.removeprefix("Capital").removeprefix("Curly").removeprefix("Script").lower()
+    return name.capitalize() if capital else name
 
 
 def _stray(text: str, at: int) -> LanguageError:

@@ -40,6 +40,7 @@ _BRACKET = re.compile(r"\s{0,3}\[([^\[\]]{0,80})\]")
 _UPRIGHT = re.compile(
     r"(?:\\[,;: ]|~|\s){0,5}\\(?:mathrm|text|textrm|unit|si)\s?\{([^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4})\}"
 )
+_FACTOR = re.compile(r"\s{0,9}[^\W_]|\s{0,9}[(\[√]")
 _LETTERS = re.compile(r"[A-Za-zΩ]+")
 _REMEDY = f"SI units without prefixes can stand there: {', '.join(sorted(COHERENT))}; or leave it out"
 
@@ -83,8 +84,16 @@ def _units(text: str, scope: Scope) -> Iterator[Unit]:
                 reason = f"{found.group(1)[:40]!r} is not a unit that can be passed over"
                 raise LanguageError(text, found.start(1) + 1, reason, _REMEDY)
             yield Unit(found.group(1).strip(), at, found.end())
-        elif not scope.implicit and (bare := _BARE.match(text, at)) and not _declares(bare.group(), scope):
+        elif (bare := _bare(text, at, scope)) is not None:
             yield Unit(bare.group().strip(), at, bare.end())
+
+
+def _bare(text: str, at: int, scope: Scope) -> re.Match[str] | None:
+    """Return a unit without brackets: no factor stands beside it, and none of its letters could be one."""
+    bare = None if scope.implicit else _BARE.match(text, at)
+    if bare is None or _declares(bare.group(), scope) or _FACTOR.match(text, bare.end()):
+        return None
+    return bare
 
 
 def _declares(unit: str, scope: Scope) -> bool:

@@ -45,6 +45,13 @@ FUNCTIONS: Mapping[str, tuple[Callable[..., Expr], int, int]] = MappingProxyType
 
 CONSTANTS: Mapping[str, Expr] = MappingProxyType({"pi": sp.pi, "I": sp.I})
 RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge, "!=": sp.Ne, "==": sp.Eq}
-OTHER_NAMES = {"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "abs": "Abs", "cotan": "cot",
-                "max": "Max", "min": "Min", "e": "exp(1)", "E": "exp(1)", "i": "I", "j": "I", "diff": "Derivative",
-                "tg": "tan", "ctg": "cot", "sh": "sinh", "ch": "cosh", "th": "tanh"}  # fmt: skip
+OTHER_NAMES = {"ln": "log", "Log": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "abs": "Abs",
+                "cotan": "cot", "max": "Max", "min": "Min", "e": "exp(1)", "E": "exp(1)", "i": "I", "j": "I",
+                "diff": "Derivative", "tg": "tan", "ctg": "cot",
+                "sh": "sinh", "ch": "cosh", "th": "tanh", "arccot": "acot",
+                "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh", "arsinh": "asinh", "arcosh": "acosh",
+                "artanh": "atanh", "arctan2": "atan2", "fabs": "Abs", "sgn": "sign", "cosec": "csc",
+                "ArcSin": "asin", "ArcCos": "acos", "ArcTan": "atan", "ArcSinh": "asinh", "ArcCosh": "acosh",
+                "ArcTanh": "atanh", "ArcCot": "acot", "elliptic_kc": "elliptic_k", "elliptic_ec": "elliptic_e",
+                "EllipticK": "elliptic_k", "EllipticE": "elliptic_e", "ProductLog": "LambertW",
+                "signum": "sign"}  # fmt: skip

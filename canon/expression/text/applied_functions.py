@@ -1,0 +1,283 @@
+"""Applied functions: ``sin θ``, ``sinθ``, ``sin^2 θ``, ``Sin[x]``, ``e^x``, and the constructors that SymPy prints.
+
+Without brackets a function takes numbers and what follows them: one name, ``sin 2θ``; letters written as one word with
+it, ``sin kx``; a parameter and the time, ``cos ω t``. It ends after the first name that moves. ``sin a x``, ``sin x/2``
+and ``sin x^2`` are refused, with both readings.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from canon.expression.text.declared_names import function_name
+from canon.expression.text.syntax import Call, Comparison, Name, Negative, Node, Number, Power, Product, Sum
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from canon.expression.text.juxtaposition import Reader
+    from canon.expression.text.tokens import Token
+
+__all__ = ["applied", "constructed", "is_function", "with_brackets"]
+
+_INVERSE = {"sin": "asin", "cos": "acos", "tan": "atan", "cot": "acot", "sinh": "asinh", "cosh": "acosh",
+            "tanh": "atanh"}  # fmt: skip
+_BARE = frozenset((*_INVERSE, *_INVERSE.values(), "sec", "csc", "log", "exp", "sqrt", "atan"))
+"""Functions that may stand without brackets."""
+_MAX_CHAIN = 4
+_CONSTANTS = {"%pi": "pi", "Pi": "pi", "%i": "I", "π": "pi"}
+
+
+def is_function(reader: Reader) -> bool:
+    """Tell whether a function comes next."""
+    token = reader.token
+    return token.kind == "name" and function_name(token.text, reader.scope) in _BARE
+
+
+def applied(reader: Reader, token: Token, chain: int = 1) -> Node | None:
+    """Return a function of the language with its argument, the token being its name; None where it is none."""
+    scope = reader.scope
+    if token.text in _CONSTANTS and not scope.declares(token.text):
+        return Name(_CONSTANTS[token.text], 0, token.column)
+    if token.text in ("e", "E", "%e") and not scope.declares(token.text):
+        return _exponential(reader, token)
+    name = function_name(token.text, scope)
+    if not name or token.primes:
+        return None
+    exponent = _exponent(reader) if name in _BARE else None
+    following = reader.token
+    if following.text in ("(", "["):
+        node = _called(reader, token, name, following)
+    elif name not in _BARE:
+        return None if exponent is None else Name(token.text, 0, token.column)
+    elif name == "sqrt" and reader.starts(following):
+        node = reader.root(token)
+    elif reader.starts(following):
+        node = Call(name, (_bare(reader, name, chain),), token.column)
+        reader.bare_end = reader.at
+    elif following.text in ("+", "-"):
+        raise reader.fault(f"{name} needs its argument in brackets here", f"write {name}(-x)")
+    else:
+        return Name(name, 0, token.column)
+    return _raised(reader, node, exponent, name)
+
+
+def _exponent(reader: Reader) -> Node | None:
+    """Return the exponent between a function and its argument, ``sin^2 x``."""
+    token = reader.token
+    if token.kind == "super":
+        reader.at += 1
+        return reader.raised(token)
+    if token.text not in ("^", "**"):
+        return None
+    reader.at += 1
+    start = reader.token
+    if start.text in ("(", "{"):
+        reader.at += 1
+        return reader.group(start)
+    minus = reader.take("-")
+    node = reader.token
+    reader.at += 1
+    if node.kind == "number" and node.text.isdigit():
+        found: Node = reader.number(node)
+    elif node.kind == "name":
+        found = Name(node.text, 0, node.column)
+    else:
+        reader.at -= 1
+        raise reader.fault("an exponent is missing", "write sin(x)**2")
+    return Negative(found, node.column) if minus else found
+
+
+def _raised(reader: Reader, node: Node, exponent: Node | None, name: str) -> Node:
+    if exponent is None:
+        return node
+    inverse = (
+        isinstance(exponent, Negative)
+        and isinstance(exponent.operand, Number)
+        and exponent.operand == Number(1, 1, exponent.operand.column)
+    )
+    if inverse and isinstance(node, Call):
+        if name not in _INVERSE:
+            raise reader.fault(
+                f"{name} to the power −1 can be the inverse function or 1/{name}", "write it out"
+            )
+        return Call(_INVERSE[name], node.arguments, node.column)
+    return Power(node, exponent, node.column)
+
+
+def _called(reader: Reader, token: Token, name: str, opening: Token) -> Node:
+    """Return a function whose arguments stand in brackets; Mathematica's have some of theirs the other way round."""
+    arguments = with_brackets(reader)
+    if opening.text == "[" and len(arguments) == 2 and name in ("atan", "log"):
+        return Call("atan2" if name == "atan" else "log", arguments[::-1], token.column)
+    if token.text in ("ArcTan", "arctan") and len(arguments) == 2:
+        if token.text == "ArcTan":
+            raise reader.fault(
+                "ArcTan of two: (x, y) as in Mathematica, or (y, x)?", "write atan2(y, x)", token
+            )
+        name = "atan2"
+    return Call(name, arguments, token.column)
+
+
+def with_brackets(reader: Reader) -> tuple[Node, ...]:
+    """Return the arguments in the brackets that come next."""
+    opening = reader.token
+    closing = {"(": ")", "[": "]"}[opening.text]
+    reader.at += 1
+    bars, reader.bars = reader.bars, 0
+    reader.deeper(opening)
+    arguments: list[Node] = []
+    while not reader.take(closing):
+        if arguments and not reader.take(","):
+            raise reader.unclosed(opening)
+        arguments.append(reader.comparison())
+    reader.depth -= 1
+    reader.bars = bars
+    return tuple(arguments)
+
+
+def _bare(reader: Reader, name: str, chain: int) -> Node:
+    """Return the argument of a function without brackets."""
+    first = reader.token
+    if first.kind == "name" and (inner := function_name(first.text, reader.scope)) in _BARE:
+        if chain >= _MAX_CHAIN:
+            raise reader.fault(f"more than {_MAX_CHAIN} functions without brackets", "write brackets")
+        reader.at += 1
+        node = applied(reader, first, chain + 1)
+        if node is None or isinstance(node, Name):
+            raise reader.fault(f"{inner} needs its argument", "write brackets")
+        return node
+    taken: list[Node] = []
+    numeric = True
+    while reader.starts(reader.token) and (numeric or _still(reader, first, name, taken)):
+        part = reader.token
+        if part.kind == "name" and not numeric and is_function(reader):
+            break
+        node = reader.atom()
+        taken.append(node)
+        numeric = numeric and (
+            isinstance(node, Number)
+            or (isinstance(node, Name) and node.text == "pi" and not reader.scope.declares("pi"))
+        )
+        if not isinstance(node, Number | Name):
+            break
+    if numeric and reader.token.text == "*":
+        number = reader.text[first.column - 1 : reader.token.column - 1].strip()
+        raise reader.fault(f"{name}({number}) times this, or {name} of the product?", "write brackets")
+    return taken[0] if len(taken) == 1 else Product(tuple((False, node) for node in taken), first.column)
+
+
+def _still(reader: Reader, first: Token, name: str, taken: list[Node]) -> bool:
+    """Tell whether a factor still belongs to an argument without brackets."""
+    last, token = taken[-1], reader.token
+    if isinstance(last, Name) and (last.primes or reader.scope.moves(last.text)):
+        return False
+    if is_function(reader):
+        return False
+    word = token.tight and token.kind == "name" and not first.tight
+    clock = token.kind == "name" and token.text == reader.scope.time.name
+    if word or clock:
+        return True
+    raise reader.fault(
+        f"does this factor still belong to the argument of {name}?",
+        f"write {name}(x)*y or {name}(x*y), or this factor first",
+    )
+
+
+def _exponential(reader: Reader, token: Token) -> Node | None:
+    """Return exp of what e is raised to."""
+    exponent = reader.token
+    if exponent.kind == "super":
+        reader.at += 1
+        return Call("exp", (reader.raised(exponent),), token.column)
+    if sign := reader.take("^", "**"):
+        reader.deeper(sign)
+        inside = reader.exponent(sign)
+        reader.depth -= 1
+        if (
+            reader.starts(reader.token)
+            and reader.token.tight
+            and reader.tokens[reader.at - 1].text not in (")", "}", "]")
+        ):
+            raise reader.fault("does this still belong to the exponent?", "write brackets, e^(a*t)")
+        return Call("exp", (inside,), token.column)
+    return Call("exp", (Number(1, 1, token.column),), token.column) if token.text == "%e" else None
+
+
+def constructed(reader: Reader, token: Token) -> Node | None:
+    """Return what a constructor of SymPy or Mathematica makes, as ``Mul(Integer(2), Symbol('x'))``; else None."""
+    opening = reader.token
+    if opening.text not in ("(", "[") or reader.scope.declares(token.text) or token.primes:
+        return None
+    if token.text in ("Symbol", "Function") and opening.text == "(":
+        return _quoted(reader, token)
+    make = _CONSTRUCTORS.get(token.text)
+    if make is None:
+        return None
+    arguments = [node for node in with_brackets(reader) if not _is_assumption(node)]
+    node = make(token.column, arguments)
+    if node is None:
+        raise reader.fault(
+            f"{token.text} with {len(arguments)} argument(s)", "write the formula itself", token
+        )
+    return node
+
+
+def _is_assumption(node: Node) -> bool:
+    """Tell whether this is ``real=True`` or ``evaluate=False``, which changes no formula here."""
+    match node:
+        case Comparison((Name(), Name(text="True" | "False" | "true" | "false")), ("=",)):
+            return True
+        case _:
+            return False
+
+
+def _quoted(reader: Reader, token: Token) -> Node | None:
+    """Return the name in ``Symbol('x')``, or of ``Function('theta')(Symbol('t'))``."""
+    string = reader.tokens[reader.at + 1]
+    if string.kind != "string":
+        return None
+    name = string.text[1:-1]
+    found = reader.words.declared(name)
+    name = found[0] if len(found) == 1 else name
+    while reader.token.text != ")":
+        if reader.token.kind == "end":
+            raise reader.fault("'(' is never closed", token=token)
+        reader.at += 1
+    reader.at += 1
+    if token.text == "Symbol" or reader.tokens[reader.at].text != "(":
+        return Name(name, 0, string.column)
+    return Call(name, with_brackets(reader), string.column)
+
+
+def _product(column: int, arguments: list[Node]) -> Node:
+    return Product(tuple((False, node) for node in arguments), column)
+
+
+def _quotient(column: int, arguments: list[Node]) -> Node | None:
+    if len(arguments) != 2:
+        return None
+    return Product(((False, arguments[0]), (True, arguments[1])), column)
+
+
+def _sum(column: int, arguments: list[Node]) -> Node:
+    return Sum(tuple((False, node) for node in arguments), column)
+
+
+def _power(column: int, arguments: list[Node]) -> Node | None:
+    return Power(arguments[0], arguments[1], column) if len(arguments) == 2 else None
+
+
+def _itself(column: int, arguments: list[Node]) -> Node | None:  # noqa: ARG001
+    return arguments[0] if len(arguments) == 1 else None
+
+
+def _equation(column: int, arguments: list[Node]) -> Node | None:
+    return Comparison((arguments[0], arguments[1]), ("=",), column) if len(arguments) == 2 else None
+
+
+_CONSTRUCTORS: Mapping[str, Callable[[int, list[Node]], Node | None]] = {
+    "Mul": _product, "Times": _product, "Add": _sum, "Plus": _sum, "Pow": _power, "Power": _power, "pow": _power,
+    "Rational": _quotient, "Fraction": _quotient, "Integer": _itself, "Float": _itself, "S": _itself,
+    "sympify": _itself, "Equal": _equation, "Equality": _equation,
+}  # fmt: skip

@@ -1,0 +1,201 @@
+"""Declared names in words as people type them: ``θ₁`` for ``theta1``, ``mgl`` for m g l, ``sinθ`` for sin of theta.
+
+A word is read only where it can be read in one way. What is declared goes before every other meaning.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from canon.expression.text.tokens import GREEK, Atom, LanguageError, Token
+from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.expression.text.scope import Scope
+
+__all__ = ["Words", "function_name", "key_of"]
+
+_MAX_RUN = 40
+"""Letters of a word that is still taken apart."""
+_PIECE = {"lambda": "lam", "lamda": "lam", "lmbda": "lam", "varphi": "phi", "vartheta": "theta", "eps": "epsilon",
+          "varepsilon": "epsilon", "ell": "l", "varrho": "rho"}  # fmt: skip
+_PARTS = re.compile(r"[A-Za-z]+|[0-9]+")
+_GREEK = frozenset(GREEK.values())
+_CALLED = frozenset((
+    *FUNCTIONS, "Derivative", "diff", "Piecewise", "Eq", "Ne", "Symbol", "Function", "Integer", "Rational", "Mul",
+    "Add", "Pow", "Times", "Plus", "Power", "pow", "Float", "Fraction", "Equality", "Equal",
+))  # fmt: skip
+
+
+def key_of(name: str) -> str:
+    """Return what two spellings of one name have in common.
+
+    Examples
+    --------
+    >>> key_of("lambda_1") == key_of("lam1"), key_of("p_theta") == key_of("ptheta"), key_of("l") == key_of("L")
+    (True, True, False)
+    """
+    parts: list[str] = _PARTS.findall(name)
+    return "".join(_PIECE.get(part) or part for part in parts)
+
+
+def function_name(word: str, scope: Scope) -> str:
+    """Return the function of the language that a word means; empty where it means none, or is declared.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> function_name("arctan", Scope()), function_name("Sin", Scope()), function_name("foo", Scope())
+    ('atan', 'sin', '')
+    """
+    if word in scope.functions or scope.symbol(word) is not None:
+        return ""
+    for name in (word, OTHER_NAMES.get(word, ""), word[:1].lower() + word[1:]):
+        known = OTHER_NAMES.get(name, name)
+        if known in FUNCTIONS:
+            return known
+    return ""
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A piece of a word: a declared name, a function, a constant or a number."""
+
+    kind: str
+    text: str
+    start: int
+    end: int
+
+
+class Words:
+    """Reads the words of one text within a scope."""
+
+    def __init__(self, text: str, scope: Scope) -> None:
+        self.text = text
+        self.scope = scope
+        self.keys: dict[str, list[str]] = {}
+        for name in scope.spelled:
+            self.keys.setdefault(key_of(name), []).append(name)
+        self.known: dict[str, list[Token]] = {}
+
+    def declared(self, word: str) -> list[str]:
+        """Return the declared names that a word spells: itself, or all that are spelled alike."""
+        if word in self.scope.functions or self.scope.symbol(word) is not None:
+            return [word]
+        return self.keys.get(key_of(word), [])
+
+    def read(self, token: Token, bracket: bool) -> list[Token]:
+        """Return the tokens that a word stands for: one, or factors side by side.
+
+        Raises
+        ------
+        LanguageError
+            Where it can be read in two ways.
+        """
+        if not token.atoms:
+            return [token]
+        found = self.declared(token.text)
+        if token.text in found:
+            return [replace(token, text=token.text)]
+        if len(token.atoms) > _MAX_RUN:
+            return [token]
+        whole = [[_Part("name", name, 0, len(token.atoms))] for name in found]
+        if not found and self._is_a_word(token, bracket):
+            return [token]
+        ways = [*whole, *self._split(token.atoms)]
+        if len(ways) > 1:
+            told = " or ".join(" ".join(part.text for part in way) for way in ways[:3])
+            raise LanguageError(
+                self.text, token.column, f"{token.text} can be read as {told}", "write * between factors"
+            )
+        if not ways:
+            return self._differential(token) or [token]
+        return list(self._tokens(token, ways[0]))
+
+    def _is_a_word(self, token: Token, bracket: bool) -> bool:
+        """Tell whether a word means something of its own: a function, a constant, a letter by its name."""
+        name = token.text
+        if bracket and (name in _CALLED or function_name(name, self.scope)):
+            return True
+        if function_name(name, self.scope) or name in _CALLED:
+            return not any(way[-1].kind == "function" for way in self._split(token.atoms))
+        return (name in CONSTANTS or name in _GREEK) and len(token.atoms) > 0 and not token.primes
+
+    def _split(self, atoms: tuple[Atom, ...]) -> list[list[_Part]]:
+        """Return the ways of reading a word as factors side by side, two of them at most."""
+        ways: list[list[list[_Part]]] = [[[]]]
+        for end in range(1, len(atoms) + 1):
+            found: list[list[_Part]] = []
+            for start in range(end):
+                for way in ways[start]:
+                    part = self._part(atoms, start, end, way)
+                    if part is not None and not _repeats(way, part, atoms):
+                        found.append([*way, part])
+            ways.append(found[:3])
+        return [way for way in ways[-1] if len(way) > 1][:2]
+
+    def _part(self, atoms: tuple[Atom, ...], start: int, end: int, way: list[_Part]) -> _Part | None:
+        piece = "".join(atom.plain for atom in atoms[start:end])
+        marks = sum(1 for atom in atoms[start:end] if atom.rates)
+        if piece[0] == "_" or marks > 1:
+            return None
+        if piece.isdigit():
+            after = (
+                bool(way)
+                and way[-1].kind == "function"
+                and not (end < len(atoms) and atoms[end].plain.isdigit())
+            )
+            return _Part("number", piece, start, end) if after and not marks else None
+        if piece[0].isdigit():
+            return None
+        names = self.declared(piece)
+        if len(names) == 1 and (piece == names[0] or end < len(atoms) or start > 0):
+            return _Part("name", names[0], start, end)
+        if names or marks:
+            return None
+        if (
+            end - start > 1
+            and function_name(piece, self.scope)
+            and piece not in ("th", "sh", "ch", "tg", "e")
+        ):
+            return _Part("function", piece, start, end)
+        return _Part("constant", "pi", start, end) if piece == "pi" and end - start == 1 else None
+
+    def _tokens(self, token: Token, way: list[_Part]) -> Iterator[Token]:
+        for part in way:
+            atoms = token.atoms[part.start : part.end]
+            rates = sum(atom.rates for atom in atoms)
+            kind = "number" if part.kind == "number" else "name"
+            tight = token.tight if part.start == 0 else True
+            yield Token(kind, part.text, atoms[0].column, rates, tight)
+
+    def _differential(self, token: Token) -> list[Token]:
+        """Return d and what it is of, for ``dθ`` or ``dt``."""
+        first, *rest = token.atoms
+        if first.plain != "d" or first.rates or not rest or self.scope.symbol("d") is not None:
+            return []
+        inner = replace(
+            token,
+            text="".join(atom.plain for atom in rest),
+            atoms=tuple(rest),
+            column=rest[0].column,
+            tight=True,
+        )
+        names = self.declared(inner.text)
+        if len(names) == 1:
+            found = [replace(inner, text=names[0])]
+        elif len(rest) == 1:  # what is not declared is told as such
+            found = [inner]
+        else:
+            found = self.read(inner, bracket=False)
+        return [Token("name", "d", token.column, 0, token.tight), *found]
+
+
+def _repeats(way: list[_Part], part: _Part, atoms: tuple[Atom, ...]) -> bool:
+    """Tell whether a letter stands twice, as in words of a language: ``mass`` is not m a s s."""
+    ascii_only = all(len(atom.plain) == 1 for atom in atoms)
+    return ascii_only and part.kind == "name" and any(p.text == part.text for p in way)

@@ -1,0 +1,121 @@
+"""Derivatives as people type them: ``dθ/dt``, ``d²θ/dt²``, ``d/dt(m l² θ̇)``, ``∂V/∂x``.
+
+d/dt is the derivative along the motion, ∂ the partial one. Where ``d`` is declared, it is a factor as any other name.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from canon.expression.text.syntax import Call, Name, Node, Number
+
+if TYPE_CHECKING:
+    from canon.expression.text.juxtaposition import Reader
+    from canon.expression.text.tokens import Token
+
+__all__ = ["PARTIAL", "TOTAL", "derivative"]
+
+TOTAL, PARTIAL = "d/dt", "∂"
+"""Functions of the syntax tree that no name can spell."""
+
+
+def derivative(reader: Reader, token: Token | None = None) -> Node | None:
+    """Return a quotient of differentials, its first sign being next or, for ``d``, just read; None where it is none."""
+    start, sign = reader.at, "d"
+    if token is None:
+        token, sign = reader.token, "∂"
+        reader.at += 1
+    order = _order(reader)
+    operand = None if reader.token.text == "/" else _above(reader)
+    if reader.token.text != "/" or not _is_sign(reader, reader.at + 1, sign):
+        if sign == "∂":
+            raise reader.fault("a derivative is written ∂f/∂x", token=token)
+        reader.at = start
+        return None
+    reader.at += 1
+    variables = _below(reader, sign)
+    if sum(n for _, n in variables) != order:
+        raise reader.fault("the orders above and below differ", "write d²x/dt²", token)
+    if operand is None:
+        operand = _after(reader, token, sign)
+    return _made(reader, sign, operand, variables, token)
+
+
+def _is_sign(reader: Reader, at: int, sign: str) -> bool:
+    return at < len(reader.tokens) and reader.tokens[at].text == sign and not reader.tokens[at].primes
+
+
+def _order(reader: Reader) -> int:
+    """Return the order written after a sign or a variable, 1 where none is."""
+    token = reader.token
+    if token.kind == "super" and token.text.isdigit():
+        reader.at += 1
+        return int(token.text[:3])
+    if token.text in ("^", "**") and reader.tokens[reader.at + 1].text.isdigit():
+        reader.at += 2
+        return int(reader.tokens[reader.at - 1].text[:3])
+    if token.text in ("^", "**") and reader.tokens[reader.at + 1].text in ("{", "("):
+        digit, closing = reader.tokens[reader.at + 2 : reader.at + 4]
+        if digit.text.isdigit() and closing.text in ("}", ")"):
+            reader.at += 4
+            return int(digit.text[:3])
+    return 1
+
+
+def _above(reader: Reader) -> Node | None:
+    """Return what is differentiated, written after the sign: a name, a value of a function, a bracket."""
+    token = reader.token
+    if token.kind == "name" or token.text in ("(", "[", "{"):
+        return reader.atom()
+    return None
+
+
+def _below(reader: Reader, sign: str) -> list[tuple[Node, int]]:
+    """Return the variables below, each with its order."""
+    variables: list[tuple[Node, int]] = []
+    bracket = reader.take("(")
+    while _is_sign(reader, reader.at, sign) and (not variables or sign == "∂"):
+        reader.at += 1
+        name = reader.token
+        if name.kind != "name":
+            raise reader.fault("a variable is missing", "write d/dt or ∂/∂x")
+        reader.at += 1
+        variables.append((Name(name.text, name.primes, name.column), _order(reader)))
+    if bracket and not reader.take(")"):
+        raise reader.unclosed(bracket)
+    return variables
+
+
+def _after(reader: Reader, token: Token, sign: str) -> Node:
+    """Return what stands after ``d/dt``: a bracket, or one name alone."""
+    opening = reader.token
+    if opening.text in ("(", "[", "{"):
+        reader.at += 1
+        return reader.group(opening)
+    if opening.text == "∂" or (opening.kind == "name" and opening.text != "d"):
+        node = reader.atom()
+        if (
+            not reader.starts(reader.token)
+            and reader.token.text not in ("^", "**", "*", "/")
+            and reader.token.kind != "super"
+        ):
+            return node
+    what = "d/dt" if sign == "d" else "∂/∂x"
+    raise reader.fault(f"what does {what} reach?", f"write {what}( ) around it", token)
+
+
+def _made(reader: Reader, sign: str, operand: Node, variables: list[tuple[Node, int]], token: Token) -> Node:
+    time = reader.scope.time.name
+    variable, order = variables[0]
+    if order > 8:
+        raise reader.fault("a derivative of more than the 8th order", token=token)
+    if sign == "d" and isinstance(variable, Name) and variable.text == time and not variable.primes:
+        if isinstance(operand, Name) and reader.scope.declares(operand.text) and operand.primes + order <= 2:
+            return Name(operand.text, operand.primes + order, operand.column)
+        node = operand
+        for _ in range(order):
+            node = Call(TOTAL, (node,), token.column)
+        return node
+    orders = [Number(n, 1, token.column) for _, n in variables]
+    name = PARTIAL if sign == "∂" else "d/dx"
+    return Call(name, (operand, *(v for v, _ in variables), *orders), token.column)
