@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from canon.exercise.question.answer import other_variables
+from canon.exercise.question.answer import links, other_variables
 from canon.exercise.question.answer_values import without_value
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
@@ -71,6 +71,7 @@ def questions(reading: Reading) -> Iterator[Question]:
     for question in judge_of_kind(reading, **inside):
         asked = isinstance(question, Determines)
         yield replace(question, wanted=reading.complete) if asked else question
+    yield from links(reading)
 
 
 def judge(claim: Claim) -> Verdict:
@@ -115,7 +116,7 @@ def examine(claim: Claim) -> Finding:
     for key, reason in faults(claim.kind, claim.keys):  # a claim made by hand was not looked at before
         raise InvalidClaim(ClaimError(claim.id, key, reason, file=claim.file))
     start, deadline = time.monotonic(), Deadline.after(claim.budget)
-    reading = Reading(claim)
+    reading = Reading.of(claim)
     answered: list[Verdict] = []
     asked: list[tuple[Question, Verdict]] = []
     beside: list[Determines] = []

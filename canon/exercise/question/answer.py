@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.exercise.question.question import fails
+from canon.exercise.question.question import Part, Same, fails
 from canon.exercise.sheet.kind import Shape
-from canon.expression.symbols.symbol import Coordinate, Rate
+from canon.expression.symbols.symbol import Coordinate, Rate, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.linear import eliminate
 from canon.proof.domain.verdict import Undecided
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from canon.proof.domain.domain import Domain
     from canon.proof.domain.verdict import Verdict
 
-__all__ = ["equations_missing", "open_brackets", "other_variables", "stay_open"]
+__all__ = ["equations_missing", "links", "open_brackets", "other_variables", "stay_open"]
 
 MOST_NAMES = 6
 """Names that are listed in one sentence."""
@@ -85,6 +85,19 @@ def _answers(reading: Reading) -> Iterator[Expr]:
             texts = {key: value}
         for where, text in texts.items():
             yield extended.equation(where, text)
+
+
+def links(reading: Reading) -> Iterator[Same]:
+    """Yield the question whether the sides of each chain ``a = b = c`` are the same, momenta being ∂L/∂q̇."""
+    through: dict[Symbol, Expr] = {}
+    if reading.links and reading.claim.kind == "legendre-hamiltonian":
+        L = reading.expression("L")
+        q, p = reading.phase_space("q", "p")
+        through = {momentum: L.diff(velocity(x)) for x, momentum in zip(q, p, strict=True)}
+    for place, text in reading.links:
+        part = Part(f"the chain under {place}", reading.equation(place, text), through=through)
+        said = f"two sides under {place} that are said to be equal are not:{' '.join(text.split())}"
+        yield Same((part,), reading.domain, said=lambda _, said=said: said)
 
 
 def stay_open(names: Sequence[object]) -> tuple[str, ...]:

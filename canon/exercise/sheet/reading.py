@@ -15,6 +15,7 @@ from canon.exercise.sheet.key_shapes import ASSUMPTIONS
 from canon.exercise.sheet.kind import Kind, Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.sheet import Claim, ClaimError
+from canon.exercise.sheet.typed_answers import typed_answers
 from canon.expression.parse import (
     LanguageError,
     Scope,
@@ -55,6 +56,10 @@ _NAME_KEYS = (
 )
 
 
+_MOVING = ("q", "p", "x", "variables", "new_q", "new_p", "quasi")
+"""Keys of names that stand for what changes in time."""
+
+
 class InvalidClaim(ValueError):
     """A claim that does not say something that could be judged."""
 
@@ -71,6 +76,10 @@ class Reading:
     ----------
     claim
         The claim as written; its form has been checked.
+    links
+        Equations between the sides of chains, each with the key under which it stands.
+    passed
+        What was passed over in reading left sides.
     names
         Symbols that the judge of a kind adds to the declared ones, such as ``d_x`` and ``delta_x``.
     instead
@@ -85,9 +94,31 @@ class Reading:
     """
 
     claim: Claim
+    links: tuple[tuple[str, str], ...] = ()
+    passed: tuple[str, ...] = ()
     names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
     instead: Mapping[str, Expr] = field(default_factory=lambda: MappingProxyType({}))
     at: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+
+    @classmethod
+    def of(cls, claim: Claim) -> Reading:
+        """Return a claim whose answers are as people type them, with left sides, chains, several equations in a text.
+
+        Raises
+        ------
+        InvalidClaim
+            Where a left side contradicts the question.
+        """
+        written = cls(claim)
+        plain = typed_answers(claim, written.scope, written.error)
+        keys = MappingProxyType(plain.keys)
+        return cls(replace(claim, keys=keys), tuple(plain.links), tuple(plain.passed))
+
+    def error(self, key: str, error: LanguageError) -> InvalidClaim:
+        """Return the error of a text under a key."""
+        return InvalidClaim(
+            ClaimError(self.claim.id, key, error.message, error.column, error.caret(), self.claim.file)
+        )
 
     def has(self, key: str) -> bool:
         """Whether the claim has this key."""
@@ -164,7 +195,8 @@ class Reading:
                 self.fault("functions", f"{name} is declared as a symbol too")
         signs = {name: self._assumptions(name) for name in functions}
         implicit = keys.get("implicit_multiplication") is True
-        return Scope({**self.names, **names}, functions, self.time, signs, implicit)
+        moving = frozenset(name for key in _MOVING if self.is_names(key) for name in _as_list(keys[key]))
+        return Scope({**self.names, **names}, functions, self.time, signs, implicit, moving)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -176,10 +208,11 @@ class Reading:
             if key in shapes and shapes[key] not in (Shape.NAMES, Shape.WORD)
         }
         found = {(key, unit.text): None for key, text in _texts_in(said) for unit in units(text, self.scope)}
-        return tuple(
+        units_passed = (
             f"the unit {unit} in {key} is passed over: numbers are read in any one consistent system of units"
             for key, unit in found
         )
+        return (*self.passed, *units_passed)
 
     @cached_property
     def domain(self) -> Domain:
@@ -324,9 +357,7 @@ class Reading:
             parsed = parse(str(text), self.scope)
             return substitute(parsed, self.at) if self.at else parsed
         except LanguageError as error:
-            raise InvalidClaim(
-                ClaimError(self.claim.id, key, error.message, error.column, error.caret(), self.claim.file)
-            ) from error
+            raise self.error(key, error) from error
 
 
 def _is_rate(name: str, names: Mapping[str, Symbol]) -> bool:

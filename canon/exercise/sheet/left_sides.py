@@ -1,0 +1,141 @@
+"""Left sides: what stands before ``=`` in an answer, held against what is asked.
+
+``H = …`` where H is asked is a name and passed over, ``L = T - V = …`` a definition from a book, and told; ``K = …`` where
+H is asked contradicts the question.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from canon.expression.text.declared_names import key_of
+from canon.expression.text.tokens import LanguageError, Token, tokens
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from canon.expression.text.scope import Scope
+
+__all__ = ["Label", "Quantity", "is_definition", "label_of"]
+
+_PAIRS = {"{": "}", "[": "]", "(": ")", "<": ">"}
+_DEFINITIONS: Mapping[str, str] = {
+    "L": r"[TK]-[VU]",
+    "H": r"[TK]\+[VU]|[VU]\+[TK]|(?:[Σ∑]|sum)?_?i?\(?[^=]*\)?-L|T_2-T_0\+V",
+    "K": r"H\+(?:∂F|dF|∂S|F)[_1-4]*(?:/∂t|/dt|_t)?(?:\([^=]*\))?|H'",
+    "R": r"L-[^=]*|[^=]*-L",
+    "claim": r"d/dt\(?∂L/∂[^=]*-\(?∂L/∂[^=]*|\(?d/dt\)?\(?∂L/∂[^=-]*|∂L/∂[^=]*|Q_?[A-Za-z0-9]*",
+    "energy_rate": r"d\(?[TKE]\+[VU]\)?/dt|-2F|-2\*F",
+    "S": r"[^=]*[Σ∑][^=]*",
+}
+
+
+@dataclass(frozen=True)
+class Label:
+    """A left side that is a name: ``p_r'``, ``H(q, p)``, ``{L_z, x}``.
+
+    Parameters
+    ----------
+    name
+        The name; empty for a bracket.
+    rates
+        Primes or dots on it, and one more for ``dp/dt``.
+    arguments
+        What stands in the brackets after it, or in the bracket itself.
+    """
+
+    name: str
+    rates: int = 0
+    arguments: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What is asked under a key, by the names that people write before ``=``.
+
+    Parameters
+    ----------
+    shown
+        What it is called in a message.
+    names
+        Its names, each with the number of dots it has.
+    bracket
+        The two entries of a bracket, as the claim writes them.
+    """
+
+    shown: str
+    names: tuple[tuple[str, int], ...] = ()
+    bracket: tuple[str, str] | None = None
+
+    def named_by(self, label: Label) -> bool:
+        """Tell whether a label is one of its names.
+
+        Examples
+        --------
+        >>> Quantity("H", (("H", 0),)).named_by(label_of("H(q,p)")), Quantity("H", (("H", 0),)).named_by(label_of("K"))
+        (True, False)
+        """
+        return any(key_of(name) == key_of(label.name) and rates == label.rates for name, rates in self.names)
+
+
+def label_of(said: str) -> Label | None:
+    """Return the name that a left side is, None where it is none.
+
+    Examples
+    --------
+    >>> label_of("ṗ_r"), label_of("dp/dt"), label_of("F₂(q, P)"), label_of("{L_z, x}").arguments
+    (Label(name='p_r', rates=1, arguments=()), Label(name='p', rates=1, arguments=()),
+     Label(name='F_2', rates=0, arguments=('q', 'P')), ('L_z', 'x'))
+    """
+    try:
+        found = tokens(said)[:-1]
+    except LanguageError:
+        return None
+    if not found or len(found) > 40:
+        return None
+    first, *rest = found
+    if first.text in _PAIRS and found[-1].text == _PAIRS[first.text]:
+        entries = _entries(said, found[1:-1])
+        return Label("", 0, entries) if len(entries) == 2 else None
+    if first.kind != "name":
+        return None
+    if not rest:
+        return Label(first.text, first.primes)
+    if first.text.startswith("d") and [t.text for t in rest] == ["/", "dt"] and len(first.text) > 1:
+        return Label(first.text[1:], first.primes + 1)
+    if rest[0].text in ("(", "[") and rest[-1].text == _PAIRS[rest[0].text]:
+        inside = rest[1:-1]
+        if all(t.kind == "name" or t.text in (",", "0", ";") for t in inside):
+            return Label(first.text, first.primes, tuple(t.text for t in inside if t.kind == "name"))
+    return None
+
+
+def _entries(said: str, inside: list[Token]) -> tuple[str, ...]:
+    """Return the two entries of a bracket as they were written."""
+    depth, commas = 0, list[Token]()
+    for token in inside:
+        depth += (token.text in _PAIRS) - (token.text in _PAIRS.values())
+        if token.text == "," and depth == 0:
+            commas.append(token)
+    if len(commas) != 1 or not inside:
+        return ()
+    start, middle = inside[0].column - 1, commas[0].column
+    end = len(said.rstrip()) - 1
+    return said[start : middle - 1].strip(), said[middle:end].strip()
+
+
+def is_definition(said: str, key: str, scope: Scope) -> bool:
+    """Tell whether a side is a definition of what is asked in terms of quantities that the claim does not declare.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> is_definition("T-V", "L", Scope()), is_definition("T+V", "L", Scope())
+    (True, False)
+    """
+    pattern = _DEFINITIONS.get(key)
+    names = re.findall(r"[A-Z]", said)
+    declared = any(scope.declares(name) for name in names)
+    return bool(pattern and names and not declared and re.fullmatch(pattern, said))

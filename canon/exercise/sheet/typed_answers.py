@@ -1,0 +1,382 @@
+"""Typed answers: what people write in one field made into what the keys of a claim hold.
+
+Left sides that name the answer are taken away, chains ``a = b = c`` are kept as links that are judged as well, several
+equations in one text become several, components in one bracket a list. Nothing is dropped silently: what is passed over
+is told, and what contradicts the question makes the claim invalid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from canon.exercise.sheet.kind import Shape
+from canon.exercise.sheet.kinds import kind_of
+from canon.exercise.sheet.left_sides import Label, Quantity, is_definition, label_of
+from canon.expression.parse import LanguageError, parse_expression, statements_of
+from canon.expression.text.declared_names import key_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.exercise.sheet.sheet import Claim
+    from canon.expression.text.scope import Scope
+    from canon.expression.text.statement import Side, Statement
+
+__all__ = ["TypedAnswers", "typed_answers"]
+
+_EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
+_COMPONENTS_OF_CLAIM = ("lie-bracket", "first-order")
+_UNTOUCHED = ("domain", "class")
+_OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"L1": ("L_1",), "L2": ("L_2", "L'"), "I": ("I", "C"), "energy_rate": (), "rhs": (), "lhs": ()}
+)
+
+
+@dataclass
+class TypedAnswers:
+    """The keys of a claim in plain form, the links of its chains, and what was passed over in reading it.
+
+    Parameters
+    ----------
+    keys
+        Every text one expression or one equation.
+    links
+        Pairs of a place in the claim and an equation that stands there between two sides of a chain.
+    passed
+        Sentences for the warnings.
+    """
+
+    keys: dict[str, Any] = field(default_factory=dict[str, Any])
+    links: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
+    passed: list[str] = field(default_factory=list[str])
+
+
+def typed_answers(claim: Claim, scope: Scope, fault: Callable[[str, LanguageError], Exception]) -> TypedAnswers:
+    """Return what a claim says with every text of it in plain form.
+
+    Parameters
+    ----------
+    claim
+        The claim as written; its form has been checked.
+    scope
+        Its declared names.
+    fault
+        Makes the error of a text under a key.
+
+    Raises
+    ------
+    Exception
+        What ``fault`` makes, where a left side contradicts the question or a text holds more than is asked.
+    """
+    return _Plain(claim, scope, fault).claim()
+
+
+class _Plain:
+    """Makes one claim plain."""
+
+    def __init__(
+        self, claim: Claim, scope: Scope, fault: Callable[[str, LanguageError], Exception]
+    ) -> None:
+        self.of = claim
+        self.scope = scope
+        self.fault = fault
+        self.kind = kind_of(claim.kind, claim.keys)
+        self.found = TypedAnswers()
+
+    def claim(self) -> TypedAnswers:
+        """Return all keys, those with texts in plain form."""
+        for key, value in self.of.keys.items():
+            self.found.keys[key] = self.value(key, value)
+        return self.found
+
+    def value(self, key: str, value: Any) -> Any:
+        """Return what stands under a key in plain form."""
+        if key in _UNTOUCHED:
+            return value
+        match self.kind.shapes.get(key):
+            case Shape.TEXT:
+                return self.of_text(key, value)
+            case Shape.TEXTS:
+                return self.equations(key, value) if self.has_equations(key) else self.components(key, value, key)
+            case Shape.EXPRESSIONS if isinstance(value, Mapping):
+                return {
+                    name: self.expression(f"{key}.{name}", text, Quantity(name, ((name, 0),)))
+                    for name, text in value.items()
+                }
+            case Shape.LISTS if isinstance(value, Mapping):
+                return {part: self.components(f"{key}.{part}", texts, part) for part, texts in value.items()}
+            case Shape.BRACKETS:
+                return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(value)]
+            case _:
+                return value
+
+    def has_equations(self, key: str) -> bool:
+        """Tell whether a list holds equations, whose left sides are no names."""
+        components = key == "claim" and self.of.kind in _COMPONENTS_OF_CLAIM
+        return key in _EQUATIONS and not components and not (key == "constraints" and self.of.kind == "constraint-class")
+
+    def of_text(self, key: str, value: Any) -> Any:
+        """Return the one text under a key in plain form."""
+        text = value[0] if isinstance(value, list) else value
+        if key in _EQUATIONS:
+            equations = self.equations(key, [text])
+            return equations[0] if len(equations) == 1 else text
+        return self.expression(key, text, self.quantity(key))
+
+    def quantity(self, key: str) -> Quantity:
+        """Return what a key of one expression asks for, by its names."""
+        names = [key, *_OTHER_SPELLINGS.get(key, ())]
+        if key == "F" and (number := self.kind.implied.get("type")):
+            names += [f"F_{number}", "S", "W", "G", f"G_{number}"]
+        if key == "F" and self.of.kind == "lagrangian-equivalence":
+            names += ["f", "Lambda", "G"]
+        if key == "energy_rate":
+            return Quantity("dE/dt", (("E", 1), ("H", 1), ("W", 1)))
+        return Quantity(key, tuple((name, 0) for name in names))
+
+    def expression(self, place: str, text: Any, asked: Quantity) -> Any:
+        """Return the text of one expression without its left sides; what else it says becomes links."""
+        if not isinstance(text, str):
+            return text
+        statements = self.statements(place, text)
+        if len(statements) > 1:
+            named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
+            others = [s for s in statements if s not in named]
+            if len(named) != 1:
+                raise self.told(place, text, others[0].sides[0], f"one expression is asked for: {asked.shown}", "leave the others out")
+            raise self.told(place, text, others[0].sides[0], f"this is another statement beside {asked.shown}", "put it in, or leave it out")
+        sides = list(statements[0].sides)
+        if len(sides) == 1:
+            return text
+        if self.is_asked(sides[0], asked):
+            sides = sides[1:]
+        else:
+            self.refuse_other_names(place, text, sides[0], asked)
+        return self.last_of(place, text, sides, asked)
+
+    def last_of(self, place: str, text: str, sides: list[Side], asked: Quantity) -> str:
+        """Return the last side of a chain; those before it are links, or definitions that are passed over."""
+        readable: list[Side] = []
+        for side in sides[:-1]:
+            if self.is_asked(side, asked):
+                continue
+            if is_definition(side.said, asked.shown, self.scope):
+                self.passed(place, side)
+            else:
+                self.read(place, text, side, asked)
+                readable.append(side)
+        readable.append(sides[-1])
+        self.found.links += [
+            (place, _equation(a, b)) for a, b in zip(readable, readable[1:], strict=False)
+        ]
+        return sides[-1].text
+
+    def passed(self, place: str, side: Side) -> None:
+        """Note a definition that nothing can be asked of."""
+        self.found.passed.append(f"{side.text.strip()} in {place} is passed over: what it is made of is not given here")
+
+    def read(self, place: str, text: str, side: Side, asked: Quantity) -> None:
+        """Refuse a side that is neither a name of the answer nor an expression."""
+        try:
+            parse_expression(side.text, self.scope)
+        except LanguageError as error:
+            label = label_of(side.said)
+            if label is not None and label.name:
+                raise self.contradiction(place, text, side, asked) from None
+            raise self.fault(place, error.at_home_in(text)) from None
+
+    def refuse_other_names(self, place: str, text: str, side: Side, asked: Quantity) -> None:
+        """Refuse a left side that is the name of something else."""
+        label = label_of(side.said)
+        if label is None or place in ("lhs", "rhs"):
+            return
+        if label.name or asked.bracket:
+            raise self.contradiction(place, text, side, asked)
+
+    def contradiction(self, place: str, text: str, side: Side, asked: Quantity) -> Exception:
+        """Return the error of a left side that is not what is asked."""
+        shown = side.text.strip().strip("$").strip()[:40]
+        remedy = f"write {asked.shown} = … if that is meant, or only what stands on the right"
+        return self.told(place, text, side, f"{asked.shown} is asked for here, and this says {shown} = …", remedy)
+
+    def is_asked(self, side: Side, asked: Quantity) -> bool:
+        """Tell whether a side is a name of what is asked."""
+        label = label_of(side.said)
+        if label is None:
+            return False
+        if not label.name:
+            return asked.bracket is not None and self.same_bracket(label, asked.bracket)
+        if not all(self.known(argument) for argument in label.arguments):
+            return False
+        return asked.named_by(label)
+
+    def known(self, name: str) -> bool:
+        """Tell whether the argument of a left side is declared."""
+        return any(key_of(name) == key_of(known) for known in self.scope.spelled)
+
+    def same_bracket(self, label: Label, asked: tuple[str, str]) -> bool:
+        """Tell whether a bracket is the one that is asked: what can be read of it agrees, and one entry can be."""
+        agree = [self.same_entry(entry, wanted) for entry, wanted in zip(label.arguments, asked, strict=True)]
+        return False not in agree and True in agree
+
+    def same_entry(self, entry: str, wanted: str) -> bool | None:
+        """Tell whether an entry is what is wanted; None where it is a name of the reader's own."""
+        if entry.replace(" ", "") == wanted.replace(" ", ""):
+            return True
+        try:
+            right = parse_expression(wanted, self.scope)
+        except LanguageError:
+            return None
+        try:
+            said = parse_expression(entry, self.scope)
+        except LanguageError:
+            return None if label_of(entry) is not None and not right.is_Symbol else False
+        return bool(said == right)
+
+    def bracket(self, place: str, pair: Any) -> Any:
+        """Return a bracket whose value is in plain form."""
+        if not isinstance(pair, Mapping) or "value" not in pair:
+            return pair
+        first, second = ("f", "g") if "f" in pair else ("u", "v")
+        if not (isinstance(pair.get(first), str) and isinstance(pair.get(second), str)):
+            return pair
+        asked = Quantity(f"{{{pair[first]}, {pair[second]}}}", (), (pair[first], pair[second]))
+        return {**pair, "value": self.expression(f"{place}.value", pair["value"], asked)}
+
+    def components(self, place: str, value: Any, part: str) -> Any:
+        """Return a list of components in plain form, in their order where each says which it is."""
+        texts = value if isinstance(value, list) else [value]
+        names = self.names_of(place, part)
+        if len(texts) == 1 and isinstance(texts[0], str):
+            texts = self.apart(place, texts[0])
+        if len(texts) == len(names) > 1 and all(isinstance(text, str) for text in texts):
+            texts = self.in_order(place, texts, names)
+        found: list[Any] = []
+        for i, text in enumerate(texts):
+            asked = names[i] if i < len(names) else Quantity(f"component {i + 1}")
+            found.append(self.expression(f"{place}[{i}]", text, asked) if isinstance(text, str) else text)
+        return found if isinstance(value, list) or len(found) > 1 else found[0]
+
+    def names_of(self, place: str, part: str) -> tuple[Quantity, ...]:
+        """Return what each component of a list is called."""
+        keys = self.of.keys
+        of, rates = {
+            "q_dot": ("q", 1), "p_dot": ("p", 1), "X": ("x", 1), "map.Q": ("new_q", 0), "map.P": ("new_p", 0),
+            "inverse_map.q": ("q", 0), "inverse_map.p": ("p", 0), "Q": ("q", 0), "P": ("p", 0), "force": ("q", 0),
+            "Qnc": ("q", 0),
+        }.get(place, ("", 0))  # fmt: skip
+        listed: Any = keys.get(of, [])
+        names: list[str] = listed if isinstance(listed, list) else [listed]
+        found: list[Quantity] = []
+        for i, name in enumerate(names, 1):
+            if place in ("Q", "P", "force", "Qnc"):
+                letter = "Q" if place in ("force", "Qnc") else place
+                spelled = [f"{letter}_{i}", f"{letter}_{name}"] + [letter] * (len(names) == 1)
+                found.append(Quantity(spelled[-1] if len(names) == 1 else spelled[0], tuple((s, 0) for s in spelled)))
+            else:
+                found.append(Quantity(f"{name}{chr(39) * rates}", ((name, rates), (f"{name}{'_dot' * rates}", 0))))
+        del part
+        return tuple(found)
+
+    def apart(self, place: str, text: str) -> list[str]:
+        """Return the components that stand in one text: in one bracket, or as several equations."""
+        statements = self.statements(place, text)
+        if len(statements) > 1:
+            return [_whole(statement, text) for statement in statements]
+        return _vector(text) or [text]
+
+    def in_order(self, place: str, texts: Sequence[str], names: tuple[Quantity, ...]) -> list[str]:
+        """Return components in the order that is asked for, where their left sides say another one."""
+        places: list[int] = []
+        for i, text in enumerate(texts):
+            sides = self.statements(f"{place}[{i}]", text)[0].sides
+            named = [j for j, name in enumerate(names) if sides[1:] and self.is_asked(sides[0], name)]
+            if len(named) != 1:
+                return list(texts)
+            places += named
+        if sorted(places) != list(range(len(names))):
+            return list(texts)
+        return [texts[places.index(j)] for j in range(len(names))]
+
+    def equations(self, place: str, value: Any) -> list[Any]:
+        """Return a list of equations, chains taken apart."""
+        texts = value if isinstance(value, list) else [value]
+        found: list[Any] = []
+        for i, text in enumerate(texts):
+            where = f"{place}[{i}]"
+            for statement in self.statements(where, text) if isinstance(text, str) else ():
+                found += self.chain(where, text, statement)
+            if not isinstance(text, str):
+                found.append(text)
+        return found
+
+    def chain(self, place: str, text: str, statement: Statement) -> list[str]:
+        """Return the equations that a chain says."""
+        sides = list(statement.sides)
+        if len(sides) > 2 or (len(sides) == 2 and is_definition(sides[0].said, "claim", self.scope)):
+            rest = [side for side in sides if not is_definition(side.said, "claim", self.scope)]
+            if rest and len(rest) < len(sides):
+                for side in sides:
+                    if side not in rest:
+                        self.passed(place, side)
+                sides = rest
+        if len(sides) == 1:
+            return [text if len(statement.sides) == 1 and _only(text, sides[0]) else sides[0].text]
+        if len(sides) == 2 and len(statement.sides) == 2 and _only(text, *sides):
+            return [text]
+        return [_equation(a, b) for a, b in zip(sides, sides[1:], strict=False)]
+
+    def statements(self, place: str, text: str) -> tuple[Statement, ...]:
+        """Return the statements of a text."""
+        try:
+            return statements_of(text, self.scope)
+        except LanguageError as error:
+            raise self.fault(place, error) from None
+
+    def told(self, place: str, text: str, side: Side, reason: str, remedy: str) -> Exception:
+        """Return the error of one side of a text."""
+        return self.fault(place, LanguageError(text, side.column, reason, remedy))
+
+
+def _only(text: str, *sides: Side) -> bool:
+    """Tell whether a text is nothing but these sides, so that it can stay as it is."""
+    return sides[-1].text.rstrip() == text.rstrip() or len(sides[-1].text.rstrip()) == len(text.rstrip())
+
+
+def _equation(left: Side, right: Side) -> str:
+    """Return the text ``left = right``, each side at its column."""
+    start = right.column - 1
+    latex = right.text[start : start + 1] == "$"
+    sign = start if latex else start - 1
+    return f"{left.text}{' ' * (sign - len(left.text))}={right.text[sign + 1 :]}"
+
+
+def _whole(statement: Statement, text: str) -> str:
+    """Return a statement on its own, at its columns."""
+    first, last = statement.sides[0], statement.sides[-1]
+    return f"{first.text}{text[len(first.text) : len(last.text)]}"
+
+
+def _vector(text: str) -> list[str]:
+    """Return the components of ``(a, b)`` or ``[a, b]``, each at its column; nothing where it is no such bracket."""
+    stripped = text.strip().rstrip(".")
+    pairs = {"(": ")", "[": "]", "{": "}", "⟨": "⟩"}
+    if len(stripped) < 3 or pairs.get(stripped[0]) != stripped[-1]:
+        return []
+    begin = text.index(stripped[0])
+    depth, cuts = 0, [begin]
+    for i, character in enumerate(stripped):
+        depth += (character in pairs) - (character in pairs.values())
+        if depth == 0 and i < len(stripped) - 1:
+            return []
+        if depth == 1 and character == ",":
+            cuts.append(begin + i)
+    cuts.append(begin + len(stripped) - 1)
+    if len(cuts) < 3:
+        return []
+    return [" " * (a + 1) + text[a + 1 : b] for a, b in zip(cuts, cuts[1:], strict=False)]
+
+
