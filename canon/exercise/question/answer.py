@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.exercise.question.question import Part, Same, fails
+from canon.exercise.question.question import Chain, Part, fails
 from canon.exercise.sheet.kind import Shape
 from canon.expression.symbols.symbol import Coordinate, Rate, velocity
 from canon.expression.symbols.user_input import counted
@@ -87,7 +87,7 @@ def _answers(reading: Reading) -> Iterator[Expr]:
             yield extended.equation(where, text)
 
 
-def links(reading: Reading) -> Iterator[Same]:
+def links(reading: Reading) -> Iterator[Chain]:
     """Yield the question whether the sides of each chain ``a = b = c`` are the same, momenta being ∂L/∂q̇."""
     through: dict[Symbol, Expr] = {}
     if reading.links and reading.claim.kind == "legendre-hamiltonian":
@@ -96,8 +96,9 @@ def links(reading: Reading) -> Iterator[Same]:
         through = {momentum: L.diff(velocity(x)) for x, momentum in zip(q, p, strict=True)}
     for place, text in reading.links:
         part = Part(f"the chain under {place}", reading.equation(place, text), through=through)
-        said = f"two sides under {place} that are said to be equal are not:{' '.join(text.split())}"
-        yield Same((part,), reading.domain, said=lambda _, said=said: said)
+        shown = " ".join(text.replace("=", " = ").split())
+        said = f"two sides under {place} that are said to be equal are not: {shown}"
+        yield Chain(part, reading.domain, said)
 
 
 def stay_open(names: Sequence[object]) -> tuple[str, ...]:

@@ -27,6 +27,7 @@ __all__ = [
     "COMPLETE",
     "TELLING",
     "Answer",
+    "Chain",
     "Determines",
     "Differ",
     "Part",
@@ -211,7 +212,16 @@ class Determines:
     wanted: bool = False
 
 
-Question: TypeAlias = Same | SameEquations | Regular | Stated | Differ | Tells | Determines | Verdict
+@dataclass(frozen=True)
+class Chain:
+    """Two sides of a chain ``a = b = c`` in an answer are the same; ``said`` is told where they are not."""
+
+    part: Part
+    domain: Domain
+    said: str
+
+
+Question: TypeAlias = Chain | Same | SameEquations | Regular | Stated | Differ | Tells | Determines | Verdict
 
 
 def wrong_variables(f: Expr, foreign: Sequence[Symbol], name: str, variables: str) -> Iterator[Verdict]:
@@ -269,6 +279,9 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return fails(COMPLETE, why) if found else Verdict(Status.HOLDS, COMPLETE, "structure")
         case Same():
             return _all_vanish(question, deadline)
+        case Chain(part, domain, said):
+            verdict = _all_vanish(Same((part,), domain), deadline)
+            return replace(verdict, feedback=said) if verdict.fails else verdict
         case SameEquations(claimed, right, unknowns, domain, before=before):
             return same_equations(claimed, right, unknowns, domain, deadline, before)
         case Regular(matrix, name, domain, singular_is):

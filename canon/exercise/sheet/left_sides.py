@@ -1,7 +1,7 @@
 """Left sides: what stands before ``=`` in an answer, held against what is asked.
 
-``H = …`` where H is asked is a name and passed over, ``L = T - V = …`` a definition from a book, and told; ``K = …`` where
-H is asked contradicts the question.
+``H = …`` where H is asked is a name and passed over, ``L = T - V = …`` a definition from a book, and told; ``K = …``
+where H is asked contradicts the question.
 """
 
 from __future__ import annotations
@@ -30,6 +30,8 @@ _DEFINITIONS: Mapping[str, str] = {
     "energy_rate": r"d\(?[TKE]\+[VU]\)?/dt|-2F|-2\*F",
     "S": r"[^=]*[Σ∑][^=]*",
 }
+_OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^=∂]{1,20}|\{[^={}]{1,20},H\}"
+"""Derivatives of functions that are not given, and the bracket with H."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +137,8 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     >>> is_definition("T-V", "L", Scope()), is_definition("T+V", "L", Scope())
     (True, False)
     """
-    pattern = _DEFINITIONS.get(key)
     names = re.findall(r"[A-Z]", said)
-    declared = any(scope.declares(name) for name in names)
-    return bool(pattern and names and not declared and re.fullmatch(pattern, said))
+    if any(scope.declares(name) for name in names[:9]):
+        return False
+    pattern = _DEFINITIONS.get(key, "")
+    return bool(names and re.fullmatch(f"{pattern}|{_OF_ANY}" if pattern else _OF_ANY, said))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -54,7 +55,9 @@ class TypedAnswers:
     passed: list[str] = field(default_factory=list[str])
 
 
-def typed_answers(claim: Claim, scope: Scope, fault: Callable[[str, LanguageError], Exception]) -> TypedAnswers:
+def typed_answers(
+    claim: Claim, scope: Scope, fault: Callable[[str, LanguageError], Exception]
+) -> TypedAnswers:
     """Return what a claim says with every text of it in plain form.
 
     Parameters
@@ -77,9 +80,7 @@ def typed_answers(claim: Claim, scope: Scope, fault: Callable[[str, LanguageErro
 class _Plain:
     """Makes one claim plain."""
 
-    def __init__(
-        self, claim: Claim, scope: Scope, fault: Callable[[str, LanguageError], Exception]
-    ) -> None:
+    def __init__(self, claim: Claim, scope: Scope, fault: Callable[[str, LanguageError], Exception]) -> None:
         self.of = claim
         self.scope = scope
         self.fault = fault
@@ -100,14 +101,14 @@ class _Plain:
             case Shape.TEXT:
                 return self.of_text(key, value)
             case Shape.TEXTS:
-                return self.equations(key, value) if self.has_equations(key) else self.components(key, value, key)
+                return self.equations(key, value) if self.has_equations(key) else self.components(key, value)
             case Shape.EXPRESSIONS if isinstance(value, Mapping):
                 return {
                     name: self.expression(f"{key}.{name}", text, Quantity(name, ((name, 0),)))
                     for name, text in value.items()
                 }
             case Shape.LISTS if isinstance(value, Mapping):
-                return {part: self.components(f"{key}.{part}", texts, part) for part, texts in value.items()}
+                return {part: self.components(f"{key}.{part}", texts) for part, texts in value.items()}
             case Shape.BRACKETS:
                 return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(value)]
             case _:
@@ -116,7 +117,11 @@ class _Plain:
     def has_equations(self, key: str) -> bool:
         """Tell whether a list holds equations, whose left sides are no names."""
         components = key == "claim" and self.of.kind in _COMPONENTS_OF_CLAIM
-        return key in _EQUATIONS and not components and not (key == "constraints" and self.of.kind == "constraint-class")
+        return (
+            key in _EQUATIONS
+            and not components
+            and not (key == "constraints" and self.of.kind == "constraint-class")
+        )
 
     def of_text(self, key: str, value: Any) -> Any:
         """Return the one text under a key in plain form."""
@@ -144,10 +149,22 @@ class _Plain:
         statements = self.statements(place, text)
         if len(statements) > 1:
             named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
-            others = [s for s in statements if s not in named]
+            other = next((s for s in statements if s not in named), statements[-1]).sides[0]
             if len(named) != 1:
-                raise self.told(place, text, others[0].sides[0], f"one expression is asked for: {asked.shown}", "leave the others out")
-            raise self.told(place, text, others[0].sides[0], f"this is another statement beside {asked.shown}", "put it in, or leave it out")
+                raise self.told(
+                    place,
+                    text,
+                    other,
+                    f"one expression is asked for: {asked.shown}",
+                    "leave the others out",
+                )
+            raise self.told(
+                place,
+                text,
+                other,
+                f"this is another statement beside {asked.shown}",
+                "put it in, or leave it out",
+            )
         sides = list(statements[0].sides)
         if len(sides) == 1:
             return text
@@ -169,14 +186,14 @@ class _Plain:
                 self.read(place, text, side, asked)
                 readable.append(side)
         readable.append(sides[-1])
-        self.found.links += [
-            (place, _equation(a, b)) for a, b in zip(readable, readable[1:], strict=False)
-        ]
+        self.found.links += [(place, _equation(a, b)) for a, b in pairwise(readable)]
         return sides[-1].text
 
     def passed(self, place: str, side: Side) -> None:
         """Note a definition that nothing can be asked of."""
-        self.found.passed.append(f"{side.text.strip()} in {place} is passed over: what it is made of is not given here")
+        self.found.passed.append(
+            f"{side.text.strip()} in {place} is passed over: what it is made of is not given here"
+        )
 
     def read(self, place: str, text: str, side: Side, asked: Quantity) -> None:
         """Refuse a side that is neither a name of the answer nor an expression."""
@@ -200,7 +217,9 @@ class _Plain:
         """Return the error of a left side that is not what is asked."""
         shown = side.text.strip().strip("$").strip()[:40]
         remedy = f"write {asked.shown} = … if that is meant, or only what stands on the right"
-        return self.told(place, text, side, f"{asked.shown} is asked for here, and this says {shown} = …", remedy)
+        return self.told(
+            place, text, side, f"{asked.shown} is asked for here, and this says {shown} = …", remedy
+        )
 
     def is_asked(self, side: Side, asked: Quantity) -> bool:
         """Tell whether a side is a name of what is asked."""
@@ -246,13 +265,13 @@ class _Plain:
         asked = Quantity(f"{{{pair[first]}, {pair[second]}}}", (), (pair[first], pair[second]))
         return {**pair, "value": self.expression(f"{place}.value", pair["value"], asked)}
 
-    def components(self, place: str, value: Any, part: str) -> Any:
+    def components(self, place: str, value: Any) -> Any:
         """Return a list of components in plain form, in their order where each says which it is."""
-        texts = value if isinstance(value, list) else [value]
-        names = self.names_of(place, part)
+        texts: list[Any] = value if isinstance(value, list) else [value]
+        names = self.names_of(place)
         if len(texts) == 1 and isinstance(texts[0], str):
             texts = self.apart(place, texts[0])
-        if len(texts) == len(names) > 1 and all(isinstance(text, str) for text in texts):
+        if len(texts) == len(names) > 1 and all(type(text) is str for text in texts):
             texts = self.in_order(place, texts, names)
         found: list[Any] = []
         for i, text in enumerate(texts):
@@ -260,7 +279,7 @@ class _Plain:
             found.append(self.expression(f"{place}[{i}]", text, asked) if isinstance(text, str) else text)
         return found if isinstance(value, list) or len(found) > 1 else found[0]
 
-    def names_of(self, place: str, part: str) -> tuple[Quantity, ...]:
+    def names_of(self, place: str) -> tuple[Quantity, ...]:
         """Return what each component of a list is called."""
         keys = self.of.keys
         of, rates = {
@@ -275,10 +294,13 @@ class _Plain:
             if place in ("Q", "P", "force", "Qnc"):
                 letter = "Q" if place in ("force", "Qnc") else place
                 spelled = [f"{letter}_{i}", f"{letter}_{name}"] + [letter] * (len(names) == 1)
-                found.append(Quantity(spelled[-1] if len(names) == 1 else spelled[0], tuple((s, 0) for s in spelled)))
+                found.append(
+                    Quantity(spelled[-1] if len(names) == 1 else spelled[0], tuple((s, 0) for s in spelled))
+                )
             else:
-                found.append(Quantity(f"{name}{chr(39) * rates}", ((name, rates), (f"{name}{'_dot' * rates}", 0))))
-        del part
+                found.append(
+                    Quantity(f"{name}{chr(39) * rates}", ((name, rates), (f"{name}{'_dot' * rates}", 0)))
+                )
         return tuple(found)
 
     def apart(self, place: str, text: str) -> list[str]:
@@ -307,27 +329,33 @@ class _Plain:
         found: list[Any] = []
         for i, text in enumerate(texts):
             where = f"{place}[{i}]"
-            for statement in self.statements(where, text) if isinstance(text, str) else ():
-                found += self.chain(where, text, statement)
-            if not isinstance(text, str):
+            statements = self.statements(where, text) if isinstance(text, str) else ()
+            plain = (
+                len(statements) == 1
+                and len(statements[0].sides) < 3
+                and not any(is_definition(side.said, "claim", self.scope) for side in statements[0].sides)
+            )
+            if plain or not isinstance(text, str):
                 found.append(text)
+                continue
+            for statement in statements:
+                found += self.chain(where, text, statement)
         return found
 
     def chain(self, place: str, text: str, statement: Statement) -> list[str]:
-        """Return the equations that a chain says."""
-        sides = list(statement.sides)
-        if len(sides) > 2 or (len(sides) == 2 and is_definition(sides[0].said, "claim", self.scope)):
-            rest = [side for side in sides if not is_definition(side.said, "claim", self.scope)]
-            if rest and len(rest) < len(sides):
-                for side in sides:
-                    if side not in rest:
-                        self.passed(place, side)
-                sides = rest
-        if len(sides) == 1:
-            return [text if len(statement.sides) == 1 and _only(text, sides[0]) else sides[0].text]
-        if len(sides) == 2 and len(statement.sides) == 2 and _only(text, *sides):
-            return [text]
-        return [_equation(a, b) for a, b in zip(sides, sides[1:], strict=False)]
+        """Return the equations that a chain says, definitions in it passed over."""
+        sides = statement.sides
+        rest = tuple(side for side in sides if not is_definition(side.said, "claim", self.scope))
+        if len(rest) == len(sides):
+            return [sides[0].text] if len(sides) == 1 else [_equation(a, b) for a, b in pairwise(sides)]
+        whole = len(rest) == 1 and "-" in sides[0].said and rest[0].said.strip("$0. ")
+        if len(rest) < 2 and not whole:
+            reason = "this is Lagrange's equation itself, true of every system"
+            raise self.told(place, text, sides[0], reason, "write out what it is for this one")
+        for side in sides:
+            if side not in rest:
+                self.passed(place, side)
+        return [rest[0].text] if len(rest) == 1 else [_equation(a, b) for a, b in pairwise(rest)]
 
     def statements(self, place: str, text: str) -> tuple[Statement, ...]:
         """Return the statements of a text."""
@@ -339,11 +367,6 @@ class _Plain:
     def told(self, place: str, text: str, side: Side, reason: str, remedy: str) -> Exception:
         """Return the error of one side of a text."""
         return self.fault(place, LanguageError(text, side.column, reason, remedy))
-
-
-def _only(text: str, *sides: Side) -> bool:
-    """Tell whether a text is nothing but these sides, so that it can stay as it is."""
-    return sides[-1].text.rstrip() == text.rstrip() or len(sides[-1].text.rstrip()) == len(text.rstrip())
 
 
 def _equation(left: Side, right: Side) -> str:
@@ -377,6 +400,4 @@ def _vector(text: str) -> list[str]:
     cuts.append(begin + len(stripped) - 1)
     if len(cuts) < 3:
         return []
-    return [" " * (a + 1) + text[a + 1 : b] for a, b in zip(cuts, cuts[1:], strict=False)]
-
-
+    return [" " * (a + 1) + text[a + 1 : b] for a, b in pairwise(cuts)]

@@ -1,21 +1,20 @@
 """Juxtaposition: formulas as people type them, factors side by side, ``2 m g l (1 - cos θ)``, ``½mẋ²``.
 
-Only what can be read in one way is read. Refused, with both readings, are ``p^2/2m``, ``a/b c``, ``x^2y``, ``x 2``,
-``2e3`` where ``e`` is declared, and a symbol before a bracket that could be its argument: ``f(x)`` with a bare name
-inside, or a coordinate before a bracket with the time in it. ``1/2 m`` is half of m, and ``g/l sin θ`` has g/l as a
-factor: numbers, or parameters before a function, written without blanks. ``theta(t)`` is the coordinate itself.
+Only what can be read in one way is read. Refused, with both readings, are ``a/b c``, ``x^2y``, ``x 2``, ``2e3`` where
+``e`` is declared, and a symbol before a bracket that could be its argument: ``f(x)`` with a bare name inside, or a
+coordinate before a bracket with the time in it. ``theta(t)`` is the coordinate itself.
 """
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 from typing import TYPE_CHECKING
 from unicodedata import numeric
 
-from canon.expression.text.applied_functions import applied, constructed, is_function, with_brackets
+from canon.expression.text.applied_functions import applied, constructed, with_brackets
 from canon.expression.text.declared_names import Words
 from canon.expression.text.differentials import PARTIAL, derivative
+from canon.expression.text.quotients import divisor, ended
 from canon.expression.text.syntax import (
     Call,
     LanguageError,
@@ -95,6 +94,8 @@ class Reader(Parser):
             if sign := self.take("*", "/"):
                 self.after_bare(sign)
                 factors.append((sign.text == "/", self.signed()))
+                if sign.text == "/":
+                    factors[-1] = (True, divisor(self, factors))
             elif self.starts(self.token):
                 factors.append((False, self.beside(factors, starts)))
             else:
@@ -117,7 +118,7 @@ class Reader(Parser):
         if token.text == "for" and not self.scope.declares("for"):
             raise self.fault("comprehensions are not part of the language")
         if divides:
-            self.quotient(factors, starts)
+            ended(self, factors, starts)
         bare = before.operand if isinstance(before, Negative) else before
         exponent = isinstance(bare, Power) and last.kind != "super" and last.text not in (")", "]", "}")
         if exponent and token.tight and self.bare_end != self.at:
@@ -134,36 +135,6 @@ class Reader(Parser):
         if token.text in _CLOSING and last.kind == "name":
             self.no_value(token, last, factor.base if isinstance(factor, Power) else factor)
         return factor
-
-    def quotient(self, factors: list[tuple[bool, Node]], starts: list[int]) -> None:
-        """Refuse a factor after a quotient unless the quotient ends before it beyond doubt."""
-        begin, end = starts[-2], self.at
-        piece = self.tokens[begin:end]
-        slash = starts[-1] - begin
-        below = piece[slash + 1 :]
-        bracketed = below[0].text in _CLOSING and (below[-1].text == _CLOSING[below[0].text])
-        tight = all(t.tight for t in piece[slash:]) and not self.token.tight
-        above, divisor = factors[-2][1], factors[-1][1]
-        plain = isinstance(above, Number) and isinstance(divisor, Number)
-        steady = is_function(self) and all(map(self.steady, (node for _, node in factors)))
-        if bracketed or (tight and (plain or steady)):
-            return
-        shown = self.text[piece[0].column - 1 : piece[-1].column - 1 + len(piece[-1].text)]
-        factor = self.text[self.token.column - 1 :].split(" ")[0]
-        factor = re.split(r"[-+*/)\]}=,]", factor)[0][:20] or self.token.text
-        blank = "" if self.token.tight else " "
-        num, _, den = shown.rpartition("/")
-        num, den = num.strip(), den.strip()
-        raise self.fault(
-            f"{num}/{den}{blank}{factor} is {num}/{den}*{factor} or {num}/({den}*{factor})?",
-            "write the one that is meant",
-        )
-
-    def steady(self, node: Node) -> bool:
-        """Tell whether a factor is a number or a parameter."""
-        return isinstance(node, Number) or (
-            isinstance(node, Name) and not node.primes and not self.scope.moves(node.text)
-        )
 
     def no_value(self, opening: Token, name: Token, inside: Node) -> None:
         """Refuse a symbol before a bracket that could be the argument of a function of that name."""

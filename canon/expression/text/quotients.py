@@ -1,0 +1,81 @@
+"""Quotients with a slash: where they end, as far as that is beyond doubt.
+
+``1/2 m`` is half of m, and ``g/l sin θ`` has g/l as a factor: numbers, or parameters before a function, without blanks.
+After a bracket the quotient ends, ``1/(2m) x``. A momentum over a number and a word is over all of it: ``p²/2m`` is
+p²/(2m). Everything else is refused with both readings: ``x/2m``, ``k/m x``.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from canon.expression.symbols.symbol import Momentum
+from canon.expression.text.applied_functions import is_function
+from canon.expression.text.syntax import Name, Node, Number, Power, Product, parts
+
+if TYPE_CHECKING:
+    from canon.expression.text.juxtaposition import Reader
+
+__all__ = ["divisor", "ended"]
+
+_CLOSING = {"(": ")", "[": "]", "{": "}"}
+
+
+def divisor(reader: Reader, factors: list[tuple[bool, Node]]) -> Node:
+    """Return what a slash divides by, the last factor read, with what is written as one word with it."""
+    below = factors[-1][1]
+    names = (n for _, above in factors[:-1] for n in parts(above) if isinstance(n, Name))
+    momentum = any(isinstance(reader.scope.symbol(name.text), Momentum) for name in names)
+    if not (momentum and isinstance(below, Number) and reader.token.tight):
+        return below
+    taken: list[Node] = [below]
+    start = reader.at
+    while reader.token.tight and reader.token.kind == "name" and not is_function(reader):
+        node = reader.power()
+        base = node.base if isinstance(node, Power) else node
+        if not isinstance(base, Name) or base.primes or (not taken[1:] and not _steady(reader, base)):
+            break
+        taken.append(node)
+    else:
+        if not reader.starts(reader.token) and taken[1:]:
+            return Product(tuple((False, node) for node in taken), below.column)
+    reader.at = start
+    return below
+
+
+def _steady(reader: Reader, node: Node) -> bool:
+    """Tell whether a factor is a number or a parameter."""
+    if isinstance(node, Name):
+        return not node.primes and not reader.scope.moves(node.text)
+    return isinstance(node, Number)
+
+
+def ended(reader: Reader, factors: list[tuple[bool, Node]], starts: list[int]) -> None:
+    """Refuse a factor after a quotient unless the quotient ends before it beyond doubt.
+
+    Raises
+    ------
+    LanguageError
+        With both readings.
+    """
+    begin, end = starts[-2], reader.at
+    piece = reader.tokens[begin:end]
+    slash = starts[-1] - begin
+    below = piece[slash + 1 :]
+    bracketed = below[-1].text == _CLOSING.get(below[0].text)
+    tight = all(t.tight for t in piece[slash:]) and not reader.token.tight
+    plain = isinstance(factors[-2][1], Number) and isinstance(factors[-1][1], Number)
+    steady = is_function(reader) and all(_steady(reader, node) for _, node in factors)
+    if bracketed or (tight and (plain or steady)):
+        return
+    shown = reader.text[piece[0].column - 1 : reader.token.column - 1].strip()
+    after = reader.text[reader.token.column - 1 :].split(" ")[0]
+    factor = re.split(r"[-+*/)\]}=,]", after)[0][:20] or reader.token.text
+    blank = "" if reader.token.tight else " "
+    above, _, under = shown.rpartition("/")
+    above, under = above.strip()[-40:], under.strip()[:40]
+    raise reader.fault(
+        f"{above}/{under}{blank}{factor} is {above}/{under}*{factor} or {above}/({under}*{factor})?",
+        "write the one that is meant",
+    )
