@@ -378,5 +378,7 @@ def _outside_functions(node: syntax.Node, scope: Scope) -> Iterator[syntax.Name]
         part = stack.pop()
         if isinstance(part, syntax.Name):
             yield part
+        elif isinstance(part, syntax.Call) and part.function in ("Derivative", "diff", "D", PARTIAL):
+            stack.append(part.arguments[0])
         elif not (isinstance(part, syntax.Call) and part.function in scope.functions):
             stack += syntax.children(part)

@@ -91,6 +91,8 @@ class Kind:
         The keys where the answer stands; all others say what is asked.
     claimed_too
         Keys of what is claimed together with the answer.
+    components
+        Keys of lists that hold components, where others have equations.
     unknowns
         What a complete answer determines.
     implied
@@ -126,6 +128,7 @@ class Kind:
     one_of: tuple[tuple[str, ...], ...] = ()
     exclusive: bool = False
     answer: tuple[str, ...] = ()
+    components: tuple[str, ...] = ()
     unknowns: str = ""
     claimed_too: tuple[str, ...] = ()
     implied: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))

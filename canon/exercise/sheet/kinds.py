@@ -156,6 +156,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             "canonical.lie_brackets",
             {"x": _N, "X": _TS, "Y": _TS, "claim": _TS},
             answer=("claim",),
+            components=("claim",),
             unknowns="all components",
             opposite="[X, Y] = X·∇Y − Y·∇X",
         ),
@@ -327,6 +328,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             {"exact": _TS, "small": _N, "claim": _TS},
             {"q": _N, "order": Shape.NUMBER},
             answer=("claim",),
+            components=("claim",),
             unknowns="the expansions: sums of powers of what is small",
         ),
         "invariance": Kind(

@@ -101,7 +101,7 @@ def label_of(said: str) -> Label | None:
     if first.text in _PAIRS and found[-1].text == _PAIRS[first.text]:
         entries = _entries(said, found[1:-1])
         return Label("", 0, entries) if len(entries) == 2 else None
-    if first.kind != "name":
+    if not first.atoms:
         return None
     if not rest:
         return Label(first.text, first.primes)
@@ -109,8 +109,8 @@ def label_of(said: str) -> Label | None:
         return Label(first.text[1:], first.primes + 1)
     if rest[0].text in ("(", "[") and rest[-1].text == _PAIRS[rest[0].text]:
         inside = rest[1:-1]
-        if all(t.kind == "name" or t.text in (",", "0", ";") for t in inside):
-            return Label(first.text, first.primes, tuple(t.text for t in inside if t.kind == "name"))
+        if all(t.atoms or t.text in (",", "0", ";") for t in inside):
+            return Label(first.text, first.primes, tuple(t.text for t in inside if t.atoms))
     return None
 
 

@@ -29,10 +29,17 @@ if TYPE_CHECKING:
 __all__ = ["TypedAnswers", "typed_answers"]
 
 _EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
-_COMPONENTS_OF_CLAIM = ("lie-bracket", "first-order")
 _UNTOUCHED = ("domain", "class")
 _OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"L1": ("L_1",), "L2": ("L_2", "L'"), "I": ("I", "C"), "energy_rate": (), "rhs": (), "lhs": ()}
+    {
+        "F": ("f", "S", "W", "G", "Lambda"),
+        "L1": ("L_1",),
+        "L2": ("L_2", "L'"),
+        "I": ("I", "C"),
+        "energy_rate": (),
+        "rhs": (),
+        "lhs": (),
+    }
 )
 
 
@@ -116,12 +123,7 @@ class _Plain:
 
     def has_equations(self, key: str) -> bool:
         """Tell whether a list holds equations, whose left sides are no names."""
-        components = key == "claim" and self.of.kind in _COMPONENTS_OF_CLAIM
-        return (
-            key in _EQUATIONS
-            and not components
-            and not (key == "constraints" and self.of.kind == "constraint-class")
-        )
+        return key in _EQUATIONS and key not in self.kind.components
 
     def of_text(self, key: str, value: Any) -> Any:
         """Return the one text under a key in plain form."""
@@ -135,9 +137,7 @@ class _Plain:
         """Return what a key of one expression asks for, by its names."""
         names = [key, *_OTHER_SPELLINGS.get(key, ())]
         if key == "F" and (number := self.kind.implied.get("type")):
-            names += [f"F_{number}", "S", "W", "G", f"G_{number}"]
-        if key == "F" and self.of.kind == "lagrangian-equivalence":
-            names += ["f", "Lambda", "G"]
+            names += [f"F_{number}", f"G_{number}"]
         if key == "energy_rate":
             return Quantity("dE/dt", (("E", 1), ("H", 1), ("W", 1)))
         return Quantity(key, tuple((name, 0) for name in names))
@@ -165,7 +165,7 @@ class _Plain:
                 f"this is another statement beside {asked.shown}",
                 "put it in, or leave it out",
             )
-        sides = list(statements[0].sides)
+        sides = list(next(iter(statements)).sides)
         if len(sides) == 1:
             return text
         if self.is_asked(sides[0], asked):
