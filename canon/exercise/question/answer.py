@@ -90,7 +90,7 @@ def _answers(reading: Reading) -> Iterator[Expr]:
 def links(reading: Reading) -> Iterator[Chain]:
     """Yield the question whether the sides of each chain ``a = b = c`` are the same, momenta being ∂L/∂q̇."""
     through: dict[Symbol, Expr] = {}
-    if reading.links and reading.claim.kind == "legendre-hamiltonian":
+    if reading.links and "p" in reading.kind.following and reading.has("L"):
         L = reading.expression("L")
         q, p = reading.phase_space("q", "p")
         through = {momentum: L.diff(velocity(x)) for x, momentum in zip(q, p, strict=True)}
