@@ -12,6 +12,7 @@ from sympy.core.function import AppliedUndef
 
 from canon.flow.checked_request import parted_by_orbit, task_of, task_with, two_ends
 from canon.flow.method.method_text import method_of
+from canon.flow.system.bounce import with_bounces
 from canon.flow.system.first_order_motion import moving_system
 from canon.flow.system.parameter_values import check_parameters
 from canon.flow.system.recognised_system import recognised
@@ -102,7 +103,8 @@ def _system_task(
     start |= {by_name[str(key)]: float(exact_number(value, str(key))) for key, value in fixed.items()}
     start |= {by_name[name]: values.astype(np.float64) for name, values in varying.items()}
     start |= dict(zip(found.state, states[0].reshape(len(found.state), -1), strict=True))
-    motion = found.derived({s: float(np.ravel(value)[0]) for s, value in start.items()})
+    first = {s: float(np.ravel(value)[0]) for s, value in start.items()}
+    motion, met = with_bounces(found.derived(first), met, first)
     check_constraints(motion, start, _words(motion))
     moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying])
     chosen = method_of(method)

@@ -229,6 +229,11 @@ class Trajectory:
         return self._energies.change
 
     @property
+    def energy_defect(self) -> Array:
+        """The energy's change less the work done, which is an error; of a Hamiltonian the change; shape (times,)."""
+        return self._energies.defect
+
+    @property
     def work(self) -> Array:
         """The work done on the system since the start, by forces and by what depends on time, shape (times,).
 

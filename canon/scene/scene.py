@@ -203,7 +203,7 @@ class Scene:
         if not self.is_free:
             raise SceneError(
                 f"{self.name} has constraints or forces without potential, so no Hamiltonian says how it moves; "
-                "take its lagrangian, or run it by canon.scene.scene_motion.run"
+                "take its lagrangian, or give its name to propagate()"
             )
         from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian
 

@@ -19,12 +19,14 @@ from canon import (
     Lagrangian,
     Splitting,
     coordinates,
+    drift,
     flow_jacobian,
     parameters,
     propagate,
 )
 from canon.scene import SceneError, find
 from canon.scene.scene_motion import run
+from canon.study import Growth
 from tests.flow.moving_systems import CASES
 
 t = sp.Symbol("t", real=True)
@@ -51,6 +53,9 @@ def test_taylor_agrees_with_equations_written_by_hand(name: str) -> None:
     np.testing.assert_allclose(motion.final, reference(name), rtol=1e-9, atol=1e-9)
     if case.energy:
         defect = motion.energy_change - motion.work
+        np.testing.assert_allclose(
+            motion.energy_defect, defect, atol=1e-13 * max(1.0, abs(motion.energy).max())
+        )
         assert abs(defect).max() < 1e-13 * max(1.0, abs(motion.energy).max())
     if hasattr(case.system, "holonomic"):
         assert abs(motion.residuals).max() < 3e-14
@@ -302,3 +307,53 @@ def test_jacobians_are_the_quotients_of_differences(name: str, method: str, step
             propagate(case.system, y0=np.array(case.y0) + d, **given).final for d in (beside, -beside)
         )
         np.testing.assert_allclose(M[:, j], (ahead - behind) / 2e-5, rtol=1e-6, atol=1e-7)
+
+
+def test_a_bead_leaves_the_hoop_where_its_force_vanishes() -> None:
+    """By hand: m v²/R = m g y/R with v² = v0² + 2 g (R − y), so that y = (2 g R + v0²)/(3 g)."""
+    free = Lagrangian((x.dot**2 + y.dot**2) / 2 - g * y, [x, y])
+    hoop = ConstrainedLagrangian(free, [x**2 + y**2 - l**2])
+    leaving = Event(sp.Symbol("lambda_1", real=True), -1, "stop")
+    on = propagate(hoop, (0, 10), (0, 1, 0.1, 0), parameters={g: 9.8, l: 1}, events=[leaving])
+    assert on.stopped
+    np.testing.assert_allclose(on["y"][-1], (2 * 9.8 + 0.01) / (3 * 9.8), rtol=1e-13)
+    off = propagate(free, (on.t[-1], on.t[-1] + 0.3), on.final, parameters={g: 9.8})
+    assert (np.hypot(off["x"], off["y"])[1:] > 1).all()
+    held = propagate(hoop, (0, on.t[-1] + 0.3), (0, 1, 0.1, 0), parameters={g: 9.8, l: 1})
+    assert held.multipliers[0, -1] < 0  # a wire would have to hold the bead back
+
+
+def test_drift_is_judged_by_the_energy_balance() -> None:
+    case = CASES["a damped driven pendulum"]
+    kept = drift(propagate(case.system, (0, 300), case.y0, parameters=case.values, samples=1000))
+    assert kept.verdict is Growth.ROUND_OFF
+    lost = propagate(
+        case.system, (0, 300), case.y0, parameters=case.values, method="RK4", step=0.1, samples=1000
+    )
+    assert drift(lost).verdict is not Growth.ROUND_OFF
+
+
+def test_a_ball_with_drag_bounces() -> None:
+    """Between impacts v' = −g − c v in closed form; heights of the fall by the same solution."""
+    ball = Lagrangian(m * y.dot**2 / 2 - m * g * y, [y], forces=[-c * y.dot])
+    values, wall = {m: 2, g: 9.8, c: 0.6}, Event(y, -1, "bounce")
+    motion = propagate(ball, (0, 2), (1.0, 0.0), parameters=values, events=[wall])
+    rate, first = 0.3, motion.events[0]
+    fallen = 1 - 9.8 / rate * first.t + 9.8 / rate**2 * (1 - np.exp(-rate * first.t))
+    assert abs(fallen) < 1e-13
+    np.testing.assert_allclose(first.after, [0, -first.y[1]], atol=1e-13)
+    assert (motion["y"] > -1e-12).all()
+    assert len(motion.events) >= 2
+
+
+def test_a_bound_particle_bounces_along_its_constraint() -> None:
+    on = ConstrainedLagrangian(Lagrangian((x.dot**2 + y.dot**2) / 2 - g * y, [x, y]), [y - x**2 / 2])
+    stopped = propagate(
+        on, (0, 5), (1, 0.5, 0, 0), parameters={g: 9.8}, events=[Event(x + 0.5, -1, "bounce")]
+    )
+    met = stopped.events[0]
+    np.testing.assert_allclose(met.after[2:], -met.y[2:], rtol=1e-12)
+    assert abs(stopped.residuals).max() < 1e-13
+    assert np.ptp(stopped.energy) < 1e-13 * abs(stopped.energy).max()
+    with pytest.raises(ValueError, match="vector field does not"):
+        propagate(CASES["Lorenz's equations"].system, (0, 1), (1, 1, 1), events=[Event(x, 0, "bounce")])

@@ -63,6 +63,8 @@ class FirstOrderMotion:
         The nodes of λ, one a constraint, and of the generalized forces of constraint, one a coordinate.
     residuals
         What the constraints make vanish: positions, then rates.
+    matrix
+        The matrix of masses and constraints that impulses go through, nodes; empty where none is known.
     """
 
     kind: str
@@ -78,6 +80,7 @@ class FirstOrderMotion:
     multipliers: tuple[int, ...] = ()
     reactions: tuple[int, ...] = ()
     residuals: tuple[Residual, ...] = ()
+    matrix: tuple[tuple[int, ...], ...] = ()
 
     @property
     def state(self) -> tuple[Symbol, ...]:

@@ -126,6 +126,7 @@ def lagrangian_motion(
         named=named,
         multipliers=multipliers,
         reactions=tuple(_dot(graph, kept, [row[i] for row in A]) for i in range(n)) if multipliers else (),
+        matrix=tuple(map(tuple, matrix)),
         residuals=(
             *_residuals(graph, bound, speeds),
             *(replace(r, left_out=True) for _, more in left_out for r in _residuals(graph, more, speeds)),

@@ -6,6 +6,8 @@ from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
+from sympy import Dummy
+
 from canon.expression.symbols.symbol import velocity
 from canon.mechanics.algebra.dynamicsymbols import plain
 
@@ -37,7 +39,9 @@ def node_along(equations: HamiltonEquations, what: str | Expr) -> int:
         n = len(equations.q) - equations.varying
         named |= dict(zip(map(velocity, equations.q[:n]), equations.velocity, strict=False))
     if isinstance(what, str):
-        known: dict[str, Symbol] = {s.name: s for s in (*named, *shown, equations.t)}
+        known: dict[str, Symbol] = {
+            s.name: s for s in (*named, *shown, equations.t) if not isinstance(s, Dummy)
+        }
         if what not in known:
             near = get_close_matches(what, known, 1)
             meant = f"; is {near[0]} meant?" if near else ""

@@ -116,12 +116,12 @@ def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None
 def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
     """Return the changes of a quantity since the start, and its value there."""
     if observable == ENERGY:
-        if not motion.autonomous:
+        if motion.moving is None and not motion.autonomous:
             raise ValueError(
                 "H depends on t, so its change is no error; drift_study(system, …) follows the energy less the work "
                 "done from outside, or name an observable that should stay constant"
             )
-        return motion.energy_change, motion.energy[0]
+        return motion.energy_defect, motion.energy[0]
     if observable not in motion.changes:
         known = ", ".join((ENERGY, *motion.changes))
         raise ValueError(
