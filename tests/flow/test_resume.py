@@ -71,7 +71,7 @@ def interrupted_at(part, **arguments):
 @pytest.mark.parametrize(("system", "start", "method", "how"), CASES, ids=lambda c: str(c)[:20])
 def test_an_interrupted_run_keeps_what_is_done_and_is_completed_bit_by_bit(system, start, method, how):
     arguments = {
-        "hamiltonian": system, "y0": start, "t_span": (0, 200), "method": method, "samples": 20, "cadence": 5, **how,
+        "system": system, "y0": start, "t_span": (0, 200), "method": method, "samples": 20, "cadence": 5, **how,
     }  # fmt: skip
     part = interrupted_at(0.4, **arguments)
     whole = propagate(**arguments)
@@ -87,7 +87,7 @@ def test_an_interrupted_run_keeps_what_is_done_and_is_completed_bit_by_bit(syste
 @pytest.mark.parametrize("precision", ["double", "extended"])
 def test_taylor_is_completed_bit_by_bit(precision):
     arguments = {
-        "hamiltonian": HENON_HEILES, "y0": HENON_HEILES_START, "t_span": (0, 100), "samples": 40,
+        "system": HENON_HEILES, "y0": HENON_HEILES_START, "t_span": (0, 100), "samples": 40,
         "precision": precision, "events": [Event(x, 1)],
     }  # fmt: skip
     part = interrupted_at(0.4, **arguments)
@@ -103,7 +103,7 @@ def test_taylor_is_completed_bit_by_bit(precision):
 
 
 def test_dop853_goes_on_to_its_tolerance():
-    arguments = {"hamiltonian": HENON_HEILES, "y0": HENON_HEILES_START, "t_span": (0, 50), "method": DOP853()}
+    arguments = {"system": HENON_HEILES, "y0": HENON_HEILES_START, "t_span": (0, 50), "method": DOP853()}
     part = interrupted_at(0.4, samples=40, **arguments)
     whole = propagate(samples=40, **arguments)
     np.testing.assert_allclose(part.resume().y, whole.y, atol=1e-9)
@@ -113,7 +113,7 @@ def test_an_interrupted_ensemble_keeps_what_all_orbits_have_reached():
     start = np.array(HENON_HEILES_START)[:, np.newaxis] * np.linspace(0.5, 1, 150)
     for method in (Splitting("kahan-li-8"), Gauss(2)):
         arguments = {
-            "hamiltonian": HENON_HEILES, "y0": start, "t_span": (0, 200), "samples": 50, "method": method,
+            "system": HENON_HEILES, "y0": start, "t_span": (0, 200), "samples": 50, "method": method,
             "step": 0.1, "cadence": 4,
         }  # fmt: skip
         part = interrupted_at(0.2, **arguments)

@@ -238,12 +238,18 @@ def exact_number(value: Any, what: str) -> Fraction:
         if isinstance(value, str | int | Fraction):
             return Fraction(value)
         if hasattr(value, "man_exp"):  # mpmath's, which are binary numbers too
-            if not (mantissa := int(value.man_exp[0])) and value != 0:
-                raise ValueError("infinite, or no number")
-            return Fraction(-mantissa if value < 0 else mantissa) * Fraction(2) ** value.man_exp[1]
+            return _binary_number(value)
         return Fraction(*value.as_integer_ratio())
     except (ValueError, OverflowError, AttributeError):
         raise ValueError(f"{what} = {value!r} is no finite real number") from None
+
+
+def _binary_number(value: Any) -> Fraction:
+    """Return a number of mpmath exactly; its mantissa has no sign, and is 0 of what is not finite."""
+    mantissa, exponent = value.man_exp
+    if not mantissa and value != 0:
+        raise ValueError("infinite, or no number")
+    return Fraction(int(-mantissa if value < 0 else mantissa)) * Fraction(2) ** exponent
 
 
 def exact_numbers(parameters: Mapping[Symbol | str, Any]) -> dict[str, Fraction]:
