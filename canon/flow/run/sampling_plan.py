@@ -144,7 +144,8 @@ def steps_over(start: Fraction, end: Fraction, step: float | None, method: objec
     """
     if step is None:
         raise ValueError(f"{method} takes fixed steps: give step=, in the units of time")
-    size = exact_number(step, "step")
+    wrong = isinstance(step, float) and not math.isfinite(step)
+    size = Fraction(0) if wrong else exact_number(step, "step")
     ratio = Fraction(-1) if not size else (abs(end - start) if size > 0 else end - start) / size
     if ratio < 0:
         raise ValueError(f"step={step}: give a positive number; the direction of time follows from t_span")

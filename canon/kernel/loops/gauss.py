@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 __all__ = ["gauss_loop"]
 
 _ITERATIONS = 100
+_HALVES = 2
+"""Coordinates and momenta: they are measured each by their own largest, as one may be 10¹⁰ times the other."""
+
 _SETTLED, _CONVERGED = 42, 20
 """In doubles, changes above 2⁻⁴² of the largest component are not taken for round-off while iterations are left; a
 last change above 2⁻²⁰ of it means that the iteration has not converged. In other numbers accordingly."""
@@ -89,7 +92,7 @@ class _Iteration:
     least
         The least change so far, by component and stage.
     done, change, reach
-        Whether no change decreased; the largest change; the size of what changed.
+        Whether no change decreased; the largest changes of coordinates and of momenta; the sizes of what changed.
     """
 
     w: Writer
@@ -116,7 +119,7 @@ class _Iteration:
         # Changes and sizes are watched in numbers no wider than doubles, of pairs by their high parts.
         watched = w.number if w.number == SINGLE else DOUBLE
         d, g = (each.in_numbers(replace(watched, lanes=each.number.lanes)) for each in (w, v))
-        arrays = v.array(size), v.array(size), g.array(size), d.array(1), g.array(1), g.array(1)
+        arrays = v.array(size), v.array(size), g.array(size), d.array(1), g.array(_HALVES), g.array(_HALVES)
         return cls(w, v, d, g, system, y, e, method, watched, *arrays)
 
     @property
@@ -138,22 +141,25 @@ class _Iteration:
         w, v, d, g = self.w, self.v, self.d, self.g
         last = d.less(self._zero, d.load(self.done, 0))
         self._move()
-        g.store(g.constant(Fraction(0)), self.change, 0)
-        g.store(g.constant(Fraction(0)), self.reach, 0)
+        for half in range(_HALVES):
+            g.store(g.constant(Fraction(0)), self.change, half)
+            g.store(g.constant(Fraction(0)), self.reach, half)
         d.store(d.constant(Fraction(1)), self.done, 0)
         field = self.system.program(self.system.rates)
         places = [v.load(self.place, i) for i in range(self.size)]
         for i, rate in enumerate(v.program(field, [*places, clock])):
             self._renew(i, v.algebra("mul", self.method.weight, rate))
-        moves, coarse = self._moves_by_more_than(_SETTLED)
+        coarse = self._moves_by_more_than(_SETTLED)
         d.store(d.select(coarse, self._zero, d.load(self.done, 0)), self.done, 0)
-        w.leave_if(w.let(f"or i1 {last}, {d.equal(moves, self._zero)}"))
+        still = w.let(f"xor i1 {g.any_lane(g.less(g.constant(Fraction(0)), self._largest_change()))}, true")
+        w.leave_if(w.let(f"or i1 {last}, {still}"))
 
     def end(self) -> tuple[str, str]:
         """Return whether the iteration has not converged, and its last change."""
-        moves, large = self._moves_by_more_than(_CONVERGED)
-        scale = self.g.greatest(self.g.load(self.reach, 0))
-        diverges = self.w.let(f"or i1 {large}, {self.d.equal(scale, self.d.infinity())}")
+        moves, diverges = self.g.greatest(self._largest_change()), self._moves_by_more_than(_CONVERGED)
+        for half in range(_HALVES):
+            scale = self.g.greatest(self.g.load(self.reach, half))
+            diverges = self.w.let(f"or i1 {diverges}, {self.d.equal(scale, self.d.infinity())}")
         return diverges, self.w.widened(moves, self.watched)
 
     @property
@@ -176,17 +182,25 @@ class _Iteration:
         decreasing = g.any_lane(g.less(difference, before))
         v.store(new, self.stage, i)
         g.store(g.intrinsic("minnum", before, difference), self.least, i)
-        g.store(g.intrinsic("maxnum", g.load(self.change, 0), difference), self.change, 0)
+        half = i * _HALVES // self.size
+        g.store(g.intrinsic("maxnum", g.load(self.change, half), difference), self.change, half)
         far = g.algebra("add", _size(v, g, new), _size(v, g, v.load(self.place, i)))
-        g.store(g.intrinsic("maxnum", g.load(self.reach, 0), far), self.reach, 0)
+        g.store(g.intrinsic("maxnum", g.load(self.reach, half), far), self.reach, half)
         d.store(d.select(decreasing, self._zero, d.load(self.done, 0)), self.done, 0)
 
-    def _moves_by_more_than(self, bits: int) -> tuple[str, str]:
-        """Return the largest change, and whether it is above 2⁻ᵇⁱᵗˢ of the size of what changed."""
+    def _largest_change(self) -> str:
+        """Return the largest change of a coordinate or momentum in each lane."""
+        g = self.g
+        return g.intrinsic("maxnum", *(g.load(self.change, half) for half in range(_HALVES)))
+
+    def _moves_by_more_than(self, bits: int) -> str:
+        """Return whether a change is above 2⁻ᵇⁱᵗˢ of the size of what changed, coordinates and momenta apart."""
         d, g = self.d, self.g
-        part = Fraction(1, 2 ** (bits * self.w.number.mantissa // 53))
-        moves, scale = g.greatest(g.load(self.change, 0)), g.greatest(g.load(self.reach, 0))
-        return moves, d.less(d.algebra("mul", scale, d.constant(part)), moves)
+        part, flags = d.constant(Fraction(1, 2 ** (bits * self.w.number.mantissa // 53))), list[str]()
+        for half in range(_HALVES):
+            limit = d.algebra("mul", g.greatest(g.load(self.reach, half)), part)
+            flags.append(g.less(g.splat(limit), g.load(self.change, half)))
+        return g.any_lane(self.w.let(f"or {g.number.flags} {', '.join(flags)}"))
 
 
 def _size(v: Writer, g: Writer, value: str) -> str:
