@@ -136,6 +136,7 @@ RETURNED = {
         "study.drift.block_means.Blocks",
         "study.cases.case.Case",
         "study.choose.candidate.Candidate",
+        "study.choose.slow_times.Outlook",
         "study.drift.drift_study.DriftStudy",
         "study.drift.drift.Growth",
         "study.errors.StudyError",

@@ -75,6 +75,8 @@ class Candidate:
         Whether a neighbouring step was resonant and had to be avoided.
     note
         What else there is to say.
+    seen
+        Duration of the longest pilot run behind this; the whole span where the error was seen and not extrapolated.
     """
 
     method: Method
@@ -87,6 +89,7 @@ class Candidate:
     keeps: bool
     resonant: bool = False
     note: str = ""
+    seen: float = 0.0
 
     def __repr__(self) -> str:
         step = f", step {self.step:.4g}" if self.step is not None else ""
@@ -177,6 +180,10 @@ def tried_with(question: Question, setting: Setting, duration: float) -> TriedSe
     if found.lost:
         return TriedSetting(found, math.inf, question.span / duration * found.steps)
     error = expected_error(found, question.span, question.observable)
+    if found.span < question.span:
+        for since, y0 in question.elsewhere:
+            later = pilot(question.moved(since, y0), setting, min(duration, question.span - since))
+            error = max(error, expected_error(later, question.span, question.observable))
     try:
         rate = seconds_per_time(question, found.setting, duration)
     except NonFiniteStateError:  # with a step a little smaller, to divide another span
@@ -219,6 +226,7 @@ def candidate_of(question: Question, tried: TriedSetting, accuracy: float, note:
         evaluations=found.evaluations * question.span / found.span,
         keeps=tried.error <= accuracy,
         note=note,
+        seen=found.span,
     )
 
 

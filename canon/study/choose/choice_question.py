@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from canon.flow.method.adaptive_methods import Taylor
@@ -41,6 +41,12 @@ class Question:
         ``"energy"``, ``"position"``, or the name of an integral.
     integral
         That integral as a function of (q, p); None for the first two.
+    since
+        Time of the state y0.
+    unit
+        What errors are relative to, where y0 is not the start; else the quantity's size there.
+    elsewhere
+        Times and states that the motion reaches later, at which pilots run too (:mod:`canon.study.choose.slow_times`).
     """
 
     hamiltonian: HamiltonianSystem
@@ -49,9 +55,16 @@ class Question:
     span: float
     observable: str = "energy"
     integral: Expr | None = None
+    since: float = 0.0
+    unit: float | None = None
+    elsewhere: tuple[tuple[float, Array], ...] = ()
     _known: dict[tuple[float, bool], tuple[Array, Array]] = field(
         default_factory=dict[tuple[float, bool], "tuple[Array, Array]"], repr=False, compare=False
     )
+
+    def moved(self, since: float, y0: Array) -> Question:
+        """Return the same question of the motion from a later time and state on."""
+        return replace(self, since=since, y0=y0, elsewhere=(), _known={})
 
     def run(
         self,
@@ -65,7 +78,7 @@ class Question:
         along = () if self.integral is None else (Observable(self.observable, self.integral),)
         return run_quietly(
             self.hamiltonian,
-            (0.0, duration),
+            (self.since, self.since + duration),
             self.y0,
             setting,
             parameters=self.values,

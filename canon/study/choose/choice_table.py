@@ -43,8 +43,8 @@ class ChosenAmong(Protocol):
         ...
 
     @property
-    def reached(self) -> bool:
-        """Whether some candidate is expected to keep the accuracy."""
+    def unknown(self) -> str:
+        """Why it is not known whether the accuracy is kept; empty where it is."""
         ...
 
     @property
@@ -79,13 +79,14 @@ def answer(choice: ChosenAmong) -> str:
     """Return the choice in one line of words."""
     best = choice.chosen
     cost = duration_in_words(best.predicted_cost)
-    if not choice.reached:
+    if not best.keeps:
         if best.predicted_error > MEANINGLESS and choice.observable == "position":
             return "no method can promise it: neighbouring motions part too fast"
         if math.isinf(best.predicted_error):
             return "no method can follow the motion so long"
         return f"no method keeps it; the best reaches {best.predicted_error:.1e} in {cost}: {_named(best)}"
-    return f"{_named(best)} in {best.precision} precision, error {best.predicted_error:.1e}, {cost}"
+    found = f"{_named(best)} in {best.precision} precision, error {best.predicted_error:.1e}, {cost}"
+    return f"not known: {choice.unknown}; if it goes on as seen: {found}" if choice.unknown else found
 
 
 def _named(candidate: Candidate) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -12,14 +13,17 @@ from canon.display import preformatted
 from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.method_text import method_of
 from canon.flow.propagate import propagate
+from canon.flow.run.observables_along import AccuracyWarning
 from canon.scene.scene import Scene, near
 from canon.study.choose.candidate import Candidate, candidate_methods
 from canon.study.choose.choice_question import Question
 from canon.study.choose.choice_table import answer, choice_table
 from canon.study.choose.confirm import confirmed, double_instead
-from canon.study.choose.pilot_run import natural_step
+from canon.study.choose.pilot_run import error_seen, natural_step
+from canon.study.choose.slow_times import Outlook, with_outlook
 from canon.study.choose.step_search import searched
 from canon.study.errors import StudyError
+from canon.study.motion.extended_phase_space import driven
 from canon.study.motion.studied_motion import motion_hamiltonian
 
 if TYPE_CHECKING:
@@ -28,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from sympy import Expr, Symbol
 
+    from canon.array import Array
     from canon.flow.method.method import Method
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
@@ -58,6 +63,8 @@ class Choice:
         All that were considered, those that keep the accuracy first, the cheapest first.
     question
         What was asked, the way pilots take it.
+    outlook
+        What was seen of the motion ahead of the pilots (:mod:`canon.study.choose.slow_times`).
     """
 
     title: str
@@ -67,11 +74,20 @@ class Choice:
     chosen: Candidate
     candidates: tuple[Candidate, ...]
     question: Question = field(repr=False, compare=False)
+    outlook: Outlook = field(repr=False, compare=False)
 
     @property
     def reached(self) -> bool:
-        """Whether the accuracy is expected to be kept."""
-        return self.chosen.keeps
+        """Whether the accuracy is expected to be kept: the choice keeps it, and nothing slow is left unseen."""
+        return self.chosen.keeps and not self.unknown
+
+    @property
+    def unknown(self) -> str:
+        """Why it is not known whether the accuracy is kept: what changes too slowly to be seen; else empty.
+
+        A choice that was run over the whole span before it was made has seen all.
+        """
+        return "" if self.chosen.seen >= self.span else self.outlook.unsettled
 
     @property
     def method(self) -> Method:
@@ -104,19 +120,28 @@ class Choice:
         return self.chosen.predicted_error
 
     def run(self, *, samples: int = 1000, progress: Callable[[float], None] | None = None) -> Trajectory:
-        """Return the motion over the whole span with the method chosen.
+        """Return the motion over the whole span with the method chosen, and warn where its error is not what was asked.
+
+        Where H depends on t and the energy was asked for, the motion has the time as its last coordinate, and the work
+        done from outside with its sign reversed as its last momentum: its energy is H less that work.
 
         Raises
         ------
         StudyError
-            Where no method is expected to keep the accuracy.
+            Where no method is expected to keep the accuracy. Where that is not known the choice runs, and the warning
+            says what came.
+
+        Warns
+        -----
+        AccuracyWarning
+            The error that the samples show is larger than was asked.
         """
-        if not self.reached:
+        if not self.chosen.keeps:
             raise StudyError(
                 f"nothing keeps {self.accuracy:.1g}; the least error is {self.predicted_error:.1g}"
             )
         asked = self.question
-        return propagate(
+        motion = propagate(
             asked.hamiltonian,
             (0.0, self.span),
             asked.y0,
@@ -126,8 +151,18 @@ class Choice:
             precision=self.precision,
             parameters=asked.values,
             samples=samples,
+            observables=None if asked.integral is None else {asked.observable: asked.integral},
             progress=progress,
         )
+        came = error_seen(motion, asked)
+        if came is not None and not came <= self.accuracy:
+            warnings.warn(
+                f"{self.observable} to {self.accuracy:.2g} was asked and {self.predicted_error:.1e} expected, but the "
+                f"motion shows {came:.1e}: take a smaller step or tolerance than {_knob_of(self.chosen)}",
+                AccuracyWarning,
+                stacklevel=2,
+            )
+        return motion
 
     def __repr__(self) -> str:
         return f"<Choice: {answer(self)}>"
@@ -155,7 +190,9 @@ def choose(
 
     Every candidate runs a few times for a short while. Its error is extrapolated in time by its law (bounded
     for symplectic methods, ∝ t for others, ∝ √t for round-off; positions: one half to one power more) and in
-    the step by its order; the cheapest one is looked at once more, for longer.
+    the step by its order. The motion is followed ahead of them, so that they run too where it is fastest later; the
+    cheapest one is looked at once more, over the whole span where that is cheap. What changes too slowly to be seen
+    is said (:attr:`Choice.unknown`).
 
     Parameters
     ----------
@@ -168,8 +205,9 @@ def choose(
     accuracy
         Largest error allowed at any time, relative to the value at the start (absolute where that is zero).
     observable
-        ``"energy"``; ``"position"``, the distance of the coordinates from the true ones over the largest
-        length of the latter; or a constant of the scene by name.
+        ``"energy"``, where H depends on t less the work done from outside, ∫ ∂H/∂t dt; ``"position"``, the distance
+        of the coordinates from the true ones over the largest length of the latter; or a constant of the scene by
+        name.
     integral
         Another function of (q, p) that should stay constant, with ``observable`` its name.
     parameters
@@ -198,13 +236,12 @@ def choose(
             f"an accuracy of {accuracy} makes no sense: give a number between 0 and 0.1, such as 1e-8"
         )
     question, title = _question(system, y0, span, observable, integral, parameters)
-    if observable == "energy" and question.hamiltonian.t in question.hamiltonian.H.free_symbols:
-        raise StudyError("H depends on t, so its change is no error: choose by observable='position'")
     considered = tuple(map(method_of, methods)) if methods is not None else candidate_methods(question)
     if not considered:
         raise StudyError("no method to choose from: name at least one")
     natural = natural_step(question)
     duration = min(span, PILOT_STEPS * natural)
+    question, outlook = with_outlook(question, duration, natural)
     found: list[Candidate] = []
     for number, method in enumerate(considered):
         cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
@@ -218,7 +255,11 @@ def choose(
     if progress is not None:
         progress(str(chosen.method), 1.0)
     ordered = sorted(found, key=lambda each: (not each.keeps, each.predicted_cost))
-    return Choice(title, span, accuracy, observable, chosen, tuple(ordered), question)
+    return Choice(title, span, accuracy, observable, chosen, tuple(ordered), question, outlook)
+
+
+def _knob_of(chosen: Candidate) -> str:
+    return f"{chosen.step:.4g}" if chosen.step is not None else f"{chosen.tolerance:.2g}"
 
 
 def _settled(
@@ -275,7 +316,7 @@ def _question(
         if integral is None and observable not in ("energy", "position"):
             raise StudyError(f"observable={observable!r}: give the function of (q, p) as integral=")
         state = np.asarray(y0, dtype=np.float64)
-        return Question(system, state, {**given}, span, observable, integral), "Hamiltonian"
+        return _of_constant(system, state, {**given}, span, observable, integral), "Hamiltonian"
     scene = system.with_parameters(**given)
     if integral is None and observable not in ("energy", "position"):
         constants = scene.constants()
@@ -285,6 +326,20 @@ def _question(
             )
         integral = constants[observable]
     state = scene.state(y0) if y0 is None or isinstance(y0, str) else np.asarray(y0, dtype=np.float64)
-    return Question(
-        motion_hamiltonian(scene), state, {**scene.values}, span, observable, integral
-    ), scene.title
+    hamiltonian = motion_hamiltonian(scene)
+    return _of_constant(hamiltonian, state, {**scene.values}, span, observable, integral), scene.title
+
+
+def _of_constant(
+    hamiltonian: HamiltonianSystem,
+    state: Array,
+    values: dict[Symbol | str, float],
+    span: float,
+    observable: str,
+    integral: Expr | None,
+) -> Question:
+    """Return the question; of the energy where H depends on t with the time as a coordinate, so that it is constant."""
+    if observable == "energy" and hamiltonian.t in hamiltonian.H.free_symbols:
+        timed = driven(hamiltonian)
+        return Question(timed.hamiltonian, timed.state(state), values, span, observable, integral)
+    return Question(hamiltonian, state, values, span, observable, integral)

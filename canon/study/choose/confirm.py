@@ -32,6 +32,12 @@ NEIGHBOUR = 0.97
 SHORTEST_STRIDE = 0.3
 """Ratio of one step to the next, at least: a large error tells little of its order."""
 
+WHOLE_SECONDS = 0.5
+"""Processor time up to which the whole run is the last look: then nothing is extrapolated."""
+
+POSITION_SECONDS = 0.02
+"""The same for positions, whose reference in more digits takes some twenty times as long."""
+
 LOOKS = 4
 """How often the step is made shorter at most: a candidate that still fails then is one no more."""
 
@@ -54,9 +60,7 @@ def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: 
     """Return the candidate after a longer look: at resonance, and at an error that grows late."""
     if question.span <= duration:
         return chosen
-    longer = min(question.span, CONFIRMING * duration * pilot_share(chosen.method))
-    if chosen.step is not None:
-        longer = min(longer, LONGEST_PILOT * chosen.step)
+    longer = _longer(question, chosen, duration)
     setting, resonant = chosen.setting, False
     tried = tried_with(question, setting, longer)
     share = 1.0 if setting.step is not None or longer >= question.span else ADAPTIVE_MARGIN
@@ -74,3 +78,12 @@ def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: 
             break
         tried = tried_with(question, setting, longer)
     return replace(candidate_of(question, tried, accuracy), resonant=resonant)
+
+
+def _longer(question: Question, chosen: Candidate, duration: float) -> float:
+    """Return how long the last look is: the whole span where that is cheap."""
+    cheap = POSITION_SECONDS if question.observable == "position" else WHOLE_SECONDS
+    if chosen.predicted_cost <= cheap:
+        return question.span
+    longer = min(question.span, CONFIRMING * duration * pilot_share(chosen.method))
+    return longer if chosen.step is None else min(longer, LONGEST_PILOT * chosen.step)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.trajectory import Trajectory
 
-__all__ = ["Pilot", "natural_step", "pilot", "pilot_share", "seconds_per_time"]
+__all__ = ["Pilot", "error_seen", "natural_step", "pilot", "pilot_share", "seconds_per_time", "unit_of"]
 
 WINDOWS = 512
 """Windows a pilot run is looked at in."""
@@ -139,14 +139,14 @@ def _watched(question: Question, setting: Setting, duration: float, windows: int
     windows = max(1, min(windows, steps // (2 * cadence)))
     found = question.run(setting, duration, windows, cadence)
     seen = found.statistics[question.observable]
-    unit = _unit(found, question)
+    unit = unit_of(found, question)
     worst = float(found.statistics["energy"].largest.max())
     return Pilot(
         setting=replace(setting, step=found.step),
         span=duration,
         steps=found.steps,
         evaluations=found.evaluations,
-        t=(found.t[1:] + found.t[:-1]) / 2.0,
+        t=(found.t[1:] + found.t[:-1]) / 2.0 - question.since,
         mean=seen.mean / unit,
         largest=seen.largest / unit,
         energy=_energy(found, worst),
@@ -161,10 +161,10 @@ def _sampled(question: Question, setting: Setting, duration: float, windows: int
         samples = max(windows, min(SEEN * WINDOWS, math.ceil(duration / setting.knob)))
     found = question.run(setting, duration, samples)
     error = found.energy_change if question.integral is None else found.changes[question.observable]
-    error = error[1:] / _unit(found, question)
+    error = error[1:] / unit_of(found, question)
     parts = min(windows, error.size) if stepped else error.size
     rows = error[: error.size // parts * parts].reshape(parts, -1)
-    times = found.t[1:][: rows.size].reshape(parts, -1)
+    times = (found.t[1:] - question.since)[: rows.size].reshape(parts, -1)
     return Pilot(
         setting=setting if setting.step is None else replace(setting, step=found.step),
         span=duration,
@@ -181,7 +181,7 @@ def _against_reference(question: Question, setting: Setting, duration: float) ->
     """Compare coordinates with the reference; a step is adjusted to meet its times."""
     times = None
     if setting.method.engine is FICTITIOUS_TIME:  # its samples are even in its own time
-        times = np.linspace(0.0, duration, PLACES + 1)[1:]
+        times = question.since + np.linspace(0.0, duration, PLACES + 1)[1:]
     elif setting.method.engine is FIXED_STEPS:
         steps = PLACES * max(1, round(duration / setting.knob / PLACES))
         setting = replace(setting, step=duration / steps)
@@ -197,7 +197,7 @@ def _against_reference(question: Question, setting: Setting, duration: float) ->
         span=duration,
         steps=found.steps,
         evaluations=found.evaluations,
-        t=found.t[-PLACES:],
+        t=found.t[-PLACES:] - question.since,
         mean=away,
         largest=away,
         energy=_energy(found),
@@ -212,11 +212,21 @@ def _energy(found: Trajectory, largest: float | None = None) -> float:
     return change / (float(abs(found.energy[0])) if found.relative else 1.0)
 
 
-def _unit(found: Trajectory, question: Question) -> float:
+def unit_of(found: Trajectory, question: Question) -> float:
     """Return what errors are relative to: the quantity at the start, or one where it is zero."""
+    if question.unit is not None:
+        return question.unit
     if question.integral is None:
         return float(abs(found.energy[0])) or 1.0
     return float(abs(found.observables[question.observable][0])) or 1.0
+
+
+def error_seen(motion: Trajectory, question: Question) -> float | None:
+    """Return the largest error that the samples of a motion show; None of positions, which need a reference."""
+    if question.observable == "position":
+        return None
+    change = motion.energy_change if question.integral is None else motion.changes[question.observable]
+    return float(np.abs(change).max()) / unit_of(motion, question)
 
 
 def natural_step(question: Question, report: Callable[[float], None] = lambda _: None) -> float:

@@ -37,6 +37,10 @@ LARGER = (2.0, 1.5)
 """Steps beyond the one found that are tried, in units of it: where error terms cancel, a larger step may err less. More
 tries would find more, and cost more than they save where runs are short."""
 
+LOST = 7
+"""After so many steps, each half the one before, with which the motion is lost, the search ends: at two orders of
+magnitude below the time scale of the motion."""
+
 SAME = 1.02
 """Ratio of steps that are taken for one: their costs differ by less than timings do."""
 
@@ -91,9 +95,12 @@ def searched(
     setting = Setting(method, step=first, precision=precision)
     good: TriedSetting | None = None
     bad: TriedSetting | None = None
-    ceiling = math.inf
+    ceiling, lost = math.inf, 0
     for _ in range(PILOTS):
         tried = tried_with(question, setting, duration)
+        lost += math.isinf(tried.error)
+        if lost == LOST:
+            return nothing(setting, "its error grows too fast")
         ceiling = min(ceiling, _ceiling(tried, natural))
         if setting.knob > SAME * ceiling:
             setting = setting.turned(ceiling)
