@@ -10,14 +10,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from canon.expression.latex.names import Mark
-from canon.expression.latex.pieces import Group, Piece, Powered, names_in, unbraced
+from canon.expression.latex.pieces import Group, Piece, Powered, is_function, names_in, unbraced
+from canon.expression.latex.understood_time import is_time
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
 from canon.expression.text.syntax import Name, Node
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["ArgumentEnd"]
+__all__ = ["ArgumentEnd", "bare_argument"]
 
 _ANGLES = (
     "theta",
@@ -78,7 +79,10 @@ class ArgumentEnd:
             symbol = self.scope.symbol(base.text)
             return isinstance(symbol, Rate) or (self.is_angle(taken[-1]) and isinstance(symbol, Momentum))
         return (
-            isinstance(base, Group) and base.printed and self.is_angle(taken[-1]) and not self._is_time(base)
+            isinstance(base, Group)
+            and base.printed
+            and self.is_angle(taken[-1])
+            and not is_time(base, self.scope)
         )
 
     def goes_on(self, taken: list[Node], item: Piece) -> bool:
@@ -88,11 +92,17 @@ class ArgumentEnd:
         base = item.base if isinstance(item, Powered) else item
         return isinstance(base, Name) and not isinstance(self.scope.symbol(base.text), Rate)
 
-    def _is_time(self, group: Group) -> bool:
-        inside = unbraced(group.inner) if group.braces is False else group
-        return isinstance(inside, Name) and inside.text == self.scope.time.name
-
     def _moves(self, name: str) -> bool:
         symbol = self.scope.symbol(name)
         of_motion = isinstance(symbol, Coordinate | Momentum | Rate)
         return of_motion or symbol == self.scope.time or name in self.scope.functions
+
+
+def bare_argument(items: tuple[Piece, ...]) -> tuple[Piece, ...]:
+    """Return what stands behind the last function of some pieces, nothing where that is in brackets."""
+    heads = [at for at, item in enumerate(items) if is_function(item)]
+    behind = items[heads[-1] + 1 :] if heads else ()
+    for first in behind[:1]:
+        if isinstance(first.base if isinstance(first, Powered) else first, Group):
+            return ()
+    return behind

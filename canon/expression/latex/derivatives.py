@@ -6,13 +6,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
 from canon.expression.latex.pieces import Operator, Piece, Powered, items_of, mark_of, whole
-from canon.expression.symbols.symbol import Coordinate
+from canon.expression.symbols.symbol import Rate
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Tuple
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
 __all__ = ["Derivatives", "derivative"]
+
+
+_MOST_RATES = 2
+"""Most rates of a coordinate that are symbols: velocity and acceleration."""
 
 
 @dataclass(frozen=True)
@@ -80,10 +84,7 @@ class Derivatives:
         if of_time and not (
             len(arguments) == 1 and isinstance(arguments[0], Name) and arguments[0].text == time
         ):
-            remedy = r"write it out with \dot x and \ddot x"
-            self._refuse(
-                operator.column, "the total derivative with respect to the time is not carried out", remedy
-            )
+            return self._along(operator, operand)
         if operator.total and len(arguments) > 1:
             self._refuse(operator.column, "the function has more than one argument", r"write \partial")
         return derivative(operand, operator.variables, operator.column)
@@ -93,16 +94,30 @@ class Derivatives:
         declared = isinstance(operand, Call) and operand.function in self.scope.functions
         return operand.arguments if isinstance(operand, Call) and declared else ()
 
+    def _along(self, operator: Operator, operand: Node) -> Node:
+        """Return the derivative along the motion, as often as it is taken."""
+        order = sum(order for _, order in operator.variables)
+        if len(operator.variables) > 1 or order > _MOST_RATES:
+            remedy = r"write it out with \dot x and \ddot x"
+            self._refuse(operator.column, "this derivative along the motion is not read", remedy)
+        for _ in range(order):
+            operand = Call("d/dt", (operand,), operator.column)
+        return operand
+
     def _rate(self, operator: Operator, operand: Name, *, of_time: bool) -> Name:
         r"""Return the θ̇ or θ̈ that ``\frac{d\theta}{dt}`` writes."""
         order = sum(order for _, order in operator.variables)
-        coordinate = isinstance(self.scope.symbol(operand.text), Coordinate)
-        if not (of_time and coordinate and len(operator.variables) == 1 and order in (1, 2)):
+        base = operand.text.removesuffix("_dot")
+        if base != operand.text and isinstance(self.scope.symbol(operand.text), Rate):
+            operand, order = Name(base, 0, operand.column), order + 1
+        rate = f"{operand.text}{('_dot', '_ddot')[order - 1]}" if 1 <= order <= _MOST_RATES else ""
+        known = isinstance(self.scope.symbol(rate), Rate) or (rate in self.scope.names)
+        if not (of_time and known and len(operator.variables) == 1):
             name = operand.text
             self._refuse(
                 operand.column, f"{name} is a symbol of its own, not a function", "declare it in functions"
             )
-        return Name(operand.text + ("_dot", "_ddot")[order - 1], 0, operator.column)
+        return Name(rate, 0, operator.column)
 
 
 def derivative(operand: Node, variables: tuple[tuple[Name, int], ...], column: int) -> Node:

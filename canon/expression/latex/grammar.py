@@ -26,15 +26,17 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from lark import Lark, Token, Transformer_NonRecursive, UnexpectedToken
 from lark.exceptions import VisitError
 
+from canon.expression.latex.argument_end import bare_argument
 from canon.expression.latex.latex_statement import spans
 from canon.expression.latex.meaning import Meaning
-from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered
+from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered, mark_of
 from canon.expression.latex.quotient import dividing, shown
 from canon.expression.latex.words import Word, Words, words_of
 from canon.expression.text.syntax import (
     Call,
     Comparison,
     LanguageError,
+    Name,
     Negative,
     Node,
     Number,
@@ -59,12 +61,16 @@ start: sum (RELATION sum)*
 ?item: atom | power | head
 power: atom CARET script
 head: HEAD (_UNDER script)? (CARET script)?
-?atom: ATOM | group | brace | bars | fraction | root
+?atom: ATOM | group | brace | bars | fraction | root | cases
 ?script: ATOM | brace | fraction | root
 ?part: ATOM | brace
 group: LPAR sum (_COMMA sum)* _RPAR
 brace: LBRACE sum (OVER sum)? _RBRACE
 bars: LBAR sum _RBAR
+cases: LCASES row (_CROW row)* _RCASES
+row: sum _COMMA? _CCOLUMN condition _COMMA?
+condition: COTHERWISE | comparison (_CAND comparison)*
+comparison: sum (RELATION sum)+
 fraction: FRAC part part
 root: SQRT (_LINDEX sum _RINDEX)? part
 """
@@ -73,7 +79,9 @@ _RELATIONS = {
     **dict.fromkeys(("\\le", "\\leq", "\\leqslant", "≤"), "<="),
     **dict.fromkeys(("\\ge", "\\geq", "\\geqslant", "≥"), ">="), **dict.fromkeys(("\\ne", "\\neq", "≠"), "!="),
 }  # fmt: skip
-_SILENT = ("UNDER", "COMMA", "RPAR", "RBRACE", "RBAR", "LINDEX", "RINDEX")
+_SILENT = (
+    "UNDER", "COMMA", "RPAR", "RBRACE", "RBAR", "LINDEX", "RINDEX", "RCASES", "CROW", "CCOLUMN", "CAND",
+)  # fmt: skip
 
 
 @cache
@@ -92,6 +100,8 @@ def _parser() -> Lark:
         "FRAC",
         "SQRT",
         "OVER",
+        "LCASES",
+        "COTHERWISE",
     )
     declared = " ".join((*terminals, *(f"_{kind}" for kind in _SILENT)))
     return Lark(f"{_GRAMMAR}\n%declare {declared}\n", parser="lalr", lexer="basic")
@@ -196,11 +206,18 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def product(self, children: list[Any]) -> Node:
         factors: list[tuple[bool, Node]] = []
+        children = self.with_derivatives(children)
         signs: list[Word | None] = [None, *children[1::2], None]
         for before, piece, after in zip(signs[:-1], children[::2], signs[1:], strict=True):
             items = _items(piece)
             divides = before is not None and before.kind == "SLASH"
             found = self.meaning.factors(items)
+            if after and after.kind == "TIMES" and self.meaning.leaves_open(items):
+                self.meaning.refuse(
+                    after.column,
+                    "does this factor still belong to the argument before it?",
+                    r"write brackets, \cos(\omega t)",
+                )
             if divides and before:
                 above = [node for _, node in factors]
                 last = dividing(above, items, found, self.meaning.ends)
@@ -208,12 +225,28 @@ class _Build(Transformer_NonRecursive[Token, Any]):
                     self.open_quotient(before, above, found)
                 factors += [(number < last, node) for number, node in enumerate(found)]
                 found = []
-            if after and after.kind == "SLASH" and self.meaning.ends_bare(items):
+            if after and after.kind == "SLASH" and bare_argument(items):
                 self.meaning.refuse(
                     after.column, "does this divide the function or its argument?", r"write \frac{a}{b}"
                 )
             factors += [(divides, node) for node in found]
         return Product(tuple(factors), children[0].column)
+
+    def with_derivatives(self, children: list[Any]) -> list[Any]:
+        r"""Return pieces and signs, a derivative with a slash, ``d\theta/dt``, made one piece."""
+        found = children[:1]
+        for sign, piece in zip(children[1::2], children[2::2], strict=True):
+            above, below = _items(found[-1]), _items(piece)
+            derivative = None
+            if sign.kind == "SLASH" and len(below) > 1 and mark_of(below[0]) in ("d", "partial"):
+                derivative = self.meaning.spelled_with_slash(above, below[:2])
+            if derivative is None:
+                found += (sign, piece)
+                continue
+            start, made = derivative
+            items = (*above[:start], made, *below[2:])
+            found[-1] = FactorRun(items, items[0].column)
+        return found
 
     def open_quotient(self, slash: Word, above: list[Node], below: list[Node]) -> NoReturn:
         """Refuse a quotient of which it is open where it ends, with both readings."""
@@ -258,6 +291,25 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         if over:
             return self.meaning.fraction(inner, over[1], opening.column)
         return Group(inner, braces=True, column=opening.column)
+
+    def cases(self, children: list[Any]) -> Node:
+        return Call("Piecewise", tuple(children[1:]), children[0].column)
+
+    def row(self, children: list[Any]) -> Node:
+        value = self.meaning.node(children[0])
+        return Tuple((value, children[1]), value.column)
+
+    def condition(self, children: list[Any]) -> Node:
+        if isinstance(children[0], Word):
+            return Name("True", 0, children[0].column)
+        if len(children) > 1:
+            self.meaning.refuse(children[1].column, "a second condition of one case", "write a < x < b")
+        return children[0]
+
+    def comparison(self, children: list[Any]) -> Node:
+        nodes = tuple(self.meaning.node(child) for child in children[::2])
+        signs = (_RELATIONS[word.shown] for word in children[1::2])
+        return Comparison(nodes, tuple("==" if sign == "=" else sign for sign in signs), nodes[0].column)
 
     def bars(self, children: list[Any]) -> Node:
         return Call("Abs", (self.meaning.node(children[1]),), children[0].column)

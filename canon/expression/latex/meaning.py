@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, NoReturn
 
-from canon.expression.latex.argument_end import ArgumentEnd
+from canon.expression.latex.argument_end import ArgumentEnd, bare_argument
 from canon.expression.latex.derivatives import Derivatives, derivative
 from canon.expression.latex.names import Applied, Function, Mark
 from canon.expression.latex.pieces import (
@@ -25,11 +25,12 @@ from canon.expression.latex.pieces import (
     is_function,
     is_minus_one,
     items_of,
+    mark_of,
     raised,
     unbraced,
 )
 from canon.expression.latex.quotient import shown
-from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
+from canon.expression.latex.understood_time import has_rate_or_is_momentum, without_time
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Power, Product, Tuple
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ class Meaning:
 
     def factors(self, items: tuple[Piece, ...]) -> list[Node]:
         """Return the factors of pieces side by side."""
-        items = self._without_time(items)
+        items = without_time(items, self.scope)
         for left, right in pairwise(items):
             self._neighbours(left, right)
         found: list[Node] = []
@@ -124,28 +125,6 @@ class Meaning:
             found.append(node)
         return found
 
-    def _without_time(self, items: tuple[Piece, ...]) -> tuple[Piece, ...]:
-        r"""Return factors without the time in ``\theta(t)``, ``\dot\theta(t)^2``, ``\theta^{2}{\left(t \right)}``."""
-        found: list[Piece] = []
-        for item in items:
-            base, exponent = (item.base, item.exponent) if isinstance(item, Powered) else (item, None)
-            before = found[-1] if found else None
-            name = before.base if isinstance(before, Powered) and exponent is None else before
-            if not (isinstance(name, Name) and self._is_time(base) and self._has_rate_or_is_momentum(name)):
-                found.append(item)
-            elif exponent is not None:
-                found[-1] = Powered(name, exponent, name.column)
-        return tuple(found)
-
-    def _is_time(self, piece: Piece) -> bool:
-        """Whether a piece is the time in brackets."""
-        inner = unbraced(piece)
-        inside = unbraced(inner.inner) if isinstance(inner, Group) else None
-        return isinstance(inside, Name) and inside.text == self.scope.time.name
-
-    def _has_rate_or_is_momentum(self, name: Name) -> bool:
-        return isinstance(self.scope.symbol(name.text), Coordinate | Momentum | Rate)
-
     def _neighbours(self, left: Piece, right: Piece) -> None:
         """Refuse two factors that side by side look like something else."""
         column = right.column
@@ -159,7 +138,8 @@ class Meaning:
                 column, "a number before a fraction of numbers: a product or a mixed number?", r"put \cdot"
             )
         inner = first.inner if isinstance(left, Name) and isinstance(first, Group) else None
-        if isinstance(left, Name) and isinstance(inner, Tuple | Number | Name):
+        rate = isinstance(inner, Name) and inner.text.endswith("dot") and self.text[inner.column - 1] == "\\"
+        if isinstance(left, Name) and isinstance(inner, Tuple | Number | Name) and not rate:
             if isinstance(inner, Name) and inner.text == self.scope.time.name:
                 reason = f"{left.text} is a symbol here, its dependence on the time is understood"
                 self.refuse(column, reason, "leave the argument out")
@@ -253,13 +233,14 @@ class Meaning:
             piece.column, f"is {name} squared, or its argument?", f"write \\{name}^2(x) or \\{name}(x^2)"
         )
 
-    def ends_bare(self, items: tuple[Piece, ...]) -> bool:
-        """Whether pieces side by side end with an argument without brackets."""
-        heads = [at for at, item in enumerate(items) if is_function(item)]
-        if not heads or heads[-1] + 1 == len(items):
-            return False
-        argument = items[heads[-1] + 1]
-        return not isinstance(argument.base if isinstance(argument, Powered) else argument, Group)
+    def leaves_open(self, items: tuple[Piece, ...]) -> bool:
+        r"""Whether what follows ``\cdot`` could belong to the argument that ends here, as in ``\cos\omega\cdot t``."""
+        argument = [
+            self.node(item) for item in bare_argument(items) if not isinstance(item, Mark | Head | Operator)
+        ]
+        return bool(argument) and not (
+            any(map(self.ends.moves, argument)) or self.ends.is_angle(argument[-1])
+        )
 
     def _called(self, head: Head, function: Function, argument: Node, after: Node | None) -> Node:
         r"""Return a built-in function of its argument, raised as ``\sin^2`` or after the brackets."""
@@ -344,6 +325,12 @@ class Meaning:
                 return self.derivatives.of(operator, operand), end
         if isinstance(following, Group):
             return self.derivatives.of(operator, self.node(following)), at + 2
+        if isinstance(following, Name) and operator.total and has_rate_or_is_momentum(following, self.scope):
+            return self.derivatives.of(operator, following), at + 2
+        if isinstance(following, Head) and isinstance(following.function, Function):
+            operand, end = self._application(items, at + 1, following, following.function)
+            if end == len(items):
+                return self.derivatives.of(operator, operand), end
         return self.refuse(
             operator.column,
             "the derivative of what?",
@@ -358,6 +345,22 @@ class Meaning:
             if self.scope.symbol(name) is not None:
                 return Name(name, 0, mark.column)
         return self._stray(mark)
+
+    def spelled_with_slash(
+        self, above: tuple[Piece, ...], below: tuple[Piece, ...]
+    ) -> tuple[int, Piece] | None:
+        r"""Return where the derivative of ``m\,d\theta/dt`` begins and what it is, None where a slash divides.
+
+        Parameters
+        ----------
+        above, below
+            What stands before and behind the slash, of ``below`` the differential only.
+        """
+        for start, item in enumerate(above):
+            if mark_of(item.base if isinstance(item, Powered) else item) in ("d", "partial"):
+                spelled, over = FactorRun(above[start:], item.column), FactorRun(below, below[0].column)
+                return start, self.fraction(spelled, over, item.column)
+        return None
 
     def _stray(self, mark: Mark) -> NoReturn:
         if mark.text == "e":

@@ -24,7 +24,7 @@ FUNCTIONS = {
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arccot": "acot",
     "arsinh": "asinh", "arcosh": "acosh", "artanh": "atanh",
     "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh", "sgn": "sign", "abs": "Abs", "Abs": "Abs",
-    "tg": "tan", "ctg": "cot", "arctg": "atan", "cosec": "csc",
+    "atan2": "atan2", "arctan2": "atan2", "tg": "tan", "ctg": "cot", "arctg": "atan", "cosec": "csc",
     **{name: name for name in ("asin", "acos", "atan", "acot", "asinh", "acosh", "atanh", "sign", "LambertW")},
 }  # fmt: skip
 r"""What ``\sin``, ``\operatorname{arsinh}``, … are called in the plain language."""
@@ -246,6 +246,8 @@ class Names:
                 part = letters[start:end]
                 item = self.spelled((part,), (), 0, column + start)
                 item = item or (self._mark(part, start, column) if part == "d" else None)
+                if item is None and start == 0 and part == "i" and not self.declares("I"):
+                    item = Name("I", 0, column)
                 if item is not None:
                     ways += [[*way, item] for way in splits[start]]
             splits.append(ways[:2])

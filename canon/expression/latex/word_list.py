@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from canon.expression.latex.names import Item
     from canon.expression.latex.pieces import LatexFraction, Operator
 
-__all__ = ["Word", "WordList", "Words"]
+__all__ = ["Word", "WordList", "Words", "together"]
 
 _SINGLES = {"CARET": 1, "UNDER": 1, "FRAC": 2, "SQRT": 1}
 """How many arguments may follow without braces, each then one character."""
@@ -75,6 +75,11 @@ class WordList:
         """The kind of the last word."""
         return self.words[-1].kind if self.words else ""
 
+    @property
+    def in_cases(self) -> bool:
+        r"""Whether the last bracket that opened is ``\begin{cases}``."""
+        return bool(self.open) and self.open[-1].kind == "CASES"
+
     def emit(
         self, kind: str, shown: str, column: int, item: Item | LatexFraction | Operator | None = None
     ) -> None:
@@ -124,6 +129,10 @@ class WordList:
         """Take a bracket that opens."""
         if len(self.open) >= syntax.MAX_NESTING:
             self.refuse(column, f"nested more than {syntax.MAX_NESTING} deep")
+        if closing == "\\end{cases}":
+            self.open.append(_Bracket(shown, closing, "CASES", 0, column))
+            self.emit("LCASES", shown, column)
+            return True
         index = shown == "[" and self.last == "SQRT"
         kind = (
             "INDEX" if index else "BRACE" if shown == "{" else "BAR" if closing in ("|", "\\rvert") else "PAR"
@@ -144,3 +153,19 @@ class WordList:
         self.emit("R" + bracket.kind, shown, column)
         self.singles = bracket.singles
         return True
+
+
+def together(faults: list[LanguageError]) -> LanguageError:
+    """Return several faults as one, at the column of the first."""
+    first, *others = faults
+    told = dict.fromkeys((first.reason,))
+    also: list[str] = []
+    for fault in others:
+        if fault.reason not in told:
+            told[fault.reason] = None
+            also.append(f"column {fault.column}: {fault.message}")
+    return (
+        LanguageError(first.text, first.column, first.reason, "; ".join((first.remedy, *also)).strip("; "))
+        if also
+        else first
+    )

@@ -21,9 +21,19 @@ from canon.expression.latex.names import (
     stems,
 )
 from canon.expression.latex.pieces import LatexFraction, Operator
+from canon.expression.latex.printed_forms import (
+    CONDITION,
+    DECORATIONS,
+    OF_SPECIAL_FUNCTIONS,
+    OTHERWISE,
+    PARTIAL,
+    PLAIN,
+    PRINTED_CALL,
+)
 from canon.expression.latex.scripts import Scripts, accented, braced_name, dots_above, scripts, upright
 from canon.expression.latex.signs import REMEDIES, SIGNS, figure, letter, raised_figures, remedy
-from canon.expression.latex.word_list import Word, WordList, Words
+from canon.expression.latex.undressed import CASES
+from canon.expression.latex.word_list import Word, WordList, Words, together
 from canon.expression.text import syntax
 from canon.expression.text.syntax import LanguageError, Name, Number, Product
 
@@ -40,25 +50,11 @@ _THIN = re.compile(r"\s|\\[!/]|\\displaystyle|\\negthinspace|\\qty|\\(?:no)?limi
 """The spaces that show no gap in print."""
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
 _RUN = re.compile(r"[A-Za-z][A-Za-z0-9]*")
-_PLAIN = re.compile(
-    r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*_(?=[A-Za-z0-9]*[A-Za-z])[A-Za-z0-9]{2,}(?![A-Za-z0-9_])"
-)
-"""A name as the plain language has it, ``p_theta``, which LaTeX would print otherwise."""
-_PARTIAL = re.compile(
-    r"\\partial\s*(?:\^\s*([2-9])\s*)?_\s*(?:\{([^{}]{1,60})\}|(\\[A-Za-z]+|[A-Za-z]))(?:\s*\^\s*([2-9]))?"
-)
-_OF_SPECIAL_FUNCTIONS = {"W": "LambertW", "K": "elliptic_k", "E": "elliptic_e"}
-"""How SymPy prints them, before \\left( ."""
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
 _COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:[A-Za-z]+(?:\{[^{}]{0,200}\})?|.)", re.DOTALL)
 
 _SIZES = re.compile(r"\\(?:left|right|middle|[bB]igg?[lrm]?)(?![A-Za-z])\s*")
 _ACCENTS = {"dot": 1, "ddot": 2}
-_DECORATIONS = {
-    **dict.fromkeys(("bar", "overline"), ("bar",)), **dict.fromkeys(("hat", "widehat"), ("hat",)),
-    **dict.fromkeys(("tilde", "widetilde"), ("tilde",)), "vec": ("vec",), "mathcal": ("cal",), "mathscr": ("scr",),
-    **dict.fromkeys(("mathbf", "boldsymbol", "bm"), ("vec", "bf")),
-}  # fmt: skip
 _SQUARED = re.compile(r"\s*\^\s*(?:2|\{\s*2\s*\})|²")
 _MOST_FAULTS = 5
 """Most faults that are told at once."""
@@ -87,26 +83,10 @@ def words_of(text: str, scope: Scope, start: int = 0, end: int | None = None) ->
             faults.append(error)
             reader.passed_over(at)
     if faults:
-        raise _together(faults)
+        raise together(faults)
     if reader.out.open:
         reader.refuse(reader.out.open[-1].column, f"{reader.out.open[-1].shown} is never closed")
     return Words(tuple(reader.out.words), frozenset(reader.out.spaced), reader.end + 1)
-
-
-def _together(faults: list[LanguageError]) -> LanguageError:
-    """Return several faults as one, at the column of the first."""
-    first, *others = faults
-    told = dict.fromkeys((first.reason,))
-    also: list[str] = []
-    for fault in others:
-        if fault.reason not in told:
-            told[fault.reason] = None
-            also.append(f"column {fault.column}: {fault.message}")
-    return (
-        LanguageError(first.text, first.column, first.reason, "; ".join((first.remedy, *also)).strip("; "))
-        if also
-        else first
-    )
 
 
 class _Reader:
@@ -174,12 +154,9 @@ class _Reader:
             self.put(self.names.run(run, column, (), 0, powered=False), column)
             return
         self.at += len(run)
-        if (
-            run in _OF_SPECIAL_FUNCTIONS
-            and self.text.startswith("\\left(", self.at)
-            and not self.names.declares(run)
-        ):
-            self.put([Function(_OF_SPECIAL_FUNCTIONS[run], column)], column)
+        special = run in OF_SPECIAL_FUNCTIONS and PRINTED_CALL.match(self.text, self.at, self.end)
+        if special and not self.names.declares(run):
+            self.put([Function(OF_SPECIAL_FUNCTIONS[run], column)], column)
             return
         if run == "sqrt" and self.follows("({") and not self.names.declares(run):
             self.put([Function("sqrt", column)], column)
@@ -194,7 +171,7 @@ class _Reader:
 
     def spelled_plainly(self) -> bool:
         """Read a declared name as the plain language spells it, ``p_theta`` or ``x_dot``, if one stands here."""
-        match = _PLAIN.match(self.text, self.at, self.end)
+        match = PLAIN.match(self.text, self.at, self.end)
         if match is None or not self.names.declares(match.group()):
             return False
         start = self.at
@@ -244,6 +221,17 @@ class _Reader:
         self.put([item], column)
         self.out.raised(after.power)
 
+    def case(self, sign: str) -> None:
+        r"""Read ``\begin{cases}``, ``\\`` and ``\end{cases}``."""
+        column = self.at + 1
+        self.at += len(sign)
+        if sign.startswith("\\begin"):
+            self.out.opened(sign, "\\end{cases}", column)
+        elif sign.startswith("\\end"):
+            self.out.closed("\\end{cases}", column)
+        elif not CASES.match(self.text, _blanks_end(self.text, self.at), self.end):
+            self.out.emit("CROW", sign, column)
+
     def accent(self, command: str) -> None:
         start = self.at
         if self.out.singles:
@@ -255,9 +243,9 @@ class _Reader:
             self.named(under.stems, start, under.pieces, _ACCENTS[kind])
             return
         found = [
-            f"{stem}{gap}{word}" for word in _DECORATIONS[kind] for stem in under.stems for gap in ("", "_")
+            f"{stem}{gap}{word}" for word in DECORATIONS[kind] for stem in under.stems for gap in ("", "_")
         ]
-        if "vec" in _DECORATIONS[kind] and _SQUARED.match(self.text, self.at, self.end):
+        if "vec" in DECORATIONS[kind] and _SQUARED.match(self.text, self.at, self.end):
             found += under.stems  # the square of a vector is that of its length
         self.named(tuple(found), start, under.pieces)
 
@@ -280,10 +268,16 @@ class _Reader:
     def command(self, command: str) -> None:
         start = self.at
         word = upright(self.text, start)
+        if self.out.in_cases and (said := CONDITION.match(self.text, start, self.end)):
+            self.at = said.end()
+            if said.group(1) in OTHERWISE or command in ("\\wedge", "\\land"):
+                kind = "CAND" if said.group(1) is None else "COTHERWISE"
+                self.out.emit(kind, said.group(), start + 1)
+            return
         if command in SIGNS:
             self.at += len(command)
             self.out.emit(SIGNS[command], command, start + 1)
-        elif command == "\\partial" and (match := _PARTIAL.match(self.text, self.at, self.end)):
+        elif command == "\\partial" and (match := PARTIAL.match(self.text, self.at, self.end)):
             self.partial(match)
         elif word:
             self.at = word[1]
@@ -291,8 +285,10 @@ class _Reader:
         elif stems(command[1:]):
             self.at += len(command)
             self.named(stems(command[1:]), start)
-        elif command[1:] in (*_ACCENTS, *_DECORATIONS):
+        elif command[1:] in (*_ACCENTS, *DECORATIONS):
             self.accent(command)
+        elif (cases := CASES.match(self.text, start, self.end)) or (command == "\\\\" and self.out.in_cases):
+            self.case(cases.group() if cases else command)
         elif command in ("\\dd", "\\diff") or (command == "\\d" and not self.names.declares("d")):
             self.at += len(command)
             self.put([Mark("d", start + 1)], start + 1)
@@ -313,6 +309,10 @@ class _Reader:
         match = _COMMAND.match(self.text, self.at, self.end)
         shown = match.group() if match else self.text[self.at : min(self.at + 1, self.end)]
         side = "open" if size.endswith(("left", "l")) else "close" if size.endswith(("right", "r")) else ""
+        if size == "\\middle" and shown == "|":
+            self.out.emit("COMMA", shown, self.at + 1)
+            self.at += 1
+            return
         if size == "\\middle" or not self.bracket(shown, side):
             self.refuse(self.at + 1, f"{size} belongs before a bracket", "write ( ), [ ], \\{ \\} or | |")
 
@@ -325,7 +325,10 @@ class _Reader:
 
     def sign(self, character: str) -> None:
         column = self.at + 1
-        if character in SIGNS:
+        if character == "&" and self.out.in_cases:
+            self.at += 1
+            self.out.emit("CCOLUMN", "&", column)
+        elif character in SIGNS:
             self.at += 1
             self.out.emit(SIGNS[character], character, column)
         elif fraction := figure(character):
@@ -372,6 +375,12 @@ class _Reader:
         self.at = match.end()
         operator = Operator(total=False, variables=tuple((name, order) for name in variables), column=column)
         self.out.emit("ATOM", match.group(), column, operator)
+
+
+def _blanks_end(text: str, at: int) -> int:
+    while at < len(text) and text[at].isspace():
+        at += 1
+    return at
 
 
 def _undeclared(name: str, column: int) -> Item | None:
