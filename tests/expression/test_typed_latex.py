@@ -11,7 +11,7 @@ from sympy.parsing.sympy_parser import parse_expr
 
 from canon import coordinates, parameters
 from canon.expression.parse import LanguageError, Scope, parse_expression, statements_of
-from canon.expression.symbols.symbol import Momentum, time
+from canon.expression.symbols.symbol import Coordinate, Momentum, time
 
 FOLDER = Path(__file__).parents[1] / "data" / "typed"
 LABEL = re.compile(
@@ -30,7 +30,7 @@ def corpus(name):
 def scope_of(name):
     """Return the scope that a corpus names, and the same names for SymPy's parser."""
     said = corpus(FILES[0])["scopes"][name]
-    q = coordinates(said["q"])
+    q = [Coordinate(x, real=True) for x in said["q"].split()]
     names = {s.name: s for s in (*q, *parameters(said["parameters"]))}
     names |= {p: Momentum(p, real=True) for p in said["p"].split()}
     functions = {f: tuple(arguments) for f, arguments in said["functions"].items()}

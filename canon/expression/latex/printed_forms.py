@@ -1,4 +1,4 @@
-r"""Printed forms: letters with decorations, conditions of cases, ``\partial_x``, special functions as SymPy has them."""
+r"""Printed forms: letters with decorations, conditions of cases, ``\partial_x``, SymPy's special functions."""
 
 from __future__ import annotations
 
