@@ -251,6 +251,8 @@ _SPELLINGS = tuple(
             r"\\(?:mathrm|operatorname|text|mathit|mathcal|mathscr|mathfrak|mathbf|boldsymbol|rm|bm)\s*\{\s*(\w+)\s*\}",
             r"\1",
         ),
+        (r"\{\s*\\(?:cal|rm|bf)\s*(\w+)\s*\}", r"\1"),
+        (r"\\(?:mathrm|text)\s*\{\s*const\.?\s*\}", "const"),
         (r"\\(?:mathrm|mathcal|mathscr|mathbf)\s*(\w)", r"\1"),
         (r"\\(?:hat|vec|widehat|overline)\s*(?:\{\s*(\w+)\s*\}|(\w))", r"\1\2"),
         (r"\\partial(?![A-Za-z])", "∂"),

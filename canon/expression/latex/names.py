@@ -116,6 +116,12 @@ class Names:
         """Whether a name is declared, as a symbol or a function."""
         return name in self.scope.functions or self.scope.symbol(name) is not None
 
+    def is_length(self, stem: str) -> bool:
+        """Whether a letter that is written as a vector can only stand for its length: no component of it is declared."""
+        return stem not in ("x", "y", "z", "q") and not any(
+            name.startswith(f"{stem}_") for name in self.scope.names
+        )
+
     def spelled(
         self, stems: tuple[str, ...], pieces: Pieces, order: int, column: int, *, dotted: bool = False
     ) -> Name | Applied | None:

@@ -14,11 +14,13 @@ __all__ = ["Accented", "Scripts", "accented", "braced_name", "dots_above", "scri
 
 _FIGURES = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 _BLANK = re.compile(r"\s*")
-_PRIMES = re.compile(r"['’′″]+|\^\s*(?:\\prime(?![A-Za-z])|\{(?:\s*\\prime(?![A-Za-z]))+\s*\})")
+_PRIMES = re.compile(
+    r"['’′″]+|\^\s*\{\s*'+\s*\}|\^\s*(?:\\prime(?![A-Za-z])|\{(?:\s*\\prime(?![A-Za-z]))+\s*\})"
+)
 _POWER_BEFORE_SUBSCRIPT = re.compile(r"\^\s*(?:([0-9])|\{([0-9]+)\})\s*(?=_)")
 _UPRIGHT = re.compile(
     r"\\(?:mathrm|mathit|text|textrm|textit|mathsf|mathnormal|operatorname\*?)\s*(?:\{\s*([A-Za-z][A-Za-z0-9]*)\s*\}|([A-Za-z]))"
-    r"|\{\s*\\rm\s*([A-Za-z]+)\s*\}|\{\s*\\mathrm\s*\{?\s*(d)\s*\}?\s*\}"
+    r"|\{\s*\\rm\s*([A-Za-z]+)\s*\}|\{\s*\\(?:mathrm|text|textrm)\s*\{?\s*(d)\s*\}?\s*\}"
 )
 _LETTER = re.compile(r"\\([A-Za-z]+)")
 _RUN = re.compile(r"[A-Za-z0-9]+")

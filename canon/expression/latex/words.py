@@ -55,7 +55,7 @@ _COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:[A-Za-z]+(?:\{[^{}]{0,200}\})?|.)", r
 
 _SIZES = re.compile(r"\\(?:left|right|middle|[bB]igg?[lrm]?)(?![A-Za-z])\s*")
 _ACCENTS = {"dot": 1, "ddot": 2}
-_SQUARED = re.compile(r"\s*\^\s*(?:2|\{\s*2\s*\})|²")
+_SQUARED = re.compile(r"(?:\s|\\,|\\right|\|)*(?:\^\s*(?:2(?![0-9])|\{\s*2\s*\})|²)")
 _MOST_FAULTS = 5
 """Most faults that are told at once."""
 
@@ -246,7 +246,7 @@ class _Reader:
             f"{stem}{gap}{word}" for word in DECORATIONS[kind] for stem in under.stems for gap in ("", "_")
         ]
         if "vec" in DECORATIONS[kind] and _SQUARED.match(self.text, self.at, self.end):
-            found += under.stems  # the square of a vector is that of its length
+            found += filter(self.names.is_length, under.stems)  # the square of a vector is that of its length
         self.named(tuple(found), start, under.pieces)
 
     def upright(self, word: str, start: int) -> None:
