@@ -117,7 +117,7 @@ class Names:
         return name in self.scope.functions or self.scope.symbol(name) is not None
 
     def is_length(self, stem: str) -> bool:
-        """Whether a letter that is written as a vector can only stand for its length: no component of it is declared."""
+        """Whether a vector's letter can only stand for its length: none of its components is declared."""
         return stem not in ("x", "y", "z", "q") and not any(
             name.startswith(f"{stem}_") for name in self.scope.names
         )
