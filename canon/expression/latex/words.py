@@ -229,7 +229,7 @@ class _Reader:
             self.out.opened(sign, "\\end{cases}", column)
         elif sign.startswith("\\end"):
             self.out.closed("\\end{cases}", column)
-        elif not CASES.match(self.text, _blanks_end(self.text, self.at), self.end):
+        elif not self.text.startswith("\\end", _blanks_end(self.text, self.at)):
             self.out.emit("CROW", sign, column)
 
     def accent(self, command: str) -> None:
