@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from canon.flow.checked_request import parted_by_orbit, task_of, task_with, two_
 from canon.flow.method.method_text import method_of
 from canon.flow.system.bounce import with_bounces
 from canon.flow.system.first_order_motion import moving_system
+from canon.flow.system.lagrangian_motion import SPAN
 from canon.flow.system.parameter_values import check_parameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_door import is_scene, opened
@@ -24,7 +27,6 @@ from canon.mechanics.algebra.dynamicsymbols import plain
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from fractions import Fraction
 
     import numpy.typing as npt
 
@@ -98,7 +100,7 @@ def _system_task(
     states = _exact(state_in_order(y0, found.state))
     orbits = _orbits(states, varying, np.shape(y0))
     single = states[0].ndim == 1 and not varying
-    start: dict[Symbol, Any] = {found.t: float(ends[0])}
+    start: dict[Symbol, Any] = {found.t: float(ends[0]), SPAN: abs(float(ends[1] - ends[0])) or 1.0}
     by_name = {s.name: s for s in (*found.parameters, *others)}
     start |= {by_name[str(key)]: float(exact_number(value, str(key))) for key, value in fixed.items()}
     start |= {by_name[name]: values.astype(np.float64) for name, values in varying.items()}
@@ -106,7 +108,8 @@ def _system_task(
     first = {s: float(np.ravel(value)[0]) for s, value in start.items()}
     motion, met = with_bounces(found.derived(first), met, first)
     check_constraints(motion, start, _words(motion))
-    moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying])
+    unit = _work_unit(motion, first)
+    moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying], unit)
     chosen = method_of(method)
     _check_method(chosen, moving)
     full = _full_states(moving, states, varying, orbits)
@@ -183,6 +186,21 @@ def _full_states(
 
 def _one(value: Any, name: str) -> Fraction:
     return exact_number(value, name)
+
+
+def _work_unit(motion: FirstOrderMotion, start: Mapping[Symbol, float]) -> Fraction:
+    """Return the power of 2 next to the size of the energy, or of what is done in the span."""
+    graph = motion.graph
+    if motion.energy is None or motion.power is None:
+        return Fraction(1)
+    kind, operands, _ = graph.nodes[motion.energy]
+    terms = operands if kind == "add" else (motion.energy,)
+    slopes = graph.gradient(motion.power, motion.state)
+    growth = graph.add([graph.mul(pair) for pair in zip(slopes, motion.rates, strict=True)])
+    found = graph.evaluate([*terms, motion.power, growth], start)
+    *parts, power, rising = (abs(float(x)) for x in found)
+    size = sum(parts) or power * start[SPAN] or rising * start[SPAN] ** 2
+    return Fraction(2) ** math.frexp(size)[1] if 0 < size < math.inf else Fraction(1)
 
 
 def _words(motion: FirstOrderMotion) -> list[str]:

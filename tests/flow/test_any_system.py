@@ -357,3 +357,38 @@ def test_a_bound_particle_bounces_along_its_constraint() -> None:
     assert np.ptp(stopped.energy) < 1e-13 * abs(stopped.energy).max()
     with pytest.raises(ValueError, match="vector field does not"):
         propagate(CASES["Lorenz's equations"].system, (0, 1), (1, 1, 1), events=[Event(x, 0, "bounce")])
+
+
+@pytest.mark.parametrize("mass", [1e-30, 1e-15, 1e15, 1e30])
+def test_small_and_large_masses_move_alike(mass: float) -> None:
+    case = CASES["a pendulum in Cartesian coordinates"]
+    motion = propagate(case.system, case.span, case.y0, parameters=case.values | {m: mass})
+    np.testing.assert_allclose(motion.final, reference("a pendulum in Cartesian coordinates"), rtol=1e-9)
+    assert abs(motion.residuals).max() < 3e-14
+    case = CASES["a pendulum by Newton and Euler"]
+    motion = propagate(case.system, case.span, case.y0, parameters=case.values | {m: mass})
+    np.testing.assert_allclose(motion.final, reference("a pendulum by Newton and Euler"), rtol=1e-9)
+    np.testing.assert_allclose(motion["S"][0], mass * 9.8 * np.cos(0.5), rtol=1e-14)
+
+
+def test_units_of_time_and_length_do_not_matter() -> None:
+    """The same pendulum with lengths in units of 1e-10 and times in units of 1e12."""
+    case = CASES["a pendulum in Cartesian coordinates"]
+    L, T = 1e10, 1e-12
+    start = np.array(case.y0) * [L, L, L / T, L / T]
+    motion = propagate(case.system, (0, 3 * T), start, parameters={m: 2, l: L, g: 9.8 * L / T**2})
+    scaled = motion.final / [L, L, L / T, L / T]
+    np.testing.assert_allclose(scaled, reference("a pendulum in Cartesian coordinates"), rtol=1e-9)
+    assert abs(motion.residuals[0]).max() < 3e-14 * L**2
+
+
+@pytest.mark.parametrize("scale", [1e-20, 1e20])
+def test_the_balance_is_as_good_in_any_unit_of_energy(scale: float) -> None:
+    case = CASES["two masses, springs and dampers"]
+    scaled = Lagrangian(scale * case.system.L, case.system.q, forces=[scale * Q for Q in case.system.forces])
+    motion = propagate(scaled, case.span, case.y0, parameters=case.values)
+    np.testing.assert_allclose(
+        motion.final, reference("two masses, springs and dampers"), rtol=1e-9, atol=1e-9
+    )
+    assert abs(motion.energy_error).max() < 1e-14
+    assert abs(motion.work[-1]) > 0.05 * motion.energy[0]

@@ -8,6 +8,7 @@ along as a further variable that no sample shows: E − W is constant, and its c
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,6 @@ from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from fractions import Fraction
 
     from sympy import Symbol
 
@@ -143,7 +143,10 @@ class MovingSystem:
 
 
 def moving_system(
-    motion: FirstOrderMotion, numbers: Mapping[str, Fraction], varying: Sequence[Symbol] = ()
+    motion: FirstOrderMotion,
+    numbers: Mapping[str, Fraction],
+    varying: Sequence[Symbol] = (),
+    work_unit: Fraction = Fraction(1),
 ) -> MovingSystem:
     """Return a system with numbers for its parameters, but for those that differ from orbit to orbit.
 
@@ -155,6 +158,9 @@ def moving_system(
         An exact number for every parameter, by name.
     varying
         Parameters that differ from orbit to orbit: part of the state, where they stay what they are.
+    work_unit
+        What the work is measured in while it is integrated along, as errors of a step are relative to the largest
+        variable; a power of 2.
     """
     graph, state = motion.graph, motion.state
     known = {graph.symbol(s): graph.number(numbers[s.name]) for s in motion.parameters if s not in varying}
@@ -168,10 +174,10 @@ def moving_system(
     conserved, work = graph.zero if energy is None else energy, None
     if energy is not None and power != graph.zero:
         W = sp.Dummy("W", real=True)
-        work = graph.symbol(W)
+        work = graph.scaled(work_unit, graph.symbol(W))
         conserved = graph.add((energy, graph.negative(work)))
         first.append(W)
-        forward.append(power)
+        forward.append(graph.scaled(1 / work_unit, power))
         second.append(sp.Dummy("rest", real=True))
         after.append(graph.zero)
     for each in varying:

@@ -35,12 +35,15 @@ if TYPE_CHECKING:
     from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
     from canon.mechanics.lagrange.lagrangian import Lagrangian
 
-__all__ = ["constraints_of", "lagrangian_motion", "multiplier_symbol", "values_at_start"]
+__all__ = ["SPAN", "constraints_of", "lagrangian_motion", "multiplier_symbol", "values_at_start"]
 
 _PULL = sp.Dummy("alpha", positive=True)
 
-_SLOWEST = 1e-3
-"""The least α in units of the inverse of the time that velocities take to pass the coordinates' sizes."""
+SPAN = sp.Dummy("span", positive=True)
+"""Under this symbol numbers of the start have the length of the span, which says how slow is slow."""
+
+_IN_A_SPAN = 10.0
+"""How many times in the span a deviation from the constraints falls by a factor e where the motion has no rates."""
 
 
 def multiplier_symbol(i: int) -> Symbol:
@@ -200,17 +203,14 @@ def _bordered(
 def _fastest(
     graph: Graph, state: Sequence[Symbol], rates: Sequence[int], start: Mapping[Symbol, float]
 ) -> float:
-    """Return the largest rate of the motion's linearisation at the start, or how fast the coordinates pass."""
+    """Return the largest rate of the motion's linearisation at the start, or a slow one of the span."""
     slopes = [graph.gradient(rate, state) for rate in rates]
     point = {**start, _PULL: 0.0}
     jacobian = np.array([[float(x) for x in graph.evaluate(row, point)] for row in slopes])
-    n = len(state) // 2
-    sizes = np.array([abs(start[s]) for s in state])
-    passing = sizes[n:].max() / sizes[:n].max() if sizes[:n].any() else 0.0
     fastest = float(np.abs(np.linalg.eigvals(jacobian)).max()) if np.isfinite(jacobian).all() else 0.0
     # Round-off of a double eigenvalue 0 is no rate.
     real = fastest if fastest > 1e-6 * np.sqrt(np.abs(jacobian).max(initial=0.0)) else 0.0
-    return max(real, _SLOWEST * passing) or 1.0
+    return max(real, _IN_A_SPAN / start.get(SPAN, _IN_A_SPAN))
 
 
 def _residuals(

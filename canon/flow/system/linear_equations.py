@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["SingularAtStartError", "independent_rows", "solved_from_start"]
 
 _SMALL = 1e-11
-"""A pivot below this part of its row, where every row is measured by its largest entry, is taken for round-off."""
+"""A singular value below this part of the largest, in units in which masses are 1, is taken for round-off."""
 
 
 class SingularAtStartError(ValueError):
@@ -71,14 +71,13 @@ def solved_from_start(
     >>> [graph.to_sympy(node) for node in x]
     [b/a, 1]
     """
-    sizes = np.sqrt(np.abs(values).max(axis=1, initial=0.0))
-    if not symmetric:
-        balanced = values / np.where(sizes > 0, sizes, 1.0)[:, np.newaxis] ** 2
-    else:
-        balanced = values / np.outer(sizes, sizes) if sizes.all() else values
+    columns = _units(values) if symmetric else _reciprocals(np.abs(values).max(axis=0, initial=0.0))
+    balanced = values * columns
+    rows = columns if symmetric else _reciprocals(np.abs(balanced).max(axis=1, initial=0.0))
+    balanced = balanced * rows[:, np.newaxis]
     _, singular, directions = np.linalg.svd(balanced)
     if not singular.size or singular[-1] <= _SMALL * singular[0]:
-        null = directions[-1] / np.where((sizes > 0) & symmetric, sizes, 1.0)
+        null = directions[-1] * columns
         raise SingularAtStartError(null / np.abs(null).max())
     if symmetric and _has_diagonal_pivots(balanced):
         lower = [list(row[: i + 1]) for i, row in enumerate(matrix)]
@@ -86,8 +85,24 @@ def solved_from_start(
     return _eliminated(graph, matrix, right, balanced)
 
 
+def _units(values: Array) -> Array:
+    """Return the units in which every mass is 1, and every constraint on velocities in such units too."""
+    diagonal = np.abs(np.diagonal(values))
+    masses = np.where(diagonal > 0, _reciprocals(np.sqrt(diagonal)), 0.0)
+    across = np.abs(values) @ masses
+    without = _reciprocals(np.sqrt(np.abs(values).max(axis=1, initial=0.0)))
+    others = np.where(across > 0, _reciprocals(across), without)
+    return np.where(diagonal > 0, masses, others)
+
+
+def _reciprocals(sizes: Array) -> Array:
+    return np.divide(1.0, sizes, out=np.ones_like(sizes), where=sizes > 0)
+
+
 def independent_rows(values: Array) -> list[int]:
     """Return which rows of a matrix to keep so that the rest depends on them; the earlier of two is kept.
+
+    Every column is measured by its largest entry, as their units differ.
 
     Examples
     --------
@@ -95,7 +110,7 @@ def independent_rows(values: Array) -> list[int]:
     [0, 2]
     """
     kept, basis = list[int](), list[Any]()
-    for i, row in enumerate(values):
+    for i, row in enumerate(values * _reciprocals(np.abs(values).max(axis=0, initial=0.0))):
         size = np.linalg.norm(row)
         rest = row / size if size else row
         for _ in range(2):  # once more takes what rounding has left
