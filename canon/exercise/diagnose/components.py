@@ -16,9 +16,8 @@ from canon.exercise.diagnose.derived_part import (
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis
 from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.diagnose.repairs.repair import is_wrong, repairs
-from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.question import Part, SameEquations
-from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.algebra.linear import SingularMatrixError, solve_affine
 from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
@@ -80,7 +79,7 @@ def _motion(question: SameEquations, unknowns: Sequence[Symbol]) -> dict[Symbol,
     if len(question.right) != len(unknowns):
         return None
     try:
-        return solved(question.right, unknowns, question.domain)
+        return solve_affine(question.right, unknowns, question.domain)
     except (SingularMatrixError, Undecided):
         return None
 

@@ -15,10 +15,9 @@ from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
-from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.question import Part, Same
 from canon.expression.symbols.symbol import time_derivative
-from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.algebra.linear import SingularMatrixError, solve_affine
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.canonical.new_hamiltonian import rate_form
@@ -97,7 +96,7 @@ def _linear_inverse(
     if any(f.diff(a).has(*z) for f in images for a in z):
         return None
     try:
-        return solved([f - name for f, name in zip(images, names, strict=True)], z)
+        return solve_affine([f - name for f, name in zip(images, names, strict=True)], z)
     except (SingularMatrixError, Undecided):
         return None
 

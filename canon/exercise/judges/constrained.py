@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
@@ -10,14 +11,14 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.judges.lagrangian import lagrangian_of
-from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.answer import equations_missing
 from canon.exercise.question.question import Determines, Part, Question, Same, SameEquations, Tells
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import on_manifold
-from canon.mechanics.algebra.linear import SingularMatrixError, eliminate
+from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, solve_affine
 from canon.mechanics.algebra.substitution import exchanged, substitute
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.proof.domain.domain import Domain
 
 if TYPE_CHECKING:
@@ -27,8 +28,9 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.reading import Reading
     from canon.mechanics.algebra.constraint_manifold import Branch
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
 
-__all__ = ["is_one_of", "jets_of", "multiplier_holonomic", "nonholonomic", "with_jets"]
+__all__ = ["Bound", "bound_by", "is_one_of", "jets_of", "multiplier_holonomic", "nonholonomic", "with_jets"]
 
 MOST_OPERATIONS = 150
 """Size of an answer that is still shown."""
@@ -36,47 +38,75 @@ MOST_OPERATIONS = 150
 
 def multiplier_holonomic(reading: Reading) -> Iterator[Question]:
     """With d/dt L_v − L_q = Σ λ ∂f/∂q, f(q, t) = 0, every claimed equation holds on every motion."""
-    q, t = reading.symbols("q"), reading.time
     constraints = reading.equations("constraints")
-    velocities = tuple(velocity(x) for x in q)
+    velocities = tuple(velocity(x) for x in reading.symbols("q"))
     for i, f in enumerate(constraints):
         if f.has(*velocities):
             reading.fault(f"constraints[{i}]", "a holonomic constraint depends on coordinates and time only")
-    directions = sp.Matrix([[f.diff(x) for x in q] for f in constraints])
-    rates = tuple(time_derivative(f, q, t) for f in constraints)
-    yield from _on_every_motion(reading, directions, (*constraints, *rates), rates)
+    yield from _on_every_motion(reading)
 
 
 def nonholonomic(reading: Reading) -> Iterator[Question]:
     """With d/dt L_v − L_q = Σ λ ∂g/∂q̇, g(q, q̇, t) = 0 affine in q̇, every claimed equation holds on every motion."""
-    q = reading.symbols("q")
     constraints = reading.equations("constraints")
-    velocities = tuple(velocity(x) for x in q)
+    velocities = tuple(velocity(x) for x in reading.symbols("q"))
     for i, g in enumerate(constraints):
         if not g.has(*velocities):
             reading.fault(f"constraints[{i}]", "this constraint holds no velocity; give its time derivative")
-    directions = sp.Matrix([[g.diff(v) for v in velocities] for g in constraints])
-    if directions.has(*velocities):
-        reading.fault("constraints", "every constraint should be affine in the velocities")
-    yield from _on_every_motion(reading, directions, constraints, constraints)
+    yield from _on_every_motion(reading)
 
 
-def _on_every_motion(
-    reading: Reading, directions: sp.Matrix, manifold: Sequence[Expr], held: Sequence[Expr]
-) -> Iterator[Question]:
-    """Accelerations and multipliers solve  M q̈ + b = Aᵀ λ  and  d(held)/dt = 0;  claims hold on the manifold."""
-    q, t, multipliers = reading.symbols("q"), reading.time, reading.symbols("multipliers")
-    if len(multipliers) != directions.rows:
+@dataclass(frozen=True)
+class Bound:
+    """What constraints make of a system.
+
+    Parameters
+    ----------
+    forces
+        Σ λₐ aₐ, one a coordinate.
+    system
+        The equations for accelerations and multipliers: Lagrange's, then the constraints differentiated.
+    manifold
+        What vanishes in allowed positions and velocities.
+    rates
+        The constraints differentiated.
+    """
+
+    forces: tuple[Expr, ...]
+    system: tuple[Expr, ...]
+    manifold: tuple[Expr, ...]
+    rates: tuple[Expr, ...]
+
+
+def bound_by(
+    reading: Reading, lagrangian: Lagrangian, constraints: Sequence[Expr], multipliers: Sequence[Symbol]
+) -> Bound:
+    """Return a system under constraints, each f(q, t) or g(q, q̇, t) affine in the velocities, with its multiplier."""
+    if len(multipliers) != len(constraints):
         reading.fault(
             "multipliers",
-            f"{counted(len(multipliers), 'multiplier')} for {counted(directions.rows, 'constraint')}",
+            f"{counted(len(multipliers), 'multiplier')} for {counted(len(constraints), 'constraint')}",
         )
+    v = lagrangian.velocities
+    if any(g.diff(u).has(*v) for g in constraints for u in v):
+        reading.fault("constraints", "every constraint should be affine in the velocities")
+    pairs = list(zip(constraints, multipliers, strict=True))
+    positions, moving = ([pair for pair in pairs if pair[0].has(*v) is some] for some in (False, True))
+    bound = ConstrainedLagrangian(lagrangian, [f for f, _ in positions], [g for g, _ in moving])
+    ordered = [x for _, x in (*positions, *moving)]
+    forces = (bound.directions.T * sp.Matrix(ordered)).flat()
+    system = (*bound.equations(ordered)[: len(v)], *bound.differentiated)
+    held = (g if g.has(*v) else time_derivative(g, lagrangian.q, lagrangian.t) for g in constraints)
+    return Bound(tuple(forces), system, (*bound.holonomic, *held), bound.differentiated)
+
+
+def _on_every_motion(reading: Reading) -> Iterator[Question]:
+    """Accelerations and multipliers solve  M q̈ + b = Aᵀ λ  and  d(held)/dt = 0;  claims hold on the manifold."""
+    q, t, multipliers = reading.symbols("q"), reading.time, reading.symbols("multipliers")
     lagrangian = lagrangian_of(reading)
+    bound = bound_by(reading, lagrangian, reading.equations("constraints"), multipliers)
     unknowns = (*(acceleration(x) for x in q), *multipliers)
-    reactions = directions.T * sp.Matrix(multipliers)
-    system = [equation - reaction for equation, reaction in zip(lagrangian.equations, reactions, strict=True)]
-    rates = [time_derivative(g, q, t) for g in held]
-    system += rates
+    system, rates, manifold = bound.system, bound.rates, bound.manifold
     claims = reading.equations("claim")
     jets = jets_of((*system, *manifold, *claims), t, reading.domain)
     functions = {symbol: function for function, symbol in jets.items()}
@@ -89,7 +119,7 @@ def _on_every_motion(
     for branch in branches:
         here = [substitute(equation, branch.values) for equation in system]
         try:
-            solution = solved(here, unknowns, branch.domain)
+            solution = solve_affine(here, unknowns, branch.domain)
         except (
             SingularMatrixError
         ):  # dependent constraints or massless coordinates: ask for linear consequences
@@ -120,7 +150,7 @@ def _on_any_motion(
     left = [
         sp.Add(*(a * slope for a, slope in zip(accelerations, row, strict=False)), row[-1]) for row in rows
     ]
-    through = {**branch.values, **(solved(left, bound, branch.domain) if bound else {})}
+    through = {**branch.values, **(solve_affine(left, bound, branch.domain) if bound else {})}
     return Same(tuple(Part(f"claim {i}", c, through=through) for i, c in enumerate(claims, 1)), branch.domain)
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.affine_systems import solved
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.question import (
@@ -24,6 +23,7 @@ from canon.exercise.question.question import (
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import transported
+from canon.mechanics.algebra.linear import solve_affine
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian as routh
@@ -159,7 +159,7 @@ def routhian_in_momenta(
     if any(equation.diff(v).has(*ignorable) for equation in equations for v in ignorable):
         return None
     value = lagrangian.L - sp.Add(*(p * v for p, v in zip(through, ignorable, strict=True)))
-    return sp.expand(sp.Integer(sign) * substitute(value, solved(equations, ignorable)), trig=False)
+    return sp.expand(sp.Integer(sign) * substitute(value, solve_affine(equations, ignorable)), trig=False)
 
 
 def lagrangian_of(reading: Reading, key: str = "L", forces: Sequence[Expr] | None = None) -> Lagrangian:

@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.judges.constrained import is_one_of, jets_of, with_jets
+from canon.exercise.judges.constrained import bound_by, is_one_of, jets_of, with_jets
 from canon.exercise.judges.energy_and_force import shown_short
-from canon.exercise.question.affine_systems import solved
+from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.implicit_point import refuted_at_a_point
 from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
-from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import (
     Branch,
     EmptyDomainError,
@@ -29,9 +28,9 @@ from canon.mechanics.algebra.constraint_manifold import (
     inhabited,
     on_manifold,
 )
+from canon.mechanics.algebra.linear import solve_affine
 from canon.mechanics.algebra.solve_for_symbol import named
 from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
-from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 from canon.proof.kinks import vanishes_off_kinks
@@ -41,20 +40,21 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.sheet.reading import Reading
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
 
 __all__ = ["leaving_condition", "reaction"]
 
 
 @dataclass(frozen=True)
 class _Motion:
-    """One branch of the constraint manifold, accelerations and multipliers on it, and the directions of reactions.
+    """One branch of the constraint manifold, accelerations and multipliers on it, and the forces of constraint.
 
     ``jets`` are the symbols that stand for arbitrary functions and their derivatives.
     """
 
     branch: Branch
     solution: Mapping[Symbol, Expr]
-    directions: sp.Matrix
+    forces: tuple[Expr, ...]
     jets: Mapping[Expr, Symbol]
 
     def seen(self, f: Expr) -> Expr:
@@ -73,11 +73,6 @@ def reaction(reading: Reading) -> Iterator[Question]:
     """Multipliers or generalized forces of constraint are what is claimed, on every motion that is meant."""
     q, multipliers = reading.symbols("q"), reading.symbols("multipliers")
     constraints = reading.equations("constraints")
-    if len(multipliers) != len(constraints):
-        reading.fault(
-            "multipliers",
-            f"{counted(len(multipliers), 'multiplier')} for {counted(len(constraints), 'constraint')}",
-        )
     if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
         check_not_empty(constraints, q, reading.time, reading.domain)
         yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
@@ -95,10 +90,9 @@ def reaction(reading: Reading) -> Iterator[Question]:
                     reading.fault(f"values.{name}", "should be in coordinates, velocities and time only")
                 parts.append(motion.part(name, value, motion.solution[names[name]], f"values.{name}"))
         if claimed:
-            forces = motion.directions.T * sp.Matrix(multipliers)
-            for i, (x, value) in enumerate(zip(q, claimed, strict=True)):
+            for i, (x, value, force) in enumerate(zip(q, claimed, motion.forces, strict=True)):
                 name = f"the force of constraint on {x}"
-                parts.append(motion.part(name, value, motion.seen(forces[i]), f"force[{i}]"))
+                parts.append(motion.part(name, value, motion.seen(force), f"force[{i}]"))
         yield Same(tuple(parts), motion.branch.domain, lambda parts=parts: _answer(parts))
     if not claimed:
         yield Determines(lambda: stay_open([s for s in multipliers if s.name not in values]))
@@ -127,27 +121,14 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
 
 def _force_is_the_rest(reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]) -> bool:
     """Whether the claim only says that Σ λ a is d/dt ∂L/∂q̇ − ∂L/∂q − Q, which needs no solution, for any L."""
-    directions, system, _ = _system(reading, constraints, multipliers)
-    forces = directions.T * sp.Matrix(multipliers)
+    bound = bound_by(reading, _lagrangian(reading), constraints, multipliers)
     claimed = reading.expressions("force", like="q")
-    return all(is_one_of(f - forces[i], system) for i, f in enumerate(claimed))
+    return all(is_one_of(f - force, bound.system) for f, force in zip(claimed, bound.forces, strict=True))
 
 
-def _system(
-    reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]
-) -> tuple[sp.Matrix, list[Expr], list[Expr]]:
-    """Return the directions of the reactions, the equations for q̈ and λ, and what vanishes in allowed velocities."""
-    q, t = reading.symbols("q"), reading.time
-    v = tuple(velocity(x) for x in q)
-    if any(g.diff(u).has(*v) for g in constraints for u in v):
-        reading.fault("constraints", "every constraint should be affine in the velocities")
-    held = [f if f.has(*v) else time_derivative(f, q, t) for f in constraints]
-    directions = sp.Matrix([[g.diff(u) for u in v] for g in held])
+def _lagrangian(reading: Reading) -> Lagrangian:
     forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
-    lagrangian = Lagrangian(reading.expression("L"), q, forces, t)
-    reactions = directions.T * sp.Matrix(multipliers)
-    system = [e - r for e, r in zip(lagrangian.equations, reactions, strict=True)]
-    return directions, system + [time_derivative(g, q, t) for g in held], held
+    return lagrangian_of(reading, forces=forces)
 
 
 def _motions(
@@ -155,19 +136,18 @@ def _motions(
 ) -> Iterator[_Motion]:
     q, t = reading.symbols("q"), reading.time
     v, a = tuple(velocity(x) for x in q), tuple(acceleration(x) for x in q)
-    directions, system, held = _system(reading, constraints, multipliers)
-    positions = [f for f in constraints if not f.has(*v)]
+    bound = bound_by(reading, _lagrangian(reading), constraints, multipliers)
     integrals = reading.equations("integrals") if reading.has("integrals") else ()
     rates = [time_derivative(f, q, t) for f in integrals]
-    held_at = (*positions, *held)
-    jets = jets_of((*system, *held_at, *integrals, *rates, *claims), t, reading.domain)
-    held_at, integrals = (tuple(exchanged(f, jets) for f in some) for some in (held_at, integrals))
-    directions = directions.applyfunc(lambda f: exchanged(f, jets))
+    jets = jets_of((*bound.system, *bound.manifold, *integrals, *rates, *claims), t, reading.domain)
+    held_at, integrals, forces = (
+        tuple(exchanged(f, jets) for f in some) for some in (bound.manifold, integrals, bound.forces)
+    )
     domain = with_jets(reading.domain, jets)
     check_whole([*(exchanged(f, jets) for f in constraints), *integrals], v, domain)
     for branch in inhabited(_with_integrals(on_manifold(held_at, domain, (t,), v), integrals, v, t)):
-        here = [substitute(exchanged(e, jets), branch.values) for e in system]
-        motion = _Motion(branch, solved(here, (*a, *multipliers), branch.domain), directions, jets)
+        here = [substitute(exchanged(e, jets), branch.values) for e in bound.system]
+        motion = _Motion(branch, solve_affine(here, (*a, *multipliers), branch.domain), forces, jets)
         _check_constant(reading, rates, motion)
         yield motion
 

@@ -10,9 +10,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
-from sympy import Expr
+from sympy import Expr, Symbol
 
-from canon.mechanics.algebra.substitution import size
+from canon.mechanics.algebra.substitution import exchanged, size
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
 from canon.proof.kinks import vanishes_off_kinks
@@ -20,7 +20,7 @@ from canon.proof.kinks import vanishes_off_kinks
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Elimination", "SingularMatrixError", "eliminate", "is_regular", "solve"]
+__all__ = ["Elimination", "SingularMatrixError", "eliminate", "is_regular", "solve", "solve_affine"]
 
 
 class SingularMatrixError(ValueError):
@@ -260,3 +260,31 @@ def _plainly_nonzero(entry: Expr) -> bool:
 
 def _listed(direction: Sequence[Expr]) -> str:
     return ", ".join(map(str, direction))
+
+
+def solve_affine(
+    equations: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    domain: Domain | None = None,
+    name: str = "the matrix of the equations",
+) -> dict[Symbol, Expr]:
+    """Return the unknowns that solve a square system, each expression = 0 and affine in them.
+
+    Raises
+    ------
+    SingularMatrixError
+        Where the system does not determine them.
+    Undecided
+        Where that could not be told.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, y, a = symbols("x y a")
+    >>> solve_affine([x + y - a, x - y], [x, y])
+    {x: a/2, y: a/2}
+    """
+    at_rest = dict.fromkeys(unknowns, sp.S.Zero)
+    matrix = sp.Matrix([[equation.diff(u) for u in unknowns] for equation in equations])
+    right = sp.Matrix([-exchanged(equation, at_rest) for equation in equations])
+    return dict(zip(unknowns, solve(matrix, right, domain, name).flat(), strict=True))

@@ -17,9 +17,10 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression
+from canon.mechanics.algebra.linear import solve_affine
 from canon.mechanics.algebra.substitution import as_tuple, entry
 from canon.mechanics.lagrange.body import bodies_of
-from canon.mechanics.lagrange.quasi_velocity import Kinematics, solved_for
+from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -150,7 +151,7 @@ class GibbsAppell:
         SingularMatrixError
             Where S does not determine them.
         """
-        return solved_for(self.u_dot, self.equations, "the matrix ∂²S/∂u̇²")
+        return tuple(solve_affine(self.equations, self.u_dot, name="the matrix ∂²S/∂u̇²").values())
 
 
 def cross(a: Sequence[Expr], b: Sequence[Expr]) -> tuple[Expr, Expr, Expr]:

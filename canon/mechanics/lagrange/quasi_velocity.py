@@ -19,7 +19,7 @@ from canon.expression.symbols.symbol import Rate, acceleration, time, velocity
 from canon.expression.symbols.user_input import counted, given_expression
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate, coordinate_symbols, needs_plain, plain
-from canon.mechanics.algebra.linear import eliminate, solve
+from canon.mechanics.algebra.linear import eliminate, solve, solve_affine
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged, substitute
 
 if TYPE_CHECKING:
@@ -200,12 +200,6 @@ def maggi_accelerations(lagrangian: Lagrangian, kinematics: Kinematics) -> tuple
         Where L does not determine them.
     """
     equations = maggi_equations(lagrangian, kinematics)
-    return solved_for(kinematics.u_dot, equations, "the matrix Bᵀ M B of Maggi's equations")
-
-
-def solved_for(unknowns: Sequence[Symbol], equations: Sequence[Expr], name: str) -> tuple[Expr, ...]:
-    """Return the unknowns of a square system of equations, each affine in them."""
-    matrix = sp.Matrix([[e.diff(a) for a in unknowns] for e in equations])
-    still = dict.fromkeys(unknowns, sp.S.Zero)
-    column = solve(matrix, sp.Matrix([-exchanged(e, still) for e in equations]), name=name)
-    return tuple(entry(column, i, 0) for i in range(len(unknowns)))
+    return tuple(
+        solve_affine(equations, kinematics.u_dot, name="the matrix Bᵀ M B of Maggi's equations").values()
+    )

@@ -14,10 +14,11 @@ import sympy as sp
 from sympy import Expr
 
 from canon.mechanics.algebra.dynamicsymbols import coordinate, plain
+from canon.mechanics.algebra.linear import solve_affine
 from canon.mechanics.algebra.substitution import entry
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
-from canon.mechanics.lagrange.quasi_velocity import Kinematics, solved_for
+from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,7 +46,7 @@ class QuasiMotion:
     @cached_property
     def quasi_accelerations(self) -> tuple[Expr, ...]:
         """The rates u̇(q, u, t) that solve the equations."""
-        return solved_for(self.kinematics.u_dot, self.equations, "the mass matrix")
+        return tuple(solve_affine(self.equations, self.kinematics.u_dot, name="the mass matrix").values())
 
 
 @overload
