@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import random
 import time
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
-from flint import acb, acb_mat
-from sympy.core.function import AppliedUndef
 
 from canon.expression.symbols.user_input import given_expression, given_kind, given_seconds, given_symbols
 from canon.proof.analytic import is_analytic, proved_sign
-from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict
 from canon.proof.kinks import off_kinks
-from canon.proof.refute.sample_functions import with_example_functions
-from canon.proof.trees.anatomy import anatomy
+from canon.proof.refute.largest_minor import determinant, largest_minor
 from canon.proof.trees.replacement import defined_nowhere
 from canon.proof.trees.sympy_types import arguments
 from canon.proof.vanish import vanishes
@@ -27,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from sympy import Expr, Symbol
+
+    from canon.proof.refute.largest_minor import Pivots, Rows
 
 __all__ = [
     "NotAffineError",
@@ -43,10 +41,6 @@ GENERIC = "generic point: the coefficients' largest minor is not zero"
 
 LONGEST_SAID = 80
 """Characters of conditions that are spelt out."""
-
-WORKING_BITS = 256
-POINTS = 12
-
 
 _ORDINALS = ("first", "second")
 
@@ -76,21 +70,6 @@ class NotAffineError(ValueError):
 def not_affine(equation: Expr) -> str:
     """Return in words that an equation is not affine, and what can be done."""
     return f"not affine in the unknowns: {equation} = 0; solve it for the unknowns or name others"
-
-
-@dataclass(frozen=True)
-class _System:
-    """An affine system as the rows of its augmented matrix (coefficients of the unknowns, then the rest)."""
-
-    rows: tuple[tuple[Expr, ...], ...]
-
-
-@dataclass(frozen=True)
-class _Pivots:
-    """Rows and columns of a minor that is certainly nonzero, as large as was found."""
-
-    rows: tuple[int, ...]
-    columns: tuple[int, ...]
 
 
 def equivalent_equations(
@@ -197,11 +176,14 @@ def _equivalent(
     if isinstance(a, str) or isinstance(b, str):
         verdict = Verdict(Status.UNDECIDED, evidence=tuple(Evidence("affine", text) for text in unknown))
         return replace(verdict, question=SAME_SOLUTIONS)
-    field = is_analytic([entry for system in (a, b) for row in system.rows for entry in row], domain)
-    extra = _rows_follow(b, a, system_b, 1, domain, deadline, said, field=field)
+    field = is_analytic([entry for system in (a, b) for row in system for entry in row], domain)
+    first, second = (
+        _Basis(rows, name, domain, deadline, field) for rows, name in zip((a, b), _ORDINALS, strict=True)
+    )
+    extra = _rows_follow(b, first, system_b, 1, said)
     if extra.fails:
         return replace(extra, question=SAME_SOLUTIONS)
-    missing = _rows_follow(a, b, system_a, 0, domain, deadline, said, field=field)
+    missing = _rows_follow(a, second, system_a, 0, said)
     worst = missing if missing.fails or extra.holds else extra
     assumed = tuple(dict.fromkeys((*extra.assumed, *missing.assumed))) if worst.holds else worst.assumed
     return replace(worst, question=SAME_SOLUTIONS, assumed=assumed)
@@ -223,12 +205,12 @@ def without_solution(system: Sequence[Expr], unknowns: Sequence[Symbol], domain:
     (True, False)
     """
     augmented = _augmented(system, unknowns, domain, "given", time.monotonic() + 1.0)
-    return not isinstance(augmented, str) and len(unknowns) in _largest_minor(augmented, domain).columns
+    return not isinstance(augmented, str) and len(unknowns) in largest_minor(augmented, domain).columns
 
 
 def _augmented(
     system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain, which: str, deadline: float
-) -> _System | str:
+) -> Rows | str:
     """Return slopes and rest of each equation, whose sum Σ slope·u + rest is proved to be the equation.
 
     A vanishing second derivative would not do: u·sign(u) and atan(tan u) have locally constant slopes.
@@ -248,7 +230,7 @@ def _augmented(
             if not rebuilt.holds:
                 return f"equation {number} of the {which} system was not proved affine in the unknowns"
         rows.append(tuple(row))
-    return _System(tuple(rows))
+    return tuple(rows)
 
 
 def _is_affine(expr: sp.Basic, unknowns: set[Symbol]) -> bool:
@@ -262,49 +244,97 @@ def _is_affine(expr: sp.Basic, unknowns: set[Symbol]) -> bool:
 
 
 def _rows_follow(
-    rows: _System,
-    basis: _System,
+    rows: Rows,
+    basis: _Basis,
     equations: Sequence[Expr],
     which: int,
-    domain: Domain,
-    deadline: float,
     said: Callable[[Stray], str],
-    *,
-    field: bool,
 ) -> Verdict:
     """Decide whether every row of one system lies in the row space of the other.
 
     Everything follows from a basis without solutions, one whose largest minor needs the column of the rest.
     """
-    names = (_ORDINALS[which], _ORDINALS[1 - which])
-    pivots = _largest_minor(basis, domain)
-    minor = _determinant([[basis.rows[i][c] for c in pivots.columns] for i in pivots.rows])
-    sure = field or proved_sign(minor, domain) in ("+", "-") or is_analytic(_without_moduli(minor), domain)
+    own, other = _ORDINALS[which], _ORDINALS[1 - which]
     undecided: list[Evidence] = []
-    if not sure:
-        undecided.append(
-            Evidence("rank", f"the minor {minor} of the {names[1]} system may vanish on a piece")
-        )
-    inconsistent = bool(basis.rows) and len(basis.rows[0]) - 1 in pivots.columns
-    for number, row in enumerate(() if inconsistent else rows.rows):
-        for bordered in _borders(row, basis, pivots):
-            determinant = _determinant(bordered)
-            verdict = vanishes(determinant, domain, max(0.1, deadline - time.monotonic()))
-            if verdict.fails and not sure:
-                verdict = vanishes(minor * determinant, domain, max(0.1, deadline - time.monotonic()))
-            if verdict.fails and _minor_is_largest(basis, pivots, domain, deadline):
+    if not basis.is_sure:
+        lost = f"the minor {basis.minor} of the {other} system may vanish on a piece"
+        undecided.append(Evidence("rank", lost))
+    for number, row in enumerate(() if basis.is_inconsistent else rows):
+        for verdict in basis.verdicts_on(row):
+            if verdict.fails:
                 stray = Stray(which, number, equations[number])
                 return replace(verdict, residual=stray.equation, feedback=said(stray))
-            if verdict.fails:
-                undecided.append(Evidence("rank", f"the rank of the {names[1]} system is not known"))
-            elif not verdict.holds:
-                undecided.extend(verdict.evidence)
             if not verdict.holds:
-                text = f"whether equation {number + 1} of the {names[0]} system follows"
-                undecided.append(Evidence("equation", text))
+                text = f"whether equation {number + 1} of the {own} system follows"
+                undecided += [*verdict.evidence, Evidence("equation", text)]
     if undecided:
         return Verdict(Status.UNDECIDED, evidence=tuple(dict.fromkeys(undecided)))
-    return Verdict(Status.HOLDS, certificate="exact", assumed=_generic(minor, domain) if field else ())
+    assumed = _generic(basis.minor, basis.domain) if basis.field else ()
+    return Verdict(Status.HOLDS, certificate="exact", assumed=assumed)
+
+
+@dataclass(frozen=True)
+class _Basis:
+    """A system whose row space is asked about; ``field`` tells whether its coefficients have no zero divisors."""
+
+    rows: Rows
+    name: str
+    domain: Domain
+    deadline: float
+    field: bool
+
+    @cached_property
+    def pivots(self) -> Pivots:
+        return largest_minor(self.rows, self.domain)
+
+    @cached_property
+    def minor(self) -> Expr:
+        return determinant([[self.rows[i][c] for c in self.pivots.columns] for i in self.pivots.rows])
+
+    @cached_property
+    def is_sure(self) -> bool:
+        """Whether the minor is proved to vanish on no piece of the domain."""
+        minor, domain = self.minor, self.domain
+        return (
+            self.field
+            or proved_sign(minor, domain) in ("+", "-")
+            or is_analytic(_without_moduli(minor), domain)
+        )
+
+    @property
+    def is_inconsistent(self) -> bool:
+        return bool(self.rows) and len(self.rows[0]) - 1 in self.pivots.columns
+
+    @cached_property
+    def is_spanned(self) -> bool:
+        """Whether every row is proved to depend on the pivots' rows.
+
+        Without that a row outside the pivots' span may still follow from the basis.
+        """
+        others = (row for number, row in enumerate(self.rows) if number not in self.pivots.rows)
+        return all(self._vanishes(d).holds for row in others for d in self._bordered(row))
+
+    def verdicts_on(self, row: Sequence[Expr]) -> Iterator[Verdict]:
+        """Yield for each border of the largest minor by a row whether its determinant vanishes."""
+        for bordered in self._bordered(row):
+            verdict = self._vanishes(bordered)
+            if verdict.fails and not self.is_sure:
+                verdict = self._vanishes(self.minor * bordered)
+            if verdict.fails and not self.is_spanned:
+                unknown = Evidence("rank", f"the rank of the {self.name} system is not known")
+                verdict = Verdict(Status.UNDECIDED, evidence=(unknown,))
+            yield verdict
+
+    def _vanishes(self, f: Expr) -> Verdict:
+        return vanishes(f, self.domain, max(0.1, self.deadline - time.monotonic()))
+
+    def _bordered(self, row: Sequence[Expr]) -> Iterator[Expr]:
+        """Border the pivots' minor with a row and, in turn, each column outside it."""
+        for column in range(len(row)):
+            if column not in self.pivots.columns:
+                columns = (*self.pivots.columns, column)
+                inner = ([self.rows[i][c] for c in columns] for i in self.pivots.rows)
+                yield determinant([*inner, [row[c] for c in columns]])
 
 
 def _without_moduli(minor: Expr) -> list[Expr]:
@@ -324,88 +354,3 @@ def _generic(minor: Expr, domain: Domain) -> tuple[str, ...]:
         return ()
     said = ", ".join(f"{f} ≠ 0" for f in left)
     return (f"generic point: {said}" if len(said) <= LONGEST_SAID else GENERIC,)
-
-
-def _borders(row: tuple[Expr, ...], basis: _System, pivots: _Pivots) -> Iterator[list[list[Expr]]]:
-    """Border the pivots' minor with a row and, in turn, each column outside it."""
-    for column in range(len(row)):
-        if column not in pivots.columns:
-            columns = (*pivots.columns, column)
-            yield [*([basis.rows[i][c] for c in columns] for i in pivots.rows), [row[c] for c in columns]]
-
-
-def _minor_is_largest(basis: _System, pivots: _Pivots, domain: Domain, deadline: float) -> bool:
-    """Tell whether every row of the basis is proved to depend on the pivots' rows.
-
-    Without that a row outside the pivots' span may still follow from the basis.
-    """
-    return all(
-        vanishes(_determinant(bordered), domain, max(0.1, deadline - time.monotonic())).holds
-        for number, row in enumerate(basis.rows)
-        if number not in pivots.rows
-        for bordered in _borders(row, basis, pivots)
-    )
-
-
-def _largest_minor(system: _System, domain: Domain) -> _Pivots:
-    """Find the largest minor that balls certify as nonzero at some point of the domain."""
-    best = _Pivots((), ())
-    if not system.rows:
-        return best
-    symbols = anatomy([entry for row in system.rows for entry in row]).symbols
-    system = _with_examples(system)
-    full = min(len(system.rows), len(system.rows[0]))
-    for point in domain.points(symbols, POINTS, seed=3, but_functions=True):
-        found = _pivots_at(system, point)
-        if len(found.rows) > len(best.rows):
-            best = found
-        if len(best.rows) == full:
-            break
-    return best
-
-
-def _with_examples(system: _System) -> _System:
-    """Put examples for the arbitrary functions: a minor that is nonzero for one choice is not zero."""
-    entries = [entry for row in system.rows for entry in row]
-    if any(entry.has(AppliedUndef) for entry in entries):
-        entries, _ = with_example_functions(entries, random.Random(3))
-    width = len(system.rows[0])
-    return _System(tuple(tuple(entries[i : i + width]) for i in range(0, len(entries), width)))
-
-
-def _pivots_at(system: _System, point: dict[Symbol, sp.Rational]) -> _Pivots:
-    with precision(WORKING_BITS):
-        memo: dict[sp.Basic, acb] = {}
-        try:
-            matrix = [[value(entry, point, memo) for entry in row] for row in system.rows]
-        except (Undefined, NotDecided, Unmodelled):
-            return _Pivots((), ())
-        rows: list[int] = []
-        columns: list[int] = []
-        for column in range(len(matrix[0])):
-            for i in range(len(matrix)):
-                if i in rows:
-                    continue
-                minor = acb_mat([[matrix[r][c] for c in (*columns, column)] for r in (*rows, i)])
-                if not minor.det().contains(0):
-                    rows.append(i)
-                    columns.append(column)
-                    break
-        return _Pivots(tuple(rows), tuple(columns))
-
-
-def _determinant(matrix: list[list[Expr]]) -> Expr:
-    """Return the determinant by Laplace's expansion along the rows, minors shared."""
-    size = len(matrix)
-    minors: dict[tuple[int, ...], Expr] = {(): sp.Integer(1)}
-    for depth in range(size):
-        row = matrix[size - 1 - depth]
-        larger: dict[tuple[int, ...], Expr] = {}
-        for columns, minor in minors.items():
-            for c in range(size):
-                if c not in columns and row[c] != 0 and minor != 0:
-                    chosen = tuple(sorted((*columns, c)))
-                    sign = (-1) ** chosen.index(c)
-                    larger[chosen] = larger.get(chosen, sp.Integer(0)) + sign * row[c] * minor
-        minors = larger
-    return minors.get(tuple(range(size)), sp.Integer(0))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -143,52 +144,75 @@ def equal(
 
 def _matrix_vanishes(matrix: sp.MatrixBase, domain: Domain, start: float, budget: float) -> Verdict:
     """Decide entry by entry, equal entries once; the first entry that fails decides."""
+    deadline = start + budget
     places: dict[Expr, tuple[int, int]] = {}
-    for i in range(matrix.rows):
-        for j in range(matrix.cols):
-            if matrix[i, j] != 0:
-                places.setdefault(_exact(matrix[i, j]), (i, j))
+    for i, j in product(range(matrix.rows), range(matrix.cols)):
+        if matrix[i, j] != 0:
+            places.setdefault(_exact(matrix[i, j]), (i, j))
     entries = list(places)
     try:
-        search, number = first_counterexample(entries, domain, start + budget)
+        search, number = first_counterexample(entries, domain, deadline)
     except REFUSALS:
         search, number = Search(), None
     if number is not None:
         failed = _refuted(entries[number], sp.Integer(0), search)
         return _at_entry(failed, places[entries[number]], "does not vanish", start)
-    proofs = prove_each(entries, domain, min(start + budget, time.monotonic() + QUICK_SECONDS), QUICK)
-    rungs = {rung: None for proof in proofs if proof.holds for rung in proof.rungs}
-    open_ = [entry for entry, proof in zip(entries, proofs, strict=True) if not proof.holds]
-    if len(open_) > 1 and (seconds := start + budget - time.monotonic()) > 0:
-        answer = prove_in_worker(open_, domain, WORKER_SHARE * seconds)
-        if not isinstance(answer, str):
-            rungs |= {rung: None for proof in answer if proof.holds for rung in proof.rungs}
-            open_ = [entry for entry, proof in zip(open_, answer, strict=True) if not proof.holds]
-    undecided: Verdict | None = None
-    for entry in open_:
-        if time.monotonic() > start + budget:
-            late = Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "not finished in time"),))
-            undecided = undecided if undecided is not None else late
-            undecided = _at_entry(undecided, places[entry], "was not decided", start)
-            break
-        verdict = _decide(entry, sp.Integer(0), domain, start + budget, ALONE)
-        if verdict.fails:
-            return _at_entry(verdict, places[entry], "does not vanish", start)
-        if verdict.holds:
-            rungs[verdict.certificate] = None
-        elif undecided is None:
-            undecided = _at_entry(verdict, places[entry], "was not decided", start)
-    if undecided is not None:
+    rungs, open_ = _proved_together(entries, domain, deadline)
+    answer = _one_by_one({entry: places[entry] for entry in open_}, rungs, domain, start, deadline)
+    if answer is not None and answer.undecided:
         screened = Evidence("screen", f"no entry was refuted at {search.agreements} random points")
-        return replace(undecided, evidence=(screened, *undecided.evidence))
+        return replace(answer, evidence=(screened, *answer.evidence))
+    if answer is not None:
+        return answer
     proved = Verdict(Status.HOLDS, certificate=" + ".join(rungs) or "exact")
     for number, entry in enumerate(entries):
-        verdict = _with_values(
-            proved, (entry,), ALONE, domain, start + budget, valued=number in search.valued
-        )
+        valued = number in search.valued
+        verdict = _with_values(proved, (entry,), ALONE, domain, deadline, valued=valued)
         if not verdict.holds:
             return _at_entry(verdict, places[entry], verdict.feedback.removeprefix(ALONE[0]).strip(), start)
     return replace(proved, seconds=time.monotonic() - start)
+
+
+def _proved_together(
+    entries: list[Expr], domain: Domain, deadline: float
+) -> tuple[dict[str, None], list[Expr]]:
+    """Return the rungs that proved entries zero, first quickly, then in the worker; and the entries that are left."""
+    rungs: dict[str, None] = {}
+
+    def left_by(proofs: Sequence[Attempt], open_: list[Expr]) -> list[Expr]:
+        rungs.update({rung: None for proof in proofs if proof.holds for rung in proof.rungs})
+        return [entry for entry, proof in zip(open_, proofs, strict=True) if not proof.holds]
+
+    quickly = min(deadline, time.monotonic() + QUICK_SECONDS)
+    open_ = left_by(prove_each(entries, domain, quickly, QUICK), entries)
+    if len(open_) > 1 and (seconds := deadline - time.monotonic()) > 0:
+        answer = prove_in_worker(open_, domain, WORKER_SHARE * seconds)
+        if not isinstance(answer, str):
+            open_ = left_by(answer, open_)
+    return rungs, open_
+
+
+def _one_by_one(
+    places: dict[Expr, tuple[int, int]],
+    rungs: dict[str, None],
+    domain: Domain,
+    start: float,
+    deadline: float,
+) -> Verdict | None:
+    """Decide each entry for itself: the first that fails, else the first that stays open; None where all vanish."""
+    undecided: Verdict | None = None
+    for entry, place in places.items():
+        if time.monotonic() > deadline:
+            late = Verdict(Status.UNDECIDED, evidence=(Evidence("tried", "not finished in time"),))
+            return _at_entry(late if undecided is None else undecided, place, "was not decided", start)
+        verdict = _decide(entry, sp.Integer(0), domain, deadline, ALONE)
+        if verdict.fails:
+            return _at_entry(verdict, place, "does not vanish", start)
+        if verdict.holds:
+            rungs[verdict.certificate] = None
+        elif undecided is None:
+            undecided = _at_entry(verdict, place, "was not decided", start)
+    return undecided
 
 
 def _entries_with_values(
