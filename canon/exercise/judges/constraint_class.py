@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import time as clock
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -22,7 +23,7 @@ from canon.mechanics.lagrange.constraint_system import ConstraintSystem
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from canon.exercise.sheet.reading import Reading
 
@@ -35,32 +36,37 @@ _RELATION = re.compile(r"(<=|>=|<|>|=|≤|≥|\\leq?\b|\\geq?\b)")
 def constraint_class(reading: Reading) -> Iterator[Question]:
     """Each word of the claim is right for the constraints as a whole."""
     constraints = _constraints(reading)
-    known = {word for pair in _PAIRS for word in pair}
-    right: list[str] = []
+    pairs = [_pair_of(reading, i, word) for i, word in enumerate(reading.claim.keys["class"])]
     verdicts: list[Verdict] = []
-    for i, word in enumerate(reading.claim.keys["class"]):
-        if word not in known:
-            reading.fault(f"class[{i}]", f"should be one of {', '.join(sorted(known))}")
-        pair = next(pair for pair in _PAIRS if word in pair)
+    for word, pair in zip(reading.claim.keys["class"], pairs, strict=True):
         first = _first_of(pair, constraints)
-        right.append(pair[0] if first.holds else pair[1] if first.fails else "?")
         verdict = first if word == pair[0] else opposite(first, "")
         verdicts.append(verdict.about(word))
         if verdict.fails:
-            said = Verdict(
-                Status.FAILS,
-                word,
-                verdict.certificate if verdict.counterexample else "exact",
-                verdict.residual,
-                verdict.counterexample,
-                feedback=_why(right[-1], constraints),
-            )
-            yield Stated(said, lambda: ", ".join(right))
+            yield _wrong_word(verdict, word, pairs[: len(verdicts)], constraints)
             return
     yield Stated(all_hold(verdicts))
-    words = reading.claim.keys["class"]
-    untold = [" or ".join(pair) for pair in _PAIRS if not set(pair) & set(words)]
+    untold = [" or ".join(pair) for pair in _PAIRS if pair not in pairs]
     yield Determines(lambda: stay_open(untold))
+
+
+def _pair_of(reading: Reading, i: int, word: str) -> tuple[str, str]:
+    found = next((pair for pair in _PAIRS if word in pair), None)
+    if found is None:
+        known = sorted(word for pair in _PAIRS for word in pair)
+        reading.fault(f"class[{i}]", f"should be one of {', '.join(known)}")
+    return found
+
+
+def _wrong_word(
+    verdict: Verdict, word: str, asked: Sequence[tuple[str, str]], constraints: ConstraintSystem
+) -> Stated:
+    """Return FAILS for a word, with why the other is right, and the right words of all pairs asked about so far."""
+    firsts = [(pair, _first_of(pair, constraints)) for pair in asked]
+    right = [pair[0] if first.holds else pair[1] if first.fails else "?" for pair, first in firsts]
+    certificate = verdict.certificate if verdict.counterexample else "exact"
+    said = replace(verdict, question=word, certificate=certificate, feedback=_why(right[-1], constraints))
+    return Stated(said, lambda: ", ".join(right))
 
 
 def degrees_of_freedom(reading: Reading) -> Iterator[Question]:

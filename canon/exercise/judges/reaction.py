@@ -68,6 +68,11 @@ class _Motion:
         written = {symbol: function for function, symbol in self.jets.items()}
         return Part(name, value, right, {**self.branch.values, **known}, key, written)
 
+    def of_forces(self, q: Sequence[Symbol], claimed: Sequence[Expr]) -> Iterator[Part]:
+        """Yield the claimed forces of constraint; none where none is claimed."""
+        for i, (x, value, force) in enumerate(zip(q, claimed, self.forces, strict=False)):
+            yield self.part(f"the force of constraint on {x}", value, self.seen(force), f"force[{i}]")
+
 
 def reaction(reading: Reading) -> Iterator[Question]:
     """Multipliers or generalized forces of constraint are what is claimed, on every motion that is meant."""
@@ -80,22 +85,20 @@ def reaction(reading: Reading) -> Iterator[Question]:
     values = reading.table("values") if reading.has("values") else {}
     claimed = reading.expressions("force", like="q") if reading.has("force") else ()
     for motion in _motions(reading, constraints, multipliers, (*values.values(), *claimed)):
-        parts: list[Part] = []
-        if values:
-            names = {s.name: s for s in multipliers}
-            for name, value in values.items():
-                if name not in names:
-                    reading.fault(f"values.{name}", "is not among the multipliers")
-                if value.has(*multipliers):
-                    reading.fault(f"values.{name}", "should be in coordinates, velocities and time only")
-                parts.append(motion.part(name, value, motion.solution[names[name]], f"values.{name}"))
-        if claimed:
-            for i, (x, value, force) in enumerate(zip(q, claimed, motion.forces, strict=True)):
-                name = f"the force of constraint on {x}"
-                parts.append(motion.part(name, value, motion.seen(force), f"force[{i}]"))
-        yield Same(tuple(parts), motion.branch.domain, lambda parts=parts: _answer(parts))
+        parts = (*_of_multipliers(reading, motion, values), *motion.of_forces(q, claimed))
+        yield Same(parts, motion.branch.domain, lambda parts=parts: _answer(parts))
     if not claimed:
         yield Determines(lambda: stay_open([s for s in multipliers if s.name not in values]))
+
+
+def _of_multipliers(reading: Reading, motion: _Motion, values: Mapping[str, Expr]) -> Iterator[Part]:
+    names = {s.name: s for s in reading.symbols("multipliers")}
+    for name, value in values.items():
+        if name not in names:
+            reading.fault(f"values.{name}", "is not among the multipliers")
+        if value.has(*names.values()):
+            reading.fault(f"values.{name}", "should be in coordinates, velocities and time only")
+        yield motion.part(name, value, motion.solution[names[name]], f"values.{name}")
 
 
 def leaving_condition(reading: Reading) -> Iterator[Question]:

@@ -130,25 +130,29 @@ def channels(reader: Reader, bodies: Sequence[Body], field: Sequence[Expr] = ())
     field
         The acceleration vector of gravity, of the dimension of the positions; nothing where there is none.
     """
-    zero = reader.graph.zero
     for body in bodies:
         if len(body.r) not in (0, len(field)) and field:
             raise ValueError(
                 f"a field of {counted(len(field), 'component')} acts on a position of {len(body.r)}"
             )
-        mass = reader.node(body.m)
-        loads = [reader.node(sp.sympify(g, strict=True)) for g in field] if body.r else []
-        for k, place in enumerate(body.r):
-            pairs, rest = reader.slopes(place)
-            load = loads[k] if loads and loads[k] != zero else None
-            if pairs or rest is not None:
-                yield Channel(mass, pairs, rest, load)
+        yield from _moving(reader, body, field)
         if isinstance(body, PlanarBody) and body.angle is not None:
             pairs, rest = reader.slopes(body.angle)
             if pairs or rest is not None:
                 yield Channel(reader.node(body.moment), pairs, rest)
         elif not isinstance(body, Particle):
             yield from _turning(reader, body)
+
+
+def _moving(reader: Reader, body: Body, field: Sequence[Expr]) -> Iterator[Channel]:
+    """Yield the components of the position that move, with what the field pulls along them."""
+    mass = reader.node(body.m)
+    loads = [reader.node(sp.sympify(g, strict=True)) for g in field] if body.r else []
+    for k, place in enumerate(body.r):
+        pairs, rest = reader.slopes(place)
+        load = loads[k] if loads and loads[k] != reader.graph.zero else None
+        if pairs or rest is not None:
+            yield Channel(mass, pairs, rest, load)
 
 
 def _turning(reader: Reader, body: PlanarBody | RigidBody) -> Iterator[Channel]:

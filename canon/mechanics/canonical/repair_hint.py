@@ -140,16 +140,13 @@ def repair_hint(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> RepairHint 
         if left < 0:
             return None
         constants[i, j] = constant_value(T.poisson_bracket_of(i, n + j), T.variables, T.domain, left, T.t)
-    found: list[Expr] = []
-    partners: list[int] = []
-    for i in range(n):
-        others = [j for j in range(n) if constants[i, j] != 0]
-        value = constants[i, others[0]] if len(others) == 1 else None
-        if value is None:
-            return None
-        found.append(value)
-        partners += others
-    return RepairHint(tuple(found), c, tuple(partners))
+    partners = [[j for j in range(n) if constants[i, j] != 0] for i in range(n)]
+    if any(len(others) != 1 for others in partners):
+        return None
+    found = [constants[i, j] for i, (j,) in enumerate(partners)]
+    if None in found:
+        return None
+    return RepairHint(tuple(cast("list[Expr]", found)), c, tuple(j for (j,) in partners))
 
 
 def _vanishes(f: Expr, domain: Domain) -> bool:

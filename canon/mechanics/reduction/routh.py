@@ -216,21 +216,7 @@ def routhian(
     if convention not in get_args(Convention):
         raise ValueError(f"convention {convention!r} is unknown; write 'L-pq' or 'pq-L'")
     given_kind(lagrangian, Lagrangian, "what routhian() reduces")
-    ignored = (
-        coordinate_symbols(ignorable) if ignorable is not None else ignorable_coordinates(lagrangian, domain)
-    )
-    for s in ignored:
-        verdict = is_ignorable(lagrangian, s, domain)
-        if not verdict.holds:
-            raise ValueError(
-                f"{s} is not ignorable: {verdict.feedback or verdict.status.name}; leave it out of ignorable"
-            )
-    p = coordinate_symbols(momenta) if momenta is not None else tuple(momentum(s) for s in ignored)
-    if len(p) != len(ignored):
-        raise ValueError(
-            f"{counted(len(p), 'momentum', 'momenta')} for "
-            f"{counted(len(ignored), 'ignorable coordinate')}; each needs one"
-        )
+    ignored, p = _ignored(lagrangian, ignorable, momenta, domain)
     rest = tuple(s for s in lagrangian.q if s not in ignored)
     pairs = dict(zip(lagrangian.q, lagrangian.forces, strict=False))
     forces = tuple(pairs[s] for s in rest) if pairs else ()
@@ -253,6 +239,31 @@ def routhian(
         through = dict(zip(velocities, (negative.diff(x) for x in p), strict=True))
         forces = tuple(exchanged(Q, through) for Q in forces)
     return Routhian(R, rest, ignored, p, convention, forces, lagrangian.t)
+
+
+def _ignored(
+    lagrangian: Lagrangian,
+    ignorable: Sequence[Symbol] | None,
+    momenta: Sequence[Symbol] | None,
+    domain: Domain | None,
+) -> tuple[tuple[Symbol, ...], tuple[Symbol, ...]]:
+    """Return the coordinates to ignore, each proved ignorable, and the symbols of their momenta."""
+    ignored = (
+        coordinate_symbols(ignorable) if ignorable is not None else ignorable_coordinates(lagrangian, domain)
+    )
+    for s in ignored:
+        verdict = is_ignorable(lagrangian, s, domain)
+        if not verdict.holds:
+            raise ValueError(
+                f"{s} is not ignorable: {verdict.feedback or verdict.status.name}; leave it out of ignorable"
+            )
+    p = coordinate_symbols(momenta) if momenta is not None else tuple(momentum(s) for s in ignored)
+    if len(p) != len(ignored):
+        raise ValueError(
+            f"{counted(len(p), 'momentum', 'momenta')} for "
+            f"{counted(len(ignored), 'ignorable coordinate')}; each needs one"
+        )
+    return ignored, p
 
 
 def _integral_from_zero(f: Expr, t: Symbol) -> Expr:
