@@ -1,7 +1,7 @@
 """Error estimate of a computed motion: its distance from a more exact companion run, and how errors grow.
 
-A method of fixed steps is repeated with half the step in wider numbers; every other one is compared with Taylor's
-method in wider numbers. The difference is the error of the motion, but for what the companion itself errs: a third of
+A method of fixed steps is repeated with half the step in wider numbers; every other one, and one that may have passed
+over a pulse or a bump, is compared with Taylor's method in wider numbers. The difference is the error of the motion, but for what the companion itself errs: a third of
 it for a method of order 2, less for higher ones. A second companion starts a little beside the first; how their
 distance grows says what becomes of every error, of the start's as of each step's. In a chaotic motion it grows like
 exp(t/τ) until the two have nothing to do with each other; from there on no single trajectory means anything, however it
@@ -25,6 +25,7 @@ from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.observables_along import jumped
 from canon.flow.run.sampling_plan import Plan
 from canon.kernel.llvm.number_types import EXTENDED
+from canon.kernel.program.localised_terms import exponents_of, sights
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -58,6 +59,9 @@ _OFTEN = 4
 
 _FEWEST = 8
 """Samples from which growth is judged."""
+
+_AS_WIDE = {"single": "double", "compensated": "double", "double-double": "quad"}
+"""Precisions of fixed steps, and those of Taylor's method that are as wide."""
 
 _SLICES = 20
 
@@ -263,12 +267,13 @@ class _CompanionTask:
 def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
     """Yield companions, each more exact than the one before."""
     plan = task.plan
-    if plan.h is None:
+    if plan.h is None or _may_have_passed(task, samples):
         # An event that has ended the motion may end the companion a little later.
         t = plan.instants if samples.crossings and len(samples.t) < len(plan.instants) else samples.t
         ends = sorted({round(k * (len(t) - 1) / _SLICES) for k in range(1, _SLICES + 1)} - {0})
-        plan = Plan(plan.start, t, ends=tuple(ends), exact=plan.exact)
-        given = "double" if task.method.engine.takes_step else task.precision_name
+        exact = plan.exact if plan.h is None else {k: plan.last(k) for k in range(len(t))}
+        plan = Plan(plan.start, t, ends=tuple(ends), exact=exact)
+        given = _AS_WIDE.get(task.precision_name, task.precision_name)
         for precision, bits in _wider_taylor(given):
             better = replace(task, method=Taylor(), plan=plan, precision=precision)
             yield _CompanionTask(
@@ -279,6 +284,15 @@ def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
     for precision in _wider(task):
         words = f"{task.method}, step {float(half.h or 0):g}, {precision}"
         yield _CompanionTask(replace(task, plan=half, precision=precision), words, 2.0 ** -_BITS[precision])
+
+
+def _may_have_passed(task: Task, samples: Samples) -> bool:
+    """Return whether steps may have passed over a localised term, which steps of half their size may do again."""
+    exponents = exponents_of(task.system.graph, task.system.rates)
+    point = dict(zip(task.system.inputs, (*samples.y, samples.t[:, np.newaxis]), strict=True))
+    with np.errstate(all="ignore"):
+        found = task.system.graph.evaluate(exponents, point)
+    return any(not (abs(np.asarray(x)) <= sights(2.0**-52)[1]).all() for x in found)
 
 
 def _wider_taylor(given: str) -> list[tuple[str | int, int]]:

@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 from scipy.special import ellipj, ellipk
 
-from canon import RK4, AccuracyWarning, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon import DOP853, RK4, Gauss, AccuracyWarning, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon import time as t
 from canon.flow.adaptive.state_unit import state_unit
 from canon.flow.checked_request import hamilton_equations_of
@@ -134,3 +134,30 @@ def test_a_jump_is_told_where_the_terms_vanish_at_the_start():
     """A wrong twin: steps of 1.9 blow the released pendulum's energy up, and that is warned of."""
     with pytest.warns(AccuracyWarning):
         propagate(moving(-sp.cos(x)), y0=[math.pi / 2, 0], t_span=(0, 20), method=RK4(), step=2.5, samples=8)
+
+
+@pytest.mark.parametrize("width", [0.1, 1e-3])
+@pytest.mark.parametrize("terms", ["pulse", "bump"])
+def test_dop853_does_not_pass_over_what_it_cannot_see(width, terms):
+    w = sp.Rational(Fraction(width))
+    if terms == "pulse":
+        motion = propagate(
+            moving(-x * sp.exp(-(((t - 50) / w) ** 2)) / w), y0=[0, 1], t_span=(0, 100), method=DOP853()
+        )
+        assert motion.final[1] == pytest.approx(1 + math.sqrt(math.pi), rel=1e-9)
+    else:
+        motion = propagate(moving(sp.tanh((x - 20) / w) / 100), y0=[0, 1], t_span=(0, 50), method=DOP853())
+        assert motion.final[1] == pytest.approx(math.sqrt(1 - 0.04), rel=1e-9)
+
+
+@pytest.mark.parametrize("method", [Splitting("kahan-li-8"), Gauss(4)])
+def test_steps_over_a_pulse_are_told_by_the_estimate(method):
+    """Steps of half the size pass over it too; the true motion is Taylor's."""
+    H = moving(x**2 / 2 - x / 2 * sp.exp(-(((t - sp.Rational(50013, 1000)) * 1000) ** 2)))
+    motion = propagate(H, y0=[1, 0], t_span=(0, 100), method=method, step=0.025, samples=20)
+    exact = propagate(H, y0=[1, 0], t_span=(0, 100), samples=20)
+    missed = abs(motion.y - exact.y).max()
+    estimate = motion.error_estimate()
+    assert missed > 1e-4
+    assert (abs(motion.y - exact.y) <= estimate.error).all()
+    assert estimate.companion.startswith("Taylor")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.adaptive.longest_step import longest_step
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.samples import Samples
 from canon.kernel.llvm.loop import field_function
@@ -73,6 +74,7 @@ def _dop853(
         field.call(x.ctypes.data, out.ctypes.data)
         return out.copy()
 
+    longest = longest_step(system)
     started, steps, sample = time.thread_time(), 0, 1
     tolerance = method.tolerance
     integrator = integrate.DOP853(rate, times[0], y0, times[-1], rtol=max(tolerance, 2.3e-14), atol=tolerance)
@@ -82,6 +84,7 @@ def _dop853(
     try:
         while sample < len(times):
             before, kept = integrator.t, integrator.y.copy()
+            integrator.max_step = longest(before, kept)
             message = integrator.step()
             steps += 1
             if integrator.status == "failed" or not np.isfinite(integrator.y).all():
