@@ -38,14 +38,14 @@ def rows() -> Iterator[Row]:
     """Yield the rows."""
     for width in WIDTHS:
         for name, how in METHODS.items():
-            said = f"a force exp(−((t − 50)/w)²)/w for the time w = {width:g} about t = 50, {name}; truth by erf"
+            said = (
+                f"a force exp(−((t − 50)/w)²)/w for the time w = {width:g} about t = 50, {name}; truth by erf"
+            )
             yield _row(f"pulse-{width:g}-{name}", said, partial(pulse, width), how)
         for shape in ("gauss", "tanh", "lorentz"):
             for name in ("taylor", "quad", "dop853"):
-                said = f"a {shape} hill {width:g} wide at x = 20, reached at t = 20 with p = 1, {name}; heyoka, 50 digits"
-                yield _row(
-                    f"hill-{shape}-{width:g}-{name}", said, partial(hill, shape, width), METHODS[name]
-                )
+                said = f"a {shape} hill {width:g} wide at x = 20, met at t = 20 with p = 1, {name}; heyoka, 50 digits"
+                yield _row(f"hill-{shape}-{width:g}-{name}", said, partial(hill, shape, width), METHODS[name])
     for power in (4, 6, 8, 10, 12, 16, 20, 24):
         for name in ("taylor", "tolerance", "quad"):
             said = f"from the origin into x^{power}/{power}: most Taylor coefficients vanish, {name}; heyoka, 60 digits"
@@ -60,7 +60,9 @@ def rows() -> Iterator[Row]:
             said = f"{name}: an oscillator of mass 1e{exponent} and amplitude 1; truth by cos"
             yield _row(f"mass-1e{exponent}-{name}", said, partial(oscillator, exponent, 0), METHODS[name])
             said = f"{name}: an oscillator of mass 1 and amplitude 1e{exponent}; truth by cos"
-            yield _row(f"amplitude-1e{exponent}-{name}", said, partial(oscillator, 0, exponent), METHODS[name])
+            yield _row(
+                f"amplitude-1e{exponent}-{name}", said, partial(oscillator, 0, exponent), METHODS[name]
+            )
 
 
 def _row(name: str, tried: str, problem: Any, how: dict[str, Any]) -> Row:

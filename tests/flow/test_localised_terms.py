@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 from scipy.special import ellipj, ellipk
 
-from canon import DOP853, RK4, Gauss, AccuracyWarning, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon import DOP853, RK4, AccuracyWarning, Gauss, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon import time as t
 from canon.flow.adaptive.state_unit import state_unit
 from canon.flow.checked_request import hamilton_equations_of
