@@ -323,3 +323,18 @@ def test_claims_that_do_not_fit_together(claim, key):
     with pytest.raises(InvalidClaim) as caught:
         judge(sheet({"id": "a", **claim}).claims[0])
     assert caught.value.error.key == key
+
+
+@pytest.mark.parametrize(
+    "text", ["\theta + 1", "1 + \frac{1}{2}", "$\theta + 1$", "\begin{align} x", "x\right)"]
+)
+def test_latex_that_lost_its_backslashes_to_quotes_says_so(text):
+    keys = {"id": "a", "kind": "equality-only", "lhs": text, "rhs": "1", "parameters": {"theta": "real"}}
+    (error,) = sheet_from(json.dumps({"claims": [keys]}).encode(), toml=False).errors
+    assert "a backslash and a letter became one sign here" in str(error)
+
+
+@pytest.mark.parametrize("text", ["x +\tan", "a\tb", "x\ny", "x\r\n+ 1"])
+def test_blanks_are_no_lost_backslashes(text):
+    keys = {"id": "a", "kind": "equality-only", "lhs": text, "rhs": "1", "parameters": {"x": "real"}}
+    assert not sheet_from(json.dumps({"claims": [keys]}).encode(), toml=False).errors

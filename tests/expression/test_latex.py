@@ -140,9 +140,8 @@ PAIRS = [
     (r"\frac{d}{dt}\left(\theta\sin\theta\right) - m\,d^2x/dt^2",
      "theta_dot*(sin(theta) + theta*cos(theta)) - m*x_ddot"),
     (r"\begin{cases} x & x > 0 \\ -x & \text{otherwise} \end{cases}", "Piecewise((x, x > 0), (-x, True))"),
-    (r"\begin{cases} x & x > 1 \\\begin{cases} y & x > 0 \\ a & \text{else} \\ \end{cases} + b & x > -1 \\"
-     r" 0 & \text{otherwise} \end{cases}",
-     "Piecewise((x, x > 1), (Piecewise((y, x > 0), (a, True)) + b, x > -1), (0, True))"),
+    (r"\begin{cases} x & x > 1 \\\begin{cases} y & x > 0 \\ a & \text{else} \\ \end{cases} & x > -1 \end{cases}",
+     "Piecewise((x, x > 1), (Piecewise((y, x > 0), (a, True)), x > -1))"),
     # the habits of print
     (r"\sin\theta\dot\theta + \sin^2\theta\,\dot\phi^2", "sin(theta)*theta_dot + sin(theta)**2*phi_dot**2"),
     (r"\sin\theta\left(a + b\right) + \cos\theta p_\theta", "sin(theta)*(a + b) + cos(theta)*p_theta"),

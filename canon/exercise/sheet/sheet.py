@@ -219,11 +219,14 @@ _EATEN = re.compile(
 )
 """What is left of \\theta, \\beta, \\frac, \\rho, \\nabla where a backslash and a letter became one character."""
 
+_SURELY_EATEN = re.compile("\t(?=heta|imes|frac|ext\\{)|\x08(?=eta|ar|egin)|\x0c(?=rac)|\r(?=ho|ight)")
+"""The same in LaTeX without dollars, as far as plain text never has it."""
+
 
 def _eaten(value: Any) -> bool:
     """Tell whether LaTeX in a value lost backslashes to the quotes it stood in."""
     if isinstance(value, str):
-        return value.lstrip().startswith("$") and _EATEN.search(value) is not None
+        return (_EATEN if "$" in value else _SURELY_EATEN).search(value) is not None
     if isinstance(value, dict):
         return any(map(_eaten, value.values()))
     return isinstance(value, list) and any(map(_eaten, value))

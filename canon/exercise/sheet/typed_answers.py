@@ -192,7 +192,7 @@ class _Plain:
     def passed(self, place: str, side: Side) -> None:
         """Note a definition that nothing can be asked of."""
         self.found.passed.append(
-            f"{side.text.strip()} in {place} is passed over: what it is made of is not given here"
+            f"{side.text.strip().lstrip('$')} in {place} is passed over: what it is made of is not given here"
         )
 
     def read(self, place: str, text: str, side: Side, asked: Quantity) -> None:
