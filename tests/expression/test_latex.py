@@ -552,7 +552,7 @@ WIDE = [
     r"\sin\theta\dot\theta" * 2_000 + "/", r"{\rm d}" * 6_000, r"{\dot x}_" * 5_000, r"\vec" * MANY,
     r"\mathrm{d}/" * 4_000, r"d\theta/dt" * 4_000 + "/", r"\over" * 8_000, r"{a \over " * 4_000,
     "=" * MANY + r"\theta", r"x=\theta;" * 5_000, "\n" * MANY + r"\theta +", r"\quad" * 8_000 + "=",
-    r"%" * MANY + "\n^{", r"\label{a}" * 5_000 + "+", "x^{9^{9^{9^{9}}}}", r"\frac{1}{x-x}\theta",
+    r"%" * MANY + "\n^{", r"\label{a}" * 5_000 + "+", "x^{9^{9^{9^{9}}}}", r"\frac{1}{x-x}\theta", "W^{a" * 10_000,
     r"\cdot" * MANY, r"\Rightarrow" * 4_000 + "x", r"\frac" * MANY,
 ]  # fmt: skip
 

@@ -32,5 +32,5 @@ PARTIAL = re.compile(
     r"\\partial\s*(?:\^\s*([2-9])\s*)?_\s*(?:\{([^{}]{1,60})\}|(\\[A-Za-z]+|[A-Za-z]))(?:\s*\^\s*([2-9]))?"
 )
 OF_SPECIAL_FUNCTIONS = {"W": "LambertW", "K": "elliptic_k", "E": "elliptic_e"}
-PRINTED_CALL = re.compile(r"(?:\^\{[^{}]{1,20}\})?\\left\(")
+PRINTED_CALL = re.compile(r"(?:\^\{(?:[^{}]|\{(?:[^{}]|\{[^{}]{0,99}+\}){0,99}+\}){1,99}+\})?\\left\(")
 r"""How SymPy prints their argument, after a power."""
