@@ -192,8 +192,8 @@ def _ended() -> Iterator[Row]:
         script = USES + (
             "motion()\nprint('ready', flush=True)\n"
             "q = coordinates('q')\n"
-            "try:\n    propagate(Hamiltonian(q.momentum**2/2 - sp.cos(q), [q], [q.momentum]), (1.25, 0.5), "
-            "(0.0, 1e8), method=Splitting('verlet'), step=0.01, samples=3)\n"
+            "try:\n    propagate(Hamiltonian(q.momentum**2/2 - sp.cos(q), [q], [q.momentum]), (0.0, 1e8), "
+            "(1.25, 0.5), method=Splitting('verlet'), step=0.01, samples=3)\n"
             "except BaseException as e:\n    print(type(e).__name__, flush=True)\n"
             "print(*proof(), flush=True)\n"
         )
