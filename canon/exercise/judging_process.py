@@ -13,11 +13,11 @@ import sys
 import time
 from dataclasses import replace
 from decimal import Decimal
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.report.judgement import Judgement, invalid
 from canon.exercise.sheet.sheet import Claim
+from canon.frozen_mapping import FrozenMapping
 from canon.process import Child, Ended, Late, serve
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ def _plain(value: Any) -> Any:
 
 def _decoded(message: bytes) -> Claim:
     said: dict[str, Any] = json.loads(message, object_hook=_restored)
-    said["keys"] = MappingProxyType(said["keys"])
+    said["keys"] = FrozenMapping(said["keys"])
     return Claim(**said)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,10 +13,12 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.error_estimate import ErrorEstimate, error_estimate
 from canon.flow.integrate import integrate, silently
 from canon.flow.interpolation import states_at
+from canon.flow.labelled_motion import labelled
 from canon.flow.run.observables_along import measured, size_of_terms, warn_of_jumps
 from canon.flow.run.samples import Samples, Statistics
 from canon.flow.system.left_out import check_left_out
 from canon.flow.system.named_values import node_along, variables_of
+from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.hamilton_equations import exact_number
 from canon.progress import reporting
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     import numpy.typing as npt
+    import pandas
+    import xarray
     from sympy import Expr, Symbol
 
     from canon.array import Array
@@ -101,9 +104,9 @@ class Trajectory:
     cpu_seconds: float
     compile_seconds: float
     autonomous: bool
-    observables: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
-    changes: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
-    statistics: Mapping[str, Statistics] = field(default_factory=lambda: MappingProxyType({}))
+    observables: Mapping[str, Array] = field(default_factory=lambda: FrozenMapping({}))
+    changes: Mapping[str, Array] = field(default_factory=lambda: FrozenMapping({}))
+    statistics: Mapping[str, Statistics] = field(default_factory=lambda: FrozenMapping({}))
     events: tuple[Crossing, ...] = ()
     task: Task | None = field(default=None, repr=False, compare=False)
     samples: Samples | None = field(default=None, repr=False, compare=False)
@@ -342,6 +345,19 @@ class Trajectory:
         change = np.zeros(self.y.shape[1:]) if self.energies is None else self.energies.defect
         return error_estimate(task, samples, change, orbits)
 
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the variables, the energy and the observables as an xarray dataset along ``t`` (extra ``export``)."""
+        task, _ = self.origin
+        columns = {symbol.name: self.y[row] for row, symbol in enumerate(variables_of(task.system))}
+        if self.energies is not None:
+            columns["energy"] = self.energy
+        said = {"method": str(self.method), "precision": self.precision, "steps": self.steps}
+        return labelled(self.t, {**columns, **self.observables}, said)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return the same as a pandas frame, a row a time, or a row a time and orbit (extra ``export``)."""
+        return self.to_xarray().to_dataframe()
+
     @property
     def stopped(self) -> bool:
         """Whether an event ended the motion."""
@@ -502,9 +518,9 @@ def _trajectory_of(task: Task, found: Samples, moving: MovingSystem | None) -> T
         cpu_seconds=found.cpu_seconds,
         compile_seconds=found.compile_seconds,
         autonomous=task.system.autonomous,
-        observables=MappingProxyType(dict(zip(task.names, (value for value, _ in rest), strict=True))),
-        changes=MappingProxyType(dict(zip(task.names, (each for _, each in rest), strict=True))),
-        statistics=MappingProxyType(
+        observables=FrozenMapping(dict(zip(task.names, (value for value, _ in rest), strict=True))),
+        changes=FrozenMapping(dict(zip(task.names, (each for _, each in rest), strict=True))),
+        statistics=FrozenMapping(
             {} if watched is None else {k: Statistics(*v) for k, v in zip(names, watched, strict=True)}
         ),
         events=found.crossings,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from canon.scene.parts import Condition, Integral, Parameter, SceneError, Solution, Start, near
 
@@ -120,6 +120,15 @@ class Scene:
             if not condition.met(self.values):
                 given = ", ".join(f"{c.name} = {c.value:g}" for c in self.parameters)
                 raise SceneError(f"{given} makes no sense: {condition.about}")
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            f"the scene {self.name} is made of functions, which are not pickled: send its name and values, and "
+            "take find(name).with_parameters(**values) there"
+        )
+
+    def __deepcopy__(self, memo: object) -> Scene:
+        return self
 
     def __repr__(self) -> str:
         return f"<Scene {self.name}: {self.title}>"

@@ -30,6 +30,8 @@ def test_some_of_them_at_once(name):
 @pytest.mark.parametrize(("part", "row"), [pytest.param(part, row, id=row.name) for part, row in ROWS])
 def test_canon_is_right_or_says_why_not(part, row):
     if row.name == "interrupt-jupyter":
-        pytest.importorskip("jupyter_client", reason="a kernel is asked by jupyter_client, of the extra 'docs'")
+        pytest.importorskip(
+            "jupyter_client", reason="a kernel is asked by jupyter_client, of the extra 'docs'"
+        )
     canon = run_row(part, row)[0]
     assert canon["kind"] in ("result", "said"), canon["said"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
 import sympy as sp
@@ -24,6 +23,7 @@ from canon.exercise.question.question import (
 )
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim
+from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.mechanics.algebra.substitution import exchanged
@@ -98,7 +98,7 @@ def _inner(reading: Reading) -> Reading:
     claim = reading.claim
     keys = {key: value for key, value in claim.keys.items() if key not in _OWN}
     keys["kind"] = kind
-    return Reading(Claim(claim.id, kind, MappingProxyType(keys), budget=claim.budget, file=claim.file))
+    return Reading(Claim(claim.id, kind, FrozenMapping(keys), budget=claim.budget, file=claim.file))
 
 
 def _wanted(reading: Reading) -> tuple[Symbol, ...]:
@@ -185,9 +185,7 @@ def _with(inner: Reading, family: Family) -> Reading:
     domain = inner.claim.keys.get("domain", [])
     conditions = [*(domain if isinstance(domain, list) else [domain]), *said]
     keys = {**inner.claim.keys, **({"domain": conditions} if conditions else {})}
-    return replace(
-        inner, claim=replace(inner.claim, keys=MappingProxyType(keys)), at=MappingProxyType(family)
-    )
+    return replace(inner, claim=replace(inner.claim, keys=FrozenMapping(keys)), at=FrozenMapping(family))
 
 
 def _outside(family: Family) -> str:

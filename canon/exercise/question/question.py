@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
 import sympy as sp
@@ -11,6 +10,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.question.equation_systems import same_equations
 from canon.expression.symbols.symbol import Momentum
+from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.domain.verdict import Status, Undecided, Verdict
@@ -76,9 +76,9 @@ class Part:
     name: str
     claimed: Expr
     right: Expr = sp.S.Zero
-    through: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    through: Mapping[Symbol, Expr] = field(default_factory=lambda: FrozenMapping({}))
     key: str = ""
-    written: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    written: Mapping[Symbol, Expr] = field(default_factory=lambda: FrozenMapping({}))
     bracket_of: tuple[str, ...] = ()
 
     def seen(self, expression: Expr) -> Expr:
@@ -149,7 +149,7 @@ class SameEquations:
     domain: Domain
     answer: Answer | None = None
     written: tuple[Expr, ...] = ()
-    through: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    through: Mapping[Symbol, Expr] = field(default_factory=lambda: FrozenMapping({}))
     before: int = 0
 
 

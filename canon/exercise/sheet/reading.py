@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import sympy as sp
@@ -27,6 +26,7 @@ from canon.expression.parse import (
 from canon.expression.symbols.symbol import Coordinate, Momentum, velocity
 from canon.expression.symbols.user_input import counted
 from canon.expression.text.units import units
+from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.domain.domain import Domain
 from canon.proof.rungs.ladder import is_empty
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = ["InvalidClaim", "Reading"]
 
-_MAKERS: Mapping[str, Callable[..., Symbol]] = MappingProxyType(
+_MAKERS: Mapping[str, Callable[..., Symbol]] = FrozenMapping(
     {"q": Coordinate, "p": Momentum, "quasi": Coordinate, "new_p": Momentum, "momenta": Momentum}
 )
 _NAME_KEYS = (
@@ -96,9 +96,9 @@ class Reading:
     claim: Claim
     links: tuple[tuple[str, str], ...] = ()
     passed: tuple[str, ...] = ()
-    names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
-    instead: Mapping[str, Expr] = field(default_factory=lambda: MappingProxyType({}))
-    at: Mapping[Symbol, Expr] = field(default_factory=lambda: MappingProxyType({}))
+    names: Mapping[str, Symbol] = field(default_factory=lambda: FrozenMapping({}))
+    instead: Mapping[str, Expr] = field(default_factory=lambda: FrozenMapping({}))
+    at: Mapping[Symbol, Expr] = field(default_factory=lambda: FrozenMapping({}))
 
     @classmethod
     def of(cls, claim: Claim) -> Reading:
@@ -111,7 +111,7 @@ class Reading:
         """
         written = cls(claim)
         plain = typed_answers(claim, written.scope, written.error)
-        keys = MappingProxyType(plain.keys)
+        keys = FrozenMapping(plain.keys)
         return cls(replace(claim, keys=keys), tuple(plain.links), tuple(plain.passed))
 
     def error(self, key: str, error: LanguageError) -> InvalidClaim:
@@ -134,11 +134,11 @@ class Reading:
 
     def with_names(self, names: Mapping[str, Symbol]) -> Reading:
         """Return the same claim read with more names."""
-        return replace(self, names=MappingProxyType({**self.names, **names}))
+        return replace(self, names=FrozenMapping({**self.names, **names}))
 
     def with_instead(self, key: str, expression: Expr) -> Reading:
         """Return the same claim with another expression under one key."""
-        return replace(self, instead=MappingProxyType({**self.instead, key: expression}))
+        return replace(self, instead=FrozenMapping({**self.instead, key: expression}))
 
     def words(self, key: str) -> tuple[str, ...]:
         """Return a list of words as written."""
@@ -230,7 +230,7 @@ class Reading:
             if symbol is None:
                 self.fault("box", f"{name} is not declared; {self.scope.near(name)}")
             box[symbol] = (exact(low), exact(high))
-        domain = Domain(tuple(conditions), MappingProxyType(box))
+        domain = Domain(tuple(conditions), FrozenMapping(box))
         if (
             conditions
             and next(domain.points((), 1), None) is None
@@ -370,7 +370,7 @@ def _texts_in(value: Any, key: str = "") -> Iterator[tuple[str, str]]:
     """Yield every text under some keys, each with the first of the keys that lead to it."""
     if isinstance(value, str):
         yield key, value
-    elif isinstance(value, dict | MappingProxyType):
+    elif isinstance(value, dict | FrozenMapping):
         for name, item in value.items():
             yield from _texts_in(item, key or str(name))
     elif isinstance(value, list | tuple):

@@ -13,11 +13,11 @@ from dataclasses import dataclass, field, replace
 from decimal import Decimal, InvalidOperation
 from importlib import resources
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from canon.exercise.sheet.key_shapes import MAX_DIGITS, faults
 from canon.expression.symbols.input_in_words import counted, given_kind
+from canon.frozen_mapping import FrozenMapping
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -112,7 +112,7 @@ class Claim:
 
     id: str
     kind: str
-    keys: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    keys: Mapping[str, Any] = field(default_factory=lambda: FrozenMapping({}))
     expect: str = ""
     budget: float = DEFAULT_BUDGET
     errors: tuple[ClaimError, ...] = ()
@@ -339,7 +339,7 @@ def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
     return Claim(
         id_,
         kind,
-        MappingProxyType(keys),
+        FrozenMapping(keys),
         expect=str(expect),
         budget=float(budget) if usable else DEFAULT_BUDGET,
         errors=tuple(ClaimError(id_, key, reason, file=file) for key, reason in found),

@@ -6,11 +6,11 @@ import itertools
 import math
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.hamilton_equations import exact_number
 
 if TYPE_CHECKING:
@@ -185,7 +185,7 @@ class Plan:
     stops: tuple[int, ...] = ()
     ends: tuple[int, ...] = ()
     wanted: int = 0
-    exact: Mapping[int, Fraction] = field(default_factory=lambda: MappingProxyType({}))
+    exact: Mapping[int, Fraction] = field(default_factory=lambda: FrozenMapping({}))
 
     @property
     def forward(self) -> int:

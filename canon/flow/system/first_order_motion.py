@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class FirstOrderMotion:
     rates: tuple[int, ...]
     energy: int | None = None
     power: int | None = None
-    named: Mapping[Symbol, int] = field(default_factory=lambda: MappingProxyType({}))
+    named: Mapping[Symbol, int] = field(default_factory=lambda: FrozenMapping({}))
     multipliers: tuple[int, ...] = ()
     reactions: tuple[int, ...] = ()
     residuals: tuple[Residual, ...] = ()

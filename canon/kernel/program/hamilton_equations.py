@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from canon.expression.graph.graph import Graph
+from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.program import Program, exact_value, program
 from canon.kernel.program.shared_products import with_shared_products
 
@@ -72,7 +72,7 @@ class HamiltonEquations:
     varying: int = 0
     canonical: bool = True
     spare: int = 0
-    named: Mapping[Symbol, int] = field(default_factory=lambda: MappingProxyType({}))
+    named: Mapping[Symbol, int] = field(default_factory=lambda: FrozenMapping({}))
 
     @property
     def rows(self) -> list[int]:

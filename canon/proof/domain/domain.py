@@ -11,13 +11,13 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 from sympy import Abs, And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
+from canon.frozen_mapping import FrozenMapping
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
 from canon.proof.domain.feasible_points import moved_inside
 from canon.proof.domain.rational_points import rational_solution
@@ -149,7 +149,7 @@ class Domain:
     """
 
     conditions: tuple[Boolean, ...] = ()
-    box: Mapping[Symbol, tuple[Rational, Rational]] = field(default_factory=lambda: MappingProxyType({}))
+    box: Mapping[Symbol, tuple[Rational, Rational]] = field(default_factory=lambda: FrozenMapping({}))
 
     def __post_init__(self) -> None:
         conditions: Any = self.conditions
@@ -185,7 +185,7 @@ class Domain:
         *,
         seed: int = 0,
         in_box: bool = True,
-        marks: Mapping[Symbol, Sequence[Rational]] = MappingProxyType({}),
+        marks: Mapping[Symbol, Sequence[Rational]] = FrozenMapping({}),
         deadline: float = float("inf"),
         but_functions: bool = False,
     ) -> Iterator[dict[Symbol, Rational]]:

@@ -6,9 +6,9 @@ import json
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from canon.frozen_mapping import FrozenMapping
 from canon.study.cases.case import Case, part_count
 from canon.study.cases.store import Store
 
@@ -57,7 +57,7 @@ class Result:
     failure: str = ""
     seconds: float | None = None
     done: float = 1.0
-    versions: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    versions: Mapping[str, str] = field(default_factory=lambda: FrozenMapping({}))
 
     def __repr__(self) -> str:
         return f"<Result: {self.motion}; {self.setting}: {self.state.value}>"
@@ -97,7 +97,7 @@ def results_of(store: Store | str | Path) -> list[Result]:
     found: list[Result] = []
     for key, inputs in store.cases().items():
         written, record = json.loads(inputs), records.get(key)
-        case, by = Case.from_dict(written), MappingProxyType(written.get("versions", {}))
+        case, by = Case.from_dict(written), FrozenMapping(written.get("versions", {}))
         if record is None:
             done = parts.get(key, 0) / part_count(case)
             found.append(Result(key, case, State.PENDING, {}, done=done, versions=by))
