@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.graph.number_systems import LONGDOUBLE
-from canon.flow.geometry.vector_field_motion import COMPACT_FROM
-from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.kernel.heyoka_bridge import heyoka_expressions
+from canon.flow.geometry.vector_field_motion import at_first_zero, sampled
 from canon.mechanics.at_scale.constrained import constrained, constrained_motion
 from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
 from canon.scene.equations_of_motion import SceneEquations, scene_equations
@@ -23,16 +21,9 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from canon.array import Array
-    from canon.flow.geometry.vector_field_motion import VectorFieldSystem
     from canon.scene.scene import Scene
 
 __all__ = ["SceneMotion", "first_zero", "run", "start_state"]
-
-_MET = -1
-"""heyoka's outcome where the first of its terminal events stopped the motion."""
-
-_TURN_HIGH, _TURN_LOW = 6.28125, 1.9353071795864769e-03
-"""2π in two parts, the first with so few digits that a multiple of it is exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,44 +108,9 @@ def run(
     equation = scene_equations(scene)
     times = np.linspace(0.0, periods * scene.period, samples + 1)
     y0 = start_state(scene, chosen, equation)
-    angles = [s.name in scene.angles.split() for s in scene.q]
-    x, turns, steps = _carried(equation.field, y0, times, np.flatnonzero(angles))
-    return SceneMotion(scene, chosen, equation, times, x, turns, steps)
-
-
-def _carried(
-    field: VectorFieldSystem, y0: Array, times: Array, angles: NDArray[np.intp]
-) -> tuple[Array, Array, int]:
-    """Return states and turns at the times, and the steps taken; angles are turned back as they grow.
-
-    An angle that went on growing would be rounded to ever fewer digits, and heyoka's steps with it, as their error is
-    relative to the largest variable.
-    """
-    import heyoka as hy
-
-    large = len(field.graph.reachable(field.rates)) > COMPACT_FROM
-    integrator = hy.taylor_adaptive(field.heyoka_pairs(), y0, compact_mode=large)
-    turns = np.zeros(len(field.x))
-    rows, whole, steps = [y0], [turns.copy()], 0
-    slices = len(times) - 1 if angles.size else 1
-    for part in np.array_split(np.arange(1, len(times)), slices):
-        outcome, _, _, taken, _, found = integrator.propagate_grid(times[part[0] - 1 : part[-1] + 1])
-        if outcome != hy.taylor_outcome.time_limit or not np.isfinite(found).all():
-            raise NonFiniteStateError(
-                f"the motion can't be continued after t = {integrator.time:.9g} ({outcome}): a collision or the edge "
-                "of the equations' domain; take fewer periods",
-                float(integrator.time),
-                np.array(integrator.state),
-            )
-        steps += int(taken)
-        state = integrator.state
-        back = np.round(state[angles] / (2.0 * np.pi))
-        state[angles] = (state[angles] - back * _TURN_HIGH) - back * _TURN_LOW
-        rows += [*found[1:-1], state.copy()]
-        whole += [turns.copy()] * (len(part) - 1)
-        turns[angles] += back
-        whole.append(turns.copy())
-    return np.array(rows).T, np.array(whole).T, steps
+    angles = [i for i, s in enumerate(scene.q) if s.name in scene.angles.split()]
+    found = sampled(equation.field, equation.field.heyoka_pairs(), times, y0, angles=angles)
+    return SceneMotion(scene, chosen, equation, times, found.rows.T, found.turns.T, found.steps)
 
 
 def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> SceneMotion:
@@ -175,25 +131,12 @@ def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Scen
     >>> float((4 * quarter / scene.period - 1).round(6))
     0.000625
     """
-    import heyoka as hy
-
     chosen, equation = scene.start(start), scene_equations(scene)
-    field = equation.field
-    pairs = field.heyoka_pairs()
-    variables = {s: pair[0] for s, pair in zip(field.x, pairs, strict=True)} | {field.t: hy.time}
-    crossing = heyoka_expressions(field.graph, [equation.node(f, "the event")], variables)[0]
     y0 = start_state(scene, chosen, equation)
-    integrator = hy.taylor_adaptive(pairs, y0, t_events=[hy.t_event(crossing)], compact_mode=True)
-    outcome, _, _, steps, _, _ = integrator.propagate_until(periods * scene.period)
-    if int(outcome) != _MET or not np.isfinite(integrator.state).all():
-        raise NonFiniteStateError(
-            f"{f} does not vanish before t = {integrator.time:.9g} ({outcome}); follow the motion longer",
-            float(integrator.time),
-            np.array(integrator.state),
-        )
-    t = np.array([0.0, float(integrator.time)])
-    x = np.array([y0, integrator.state]).T
-    return SceneMotion(scene, chosen, equation, t, x, np.zeros_like(x), int(steps))
+    node, until = equation.node(f, "the event"), periods * scene.period
+    end, state, steps = at_first_zero(equation.field, node, y0, until)
+    x = np.array([y0, state]).T
+    return SceneMotion(scene, chosen, equation, np.array([0.0, end]), x, np.zeros_like(x), steps)
 
 
 def start_state(scene: Scene, start: Start, equation: SceneEquations) -> Array:

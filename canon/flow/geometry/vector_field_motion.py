@@ -30,15 +30,25 @@ if TYPE_CHECKING:
 __all__ = [
     "COMPACT_FROM",
     "IntegralRate",
+    "SampledField",
     "VectorFieldSystem",
+    "at_first_zero",
     "carried",
     "integral_rate",
+    "sampled",
     "step_error",
     "vector_field_system",
 ]
 
 COMPACT_FROM = 60
 """Equations with more operations are compiled in heyoka's compact mode."""
+
+
+_MET = -1
+"""heyoka's outcome where the first of its terminal events stopped the motion."""
+
+_TURN_HIGH, _TURN_LOW = 6.28125, 1.9353071795864769e-03
+"""2π in two parts, the first with so few digits that a multiple of it is exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,23 +142,98 @@ def carried(
     NonFiniteStateError
         The motion can't be continued over the whole span.
     """
-    import heyoka as hy
-
     start, end = (float(exact_number(t, "t_span")) for t in t_span)
     if start == end or samples < 1:
         raise ValueError(f"t_span = {t_span} with samples={samples}: there is no motion to look at")
+    found = sampled(field, equations, np.linspace(start, end, samples + 1), y0, variations=variations)
+    return found.rows, found.steps
+
+
+class SampledField(NamedTuple):
+    """States of a vector field at times, shape (times, variables), whole turns taken off, and the steps taken."""
+
+    rows: Array
+    turns: Array
+    steps: int
+
+
+def sampled(
+    field: VectorFieldSystem,
+    equations: Any,
+    times: Array,
+    y0: Array,
+    *,
+    variations: int = 0,
+    angles: Sequence[int] = (),
+) -> SampledField:
+    """Return the states at times, angles turned back by whole turns as they grow.
+
+    An angle that went on growing would be rounded to ever fewer digits, and heyoka's steps with it, as their error is
+    relative to the largest variable.
+
+    Parameters
+    ----------
+    field, equations, variations
+        As :func:`carried` takes them.
+    times, y0
+        When, and the state at the first of these times.
+    angles
+        Which variables are angles whose whole turns do not matter.
+
+    Raises
+    ------
+    NonFiniteStateError
+        The motion can't be continued over the whole span.
+    """
+    import heyoka as hy
+
     large = len(field.graph.reachable(field.rates)) * (1 + variations) > COMPACT_FROM
-    integrator = hy.taylor_adaptive(equations, y0, time=start, compact_mode=large)
-    outcome, _, _, steps, _, rows = integrator.propagate_grid(np.linspace(start, end, samples + 1))
-    if outcome != hy.taylor_outcome.time_limit or not np.isfinite(rows).all():
-        state = np.array(integrator.state[: len(field.x)])
+    integrator = hy.taylor_adaptive(equations, y0, time=float(times[0]), compact_mode=large)
+    turning, turns, steps = np.array(angles, dtype=np.intp), np.zeros(len(y0)), 0
+    rows, whole = [np.asarray(y0, dtype=np.float64)[np.newaxis]], [turns[np.newaxis].copy()]
+    slices = len(times) - 1 if turning.size else 1
+    for part in np.array_split(np.arange(1, len(times)), slices):
+        outcome, _, _, taken, _, found = integrator.propagate_grid(times[part[0] - 1 : part[-1] + 1])
+        if outcome != hy.taylor_outcome.time_limit or not np.isfinite(found).all():
+            raise NonFiniteStateError(
+                f"the motion can't be continued after t = {integrator.time:.9g} ({outcome}): a collision or the "
+                "edge of the equations' domain; stop earlier",
+                float(integrator.time),
+                np.array(integrator.state[: len(field.x)]),
+            )
+        steps += int(taken)
+        rows.append(np.array(found[1:]))
+        whole.append(np.repeat(turns[np.newaxis], len(part), axis=0))
+        if turning.size:
+            state = integrator.state
+            back = np.round(state[turning] / (2.0 * np.pi))
+            state[turning] = (state[turning] - back * _TURN_HIGH) - back * _TURN_LOW
+            turns[turning] += back
+            rows[-1][-1], whole[-1][-1] = state, turns
+    return SampledField(np.concatenate(rows), np.concatenate(whole), steps)
+
+
+def at_first_zero(field: VectorFieldSystem, node: int, y0: Array, until: float) -> tuple[float, Array, int]:
+    """Return the first time after 0 at which a node vanishes along the motion, the state there, and the steps.
+
+    Raises
+    ------
+    NonFiniteStateError
+        It does not vanish before the last time, or the motion ends before.
+    """
+    import heyoka as hy
+
+    pairs = field.heyoka_pairs()
+    variables = {s: pair[0] for s, pair in zip(field.x, pairs, strict=True)} | {field.t: hy.time}
+    crossing = heyoka_expressions(field.graph, [node], variables)[0]
+    integrator = hy.taylor_adaptive(pairs, y0, t_events=[hy.t_event(crossing)], compact_mode=True)
+    outcome, _, _, steps, _, _ = integrator.propagate_until(until)
+    time, state = float(integrator.time), np.array(integrator.state)
+    if int(outcome) != _MET or not np.isfinite(state).all():
         raise NonFiniteStateError(
-            f"the motion can't be continued after t = {integrator.time:.9g} ({outcome}): a collision or the "
-            "edge of the equations' domain; stop earlier",
-            float(integrator.time),
-            state,
+            f"it does not vanish before t = {time:.9g} ({outcome}); follow the motion longer", time, state
         )
-    return rows, int(steps)
+    return time, state, int(steps)
 
 
 def step_error(states: Array, steps: int) -> Array:
