@@ -189,8 +189,9 @@ def sampled(
 
     large = len(field.graph.reachable(field.rates)) * (1 + variations) > COMPACT_FROM
     integrator = hy.taylor_adaptive(equations, y0, time=float(times[0]), compact_mode=large)
-    turning, turns, steps = np.array(angles, dtype=np.intp), np.zeros(len(y0)), 0
-    rows, whole = [np.asarray(y0, dtype=np.float64)[np.newaxis]], [turns[np.newaxis].copy()]
+    first = np.array(integrator.state)  # of heyoka's own variational equations too, whose start y0 leaves out
+    turning, turns, steps = np.array(angles, dtype=np.intp), np.zeros(len(first)), 0
+    rows, whole = [first[np.newaxis]], [turns[np.newaxis].copy()]
     slices = len(times) - 1 if turning.size else 1
     for part in np.array_split(np.arange(1, len(times)), slices):
         outcome, _, _, taken, _, found = integrator.propagate_grid(times[part[0] - 1 : part[-1] + 1])
