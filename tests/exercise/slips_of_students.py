@@ -27,7 +27,8 @@ from canon.exercise.judge import InvalidClaim, examine
 from canon.exercise.sheet.reading import Reading
 from canon.exercise.sheet.sheet import Claim, claim_from
 from canon.exercise.sheet.sympy_trees import shown
-from canon.expression.symbols.symbol import Coordinate, acceleration, velocity
+from canon.expression.symbols.symbol import Coordinate, Rate, acceleration, velocity
+from canon.proof.rungs.ladder import REFUSALS
 from canon.proof.vanish import vanishes
 
 __all__ = ["SLIPS", "Question", "WrongAnswer", "is_named", "questions", "wrong_answers"]
@@ -277,7 +278,13 @@ FACTOR = {
 }
 LOST = {M.FACTOR_MISSING, M.EXPONENT, M.INNER_DERIVATIVE_MISSING, M.VALENCE, M.MAP_MENDED, M.DIVISOR_MISSING}
 POWER = {M.EXPONENT, M.FACTOR_MISSING, M.FACTOR_SUPERFLUOUS, M.DIVISOR_MISSING, M.SQUARE}
-MISSING = {M.TERM_MISSING, M.DERIVATIVE_NOT_TOTAL, M.TIME_DERIVATIVE_MISSING, M.TIME_TERM_MISSING}
+MISSING = {
+    M.TERM_MISSING,
+    M.CORIOLIS_TERM_MISSING,
+    M.DERIVATIVE_NOT_TOTAL,
+    M.TIME_DERIVATIVE_MISSING,
+    M.TIME_TERM_MISSING,
+}
 SMALL = {M.FUNCTION_MISSING, M.FUNCTION, M.ONLY_SMALL}
 
 SLIPS: dict[str, tuple[Edit, set[M]]] = {
@@ -375,7 +382,7 @@ def sign_of_a_bracket(question: Question) -> Iterator[dict[Place, sp.Expr]]:
 
 
 DERIVATIONS: dict[str, tuple[Callable[[Question], Iterator[dict[Place, sp.Expr]]], set[M]]] = {
-    "partial for total derivative": (partial_for_total, {M.DERIVATIVE_NOT_TOTAL, M.TERM_MISSING}),
+    "partial for total derivative": (partial_for_total, MISSING),
     "multipliers of the other sign": (opposite_multipliers, {M.MULTIPLIERS_OPPOSITE, M.TERM_SIGN, M.SIGN_OF,
                                                               M.WRONG_SIGN}),
     "∂F/∂t forgotten": (time_derivative_forgotten, {M.TIME_DERIVATIVE_MISSING, M.TERM_MISSING}),
@@ -480,7 +487,7 @@ def _in(question: Question, place: Place, name: str, chance: random.Random) -> I
 def _fails(answer: WrongAnswer) -> bool:
     try:
         return examine(answer.claim).verdict.fails
-    except InvalidClaim:
+    except (InvalidClaim, *REFUSALS):
         return False
 
 
@@ -514,9 +521,9 @@ def _is_undone(answer: WrongAnswer, repaired: Reading) -> bool:
         now = repaired.instead.get(key)
         if now is None:
             return False
-        factors = (
-            (1, 2, sp.S.Half, -1, -2, -sp.S.Half) if place[0] == "claim" else (1,)
-        )  # an equation may be halved
-        if not any(vanishes(now - c * right, repaired.domain, budget=2.0).holds for c in factors):
+        ratio = sp.cancel(now / right) if place[0] == "claim" else sp.S.One
+        if any(isinstance(s, Coordinate | Rate) for s in ratio.free_symbols):
+            return False  # an equation may be multiplied with a constant
+        if not vanishes(now - ratio * right, repaired.domain, budget=2.0).holds:
             return False
     return True

@@ -18,6 +18,7 @@ class Mistake(enum.Enum):
     TERM_SIGN = enum.auto()  # the term
     TERM_FACTOR = enum.auto()  # the term, what to multiply it with
     TERM_MISSING = enum.auto()  # the term
+    CORIOLIS_TERM_MISSING = enum.auto()  # the term
     TERM_SUPERFLUOUS = enum.auto()  # the term
     FACTOR_MISSING = enum.auto()  # where, the factor
     DIVISOR_MISSING = enum.auto()  # where, the divisor
@@ -104,7 +105,8 @@ class Change:
 
 _PLAIN = {
     Mistake.WRONG_SIGN: 0, Mistake.TERM_SIGN: 0,
-    Mistake.WRONG_FACTOR: 1, Mistake.TERM_FACTOR: 1, Mistake.TERM_MISSING: 1, Mistake.FUNCTION: 1,
+    Mistake.WRONG_FACTOR: 1, Mistake.TERM_FACTOR: 1, Mistake.TERM_MISSING: 1, Mistake.CORIOLIS_TERM_MISSING: 1,
+    Mistake.FUNCTION: 1,
     Mistake.EXPONENT: 1, Mistake.FACTOR_MISSING: 2, Mistake.FUNCTION_MISSING: 2, Mistake.UPSIDE_DOWN: 2,
     Mistake.SYMBOL: 2, Mistake.ARGUMENT: 2, Mistake.SIGN_OF: 2, Mistake.TERM_SUPERFLUOUS: 2,
 }  # fmt: skip

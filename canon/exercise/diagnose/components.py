@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 __all__ = ["generating_function", "new_hamiltonian", "on_the_motion", "part_by_part", "second_lagrangian"]
 
+MOST_TOGETHER = 3
+"""Terms that may be missing together."""
 MOST_TRIALS = 4
 """Proved repairs of one component that are tried in the whole claim."""
 
@@ -41,7 +43,14 @@ MOST_TRIALS = 4
 def part_by_part(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield what is wrong with each component that is wrong."""
     if wrong.parts and not wrong.reading.has("solution"):
-        yield from _part_by_part(wrong, wrong.parts, _hints(wrong))
+        yield from _part_by_part(wrong, _answered(wrong), _hints(wrong))
+
+
+def _answered(wrong: WrongAnswer) -> Sequence[Part]:
+    """Return the components; of two sides it is the one that is answered."""
+    if not (wrong.reading.kind.two_sided and len(wrong.parts) == 1 and wrong.parts[0].key == "lhs"):
+        return wrong.parts
+    return (Part("rhs", wrong.parts[0].right, wrong.parts[0].claimed, key="rhs"),)
 
 
 def new_hamiltonian(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -110,7 +119,10 @@ def _hints(wrong: WrongAnswer) -> list[tuple[Expr, ...]]:
                     scaled = (
                         scale * t for t in sp.Add.make_args(sp.expand(right)) if not t.has(*question.unknowns)
                     )
-                    terms |= dict.fromkeys(scaled)
+                    rest = list(scaled)
+                    terms |= dict.fromkeys(rest)
+                    if 1 < len(rest) <= MOST_TOGETHER:
+                        terms[sp.Add(*rest)] = None
         hints.append(tuple(terms))
     return hints
 

@@ -57,10 +57,14 @@ def total_derivative(wrong: WrongAnswer) -> Iterator[Diagnosis]:
             if above == 0 or below == 0 or lost == 0 or sp.count_ops(lost) > 80:
                 continue
             lost = sp.expand(sp.cancel(above / below) * lost)
-            if len(sp.Add.make_args(lost)) > 1:
+            there = {term.as_coeff_Mul()[1] for term in sp.Add.make_args(sp.expand(claimed))}
+            terms = list(sp.Add.make_args(lost))
+            if (
+                len(terms) > 1 or terms[0].as_coeff_Mul()[1] in there
+            ):  # one term alone is named as what is missing
                 trial = trial.with_instead(f"claim[{i}]", claimed + lost)
                 place = f"equation {i + 1}"
-                changes.append(Change(Mistake.DERIVATIVE_NOT_TOTAL, sp.Add.make_args(lost), place))
+                changes.append(Change(Mistake.DERIVATIVE_NOT_TOTAL, tuple(terms), place))
             break
     if changes:
         yield Diagnosis(tuple(changes), trial)

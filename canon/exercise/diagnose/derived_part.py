@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from canon.proof.domain.domain import Domain
 
 __all__ = ["generating_part", "new_hamiltonian_part", "second_lagrangian_part", "time_term"]
+MOST_OPERATIONS = 60
 
 
 def new_hamiltonian_part(reading: Reading) -> Iterator[Part]:
@@ -128,7 +129,7 @@ def second_lagrangian_part(reading: Reading) -> Part:
 def time_term(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield the term of a constant of the motion that holds the time explicitly, where it was lost.
 
-    If dI/dt is the same in every state, I − t dI/dt is conserved.
+    If dI/dt is the same all along the motion, I − t dI/dt is conserved.
     """
     reading = wrong.reading
     I, t = reading.expression("I"), reading.time
@@ -137,10 +138,14 @@ def time_term(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     rates = motion_of(reading)
     rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()))
     somewhere = {x: sp.Integer(i) for i, x in enumerate(rates, 1)}
-    growth = substitute(rate, somewhere)
-    if growth.has(t, sp.nan, sp.zoo, sp.oo) or growth == 0:
-        return
-    growth = sp.cancel(growth) if sp.count_ops(growth) < 60 else growth
-    repaired = reading.with_instead("I", I - growth * t)
-    if judged_to_hold(repaired, wrong.effort):
-        yield Diagnosis.of(Mistake.TIME_TERM_MISSING, growth, -growth * t, repaired=repaired, place="I")
+    for growth in (
+        substitute(rate, somewhere),
+        rate,
+    ):  # the same in every state, or a constant of the motion itself
+        if growth.has(t, sp.nan, sp.zoo, sp.oo) or growth == 0 or sp.count_ops(growth) > MOST_OPERATIONS:
+            continue
+        growth = sp.cancel(growth)
+        repaired = reading.with_instead("I", I - growth * t)
+        if judged_to_hold(repaired, wrong.effort):
+            yield Diagnosis.of(Mistake.TIME_TERM_MISSING, growth, -growth * t, repaired=repaired, place="I")
+            return

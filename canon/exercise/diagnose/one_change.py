@@ -16,7 +16,7 @@ from canon.exercise.diagnose.repairs.lost_term import terms_lost
 from canon.exercise.diagnose.repairs.repair import is_wrong
 from canon.exercise.diagnose.repairs.screening import screening
 from canon.exercise.diagnose.repairs.slips import common_slips, plain_variants, slipped, variants
-from canon.expression.symbols.symbol import velocity
+from canon.expression.symbols.symbol import Coordinate, velocity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -100,7 +100,9 @@ def _plain(wrong: WrongAnswer, answers: Mapping[str, Expr]) -> list[Iterable[_Ca
 def _others(wrong: WrongAnswer, answers: Mapping[str, Expr]) -> list[Iterable[_Candidate]]:
     """Return for each component all other changes, and lost terms; then what may be wrong in all alike."""
     reading = wrong.reading
-    symbols = tuple(reading.scope.names.values())
+    names = tuple(reading.scope.names.values())
+    rates = (velocity(s) for s in names if isinstance(s, Coordinate)) if reading.has("L") else ()
+    symbols = (*names, reading.time, *rates)
 
     def changes(key: str) -> Iterable[tuple[Expr, Change]]:
         return chain(variants(answers[key], symbols), terms_lost(reading, key, answers))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS, diagnosis
-from canon.exercise.sheet.sympy_trees import shown
+from canon.exercise.sheet.sympy_trees import shown as written
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -20,6 +20,8 @@ __all__ = ["SENTENCES", "feedback", "sentence", "times"]
 
 Pattern: TypeAlias = "str | Callable[..., str]"
 """What is said, the items in place of the braces; or a function that says it, where that depends on an item."""
+A_LINE = 120
+"""Characters of the longest term that is shown."""
 _ORDINALS = ("zeroth", "first", "second", "third")
 
 
@@ -33,6 +35,12 @@ def times(factor: object) -> str:
     ('half', '3/2 times')
     """
     return {"1/2": "half", "2": "twice", "-1": "minus"}.get(str(factor), f"{factor} times")
+
+
+def shown(item: object) -> str:
+    """Return an expression as a sheet writes it, unless nobody would read it: longer than a line."""
+    text = written(item)
+    return text if len(text) <= A_LINE and "Subs(" not in text else "(too long to be shown)"
 
 
 def _listed(items: Iterable[object]) -> str:
@@ -59,6 +67,7 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.TERM_SIGN: "the sign of {} is wrong",
         Mistake.TERM_FACTOR: lambda term, factor: f"the term {shown(term)} should be {times(factor)} that",
         Mistake.TERM_MISSING: "the term {} is missing",
+        Mistake.CORIOLIS_TERM_MISSING: "the Coriolis term {} is missing",
         Mistake.TERM_SUPERFLUOUS: "the term {} does not belong",
         Mistake.FACTOR_MISSING: "the term {} lacks the factor {}",
         Mistake.DIVISOR_MISSING: "the term {} should be divided by {}",

@@ -59,9 +59,9 @@ COMMON: Mapping[str, Shape] = MappingProxyType(
 USUAL = (
     "convention.opposite_sign",
     "derivation.multipliers",
+    "derivation.total_derivative",
     "changed_claims.another_reading",
     "components.part_by_part",
-    "derivation.total_derivative",
     "changed_claims.only_where",
     "one_change.anywhere",
     "changed_claims.only_for",

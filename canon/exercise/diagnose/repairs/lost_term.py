@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
+from canon.exercise.diagnose.repairs.slips import slipped
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.sympy_trees import shown
 from canon.expression.symbols.symbol import velocity
-from canon.mechanics.algebra.substitution import exchanged, size
+from canon.mechanics.algebra.substitution import size
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
@@ -111,15 +112,21 @@ def _renamed(term: Expr, reading: Reading) -> Iterator[Expr]:
     q, p, new_q, new_p = names
     for i, j in combinations(range(len(q)), 2):
         pairs = [(z[i], z[j]) for z in (q, p) if len(z) > j] + [(velocity(q[i]), velocity(q[j]))]
-        yield exchanged(term, {**dict(pairs), **{b: a for a, b in pairs}})
-        yield from (exchanged(term, {a: b}) for a, b in pairs)
+        yield _put(term, {**dict(pairs), **{b: a for a, b in pairs}})
+        yield from (_put(term, {a: b}) for a, b in pairs)
     if p:
-        yield exchanged(term, {**dict(zip(q, p, strict=True)), **dict(zip(p, q, strict=True))})
+        yield _put(term, {**dict(zip(q, p, strict=True)), **dict(zip(p, q, strict=True))})
     both = [*zip(q, p, strict=False), *zip(p, q, strict=False), *((velocity(x), x) for x in q)]
     both += [*zip(q, new_q, strict=False), *zip(p, new_p, strict=False), *zip(q, new_p, strict=False)]
     for a, b in both:
-        yield exchanged(term, {a: b})
+        yield _put(term, {a: b})
         yield from _in_one_factor(term, a, b)
+
+
+def _put(term: Expr, values: Mapping[Expr, Expr]) -> Expr:
+    """Return a term with something else in it; as it is where that would stand behind a d/d…."""
+    new = slipped(term, values)
+    return term if new is None else new
 
 
 def _in_one_factor(term: Expr, a: Symbol, b: Symbol) -> Iterator[Expr]:
@@ -132,11 +139,11 @@ def _with_a_twin(term: Expr, reading: Reading) -> Iterator[Expr]:
     """Sine for cosine in one place or in all, each renamed as well."""
     waves = sorted(term.atoms(sp.sin, sp.cos), key=shown)
     for wave in waves:
-        twin = exchanged(term, {wave: _TWINS[wave.func](arguments(wave)[0])})
+        twin = _put(term, {wave: _TWINS[wave.func](arguments(wave)[0])})
         yield twin
         yield from _renamed(twin, reading)
     if len(waves) > 1:
-        yield exchanged(term, {wave: _TWINS[wave.func](arguments(wave)[0]) for wave in waves})
+        yield _put(term, {wave: _TWINS[wave.func](arguments(wave)[0]) for wave in waves})
 
 
 def _with_a_factor_less(term: Expr, reading: Reading) -> Iterator[Expr]:

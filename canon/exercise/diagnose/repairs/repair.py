@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import chain, islice
+from itertools import chain, combinations, islice
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -155,7 +155,7 @@ def _of_all(part: Part, screen: Screen) -> Iterator[Repair]:
 
 def _slips(part: Part) -> Iterator[Repair]:
     """One slip at one place, or the same one everywhere."""
-    symbols = symbols_of(part.claimed, part.right, *part.through)
+    symbols = symbols_of(part.claimed, part.right, *part.through, *part.through.values())
     for new, change in islice(variants(part.claimed, symbols), MOST_VARIANTS):
         yield Repair(new, change.at(part.name))
 
@@ -164,9 +164,7 @@ def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[Repair]:
     """A slip, and a term is missing besides."""
     for term in hints:
         for slip in _slips(part):
-            yield Repair(
-                slip.right + term, Change.of(Mistake.TERM_MISSING, term, place=part.name), slip.change
-            )
+            yield Repair(slip.right + term, _missing(term, part), slip.change)
 
 
 def _symbol_restored(part: Part) -> Iterator[Repair]:
@@ -174,11 +172,13 @@ def _symbol_restored(part: Part) -> Iterator[Repair]:
     for terms in (sp.Add.make_args(part.claimed), sp.Add.make_args(sp.expand(part.claimed))):
         for symbol in symbols_of(part.claimed, part.right, *part.through.values()):
             without = [term for term in terms if not term.has(symbol)]
-            if len(without) > 1 and not isinstance(symbol, Rate):
-                lacking = sp.Add(*without)
+            if isinstance(symbol, Rate) or not 1 < len(without) <= MOST_TERMS:
+                continue
+            for some in (without, *(combinations(without, 2) if len(without) > 2 else ())):
+                group = sp.Add(*some)
                 for factor in (symbol, 1 / symbol, symbol**2, 1 / symbol**2):
-                    right = sp.Add(*terms) - lacking + factor * lacking
-                    yield Repair(right, Change.of(Mistake.FACTOR_MISSING, lacking, factor, place=part.name))
+                    right = sp.Add(*terms) - group + factor * group
+                    yield Repair(right, Change.of(Mistake.FACTOR_MISSING, group, factor, place=part.name))
 
 
 def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -208,7 +208,7 @@ def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterato
         share = screen.share_of_residual(term)
         if share is not None and share != 0:
             missing = -sp.Rational(share.numerator, share.denominator) * term
-            yield Repair(part.claimed + missing, Change.of(Mistake.TERM_MISSING, missing, place=part.name))
+            yield Repair(part.claimed + missing, _missing(missing, part))
 
 
 def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -220,10 +220,18 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
         terms = sorted(sp.Add.make_args(claimed), key=lambda term: term.has(*part.determined))
         factors = [(t, list(found.of_share(t))) for t in terms] if len(terms) <= MOST_TERMS else []
     for term in missing:
-        yield Repair(claimed - term, Change.of(Mistake.TERM_MISSING, -term, place=name))
+        yield Repair(claimed - term, _missing(-term, part))
     for term, products in factors:
         for factor in products:
             yield Repair(claimed - term + factor * term, lacking(term, factor).at(name))
+
+
+def _missing(term: Expr, part: Part) -> Change:
+    """Return that a term is missing; in an equation of motion with two different velocities it is Coriolis's."""
+    velocities = {s for s in sp.Mul.make_args(term) if isinstance(s, Rate)}
+    coriolis = bool(part.determined) and len(velocities - {*part.determined}) == 2 == len(velocities)
+    mistake = Mistake.CORIOLIS_TERM_MISSING if coriolis else Mistake.TERM_MISSING
+    return Change.of(mistake, term, place=part.name)
 
 
 def lacking(term: Expr, factor: Expr) -> Change:
@@ -239,8 +247,10 @@ def lacking(term: Expr, factor: Expr) -> Change:
     """
     above, below = factor.as_numer_denom()
     fraction = sp.sqrt(sp.powsimp(factor))
-    if below.is_Symbol and above.is_Symbol and below in sp.Mul.make_args(term):
+    if below.is_Symbol and above.is_Symbol and term.as_powers_dict().get(below, 0) > 0:
         return Change.of(Mistake.SYMBOL, term, factor * term)
+    if above.is_Function and above.args == (below,):
+        return Change.of(Mistake.FUNCTION_MISSING, below, above)
     symbols = fraction.free_symbols
     if len(symbols) == 2 and all(abs(e) == 2 for e in factor.as_powers_dict().values()):
         powers = term.as_powers_dict()

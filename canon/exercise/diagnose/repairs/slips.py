@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import chain, combinations
+from itertools import chain, combinations, permutations
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -68,7 +68,17 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
         return _multiplied(node, functions)
 
     yield from plain_variants(expression)
-    rest = (_by_another, _superfluous, _unwrapped, another_symbol, multiplied, _dropped, _swapped, _shifted)
+    rest = (
+        _by_another,
+        _superfluous,
+        _upside_down,
+        _unwrapped,
+        another_symbol,
+        multiplied,
+        _dropped,
+        _swapped,
+        _shifted,
+    )
     for edits in (*rest, multiplied_by_functions):
         yield from _one_place(expression, edits)
     if not expression.is_Add:
@@ -191,6 +201,15 @@ def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
         for factor in (sp.S.NegativeOne, sp.Rational(2), sp.Rational(1, 2)):
             new = node.func(factor * arguments(node)[0])
             yield new, _of(Mistake.ARGUMENT, node, new)
+
+
+def _upside_down(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """A fraction of two symbols written as its inverse."""
+    powers = node.as_powers_dict() if node.is_Mul else {}
+    for (a, up), (b, down) in permutations(powers.items(), 2):
+        if a.is_Symbol and b.is_Symbol and up.is_positive and down == -up:
+            new = node * (b / a) ** (2 * up)
+            yield new, _of(Mistake.UPSIDE_DOWN, node, new)
 
 
 def _unwrapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
