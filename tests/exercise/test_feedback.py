@@ -51,7 +51,7 @@ EXPECTED = {
     "CM-02a": "in I the sign of t*p/m is wrong",
     "LE-02b": "in F the sign of -m*v*x is wrong",
     "LE-04a": "L1 and L2 have the same equations of motion, but L2 − L1 is not dF/dt of any F(q, t)",
-    "EQ-33a": "right for x > 0, but not on the whole domain",
+    "EQ-33a": "in rhs x should be Abs(x)",
 }
 EVERY = {c.id: c for path in CLAIMS.glob("*.json") for c in read_sheet(path).claims}
 
