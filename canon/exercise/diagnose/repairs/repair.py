@@ -162,7 +162,7 @@ def _slips(part: Part) -> Iterator[Repair]:
 
 def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[Repair]:
     """A slip, and a term is missing besides."""
-    for term in hints:
+    for term in (term for term in hints if not term.is_Add):
         for slip in _slips(part):
             yield Repair(slip.right + term, _missing(term, part), slip.change)
 
