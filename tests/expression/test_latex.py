@@ -306,7 +306,7 @@ STYLES = [
     {}, {"mul_symbol": "dot"}, {"mul_symbol": "times"}, {"inv_trig_style": "full"},
     {"inv_trig_style": "power"}, {"ln_notation": True}, {"fold_frac_powers": True}, {"mode": "equation"},
     {"mode": "equation*"}, {"root_notation": False},
-    {"parenthesize_super": False}, {"mode": "inline"},
+    {"parenthesize_super": False}, {"mode": "inline", "fold_short_frac": False},
 ]  # fmt: skip
 
 
