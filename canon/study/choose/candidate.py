@@ -15,6 +15,7 @@ from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
 from canon.flow.propagate import is_separable
 from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.system_request import is_hamiltonian
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
 from canon.study.choose.error_law import expected_error, order_of
@@ -109,8 +110,10 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
 
     Splittings where H = T(p) + V(q), in a fictitious time too where V has a singularity, else Gauss's methods;
     Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
-    for comparison.
+    for comparison. Where there is no H, the last three alone.
     """
+    if not is_hamiltonian(question.hamiltonian):
+        return Taylor(), DOP853(), RK4()
     others = *_of_disturbed(question), RK4(), DOP853()
     if not is_separable(question.hamiltonian, question.values):
         return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *others

@@ -14,6 +14,7 @@ from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.method_text import method_of
 from canon.flow.propagate import propagate
 from canon.flow.run.observables_along import AccuracyWarning
+from canon.flow.system_request import is_hamiltonian
 from canon.scene.scene import Scene, near
 from canon.study.choose.candidate import Candidate, candidate_methods
 from canon.study.choose.choice_question import Question
@@ -197,7 +198,8 @@ def choose(
     Parameters
     ----------
     system
-        A scene or a Hamiltonian.
+        A scene, a Hamiltonian, or another system that :func:`canon.flow.propagate.propagate` takes, such as a
+        Lagrangian with forces or constraints: its energy is then that less the work of the forces.
     span
         Duration, in units of time.
     y0
@@ -311,12 +313,12 @@ def _question(
     if not isinstance(system, Scene):
         if y0 is None or isinstance(y0, str):
             raise StudyError(
-                "a Hamiltonian has no starts of its own: give the initial state (q, p) as numbers"
+                "a system that is no scene has no starts of its own: give the initial state as numbers"
             )
         if integral is None and observable not in ("energy", "position"):
             raise StudyError(f"observable={observable!r}: give the function of (q, p) as integral=")
         state = np.asarray(y0, dtype=np.float64)
-        return _of_constant(system, state, {**given}, span, observable, integral), "Hamiltonian"
+        return _of_constant(system, state, {**given}, span, observable, integral), type(system).__name__
     scene = system.with_parameters(**given)
     if integral is None and observable not in ("energy", "position"):
         constants = scene.constants()
@@ -339,6 +341,8 @@ def _of_constant(
     integral: Expr | None,
 ) -> Question:
     """Return the question; of the energy where H depends on t with the time as a coordinate, so that it is constant."""
+    if not is_hamiltonian(hamiltonian):
+        return Question(hamiltonian, state, values, span, observable, integral)
     if observable == "energy" and hamiltonian.t in hamiltonian.H.free_symbols:
         timed = driven(hamiltonian)
         return Question(timed.hamiltonian, timed.state(state), values, span, observable, integral)

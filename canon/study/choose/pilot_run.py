@@ -13,6 +13,7 @@ from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, SCIPY
 from canon.flow.method.setting import Setting
 from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.system_request import is_hamiltonian
 from canon.study.choose.choice_question import PLACES, Question
 from canon.study.errors import StudyError
 
@@ -100,7 +101,7 @@ def pilot(question: Question, setting: Setting, duration: float, windows: int = 
     try:
         if question.observable == "position":
             return _against_reference(question, setting, duration)
-        if is_seen_inside(setting.method):
+        if is_seen_inside(setting.method) and is_hamiltonian(question.hamiltonian):
             return _watched(question, setting, duration, windows)
         return _sampled(question, setting, duration, windows)
     except (ArithmeticError, ValueError) as failed:
@@ -160,8 +161,7 @@ def _sampled(question: Question, setting: Setting, duration: float, windows: int
     if stepped:
         samples = max(windows, min(SEEN * WINDOWS, math.ceil(duration / setting.knob)))
     found = question.run(setting, duration, samples)
-    error = found.energy_change if question.integral is None else found.changes[question.observable]
-    error = error[1:] / unit_of(found, question)
+    error = change_of(found, question)[1:] / unit_of(found, question)
     parts = min(windows, error.size) if stepped else error.size
     rows = error[: error.size // parts * parts].reshape(parts, -1)
     times = (found.t[1:] - question.since)[: rows.size].reshape(parts, -1)
@@ -208,6 +208,8 @@ def _energy(found: Trajectory, largest: float | None = None) -> float:
     """Return the largest energy error, relative where the energy is not zero; 0 where H depends on time."""
     if not found.autonomous:
         return 0.0
+    if found.moving is not None:
+        return float(np.abs(found.energy_error).max())
     change = float(np.abs(found.energy_change).max()) if largest is None else largest
     return change / (float(abs(found.energy[0])) if found.relative else 1.0)
 
@@ -225,8 +227,16 @@ def error_seen(motion: Trajectory, question: Question) -> float | None:
     """Return the largest error that the samples of a motion show; None of positions, which need a reference."""
     if question.observable == "position":
         return None
-    change = motion.energy_change if question.integral is None else motion.changes[question.observable]
-    return float(np.abs(change).max()) / unit_of(motion, question)
+    return float(np.abs(change_of(motion, question)).max()) / unit_of(motion, question)
+
+
+def change_of(motion: Trajectory, question: Question) -> Array:
+    """Return the change of what should stay constant; where forces do work, of the energy less their work."""
+    if question.integral is not None:
+        return motion.changes[question.observable]
+    if motion.moving is None:
+        return motion.energy_change
+    return motion.energy_error * (np.abs(motion.energy[0]) if motion.relative else 1.0)
 
 
 def natural_step(question: Question, report: Callable[[float], None] = lambda _: None) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.setting import Setting
 from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.system_request import is_hamiltonian
 from canon.study.choose.pilot_run import unit_of
 from canon.study.drift.growth import slope_of
 
@@ -166,8 +167,10 @@ def _unsettled(parts: list[_Part], seen: float, span: float) -> str:
         return f"the pace of the motion still changes {until}"
     for i, size in enumerate(sizes):
         if _goes_on(size, SETTLED_SIZE, span / seen):
-            name = str((*parts[0].start.hamiltonian.q, *parts[0].start.hamiltonian.p)[i])
-            kind = "coordinate" if i < n else "momentum"
+            system = parts[0].start.hamiltonian
+            if not is_hamiltonian(system):
+                return f"the size of component {i + 1} of the state still changes {until}"
+            kind, name = ("coordinate", system.q[i]) if i < n else ("momentum", system.p[i - n])
             return f"the size of the {kind} {name} still changes {until}"
     return ""
 

@@ -174,7 +174,8 @@ def drift_rows(
 def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftRow:
     if observable.name == ENERGY:
         relative, unit = found.relative, np.abs(found.energy[0]) if found.relative else 1.0
-        change = found.energy_change if found.autonomous else found.energy_error
+        moving = found.moving is not None  # its energy changes by the work of forces, its balance should not
+        change = found.energy_error * unit if moving or not found.autonomous else found.energy_change
     else:
         relative, unit, change = observable.relative, observable.unit, found.changes[observable.name]
     t, error, largest = found.t, change / unit, np.abs(change / unit).max(axis=0)

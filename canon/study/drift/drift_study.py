@@ -16,6 +16,7 @@ from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.method.method_text import method_of
 from canon.flow.method.setting import Setting
 from canon.flow.propagate import is_separable
+from canon.flow.system_request import is_hamiltonian
 from canon.study.drift.drift import FEWEST
 from canon.study.drift.drift_rows import DriftRow, Run, drift_row, drift_rows
 from canon.study.drift.drift_table import drift_table
@@ -120,7 +121,8 @@ def drift_study(
     Parameters
     ----------
     system
-        A scene or a Hamiltonian. Where it depends on the time, "energy" is the energy less the work done from
+        A scene, a Hamiltonian, or another system that :func:`canon.flow.propagate.propagate` takes: its energy is then
+        that less the work of the forces. Where it depends on the time, "energy" is the energy less the work done from
         outside, H − ∫ ∂H/∂t dt (:mod:`canon.study.motion.extended_phase_space`).
     y0
         Initial state (q, p), shape (2n,), or for a scene the name of a start; a scene's default start if
@@ -245,6 +247,8 @@ def _usual_methods(
     hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, float]
 ) -> tuple[Method, ...]:
     """Return two symplectic methods that apply, an ordinary one and heyoka's."""
+    if not is_hamiltonian(hamiltonian):
+        return RK4(), Taylor()
     if is_separable(hamiltonian, parameters):
         return Splitting("kahan-li-8"), Splitting("verlet"), RK4(), Taylor()
     return Gauss(4), Gauss(1), RK4(), Taylor()

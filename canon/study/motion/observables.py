@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.system_request import is_hamiltonian
 from canon.scene.scene import Scene, near
 from canon.study.errors import StudyError
 
@@ -102,6 +103,12 @@ def observables_of(
 def _by_name(
     system: Scene | HamiltonianSystem, hamiltonian: HamiltonianSystem, names: Iterable[str]
 ) -> dict[str, Expr | None]:
+    if not is_hamiltonian(hamiltonian):
+        if list(names) == [ENERGY]:
+            return {ENERGY: None}
+        raise StudyError(
+            "of a system that is no Hamiltonian the energy has a name: give other functions yourself"
+        )
     free = hamiltonian.H.free_symbols
     ignorable = {str(p): p for q, p in zip(hamiltonian.q, hamiltonian.p, strict=True) if q not in free}
     constants = _constants(system) if isinstance(system, Scene) else {}

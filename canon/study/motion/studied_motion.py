@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.system_request import is_hamiltonian
 from canon.scene.scene import Scene
 from canon.study.errors import StudyError
 
@@ -54,7 +55,7 @@ class Subject:
     @property
     def depends_on_time(self) -> bool:
         """Whether H depends on the time."""
-        return self.hamiltonian.t in self.hamiltonian.H.free_symbols
+        return is_hamiltonian(self.hamiltonian) and self.hamiltonian.t in self.hamiltonian.H.free_symbols
 
 
 def subject_of(
@@ -81,7 +82,7 @@ def subject_of(
         scene = system.with_parameters(**given)
         hamiltonian = motion_hamiltonian(scene)
         return Subject(scene, hamiltonian, _state_of(scene, y0), {**scene.values}, _title_of(scene, y0))
-    return Subject(system, system, _state_of(system, y0), {**given}, "Hamiltonian")
+    return Subject(system, system, _state_of(system, y0), {**given}, type(system).__name__)
 
 
 def motion_hamiltonian(system: Scene | HamiltonianSystem) -> HamiltonianSystem:
