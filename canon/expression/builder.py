@@ -111,7 +111,7 @@ class Builder:
         if node.primes:
             self.refuse(
                 node,
-                f"{node.text}{node.primes * chr(39)} is not a rate of a declared coordinate",
+                f"{node.text}{min(node.primes, 4) * chr(39)} is not a rate of a declared coordinate",
                 "one or two primes after a coordinate; for a function write Derivative(f(t), t)",
             )
         if node.text in self.scope.functions:

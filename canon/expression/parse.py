@@ -15,6 +15,7 @@ from canon.expression.builder import Builder
 from canon.expression.symbols.user_input import given_kind
 from canon.expression.text import syntax
 from canon.expression.text.juxtaposition import parse_juxtaposed
+from canon.expression.text.markup import unmarked
 from canon.expression.text.notation import is_latex
 from canon.expression.text.scope import Scope
 from canon.expression.text.statement import Statement, plain_statements
@@ -112,6 +113,7 @@ def syntax_of(text: str, scope: Scope) -> syntax.Node:
     """
     given_kind(text, str, "an expression of the language")
     given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
+    text = unmarked(text)
     if is_latex(text):
         from canon.expression.latex.grammar import parse_latex  # only here: it loads a parser generator
 
@@ -134,6 +136,7 @@ def statements_of(text: str, scope: Scope) -> tuple[Statement, ...]:
     """
     given_kind(text, str, "an expression of the language")
     given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
+    text = unmarked(text)
     if is_latex(text):
         from canon.expression.latex.latex_statement import latex_statements  # only here, as above
 

@@ -10,7 +10,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from canon.expression.text.declared_names import function_name
-from canon.expression.text.syntax import Call, Comparison, Name, Negative, Node, Number, Power, Product, Sum
+from canon.expression.text.syntax import (
+    Call,
+    Comparison,
+    Name,
+    Negative,
+    Node,
+    Number,
+    Power,
+    Product,
+    Sum,
+    Tuple,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -276,8 +287,17 @@ def _equation(column: int, arguments: list[Node]) -> Node | None:
     return Comparison((arguments[0], arguments[1]), ("=",), column) if len(arguments) == 2 else None
 
 
+def _tuple(column: int, arguments: list[Node]) -> Node:
+    return Tuple(tuple(arguments), column)
+
+
+def _derivative(column: int, arguments: list[Node]) -> Node | None:
+    return Call("Derivative", tuple(arguments), column) if len(arguments) > 1 else None
+
+
 _CONSTRUCTORS: Mapping[str, Callable[[int, list[Node]], Node | None]] = {
     "Mul": _product, "Times": _product, "Add": _sum, "Plus": _sum, "Pow": _power, "Power": _power, "pow": _power,
     "Rational": _quotient, "Fraction": _quotient, "Integer": _itself, "Float": _itself, "S": _itself,
-    "sympify": _itself, "Equal": _equation, "Equality": _equation,
+    "sympify": _itself, "Hold": _itself, "HoldForm": _itself, "Tuple": _tuple, "D": _derivative,
+    "Equal": _equation, "Equality": _equation,
 }  # fmt: skip

@@ -19,15 +19,19 @@ if TYPE_CHECKING:
 
 __all__ = ["Words", "function_name", "key_of"]
 
-_MAX_RUN = 40
+_MAX_RUN = 24
 """Letters of a word that is still taken apart."""
 _PIECE = {"lambda": "lam", "lamda": "lam", "lmbda": "lam", "varphi": "phi", "vartheta": "theta", "eps": "epsilon",
           "varepsilon": "epsilon", "ell": "l", "varrho": "rho"}  # fmt: skip
 _PARTS = re.compile(r"[A-Za-z]+|[0-9]+")
+_CAPITAL = {name.capitalize(): name for name in (
+    "sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "sqrt", "log", "sign"
+)}  # fmt: skip
+"""Functions as Mathematica writes them."""
 _GREEK = frozenset(GREEK.values())
 _CALLED = frozenset((
     *FUNCTIONS, "Derivative", "diff", "Piecewise", "Eq", "Ne", "Symbol", "Function", "Integer", "Rational", "Mul",
-    "Add", "Pow", "Times", "Plus", "Power", "pow", "Float", "Fraction", "Equality", "Equal",
+    "Add", "Pow", "Tuple", "Hold", "Times", "Plus", "Power", "pow", "Float", "Fraction", "Equality", "Equal",
 ))  # fmt: skip
 
 
@@ -54,7 +58,7 @@ def function_name(word: str, scope: Scope) -> str:
     """
     if word in scope.functions or scope.symbol(word) is not None:
         return ""
-    for name in (word, OTHER_NAMES.get(word, ""), word[:1].lower() + word[1:]):
+    for name in (word, OTHER_NAMES.get(word, ""), _CAPITAL.get(word, "")):
         known = OTHER_NAMES.get(name, name)
         if known in FUNCTIONS:
             return known
@@ -78,15 +82,16 @@ class Words:
         self.text = text
         self.scope = scope
         self.keys: dict[str, list[str]] = {}
+        self.seen: dict[str, list[str]] = {}
         for name in scope.spelled:
             self.keys.setdefault(key_of(name), []).append(name)
-        self.known: dict[str, list[Token]] = {}
 
     def declared(self, word: str) -> list[str]:
         """Return the declared names that a word spells: itself, or all that are spelled alike."""
-        if word in self.scope.functions or self.scope.symbol(word) is not None:
-            return [word]
-        return self.keys.get(key_of(word), [])
+        if word not in self.seen:
+            itself = word in self.scope.functions or self.scope.symbol(word) is not None
+            self.seen[word] = [word] if itself else self.keys.get(key_of(word), [])
+        return self.seen[word]
 
     def read(self, token: Token, bracket: bool) -> list[Token]:
         """Return the tokens that a word stands for: one, or factors side by side.
@@ -141,7 +146,7 @@ class Words:
     def _part(self, atoms: tuple[Atom, ...], start: int, end: int, way: list[_Part]) -> _Part | None:
         piece = "".join(atom.plain for atom in atoms[start:end])
         marks = sum(1 for atom in atoms[start:end] if atom.rates)
-        if piece[0] == "_" or marks > 1:
+        if "_" in (piece[0], piece[-1]) or marks > 1:
             return None
         if piece.isdigit():
             after = (
@@ -188,14 +193,13 @@ class Words:
         names = self.declared(inner.text)
         if len(names) == 1:
             found = [replace(inner, text=names[0])]
-        elif len(rest) == 1:  # what is not declared is told as such
-            found = [inner]
-        else:
-            found = self.read(inner, bracket=False)
+        else:  # one product, or what is not declared and is told as such
+            ways = self._split(tuple(rest))
+            found = list(self._tokens(inner, ways[0])) if len(ways) == 1 else [inner]
         return [Token("name", "d", token.column, 0, token.tight), *found]
 
 
 def _repeats(way: list[_Part], part: _Part, atoms: tuple[Atom, ...]) -> bool:
     """Tell whether a letter stands twice, as in words of a language: ``mass`` is not m a s s."""
-    ascii_only = all(len(atom.plain) == 1 for atom in atoms)
+    ascii_only = all(len(atom.plain) == 1 and not atom.rates for atom in atoms)
     return ascii_only and part.kind == "name" and any(p.text == part.text for p in way)

@@ -25,8 +25,10 @@ def derivative(reader: Reader, token: Token | None = None) -> Node | None:
     if token is None:
         token, sign = reader.token, "∂"
         reader.at += 1
+    reader.deeper(token)
     order = _order(reader)
     operand = None if reader.token.text == "/" else _above(reader)
+    reader.depth -= 1
     if reader.token.text != "/" or not _is_sign(reader, reader.at + 1, sign):
         if sign == "∂":
             raise reader.fault("a derivative is written ∂f/∂x", token=token)

@@ -27,7 +27,7 @@ from canon.expression.text.syntax import (
     Product,
     Tuple,
 )
-from canon.expression.text.tokens import Token, tokens
+from canon.expression.text.tokens import MAX_TOKENS, Token, tokens
 from canon.expression.text.units import OF_MECHANICS
 
 if TYPE_CHECKING:
@@ -146,7 +146,9 @@ class Reader(Parser):
             for token in self.tokens[: self.at]
             if token.column > opening.column and token.kind == "name"
         )
-        if isinstance(inside, Name | Tuple) or (isinstance(inside, Number) and moves) or (moves and clock):
+        bare = isinstance(inside, Name) and not inside.primes
+        clock = clock and not isinstance(inside, Name)
+        if bare or isinstance(inside, Tuple) or (isinstance(inside, Number) and moves) or (moves and clock):
             raise self.fault(
                 f"is {name.text} applied to this, or multiplied by it?", _PRODUCT_OR_VALUE, opening
             )
@@ -349,6 +351,7 @@ class Reader(Parser):
 def _words(found: list[Token], words: Words) -> Iterator[Token]:
     """Yield the tokens with each word read; all words that can be read in two ways are told at once."""
     faults: list[LanguageError] = []
+    count = 0
     for before, token, after in zip([found[-1], *found], found, [*found[1:], found[-1]], strict=False):
         if token.kind != "name":
             yield token
@@ -359,6 +362,10 @@ def _words(found: list[Token], words: Words) -> Iterator[Token]:
                 shown = "*".join(part.text for part in read)
                 told = f"is {token.text} a unit, or {shown}?"
                 raise LanguageError(words.text, token.column, told, f"write {shown}, or [{token.text}]")
+            count += len(read)
+            if count > MAX_TOKENS:
+                told = f"more than {MAX_TOKENS} numbers, names and signs"
+                raise LanguageError(words.text, token.column, told, "split the claim")
             yield from read
         except LanguageError as fault:
             faults.append(fault)

@@ -18,6 +18,8 @@ __all__ = ["GREEK", "Atom", "LanguageError", "Token", "tokens"]
 MAX_CHARACTERS = 50_000
 MAX_TOKENS = 20_000
 MAX_DIGITS = 1_000
+MAX_SMALL = 9
+"""Small figures in a row."""
 MAX_FAULTS = 5
 """Most faults of one text that are told at once."""
 MAX_REASON = 300
@@ -97,7 +99,7 @@ _AFTER = (
 )
 _TOKEN = re.compile(
     r"(?P<space>[\s\u2061\u2062\u2063]+|'(?=diff\b)|\\(?=[*_^])"
-    r"|(?:np|numpy|math|sp|sympy|sm|smp|mpmath|cmath)\.(?=[A-Za-z])|\.(?=\s*$))"
+    r"|(?:np|numpy|math|sp|sympy|sm|smp|mpmath|cmath)\.(?=[A-Za-z])|[.,;](?=\s*$))"
     r"|(?P<string>'[A-Za-z_]\w{0,40}'|\"[A-Za-z_]\w{0,40}\")"
     r"|(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
     rf"|(?P<vulgar>[{_VULGAR}])"
@@ -115,7 +117,8 @@ GREEK = {
 _ALIKE = {"−": "-", "–": "-", "·": "*", "×": "*", "⋅": "*", "∙": "*", "•": "*", "∗": "*", "÷": "/", "∕": "/",
           "⁄": "/", "≤": "<=", "≥": ">=", "≠": "!=", ":=": "="}  # fmt: skip
 _LETTERS = {**GREEK, "ℓ": "ell", "ℏ": "hbar", "ħ": "hbar", "ϵ": "epsilon", "ϱ": "rho", "ϖ": "pi", "ς": "sigma",
-            "µ": "mu", "∆": "Delta", "Ω": "Omega", "ℋ": "H", "ℒ": "L", "ı": "i"}  # fmt: skip
+            "µ": "mu", "∆": "Delta", "Ω": "Omega", "ℋ": "H", "ℒ": "L", "ı": "i", "ⅇ": "e",
+            "ⅆ": "d", "ⅈ": "I"}  # fmt: skip
 _NOT_HERE = {
     '"': "there are no string literals",
     "'": "a prime belongs directly after the name of a coordinate; there are no string literals",
@@ -213,6 +216,8 @@ def _token(text: str, match: re.Match[str], tight: bool) -> Token:
             atoms = tuple(_atoms(text, word, column))
             primes = sum(atom.rates for atom in atoms)
             return Token("name", "".join(atom.plain for atom in atoms), column, primes, tight, atoms)
+        case "super" if len(word) > MAX_SMALL:
+            raise LanguageError(text, column, f"an exponent of more than {MAX_SMALL} figures")
         case "super":
             return Token(kind, unicodedata.normalize("NFKC", word).replace("−", "-"), column, tight=tight)
         case "operator":

@@ -1,0 +1,160 @@
+"""Markup around formulas: Markdown's marks, HTML of course systems, MathML, each to the plain text that it shows.
+
+Nothing is interpreted but the few tags and marks that change how a formula is read; entities of XML are not expanded.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from dataclasses import dataclass, field
+from html.parser import HTMLParser
+
+from canon.expression.text.tokens import MAX_CHARACTERS
+
+__all__ = ["unmarked"]
+
+MAX_NESTING = 64
+_HTML = re.compile(r"</[A-Za-z]{1,12}>|<br ?/?>|&(?:#?[A-Za-z0-9]{2,12});")
+_MATHML = re.compile(r"<(?:math|mrow|mi|mfrac)\b")
+_ENTITY = re.compile(r"&(?!lt;|gt;|amp;)#?[A-Za-z0-9]{2,12};")
+_SUB = re.compile(r"<sub>\s*([\w,]{1,12})\s*</sub>", re.IGNORECASE)
+_SUP = re.compile(r"<sup>([^<>]{1,200})</sup>", re.IGNORECASE)
+_BREAK = re.compile(r"<br ?/?>|</(?:p|div|li|tr)>", re.IGNORECASE)
+_TAG = re.compile(
+    r"</?(?:p|div|span|i|em|b|strong|var|code|pre|tt|li|ul|ol|font|u|small)(?: [^<>]{0,200})?>", re.IGNORECASE
+)
+_FENCE = re.compile(r"^\s*```[a-z]{0,12}\n(.*?)\n?```\s*$", re.DOTALL)
+
+
+def unmarked(text: str) -> str:
+    """Return a text without the markup around its formula; text without any is returned as it is.
+
+    Examples
+    --------
+    >>> unmarked("<p>&theta;&#775;<sup>2</sup></p>"), unmarked("**`2*m`**"), unmarked("x**2")
+    ('θ̇^(2)', '2*m', 'x**2')
+    >>> unmarked("<math><mfrac><msup><mi>p</mi><mn>2</mn></msup><mrow><mn>2</mn><mi>m</mi></mrow></mfrac></math>")
+    '(p^(2))/(2 m)'
+    """
+    if len(text) > MAX_CHARACTERS:
+        return text
+    if _MATHML.search(text):
+        reader = _MathML()
+        reader.feed(text)
+        return reader.text()
+    if _HTML.search(text):
+        text = _ENTITY.sub(lambda found: html.unescape(found.group()), text)
+        text = _BREAK.sub("\n", _SUP.sub(r"^(\1)", _SUB.sub(r"_\1", text)))
+        text = html.unescape(_TAG.sub("", text)).strip()
+    return _without_markdown(text)
+
+
+def _without_markdown(text: str) -> str:
+    """Return a text without the marks that stand around the whole of it."""
+    if fenced := _FENCE.match(text):
+        text = fenced.group(1)
+    for _ in range(3):
+        bare = text.strip()
+        for mark in ("```", "**", "__", "*", "`"):
+            inside = bare[len(mark) : -len(mark)]
+            whole = len(bare) > 2 * len(mark) and bare.startswith(mark) and bare.endswith(mark)
+            if whole and (mark[0] != "`" or "`" not in inside.strip("`")):
+                text = inside
+                break
+        else:
+            return text
+    return text
+
+
+@dataclass
+class _Element:
+    """An element of MathML with the plain text of what is inside."""
+
+    tag: str
+    inside: list[str] = field(default_factory=list[str])
+
+
+class _MathML(HTMLParser):
+    """Reads presentation MathML into plain text; what is nested deeper than anyone writes is left out."""
+
+    def __init__(self) -> None:
+        super().__init__(convert_charrefs=True)
+        self.open = [_Element("math")]
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Open an element."""
+        del attrs
+        if len(self.open) < MAX_NESTING:
+            self.open.append(_Element(tag))
+
+    def handle_endtag(self, tag: str) -> None:
+        """Close an element, and whatever was left open in it."""
+        while len(self.open) > 1:
+            element = self.open.pop()
+            self.open[-1].inside.append(_shown(element))
+            if element.tag == tag:
+                return
+
+    def handle_data(self, data: str) -> None:
+        """Keep the text of an element."""
+        if data.strip():
+            self.open[-1].inside.append(data.strip())
+
+    def text(self) -> str:
+        """Return the plain text of everything that was read."""
+        while len(self.open) > 1:
+            self.handle_endtag(self.open[-1].tag)
+        return _joined(self.open[0].inside)
+
+
+_SIGNS = {"\u2062": " ", "\u2061": " ", "\u2063": ",", "−": "-", "⋅": "*", "·": "*", "×": "*"}
+_ACCENTS = {"˙": "'", "\u0307": "'", ".": "'", "¨": "''", "\u0308": "''", "..": "''"}
+
+
+def _shown(element: _Element) -> str:
+    """Return what an element shows, as plain text."""
+    inside = element.inside
+    match element.tag, inside:
+        case "mfrac", [above, below]:
+            if re.match(r"[d∂](?:\^\(\d\))?(?: |$)", above) and re.match(r"[d∂] ", below):
+                return f"{above}/{below.replace(' ', '')}"
+            return f"({above})/({below})"
+        case "msup", [base, exponent]:
+            primes = exponent.replace("′", "'").replace("″", "''")
+            return f"{base}{primes}" if set(primes) == {"'"} else f"{_whole(base)}^({exponent})"
+        case "msub", [base, sub]:
+            return f"{base}_{sub.replace(' ', '')}"
+        case "msubsup", [base, sub, exponent]:
+            return f"{base}_{sub.replace(' ', '')}^({exponent})"
+        case "mover", [base, accent] if accent in _ACCENTS:
+            return f"{base}{_ACCENTS[accent]}"
+        case "msqrt", _:
+            return f"sqrt({_joined(inside)})"
+        case "mroot", [base, index]:
+            return f"({base})^(1/({index}))"
+        case "mfenced", _:
+            return f"({', '.join(inside)})"
+        case "mo", [sign]:
+            return _SIGNS.get(sign, sign)
+        case "semantics", [first, *_]:
+            return first
+        case (("annotation" | "annotation-xml" | "mspace"), _):
+            return " "
+        case (("mtr" | "mlabeledtr"), _):
+            return f"{_joined(inside)}\n"
+        case _:
+            return _joined(inside)
+
+
+def _whole(base: str) -> str:
+    """Return what is raised, in brackets where it is more than one name or bracket."""
+    single = re.fullmatch(r"\w+'*|\([^()]*\)|[\w']+", base)
+    return base if single else f"({base})"
+
+
+def _joined(pieces: list[str]) -> str:
+    """Return pieces with blanks between names."""
+    return re.sub(
+        r" +", " ", re.sub(r"(?<=[\w')\u0307\u0308]) (?=[(,)])|(?<=\() ", "", " ".join(pieces))
+    ).strip(" ")

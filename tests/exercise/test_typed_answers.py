@@ -1,0 +1,93 @@
+"""Answers as people type them, judged: left sides, chains, several equations; each with a twin that does not hold."""
+
+import pytest
+
+from canon.exercise.explained_judgement import judgements
+from canon.exercise.sheet.sheet import claim_from
+
+SIGNS = {"m": "positive", "g": "positive", "l": "positive", "k": "positive"}
+H = {
+    "kind": "legendre-hamiltonian",
+    "q": ["theta"],
+    "p": ["p_theta"],
+    "L": "L = T - V = ½ m l² θ̇² + m g l cos θ",
+}
+EL = {"kind": "euler-lagrange", "q": ["theta"], "L": "½ m l² θ̇² + mgl cosθ"}
+HE = {
+    "kind": "hamilton-equations",
+    "q": ["x", "y"],
+    "p": ["p_x", "p_y"],
+    "H": "(p_x^2 + p_y^2)/(2m) + ½k(x² + y²)",
+}
+PB = {"kind": "poisson-bracket", "q": ["x", "y"], "p": ["p_x", "p_y"]}
+RIGHT = "p_θ²/(2ml²) - mgl cosθ"
+
+
+def judged(question, **answer):
+    claim = claim_from({"id": "a", "parameters": SIGNS, **question, **answer})
+    assert not claim.errors
+    return [judgement for judgement, _ in judgements(claim)][-1]
+
+
+def bracket(value):
+    return {"pairs": [{"f": "x*p_y - y*p_x", "g": "x", "value": value}]}
+
+
+@pytest.mark.parametrize(
+    ("question", "answer"),
+    [
+        (H, {"H": f"H = {RIGHT}"}),
+        (H, {"H": f"H(θ, p_θ) = {RIGHT}."}),
+        (H, {"H": f"H = T + V = {RIGHT}"}),
+        (H, {"H": f"H = p_θ θ̇ - ½ml²θ̇² - mgl cosθ = {RIGHT}"}),
+        (EL, {"claim": ["d/dt(m l² θ̇) = -mgl sinθ"]}),
+        (EL, {"claim": ["d/dt(∂L/∂θ̇) - ∂L/∂θ = m l² θ̈ + m g l sin θ = 0"]}),
+        (EL, {"claim": ["d/dt(m l² θ̇) = m l² θ̈ = -mgl sinθ"]}),
+        (EL, {"claim": ["Eq(Derivative(theta(t), (t, 2)), -g*sin(theta(t))/l)"]}),
+        (EL, {"claim": ["θ''[t] == -(g/l) Sin[θ[t]]"]}),
+        (EL, {"claim": ["<p>m l<sup>2</sup> &theta;'' + m g l sin &theta; = 0</p>"]}),
+        (HE, {"q_dot": "ẏ = p_y/m, ẋ = p_x/m", "p_dot": "(-kx, -ky)"}),
+        (HE, {"q_dot": ["dx/dt = p_x/m", "y' = ∂H/∂p_y = p_y/m"], "p_dot": ["ṗ_x = -k x", "dp_y/dt = -k y"]}),
+        (PB, bracket("{L_z, x} = y")),
+    ],
+)
+def test_holds(question, answer):
+    assert judged(question, **answer).status == "holds"
+
+
+@pytest.mark.parametrize(
+    ("question", "answer"),
+    [
+        (H, {"H": "H = p_θ²/(2ml²) + mgl cosθ"}),
+        (H, {"H": f"H = p_θ θ̇ + ½ml²θ̇² - mgl cosθ = {RIGHT}"}),
+        (H, {"H": f"H = {RIGHT} + 1 = {RIGHT}"}),
+        (EL, {"claim": ["d/dt(m l² θ̇) = mgl sinθ"]}),
+        (EL, {"claim": ["ml²θ̈ = -mglsinθ = 0"]}),
+        (EL, {"claim": ["θ̈ = -(g/l) sinθ and θ̈ = -(g/l) cosθ"]}),
+        (HE, {"q_dot": "ẏ = p_x/m, ẋ = p_y/m", "p_dot": "(-kx, -ky)"}),
+        (PB, bracket("{L_z, x} = -y")),
+    ],
+)
+def test_fails(question, answer):
+    assert judged(question, **answer).status == "fails"
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "told"),
+    [
+        (H, {"H": f"K = {RIGHT}"}, "H is asked for here, and this says K = …"),
+        (H, {"H": f"p_θ = {RIGHT}"}, "H is asked for here, and this says p_θ = …"),
+        (H, {"H": f"H = T - V = {RIGHT}"}, "T is not declared"),
+        (H, {"H": f"H = {RIGHT}; p_θ = 3"}, "another statement beside H"),
+        (EL, {"claim": ["d/dt(∂L/∂θ̇) - ∂L/∂θ = 0"]}, "true of every system"),
+        (EL, {"claim": ["d/dt(∂L/∂θ̇) = m l² θ̈"]}, "true of every system"),
+        (PB, bracket("{x, L_z} = y"), "is asked for here, and this says {x, L_z}"),
+        (PB, bracket("{L_z, y} = y"), "is asked for here, and this says {L_z, y}"),
+        (EL, {"claim": ["h θ̈ = w"]}, "h is not declared"),
+    ],
+)
+def test_what_contradicts_the_question_is_told(question, answer, told):
+    found = judged(question, **answer)
+    assert found.status == "invalid"
+    assert told in found.known
+    assert "declare " not in found.known
