@@ -50,6 +50,7 @@ def task_of(
     method: MethodGiven | None = None,
     step: float | None = None,
     tolerance: float | None = None,
+    max_step: float | None = None,
     precision: str | int | None = None,
     parameters: Mapping[Symbol | str, Any] | None = None,
     samples: int | None = None,
@@ -72,6 +73,7 @@ def task_of(
 
     return task_with(
         system, given, ends, single=single, method=method, step=step, tolerance=tolerance, precision=precision,
+        max_step=max_step,
         samples=samples, times=times, observables=observables, cadence=cadence, events=events, dense=dense,
         in_fictitious_time=in_fictitious_time,
     )  # fmt: skip
@@ -86,6 +88,7 @@ def task_with(
     method: MethodGiven | None = None,
     step: float | None = None,
     tolerance: float | None = None,
+    max_step: float | None = None,
     precision: str | int | None = None,
     samples: int | None = None,
     times: npt.ArrayLike | None = None,
@@ -131,6 +134,7 @@ def task_with(
         events=tuple(events),
         dense=dense,
         fictitious=frame,
+        max_step=_longest(max_step, method),
     )
     _check_events(task)
     return task
@@ -145,6 +149,17 @@ def _with_tolerance(method: Method, tolerance: float | None) -> Method:
     if method.engine.takes_step:
         raise ValueError(f"{method} takes fixed steps: give step=, not tolerance=")
     return replace(method, tolerance=tolerance)
+
+
+def _longest(max_step: float | None, method: Method) -> float | None:
+    if max_step is None:
+        return None
+    if method.engine.takes_step:
+        raise ValueError(f"{method} takes steps of the size that is given: step=, not max_step=")
+    size = float(exact_number(max_step, "max_step"))
+    if not size > 0:
+        raise ValueError(f"max_step={max_step}: give a positive number, in the units of time")
+    return size
 
 
 def hamilton_equations_of(

@@ -71,8 +71,9 @@ def _by_heyoka(
     states, events = _states(task, so_far), prepared_events(task.system, task.events)
     precision, dense = task.precision or method.engine.usual_precision, task.dense
     made = taylor_motion(
-        task.system, states, task.plan, method, precision, progress, so_far, events, dense=dense
-    )
+        task.system, states, task.plan, method, precision, progress, so_far, events, dense=dense,
+        max_step=task.max_step,
+    )  # fmt: skip
     return joined(so_far, made)
 
 
@@ -80,7 +81,9 @@ def _by_scipy(
     task: Task, method: DOP853, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
     states, _ = _states(task, so_far)
-    return joined(so_far, dop853_motion(task.system, states, task.plan, method, progress, so_far))
+    return joined(
+        so_far, dop853_motion(task.system, states, task.plan, method, progress, so_far, task.max_step)
+    )
 
 
 _ENGINES: dict[Engine, Callable[[Task, Any, Callable[[float], None], Samples | None], Samples]] = {

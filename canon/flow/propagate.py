@@ -35,6 +35,7 @@ def propagate(
     method: MethodGiven | None = None,
     step: float | None = None,
     tolerance: float | None = None,
+    max_step: float | None = None,
     precision: str | int | None = None,
     parameters: Mapping[Symbol | str, Any] | None = None,
     samples: int | None = None,
@@ -77,6 +78,8 @@ def propagate(
         span; ``Trajectory.step`` has it. Of a time-transformed method: the size in t of the first step.
     tolerance
         Relative tolerance of an adaptive method, in place of the method's own.
+    max_step
+        The longest step that an adaptive method may take; as long as its tolerance allows where not given.
     precision
         Fixed steps: ``"single"``, ``"double"``, ``"compensated"`` (the default: doubles, what rounding takes
         from the state being carried along so that little is lost), ``"extended"`` (64 bits, x86 only),
@@ -161,7 +164,8 @@ def propagate(
     (2, 1001)
     """
     task, moving = any_task(
-        system, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
+        system, t_span, y0, method=method, step=step, tolerance=tolerance, max_step=max_step,
+        precision=precision,
         parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,
         events=events, dense=dense,
     )  # fmt: skip

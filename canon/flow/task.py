@@ -46,6 +46,8 @@ class Task:
         As :func:`canon.flow.propagate.propagate` takes them.
     fictitious
         Of a time-transformed method: what the motion in the fictitious time needs.
+    max_step
+        The longest step of an adaptive method.
     """
 
     system: HamiltonEquations
@@ -60,6 +62,7 @@ class Task:
     events: tuple[Event, ...]
     dense: bool
     fictitious: ExtendedSystem | None = None
+    max_step: float | None = None
 
     def arrived(self, found: Samples) -> bool:
         """Return whether samples reach to the end of what was to be done."""

@@ -122,3 +122,21 @@ def test_a_lagrangian_without_constraints_is_a_constrained_one():
     assert free.accelerations == (-x, -sp.Rational(1, 2))
     assert free.multipliers == ()
     assert free.reactions == (0, 0)
+
+
+@pytest.mark.parametrize("how", [{}, {"method": "DOP853"}, {"precision": "quad"}])
+@pytest.mark.parametrize("span", [(0, 10), (10, 0)])
+def test_no_step_is_longer_than_it_may_be(how, span):
+    free, held = (
+        propagate(OSCILLATOR, y0=[1, 0], t_span=span, samples=4, **how, **more)
+        for more in ({}, {"max_step": 0.1})
+    )
+    assert free.steps < 100 <= held.steps <= 102
+    assert abs(free.y - held.y).max() < 1e-10
+
+
+def test_a_longest_step_is_positive_and_for_methods_that_choose_theirs():
+    with pytest.raises(ValueError, match="max_step=-1: give a positive number"):
+        propagate(OSCILLATOR, y0=[1, 0], t_span=(0, 1), max_step=-1)
+    with pytest.raises(ValueError, match="verlet takes steps of the size that is given"):
+        propagate(OSCILLATOR, y0=[1, 0], t_span=(0, 1), max_step=1, method="verlet", step=0.1)

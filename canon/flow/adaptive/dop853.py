@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,7 @@ def dop853_motion(
     method: DOP853,
     progress: Callable[[float], None],
     so_far: Samples | None = None,
+    max_step: float | None = None,
 ) -> Samples:
     """Integrate orbits one after the other and sample them; a resumed motion chooses its first step anew.
 
@@ -45,7 +47,7 @@ def dop853_motion(
         def report(fraction: float, before: int = len(done)) -> None:
             progress((before + fraction) / orbits)
 
-        done.append(_dop853(system, y0, times, method, report))
+        done.append(_dop853(system, y0, times, method, report, max_step or math.inf))
         if len(done[-1].t) < len(times) and orbits > 1:
             raise KeyboardInterrupt("an ensemble under DOP853 is done orbit by orbit: nothing of it is kept")
     return Samples(
@@ -61,7 +63,12 @@ def dop853_motion(
 
 
 def _dop853(
-    system: HamiltonEquations, y0: Array, times: Array, method: DOP853, progress: Callable[[float], None]
+    system: HamiltonEquations,
+    y0: Array,
+    times: Array,
+    method: DOP853,
+    progress: Callable[[float], None],
+    max_step: float,
 ) -> Samples:
     """Integrate with SciPy's DOP853 on the compiled right-hand side."""
     from scipy import integrate
@@ -84,7 +91,7 @@ def _dop853(
     try:
         while sample < len(times):
             before, kept = integrator.t, integrator.y.copy()
-            integrator.max_step = longest(before, kept)
+            integrator.max_step = min(max_step, longest(before, kept))
             message = integrator.step()
             steps += 1
             if integrator.status == "failed" or not np.isfinite(integrator.y).all():

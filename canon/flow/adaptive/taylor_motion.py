@@ -41,6 +41,7 @@ def taylor_motion(
     events: Sequence[PreparedEvent] = (),
     *,
     dense: bool = False,
+    max_step: float | None = None,
 ) -> Samples:
     """Integrate with heyoka, the orbits on threads, and evaluate the steps' own Taylor polynomials.
 
@@ -60,6 +61,8 @@ def taylor_motion(
         Events, of one orbit.
     dense
         Whether to keep all polynomials.
+    max_step
+        The longest step.
 
     Raises
     ------
@@ -73,7 +76,7 @@ def taylor_motion(
     t0, span = plan.last(first), grid[-1] - grid[0]
     unit = state_unit(system, states[0] if so_far is None else so_far.y[:, 0], plan)
     taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward, unit=unit)
-    orbits = orbits_of(system, states, t0, method, number, taylor_events, span)
+    orbits = orbits_of(system, states, t0, method, number, taylor_events, span, max_step)
     if so_far is not None:
         for orbit, (state, clock) in zip(orbits, so_far.beyond, strict=True):
             orbit.integrator.state[:], orbit.integrator.dtime = state, clock

@@ -58,6 +58,7 @@ class TaylorOrbit:
     free: Any
     span: Any
     held: HeldSteps
+    longest: Any = None
     new: bool = True
     pieces: list[Any] = field(default_factory=list[Any])
     safe: tuple[Any, Any] = (None, None)
@@ -194,6 +195,8 @@ class TaylorOrbit:
         limits = {"max_steps": _MANY_STEPS}
         if integrator.with_events:
             limits["max_delta_t"] = abs(self.span)
+        if self.longest is not None:
+            limits["max_delta_t"] = self.longest
         if not dense and len(times) == 1:  # keeping every step's series for times between costs a fifth
             outcome, _, _, steps, _, _ = integrator.propagate_until(times[-1], **limits)
             return steps, [integrator.state.copy()] if outcome == taylor_outcome.time_limit else [], outcome
@@ -241,6 +244,7 @@ def orbits_of(
     number: Callable[[Fraction], Any],
     taylor_events: TaylorEvents,
     span: Any,
+    max_step: float | None = None,
 ) -> list[TaylorOrbit]:
     """Compile one integrator and copy it for the other orbits."""
     starts = [
@@ -257,12 +261,13 @@ def orbits_of(
 
     first = taylor_integrator(*settings, terms.beside(events) if events else events, unit)
     free = taylor_integrator(*settings, unit=unit) if events else None
+    longest = None if max_step is None else number(Fraction(max_step))
     made = list[TaylorOrbit]()
     for start in starts:
         integrator = copy.deepcopy(first) if made else first
         integrator.state[:] = [number(x / unit) for x in start]
         steps = HeldSteps(terms, held, waits=not events)
-        made.append(TaylorOrbit(integrator, taylor_events, free, span, steps))
+        made.append(TaylorOrbit(integrator, taylor_events, free, span, steps, longest))
     return made
 
 
