@@ -222,9 +222,14 @@ def swapped(f: sp.Expr, reading: Reading) -> Iterator[sp.Expr]:
         yield f.xreplace({a: b, b: a})
 
 
+def coordinates_of(reading: Reading) -> tuple[sp.Symbol, ...]:
+    """Return the coordinates of a claim, none where q has expressions."""
+    return reading.symbols("q") if reading.is_names("q") else ()
+
+
 def unit_parameter(f: sp.Expr, reading: Reading) -> Iterator[sp.Expr]:
     """A parameter taken to be one: right for that value only."""
-    names = set(reading.claim.keys.get("parameters", {})) - {q.name for q in reading.symbols("q")}
+    names = set(reading.claim.keys.get("parameters", {})) - {q.name for q in coordinates_of(reading)}
     for s in f.free_symbols:
         if s.name in names and not isinstance(s, Coordinate):
             yield f.xreplace({s: sp.S.One})
@@ -233,13 +238,13 @@ def unit_parameter(f: sp.Expr, reading: Reading) -> Iterator[sp.Expr]:
 def linearised(f: sp.Expr, reading: Reading) -> Iterator[sp.Expr]:
     """Sines and cosines of the coordinates replaced by their values for small angles."""
     small = {g: g.args[0] if isinstance(g, sp.sin) else sp.S.One
-             for g in f.atoms(sp.sin, sp.cos) if g.free_symbols & set(reading.symbols("q"))}  # fmt: skip
+             for g in f.atoms(sp.sin, sp.cos) if g.free_symbols & set(coordinates_of(reading))}  # fmt: skip
     if any(isinstance(g, sp.sin) for g in small):
         yield f.xreplace({g: v for g, v in small.items() if isinstance(g, sp.sin)})
 
 
 def velocity_for_acceleration(f: sp.Expr, reading: Reading) -> Iterator[sp.Expr]:
-    for x in reading.symbols("q"):
+    for x in coordinates_of(reading):
         a = acceleration(x)
         if f.has(a) and len(sp.Add.make_args(f)) > 1:
             yield f.xreplace({a: velocity(x)})
@@ -247,7 +252,7 @@ def velocity_for_acceleration(f: sp.Expr, reading: Reading) -> Iterator[sp.Expr]
 
 def velocity_lost(f: sp.Expr, reading: Reading) -> Iterator[sp.Expr]:
     """q written for q̇ in one term."""
-    for x in reading.symbols("q"):
+    for x in coordinates_of(reading):
         for term in sp.Add.make_args(f):
             if isinstance(x, Coordinate) and term.has(velocity(x)):
                 yield f - term + term.xreplace({velocity(x): x})
