@@ -39,7 +39,7 @@ def test_a_table_for_people(tmp_path):
     assert "A sheet" in done.stdout
     assert "✓ holds     yes" in done.stdout
     assert "✗ fails     no" in done.stdout
-    assert "lhs should be half what it is" in done.stdout
+    assert "rhs should be twice what it is" in done.stdout
     assert "! invalid   bad" in done.stdout
     assert "key rhs, column 7: y is not declared" in done.stdout
     assert "2*sin(y)\n          ^" in done.stdout

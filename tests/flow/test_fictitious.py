@@ -30,7 +30,7 @@ RADIAL = x * px + y * py
 
 def keywords(method, **others):
     return {
-        "hamiltonian": KEPLER, "y0": kepler_start(0.9), "t_span": (0, 20), "method": method, "step": 0.004, **others,
+        "system": KEPLER, "y0": kepler_start(0.9), "t_span": (0, 20), "method": method, "step": 0.004, **others,
     }  # fmt: skip
 
 

@@ -39,9 +39,9 @@ from canon import (
     coordinates,
     equal,
     is_constant_of_motion,
-    is_gauge_equivalent,
 )  # fmt: skip
 from canon import time as time_
+from canon.mechanics import is_gauge_equivalent
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian
 from canon.mechanics.hamilton.symmetry import is_symmetry
 from canon.proof.analytic import is_analytic

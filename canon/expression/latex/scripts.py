@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from canon.expression.latex.characters import letter
 from canon.expression.latex.names import Pieces, stems
-from canon.expression.latex.signs import letter
 from canon.expression.text import syntax
 from canon.expression.text.syntax import LanguageError, Number
 

@@ -26,7 +26,7 @@ from canon.expression.text.syntax import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from canon.expression.text.juxtaposition import Reader
+    from canon.expression.text.factor_parser import FactorParser
     from canon.expression.text.tokens import Token
 
 __all__ = ["applied", "constructed", "is_function", "with_brackets"]
@@ -39,13 +39,13 @@ _MAX_CHAIN = 4
 _CONSTANTS = {"%pi": "pi", "Pi": "pi", "%i": "I", "π": "pi"}
 
 
-def is_function(reader: Reader) -> bool:
+def is_function(reader: FactorParser) -> bool:
     """Tell whether a function comes next."""
     token = reader.token
     return token.kind == "name" and function_name(token.text, reader.scope) in _BARE
 
 
-def applied(reader: Reader, token: Token, chain: int = 1) -> Node | None:
+def applied(reader: FactorParser, token: Token, chain: int = 1) -> Node | None:
     """Return a function of the language with its argument, the token being its name; None where it is none."""
     scope = reader.scope
     if token.text in _CONSTANTS and not scope.declares(token.text):
@@ -73,7 +73,7 @@ def applied(reader: Reader, token: Token, chain: int = 1) -> Node | None:
     return _raised(reader, node, exponent, name)
 
 
-def _exponent(reader: Reader) -> Node | None:
+def _exponent(reader: FactorParser) -> Node | None:
     """Return the exponent between a function and its argument, ``sin^2 x``."""
     token = reader.token
     if token.kind == "super":
@@ -99,7 +99,7 @@ def _exponent(reader: Reader) -> Node | None:
     return Negative(found, node.column) if minus else found
 
 
-def _raised(reader: Reader, node: Node, exponent: Node | None, name: str) -> Node:
+def _raised(reader: FactorParser, node: Node, exponent: Node | None, name: str) -> Node:
     if exponent is None:
         return node
     inverse = (
@@ -116,7 +116,7 @@ def _raised(reader: Reader, node: Node, exponent: Node | None, name: str) -> Nod
     return Power(node, exponent, node.column)
 
 
-def _called(reader: Reader, token: Token, name: str, opening: Token) -> Node:
+def _called(reader: FactorParser, token: Token, name: str, opening: Token) -> Node:
     """Return a function whose arguments stand in brackets; Mathematica's have some of theirs the other way round."""
     arguments = with_brackets(reader)
     if opening.text == "[" and len(arguments) == 2 and name in ("atan", "log"):
@@ -130,7 +130,7 @@ def _called(reader: Reader, token: Token, name: str, opening: Token) -> Node:
     return Call(name, arguments, token.column)
 
 
-def with_brackets(reader: Reader) -> tuple[Node, ...]:
+def with_brackets(reader: FactorParser) -> tuple[Node, ...]:
     """Return the arguments in the brackets that come next."""
     opening = reader.token
     closing = {"(": ")", "[": "]"}[opening.text]
@@ -147,7 +147,7 @@ def with_brackets(reader: Reader) -> tuple[Node, ...]:
     return tuple(arguments)
 
 
-def _bare(reader: Reader, name: str, chain: int) -> Node:
+def _bare(reader: FactorParser, name: str, chain: int) -> Node:
     """Return the argument of a function without brackets."""
     first = reader.token
     if first.kind == "name" and (inner := function_name(first.text, reader.scope)) in _BARE:
@@ -178,7 +178,7 @@ def _bare(reader: Reader, name: str, chain: int) -> Node:
     return taken[0] if len(taken) == 1 else Product(tuple((False, node) for node in taken), first.column)
 
 
-def _still(reader: Reader, first: Token, name: str, taken: list[Node]) -> bool:
+def _still(reader: FactorParser, first: Token, name: str, taken: list[Node]) -> bool:
     """Tell whether a factor still belongs to an argument without brackets."""
     last, token = taken[-1], reader.token
     if isinstance(last, Name) and (last.primes or reader.scope.moves(last.text)):
@@ -195,7 +195,7 @@ def _still(reader: Reader, first: Token, name: str, taken: list[Node]) -> bool:
     )
 
 
-def _exponential(reader: Reader, token: Token) -> Node | None:
+def _exponential(reader: FactorParser, token: Token) -> Node | None:
     """Return exp of what e is raised to."""
     exponent = reader.token
     if exponent.kind == "super":
@@ -215,7 +215,7 @@ def _exponential(reader: Reader, token: Token) -> Node | None:
     return Call("exp", (Number(1, 1, token.column),), token.column) if token.text == "%e" else None
 
 
-def constructed(reader: Reader, token: Token) -> Node | None:
+def constructed(reader: FactorParser, token: Token) -> Node | None:
     """Return what a constructor of SymPy or Mathematica makes, as ``Mul(Integer(2), Symbol('x'))``; else None."""
     opening = reader.token
     if opening.text not in ("(", "[") or reader.scope.declares(token.text) or token.primes:
@@ -243,7 +243,7 @@ def _is_assumption(node: Node) -> bool:
             return False
 
 
-def _quoted(reader: Reader, token: Token) -> Node | None:
+def _quoted(reader: FactorParser, token: Token) -> Node | None:
     """Return the name in ``Symbol('x')``, or of ``Function('theta')(Symbol('t'))``."""
     string = reader.tokens[reader.at + 1]
     if string.kind != "string":

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from canon.expression.text.syntax import Call, Name, Node, Number
 
 if TYPE_CHECKING:
-    from canon.expression.text.juxtaposition import Reader
+    from canon.expression.text.factor_parser import FactorParser
     from canon.expression.text.tokens import Token
 
 __all__ = ["PARTIAL", "TOTAL", "derivative"]
@@ -19,7 +19,7 @@ TOTAL, PARTIAL = "d/dt", "∂"
 """Functions of the syntax tree that no name can spell."""
 
 
-def derivative(reader: Reader, token: Token | None = None) -> Node | None:
+def derivative(reader: FactorParser, token: Token | None = None) -> Node | None:
     """Return a quotient of differentials, its first sign being next or, for ``d``, just read; None where it is none."""
     start, sign = reader.at, "d"
     if token is None:
@@ -43,11 +43,11 @@ def derivative(reader: Reader, token: Token | None = None) -> Node | None:
     return _made(reader, sign, operand, variables, token)
 
 
-def _is_sign(reader: Reader, at: int, sign: str) -> bool:
+def _is_sign(reader: FactorParser, at: int, sign: str) -> bool:
     return at < len(reader.tokens) and reader.tokens[at].text == sign and not reader.tokens[at].primes
 
 
-def _order(reader: Reader) -> int:
+def _order(reader: FactorParser) -> int:
     """Return the order written after a sign or a variable, 1 where none is."""
     token = reader.token
     if token.kind == "super" and token.text.isdigit():
@@ -64,7 +64,7 @@ def _order(reader: Reader) -> int:
     return 1
 
 
-def _above(reader: Reader) -> Node | None:
+def _above(reader: FactorParser) -> Node | None:
     """Return what is differentiated, written after the sign: a name, a value of a function, a bracket."""
     token = reader.token
     if token.kind == "name" or token.text in ("(", "[", "{"):
@@ -72,7 +72,7 @@ def _above(reader: Reader) -> Node | None:
     return None
 
 
-def _below(reader: Reader, sign: str) -> list[tuple[Node, int]]:
+def _below(reader: FactorParser, sign: str) -> list[tuple[Node, int]]:
     """Return the variables below, each with its order."""
     variables: list[tuple[Node, int]] = []
     bracket = reader.take("(")
@@ -88,7 +88,7 @@ def _below(reader: Reader, sign: str) -> list[tuple[Node, int]]:
     return variables
 
 
-def _after(reader: Reader, token: Token, sign: str) -> Node:
+def _after(reader: FactorParser, token: Token, sign: str) -> Node:
     """Return what stands after ``d/dt``: a bracket, or one name alone."""
     opening = reader.token
     if opening.text in ("(", "[", "{"):
@@ -106,7 +106,9 @@ def _after(reader: Reader, token: Token, sign: str) -> Node:
     raise reader.fault(f"what does {what} reach?", f"write {what}( ) around it", token)
 
 
-def _made(reader: Reader, sign: str, operand: Node, variables: list[tuple[Node, int]], token: Token) -> Node:
+def _made(
+    reader: FactorParser, sign: str, operand: Node, variables: list[tuple[Node, int]], token: Token
+) -> Node:
     time = reader.scope.time.name
     variable, order = variables[0]
     if order > 8:

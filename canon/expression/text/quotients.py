@@ -15,14 +15,14 @@ from canon.expression.text.applied_functions import is_function
 from canon.expression.text.syntax import Name, Node, Number, Power, Product, parts
 
 if TYPE_CHECKING:
-    from canon.expression.text.juxtaposition import Reader
+    from canon.expression.text.factor_parser import FactorParser
 
 __all__ = ["divisor", "ended"]
 
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
 
 
-def divisor(reader: Reader, factors: list[tuple[bool, Node]]) -> Node:
+def divisor(reader: FactorParser, factors: list[tuple[bool, Node]]) -> Node:
     """Return what a slash divides by, the last factor read, with what is written as one word with it."""
     below = factors[-1][1]
     names = (n for _, above in factors[:-1] for n in parts(above) if isinstance(n, Name))
@@ -44,14 +44,14 @@ def divisor(reader: Reader, factors: list[tuple[bool, Node]]) -> Node:
     return below
 
 
-def _steady(reader: Reader, node: Node) -> bool:
+def _steady(reader: FactorParser, node: Node) -> bool:
     """Tell whether a factor is a number or a parameter."""
     if isinstance(node, Name):
         return not node.primes and not reader.scope.moves(node.text)
     return isinstance(node, Number)
 
 
-def ended(reader: Reader, factors: list[tuple[bool, Node]], starts: list[int]) -> None:
+def ended(reader: FactorParser, factors: list[tuple[bool, Node]], starts: list[int]) -> None:
     """Refuse a factor after a quotient unless the quotient ends before it beyond doubt.
 
     Raises

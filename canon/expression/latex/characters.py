@@ -1,4 +1,4 @@
-r"""Signs of LaTeX: what each character and command is in the grammar, Unicode's letters and figures among them."""
+r"""Characters and commands of LaTeX: what each is in the grammar, Unicode's letters and figures among them."""
 
 from __future__ import annotations
 
