@@ -364,18 +364,21 @@ def test_units_are_told_of_and_change_nothing():
     assert any("m/s^2" in line for line in told.lines())
 
 
-def test_factors_stand_side_by_side_in_every_sheet(tmp_path, capsys):
-    claim = {
+def test_a_letter_after_a_number_is_a_unit_or_a_factor_as_the_sheet_says(tmp_path, capsys):
+    side_by_side = {
         "id": "a",
         "kind": "equality-only",
         "lhs": "2 x(x + 1)",
         "rhs": "2*x**2 + 2*x",
         "parameters": {"x": "real"},
     }
+    claim = {"id": "a", "kind": "equality-only", "lhs": "9.81 N", "rhs": "9.81"}
     sheets = (
+        ({"claims": [side_by_side]}, "holds"),
+        ({"implicit_multiplication": True, "claims": [side_by_side]}, "holds"),
         ({"claims": [claim]}, "holds"),
-        ({"implicit_multiplication": True, "claims": [claim]}, "holds"),
-        ({"claims": [{**claim, "implicit_multiplication": True}]}, "holds"),
+        ({"implicit_multiplication": True, "claims": [claim]}, "invalid"),
+        ({"claims": [{**claim, "implicit_multiplication": True}]}, "invalid"),
         ({"claims": [{**claim, "implicit_multiplication": "yes"}]}, "invalid"),
     )
     with Worker() as worker:
@@ -384,9 +387,10 @@ def test_factors_stand_side_by_side_in_every_sheet(tmp_path, capsys):
             assert worker.judge(said).status == status
     path = tmp_path / "s.json"
     path.write_text(json.dumps({"claims": [claim]}), "utf-8")
-    assert main(["check", str(path)]) == 2
-    assert "an operator is missing before 'x'; write * for a product" in capsys.readouterr().out
-    assert main(["check", "--implicit-multiplication", str(path)]) == 0
+    assert main(["check", str(path)]) == 0
+    capsys.readouterr()
+    assert main(["check", "--implicit-multiplication", str(path)]) == 2
+    assert "N is not declared" in capsys.readouterr().out
 
 
 def test_a_sheet_that_says_it_in_toml():
