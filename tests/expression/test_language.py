@@ -237,10 +237,10 @@ def test_refuses_and_points(text, column, reason):
     ],
 )
 def test_ruinous_text_is_refused_at_once(text):
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(LanguageError) as caught:
         parse_expression(text, SCOPE)
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0
     assert len(str(caught.value)) < 400
 
 

@@ -119,10 +119,10 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.FACTOR_OF_COVARIANT: "the factor is {}, not {}",
         Mistake.BRACKET_OPPOSITE: "{} = {}, not {}: exchange Q and P, or change the sign of one of them",
         Mistake.VALENCE: "canonical with valence {1}, not {2}: {0} = {1}; multiply P by {3}",
-        Mistake.MAP_MENDED: "{}",
+        Mistake.MAP_MENDED: str,
         Mistake.DIMENSION: "the terms {} and {} do not have the same dimension",
         Mistake.MORE_WRONG: "{} more components are wrong",
-        Mistake.AS_JUDGED: "{}",
+        Mistake.AS_JUDGED: str,
     }
 )
 """What is said of a mistake; where it is in a component, ``in equation 1`` stands before it."""
