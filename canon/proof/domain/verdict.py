@@ -194,11 +194,18 @@ LONGEST_PRINTED = 60
 
 
 def _short(residual: sp.Basic | sp.MatrixBase) -> str:
-    from sympy import count_ops
+    from sympy import MatrixBase, count_ops, preorder_traversal
 
-    from canon.expression.symbols.magnitude import written
+    from canon.expression.symbols.magnitude import has_huge_number, written
 
-    operations = int(count_ops(residual))
+    entries: list[sp.Basic] = list(residual.flat()) if isinstance(residual, MatrixBase) else [residual]
+    if any(
+        map(has_huge_number, entries)
+    ):  # whose sign SymPy's count would ask for, by a value that may not exist
+        nodes = [node for entry in entries for node in preorder_traversal(entry) if node.args]
+        operations = sum(max(len(node.args) - 1, 1) for node in nodes)
+    else:
+        operations = int(count_ops(residual))
     if operations <= LONGEST_PRINTED:
         return written(residual)
     return f"an expression of {operations} operations (in .residual)"
