@@ -281,7 +281,7 @@ FACTOR = {
     M.FACTOR_OF_COVARIANT,
     M.NUMBER,
 }
-LOST = {M.FACTOR_MISSING, M.EXPONENT, M.INNER_DERIVATIVE_MISSING, M.VALENCE, M.MAP_MENDED, M.DIVISOR_MISSING}
+LOST = {M.FACTOR_MISSING, M.EXPONENT, M.VALENCE, M.MAP_MENDED, M.DIVISOR_MISSING}
 POWER = {M.EXPONENT, M.FACTOR_MISSING, M.FACTOR_SUPERFLUOUS, M.DIVISOR_MISSING, M.SQUARE}
 MISSING = {
     M.TERM_MISSING,
@@ -309,10 +309,10 @@ SLIPS: dict[str, tuple[Edit, set[M]]] = {
                            {M.TERM_SIGN, M.ARGUMENT, M.SIGN_OF}),
     "power": (power_off_by_one, POWER),
     "upside down": (upside_down, {M.UPSIDE_DOWN}),
-    "branch": (in_every(sp.Pow, lambda g: iter((-g,) if g.exp == sp.S.Half else ())), TERM | {M.BRANCH}),
+    "branch": (in_every(sp.Pow, lambda g: iter((-g,) if g.exp == sp.S.Half else ())), TERM),
     "index": (wrong_index, {M.SYMBOL, M.SYMBOLS_EXCHANGED}),
     "exchanged": (swapped, {M.SYMBOLS_EXCHANGED, M.SYMBOL}),
-    "parameter one": (unit_parameter, {M.ONLY_FOR, M.FACTOR_MISSING, M.EXPONENT, M.INNER_DERIVATIVE_MISSING}),
+    "parameter one": (unit_parameter, {M.ONLY_FOR, M.FACTOR_MISSING, M.EXPONENT}),
     "linearised": (linearised, SMALL),
     "velocity for acceleration": (velocity_for_acceleration, {M.SYMBOL}),
     "coordinate for velocity": (velocity_lost, {M.SYMBOL}),

@@ -29,7 +29,6 @@ class Mistake(enum.Enum):
     FUNCTION_MISSING = enum.auto()
     ARGUMENT = enum.auto()
     EXPONENT = enum.auto()
-    BRANCH = enum.auto()
     SYMBOL = enum.auto()
     NUMBER = enum.auto()
     SQUARE = enum.auto()  # what should be squared
@@ -38,7 +37,6 @@ class Mistake(enum.Enum):
     SYMBOLS_EXCHANGED = enum.auto()  # where, one, the other
     # how the answer was derived
     DERIVATIVE_NOT_TOTAL = enum.auto()  # the terms that are missing
-    INNER_DERIVATIVE_MISSING = enum.auto()  # the term, the factor
     TIME_TERM_MISSING = enum.auto()  # the rate, the term
     TIME_DERIVATIVE_MISSING = enum.auto()
     TIME_DERIVATIVE_SIGN = enum.auto()
@@ -64,7 +62,6 @@ class Mistake(enum.Enum):
     BRACKET_OPPOSITE = enum.auto()  # its name, its value, the wanted one
     VALENCE = enum.auto()  # the bracket's name, its value, the wanted one, what to multiply P with
     MAP_MENDED = enum.auto()  # the repair hint
-    DIMENSION = enum.auto()  # the term, another one
     MORE_WRONG = enum.auto()  # how many
     AS_JUDGED = enum.auto()  # what the judge said when it refuted the claim
 

@@ -77,7 +77,6 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.FUNCTION_MISSING: "{} should be {}",
         Mistake.ARGUMENT: "{} should be {}",
         Mistake.EXPONENT: "{} should be {}",
-        Mistake.BRANCH: "{} should be {}: the other branch",
         Mistake.SYMBOL: "{} should be {}",
         Mistake.NUMBER: "{} should be {}",
         Mistake.SQUARE: "{} should be squared",
@@ -89,7 +88,6 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.DERIVATIVE_NOT_TOTAL: lambda *terms: (
             f"d/dt ∂L/∂q̇ is a total derivative: the terms {_listed(terms)} are missing"
         ),
-        Mistake.INNER_DERIVATIVE_MISSING: "the term {} lacks the inner derivative {}",
         Mistake.TIME_DERIVATIVE_MISSING: "K is H in the new variables; ∂F/∂t is missing: K = H + ∂F/∂t",
         Mistake.TIME_DERIVATIVE_SIGN: "the sign of ∂F/∂t in K is wrong: K = H + ∂F/∂t",
         Mistake.MULTIPLIERS_OPPOSITE: lambda names: (
@@ -120,7 +118,6 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.BRACKET_OPPOSITE: "{} = {}, not {}: exchange Q and P, or change the sign of one of them",
         Mistake.VALENCE: "canonical with valence {1}, not {2}: {0} = {1}; multiply P by {3}",
         Mistake.MAP_MENDED: str,
-        Mistake.DIMENSION: "the terms {} and {} do not have the same dimension",
         Mistake.MORE_WRONG: "{} more components are wrong",
         Mistake.AS_JUDGED: str,
     }

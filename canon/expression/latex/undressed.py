@@ -1,4 +1,4 @@
-r"""Undressing of LaTeX: what sets a formula on the page, and says nothing of its meaning, becomes blanks.
+r"""Layout in LaTeX: displays, spaces, boxes and labels, which say nothing of the meaning, become blanks.
 
 ``$``, ``\[ \]``, ``\begin{align}``, ``&``, ``\label{…}``, ``\boxed{…}`` and comments are taken off; each leaves as many
 blanks as it had characters, so that every column stays where it was. What parts two formulas leaves a mark.

@@ -1,4 +1,4 @@
-"""Scenes at the door of motion: a ready system by value or by name becomes what is propagated, with its numbers.
+"""Scenes as systems to propagate: a ready system, by value or by name, with its parameters and its start.
 
 Scenes stand above this room and use it. The one import that points back is that of their list, when a scene is asked
 for by name.
