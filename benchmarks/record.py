@@ -31,6 +31,7 @@ BENCHMARKS = {
     "planets": "The planets, by methods for small perturbations",
     "scale_out": "Studies on two processes",
     "drift_calibration": "The drift statistics on series of known growth",
+    "robustness": "Attacks, counted",
     "choose": "What `choose` foretells, beside what came of it",
 }
 ARGUMENTS = {"kernels": ["--large"], "drift_calibration": ["200"]}

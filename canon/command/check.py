@@ -7,6 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from canon.command.number_types import seconds, whole_number
+from canon.printable import in_one_line, printable
 
 if TYPE_CHECKING:
     import argparse
@@ -129,7 +130,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _sheets(names: Sequence[str]) -> list[Sheet]:
     """Read the sheets and tell of those that can't be read; no sheet where the only one can't be."""
-    from canon.exercise.report.judgement import printable
     from canon.exercise.sheet.sheet import SheetError
 
     sheets: list[Sheet] = []
@@ -148,13 +148,12 @@ def _judged(
 ) -> list[Judgement]:
     """Judge the claims of each sheet in turn, and show each judgement when it is there."""
     from canon.exercise.check import judged
-    from canon.exercise.report.judgement import printable
 
     judgements: list[Judgement] = []
     coming = judged(claims, arguments.jobs)
     for sheet, some in chosen:
         if not arguments.json and (sheet.title or len(chosen) > 1):
-            print(printable(sheet.title or sheet.file))
+            print(in_one_line(sheet.title or sheet.file))
         for judgement in islice(coming, len(some)):
             judgements.append(judgement)
             _show(judgement, json=arguments.json)
@@ -177,13 +176,12 @@ def _files_written(report: Report, arguments: argparse.Namespace) -> bool:
 
 
 def _status(report: Report, judgements: list[Judgement], *, expected: bool) -> int:
-    from canon.exercise.report.judgement import printable
 
     if not expected:
         return report.exit_status
     for judgement in report.unexpected:
         line = f"canon check: {judgement.id}: {judgement.status}, expected {judgement.expect}"
-        print(printable(line), file=sys.stderr)
+        print(in_one_line(line), file=sys.stderr)
     if any(judgement.status == "invalid" and not judgement.expect for judgement in judgements):
         return 2
     return 1 if report.unexpected else 0

@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from canon.command.number_types import seconds, whole_number
+from canon.printable import in_one_line, printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
     from concurrent.futures import Executor
 
     from canon.study.cases.result import Result
+    from canon.study.cases.row_checksum import DamagedRow
     from canon.study.cases.run_study import StudyStatus
     from canon.study.cases.store import Store
 
@@ -49,6 +51,7 @@ examples:
   canon study report drifts.sqlite drifts.html      one page, figures inside
   canon study run drifts.toml --share 3/16 --store part3.sqlite    one of sixteen jobs of a queue
   canon study merge drifts.sqlite part*.sqlite
+  canon study mend drifts.sqlite                    after bits of the file were damaged; then resume
 
 exit status: 0 every case finished, 1 some failed, 3 some are pending, 2 bad usage or a file that can't be used
 """
@@ -68,7 +71,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     export = _action(actions, "export", "write all cases as a table: .csv, .parquet or .nc (NetCDF)")
     report = _action(actions, "report", "write one HTML page with the figures inside")
     merge = _action(actions, "merge", "add the cases and results of other files to one")
-    for action in (resume, status, export, report, merge):
+    mend = _action(actions, "mend", "set the damaged rows of a results file aside, to be computed again")
+    for action in (resume, status, export, report, merge, mend):
         action.add_argument("store", metavar="FILE", type=Path, help="the results file")
     for action in (run_, resume):
         action.add_argument("--retry", action="store_true", help="run failed cases again")
@@ -102,11 +106,11 @@ def run(arguments: argparse.Namespace) -> int:
 
     actions = {"run": _run, "resume": _resume, "status": _status, "export": _export, "report": _report}
     try:
-        return {**actions, "merge": _merge}[arguments.action](arguments)
+        return {**actions, "merge": _merge, "mend": _mend}[arguments.action](arguments)
     except BrokenPipeError:
         raise  # the reader of the output went away, which is no error of the study
     except (StudyError, PlotError, ExportError, OSError) as error:
-        print(f"canon study: {error}", file=sys.stderr)
+        print(printable(f"canon study: {error}"), file=sys.stderr)
         return 2
 
 
@@ -136,7 +140,13 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _status(arguments: argparse.Namespace) -> int:
-    return _told(_existing(arguments.store), arguments.plot)
+    from canon.study.cases.store import DamagedRows
+
+    store = _existing(arguments.store)
+    if damaged := store.damaged():
+        _print_damaged(damaged, store)
+        raise DamagedRows(store.path, damaged)
+    return _told(store, arguments.plot)
 
 
 def _export(arguments: argparse.Namespace) -> int:
@@ -174,13 +184,41 @@ def _merge(arguments: argparse.Namespace) -> int:
     return _told(store, None)
 
 
+def _mend(arguments: argparse.Namespace) -> int:
+    from canon.study.cases.mend import mend
+
+    _require_file(arguments.store)
+    mended = mend(arguments.store)
+    if mended.aside is not None:
+        print(f"{arguments.store} was damaged and is kept as {mended.aside}; not taken over from it:")
+        _print_damaged(mended.lost, mended.store)
+        if any(row.table == "cases" for row in mended.lost):
+            print("  run the study file again to have the cases whose inputs are lost")
+    return _told(mended.store, None)
+
+
+def _print_damaged(rows: Sequence[DamagedRow], store: Store) -> None:
+    """Print which rows are damaged, each by its case in words where the inputs can be read."""
+    from canon.study.cases.result import motions_and_settings
+
+    called = motions_and_settings(store)
+    for row in rows:
+        print(in_one_line(f"  damaged: {row.what} of {called.get(row.key, f'case {row.key[:12]}')}"))
+
+
 def _existing(path: Path) -> Store:
     """Return the store in a file; reading should not make an empty one where a name is mistyped."""
-    from canon.study.cases.store import Store, StoreError
+    from canon.study.cases.store import Store
+
+    _require_file(path)
+    return Store(path)
+
+
+def _require_file(path: Path) -> None:
+    from canon.study.cases.store import StoreError
 
     if not path.exists():
         raise StoreError(f"there is no file {path}; 'canon study run STUDY.toml' makes one")
-    return Store(path)
 
 
 def _forget_failed(store: Store, arguments: argparse.Namespace) -> None:
@@ -197,9 +235,9 @@ def _told(store: Store, plot: Path | None) -> int:
     print(f"{store.path}: {status}")
     for result in results:
         if result.state is State.FAILED:
-            print(f"  failed: {result.motion}, {result.setting}: {result.failure}")
+            print(in_one_line(f"  failed: {result.motion}, {result.setting}: {result.failure}"))
         elif result.done and result.state is State.PENDING:
-            print(f"  begun: {result.motion}, {result.setting}: {100 * result.done:.0f} % done")
+            print(in_one_line(f"  begun: {result.motion}, {result.setting}: {100 * result.done:.0f} % done"))
     if plot is not None and results:
         _draw(results, plot)
     return 1 if status.failed else 3 if status.pending else 0

@@ -1,10 +1,13 @@
 from .cases.case import Case as Case
 from .cases.export import ExportError as ExportError
+from .cases.mend import Mended as Mended
+from .cases.mend import mend as mend
 from .cases.result import Result as Result
 from .cases.result import State as State
 from .cases.result import results_of as results_of
 from .cases.run_study import run_study as run_study
 from .cases.run_study import status_of as status_of
+from .cases.store import DamagedRows as DamagedRows
 from .cases.store import StoreError as StoreError
 from .cases.study import Study as Study
 from .cases.study import read_study as read_study

@@ -15,11 +15,12 @@ from sympy.physics.mechanics import dynamicsymbols
 import canon
 from canon.cli import main
 from canon.exercise.judging_process import Worker
-from canon.exercise.report.judgement import Judgement, printable
+from canon.exercise.report.judgement import Judgement
 from canon.exercise.report.report import Report
 from canon.exercise.sheet.sheet import SheetError, bundled_sheet, claim_from, sheet_from
 from canon.expression.mathml import formula
 from canon.expression.text.scope import Scope
+from canon.printable import printable
 from canon.proof.domain.verdict import Undecided
 
 ALLOWED = {

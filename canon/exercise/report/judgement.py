@@ -3,37 +3,22 @@
 from __future__ import annotations
 
 import json
-import re
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any, Protocol
 
 from canon.display import preformatted
+from canon.printable import in_one_line, is_printable, printable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from canon.exercise.sheet.sheet import Claim
 
-__all__ = ["MARKS", "MAX_SHOWN", "Judged", "Judgement", "invalid", "printable"]
+__all__ = ["MARKS", "MAX_SHOWN", "Judged", "Judgement", "invalid"]
 
 MARKS = {"holds": "✓", "fails": "✗", "undecided": "?", "invalid": "!"}
 MAX_SHOWN = 2_000
 """Characters of an expression that are shown; the rest is cut."""
-_UNPRINTABLE = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
-)
-"""What would command a terminal, turn the direction of text, or stand for no character at all."""
-
-
-def printable(text: str) -> str:
-    r"""Return a stranger's text without what would command a terminal instead of being read.
-
-    Examples
-    --------
-    >>> printable("\x1b[2Jgone")
-    '�[2Jgone'
-    """
-    return _UNPRINTABLE.sub("�", text)
 
 
 @dataclass(frozen=True)
@@ -112,15 +97,16 @@ class Judgement:
     def json_line(self) -> str:
         """One line of JSON; in ASCII where the claim holds characters that a terminal should not see."""
         said = json.dumps(self.to_dict(), ensure_ascii=False)
-        return json.dumps(self.to_dict()) if _UNPRINTABLE.search(said) else said
+        return said if is_printable(said) else json.dumps(self.to_dict())
 
     def lines(self, width: int = 100) -> list[str]:
         """Return this judgement as lines of a table."""
         unexpected = "" if self.as_expected else f"   (expected: {self.expect})"
         name = self.title or self.kind
-        head = " ".join(f"{MARKS[self.status]} {self.status:<9} {self.id:<12} {name}".split("\n"))
+        head = in_one_line(f"{MARKS[self.status]} {self.status:<9} {self.id:<12} {name}")
         shown = [f"{head[: width - 10]:<{width - 10}} {self.seconds:6.2f} s{unexpected}"]
-        shown += [f"    {line}" for line in (*self.reasons, *self.warnings)]
+        told = (line for each in (*self.reasons, *self.warnings) for line in each.split("\n"))
+        shown += [f"    {line}" for line in told]
         return [printable(line) for line in shown]
 
     @property

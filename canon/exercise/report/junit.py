@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from canon.exercise.report.judgement import printable
+from canon.printable import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

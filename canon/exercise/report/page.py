@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
-from canon.exercise.report.judgement import printable
 from canon.exercise.report.page_style import PAGE_STYLE, STYLE
 from canon.exercise.sheet.kind import COMMON, Shape
 from canon.exercise.sheet.kinds import KINDS, kind_of
@@ -18,6 +17,7 @@ from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.expression.mathml import formula
 from canon.expression.parse import Scope
 from canon.expression.symbols.user_input import counted
+from canon.printable import printable
 
 if TYPE_CHECKING:
     from canon.exercise.report.judgement import Judged, Judgement

@@ -6,8 +6,9 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from canon.exercise.report.judgement import MARKS, Judgement, printable
+from canon.exercise.report.judgement import MARKS, Judgement
 from canon.expression.symbols.input_in_words import counted
+from canon.printable import in_one_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -108,6 +109,6 @@ class Report:
         return fragment(self)
 
     def __str__(self) -> str:
-        lines = [printable(self.title)] if self.title else []
+        lines = [in_one_line(self.title)] if self.title else []
         lines += [line for judgement in self.judgements for line in judgement.lines()]
         return "\n".join([*lines, self.summary])

@@ -14,6 +14,7 @@ from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.method_text import method_from
 from canon.flow.method.setting import Setting
 from canon.scene import find
+from canon.study.errors import StudyError
 from canon.study.motion.hamiltonian_text import Formula, hamiltonian_of
 from canon.version import __version__
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
-__all__ = ["Case", "key_of", "part_count", "versions"]
+__all__ = ["Case", "case_in", "key_of", "part_count", "versions"]
 
 LIBRARIES = ("heyoka", "llvmlite", "numpy", "scipy", "sympy")
 """Libraries whose version may change a last digit."""
@@ -149,6 +150,21 @@ class Case:
             observables=tuple(given.pop("observables", {}).items()),
             **given,
         )
+
+
+def case_in(inputs: str) -> Case:
+    """Return the case that a results file holds as text.
+
+    Raises
+    ------
+    StudyError
+        Where canon did not write it.
+    """
+    try:
+        return Case.from_dict(json.loads(inputs))
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        shown = " ".join(inputs.split())[:80]
+        raise StudyError(f"these are not the inputs of a case: {shown} ({error})") from error
 
 
 @lru_cache(maxsize=1)

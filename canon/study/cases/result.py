@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from canon.frozen_mapping import FrozenMapping
-from canon.study.cases.case import Case, part_count
+from canon.study.cases.case import Case, case_in, part_count
 from canon.study.cases.store import Store
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["Result", "State", "results_of"]
+__all__ = ["Result", "State", "motions_and_settings", "results_of"]
 
 
 class State(Enum):
@@ -82,6 +82,11 @@ class Result:
 def results_of(store: Store | str | Path) -> list[Result]:
     """Return every case of a file and what became of it, in the order they were added.
 
+    Raises
+    ------
+    StoreError
+        Where the file can't be read, or rows of it are damaged.
+
     Examples
     --------
     >>> import tempfile
@@ -96,8 +101,8 @@ def results_of(store: Store | str | Path) -> list[Result]:
     records, parts = store.records(), store.parts_done()
     found: list[Result] = []
     for key, inputs in store.cases().items():
-        written, record = json.loads(inputs), records.get(key)
-        case, by = Case.from_dict(written), FrozenMapping(written.get("versions", {}))
+        case, record = case_in(inputs), records.get(key)
+        by = FrozenMapping(json.loads(inputs).get("versions", {}))
         if record is None:
             done = parts.get(key, 0) / part_count(case)
             found.append(Result(key, case, State.PENDING, {}, done=done, versions=by))
@@ -106,4 +111,13 @@ def results_of(store: Store | str | Path) -> list[Result]:
         else:
             numbers = json.loads(record.outcome)
             found.append(Result(key, case, State.FINISHED, numbers, "", record.seconds, versions=by))
+    return found
+
+
+def motions_and_settings(store: Store) -> dict[str, str]:
+    """Return by key each case in words, as far as its inputs can be read."""
+    found: dict[str, str] = {}
+    for key, inputs in store.intact_cases().items():
+        result = Result(key, case_in(inputs), State.PENDING, {})
+        found[key] = f"{result.motion}; {result.setting}"
     return found

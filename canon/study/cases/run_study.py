@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from canon.study.cases.case import Case, key_of, part_count, versions
+from canon.study.cases.case import Case, case_in, key_of, part_count, versions
 from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance
 from canon.study.cases.store import Record, Store
 from canon.study.errors import StudyError
@@ -87,9 +87,10 @@ def run_study(
     StudyError
         Where workers of the executor died; what was finished is kept, run again to go on.
     StoreError
-        Where the file can't be written.
+        Where the file can't be written, or rows of it are damaged.
     """
     kept = store if isinstance(store, Store) else Store(Path(store))
+    kept.require_intact()
     keyed = {key_of(case): case for case in study.cases}
     kept.add_cases({key: case.to_text() for key, case in keyed.items()})
     _run(keyed, kept, executor, progress, checkpoint_seconds, in_flight)
@@ -105,8 +106,9 @@ def resume(
 ) -> StudyStatus:
     """Run the pending cases of a file; see :func:`run_study`."""
     kept = store if isinstance(store, Store) else Store(Path(store))
+    kept.require_intact()
     cases = kept.cases()
-    written = {key: Case.from_dict(json.loads(cases[key])) for key in kept.pending()}
+    written = {key: case_in(cases[key]) for key in kept.pending()}
     for key, case in written.items():
         if key_of(case) != key:
             then = json.loads(cases[key]).get("versions", {})

@@ -3,7 +3,8 @@
 The store knows no mechanics. A case is its key (a hash of everything that determines the result) and its
 inputs as text; a record is what came of it, as text too; a checkpoint is where a long run stands, and goes
 when the record comes. A record in the file was finished, whatever stopped the program. Journal and commit are
-those of SQLite with synchronous=FULL: a commit that returned outlives a power cut.
+those of SQLite with synchronous=FULL: a commit that returned outlives a power cut. Every row has a checksum over
+what it means, which is looked at whenever it is read (:mod:`canon.study.cases.row_checksum`).
 
 Two processes may use one file: a record that is there is never replaced, and cases are pure, so it does
 not matter whose it is.
@@ -14,51 +15,77 @@ from __future__ import annotations
 import sqlite3
 from contextlib import contextmanager
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from canon.study.cases.row_checksum import COLUMNS, DamagedRow, checked, with_checksum
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable
+    from collections.abc import Generator, Iterable, Sequence
 
-__all__ = ["Record", "Store", "StoreError"]
+__all__ = ["DamagedRows", "Record", "Store", "StoreError"]
 
 APPLICATION = 0x63616E6F
 """Marks the file as one of canon's ("cano")."""
 
-VERSION = 2
+VERSION = 3
 """Version of the tables below."""
 
 PATIENCE = 60.0
 """Seconds to wait while another process writes."""
 
+SHOWN = 5
+"""Damaged rows that an error names."""
+
 TABLES = """
 CREATE TABLE cases (
     key TEXT PRIMARY KEY,
-    inputs TEXT NOT NULL
+    inputs TEXT NOT NULL,
+    checksum TEXT NOT NULL
 ) STRICT;
 CREATE TABLE records (
     key TEXT PRIMARY KEY REFERENCES cases (key),
     failure TEXT NOT NULL,
     outcome TEXT NOT NULL,
     seconds REAL NOT NULL,
-    finished TEXT NOT NULL DEFAULT (datetime('now'))
+    finished TEXT NOT NULL,
+    checksum TEXT NOT NULL
 ) STRICT;
 CREATE TABLE checkpoints (
     key TEXT PRIMARY KEY REFERENCES cases (key),
     part INTEGER NOT NULL,
-    point TEXT NOT NULL
+    point TEXT NOT NULL,
+    checksum TEXT NOT NULL
 ) STRICT;
 """
 
+ADD_CASE = "INSERT OR IGNORE INTO cases VALUES (?, ?, ?)"
+
+ADD_RECORD = "INSERT OR IGNORE INTO records VALUES (?, ?, ?, ?, ?, ?)"
+
 FURTHER = """
-INSERT INTO checkpoints SELECT ?1, ?2, ?3 WHERE ?1 NOT IN (SELECT key FROM records)
-ON CONFLICT (key) DO UPDATE SET part = excluded.part, point = excluded.point WHERE excluded.part > part
+INSERT INTO checkpoints SELECT ?1, ?2, ?3, ?4 WHERE ?1 NOT IN (SELECT key FROM records)
+ON CONFLICT (key) DO UPDATE SET part = excluded.part, point = excluded.point, checksum = excluded.checksum
+WHERE excluded.part > part
 """
 """Keeps a checkpoint where there is no record, nor one that is further along."""
 
 
 class StoreError(OSError):
     """The file can't be read or written as a store; its data stay as they are."""
+
+
+class DamagedRows(StoreError):
+    """Rows of the file are not what was written; ``rows`` has them."""
+
+    def __init__(self, path: Path, rows: Sequence[DamagedRow]) -> None:
+        self.rows = tuple(rows)
+        told = ", ".join(map(str, self.rows[:SHOWN])) + (", …" if len(self.rows) > SHOWN else "")
+        super().__init__(
+            f"{path}: {len(self.rows)} of its rows damaged ({told}); "
+            f"'canon study mend {path}' sets them aside, so that they are computed again"
+        )
 
 
 @dataclass(frozen=True)
@@ -81,6 +108,11 @@ class Record:
     outcome: str
     failure: str = ""
     seconds: float = 0.0
+
+    def row(self) -> tuple[str | float, ...]:
+        """Return the row that is kept, with the present time and the checksum."""
+        now = datetime.now(UTC).isoformat(" ", "seconds")
+        return with_checksum("records", self.key, self.failure, self.outcome, float(self.seconds), now)
 
 
 @dataclass(frozen=True)
@@ -114,20 +146,16 @@ class Store:
     def add_cases(self, inputs: dict[str, str]) -> None:
         """Add cases by key with their inputs as text; those that are there already stay."""
         with self._writing() as connection:
-            connection.executemany("INSERT OR IGNORE INTO cases VALUES (?, ?)", inputs.items())
+            connection.executemany(ADD_CASE, [with_checksum("cases", *each) for each in inputs.items()])
 
     def cases(self) -> dict[str, str]:
         """Return the inputs of all cases by key, in the order they were added."""
-        with self._open() as connection:
-            return dict(connection.execute("SELECT key, inputs FROM cases ORDER BY rowid"))
+        return dict(self._rows("cases"))
 
     def save(self, record: Record) -> None:
         """Keep a record and drop the case's checkpoint, in one transaction; a record that is there already stays."""
         with self._writing() as connection:
-            connection.execute(
-                "INSERT OR IGNORE INTO records (key, failure, outcome, seconds) VALUES (?, ?, ?, ?)",
-                (record.key, record.failure, record.outcome, record.seconds),
-            )
+            connection.execute(ADD_RECORD, record.row())
             connection.execute("DELETE FROM checkpoints WHERE key = ?", (record.key,))
 
     def save_checkpoint(self, key: str, part: int, point: str) -> None:
@@ -143,26 +171,26 @@ class Store:
             All that is needed to go on, as text.
         """
         with self._writing() as connection:
-            connection.execute(FURTHER, (key, part, point))
+            connection.execute(FURTHER, with_checksum("checkpoints", key, part, point))
 
     def checkpoint(self, key: str) -> str | None:
         """Return the checkpoint of a case as text, None where there is none."""
-        with self._open() as connection:
-            row = connection.execute("SELECT point FROM checkpoints WHERE key = ?", (key,)).fetchone()
-            return None if row is None else str(row[0])
+        rows = self._rows("checkpoints", "WHERE key = ?", key)
+        return rows[0][2] if rows else None
 
     def checkpoints(self) -> list[tuple[str, int, str]]:
         """Return key, parts done and text of every checkpoint."""
-        with self._open() as connection:
-            return connection.execute("SELECT key, part, point FROM checkpoints ORDER BY rowid").fetchall()
+        return self._rows("checkpoints")
 
     def parts_done(self) -> dict[str, int]:
         """Return by key how many parts are done of each case that has a checkpoint."""
-        with self._open() as connection:
-            return dict(connection.execute("SELECT key, part FROM checkpoints"))
+        return {key: part for key, part, _ in self._rows("checkpoints")}
 
     def counts(self) -> tuple[int, int, int, int]:
-        """Return how many cases finished, failed, are pending, and of the pending ones have a checkpoint."""
+        """Return how many cases finished, failed, are pending, and of the pending ones have a checkpoint.
+
+        Rows are counted and not read; :meth:`damaged` reads them.
+        """
         with self._open() as connection:
             row = connection.execute(
                 "SELECT (SELECT count(*) FROM records WHERE failure = ''), "
@@ -174,42 +202,70 @@ class Store:
 
     def is_finished(self, key: str) -> bool:
         """Tell whether a case has a record, be it from another process."""
-        with self._open() as connection:
-            return connection.execute("SELECT 1 FROM records WHERE key = ?", (key,)).fetchone() is not None
+        return bool(self._rows("records", "WHERE key = ?", key))
 
     def add_from(self, other: Store) -> None:
         """Add the cases, records and checkpoints of another file, in one transaction.
 
         What is here already stays, but of two checkpoints of a case the one further along.
         """
-        cases, checkpoints, records = other.cases(), other.checkpoints(), other.records()
+        rows = {table: [with_checksum(table, *row) for row in other._rows(table)] for table in COLUMNS}
+        self.require_intact()
+        self.add_rows(rows)
+
+    def add_rows(self, rows: dict[str, list[tuple[str | float, ...]]]) -> None:
+        """Add rows with their checksums, by table, in one transaction, as :meth:`add_from` does."""
         with self._writing() as connection:
-            connection.executemany("INSERT OR IGNORE INTO cases VALUES (?, ?)", cases.items())
-            connection.executemany(
-                "INSERT OR IGNORE INTO records (key, failure, outcome, seconds) VALUES (?, ?, ?, ?)",
-                [(each.key, each.failure, each.outcome, each.seconds) for each in records.values()],
-            )
+            connection.executemany(ADD_CASE, rows["cases"])
+            connection.executemany(ADD_RECORD, rows["records"])
             connection.execute("DELETE FROM checkpoints WHERE key IN (SELECT key FROM records)")
-            connection.executemany(FURTHER, checkpoints)
+            connection.executemany(FURTHER, rows["checkpoints"])
 
     def records(self) -> dict[str, Record]:
         """Return the records of finished cases by key."""
-        with self._open() as connection:
-            rows = connection.execute("SELECT key, outcome, failure, seconds FROM records ORDER BY rowid")
-            return {key: Record(key, outcome, failure, seconds) for key, outcome, failure, seconds in rows}
+        return {
+            key: Record(key, outcome, failure, seconds)
+            for key, failure, outcome, seconds, _ in self._rows("records")
+        }
 
     def pending(self) -> tuple[str, ...]:
         """Return the keys of cases without a record, in the order they were added."""
-        with self._open() as connection:
-            rows = connection.execute(
-                "SELECT key FROM cases WHERE key NOT IN (SELECT key FROM records) ORDER BY rowid"
-            )
-            return tuple(key for (key,) in rows)
+        rows = self._rows("cases", "WHERE key NOT IN (SELECT key FROM records) ORDER BY rowid")
+        return tuple(key for key, _ in rows)
 
     def forget(self, keys: Iterable[str]) -> None:
         """Remove the records of these cases, such as failed ones to be tried again."""
         with self._writing() as connection:
             connection.executemany("DELETE FROM records WHERE key = ?", [(key,) for key in keys])
+
+    def damaged(self) -> tuple[DamagedRow, ...]:
+        """Return the rows whose checksum is not that of their contents."""
+        rows = [row for table in COLUMNS for row in self._checked_rows(table)]
+        return tuple(row for row in rows if isinstance(row, DamagedRow))
+
+    def intact_cases(self) -> dict[str, str]:
+        """Return the inputs of the cases whose rows are not damaged, by key."""
+        return dict(row for row in self._checked_rows("cases") if not isinstance(row, DamagedRow))
+
+    def require_intact(self) -> None:
+        """Raise DamagedRows where a row is damaged."""
+        if damaged := self.damaged():
+            raise DamagedRows(self.path, damaged)
+
+    def _rows(self, table: str, clause: str = "ORDER BY rowid", *given: str) -> list[Any]:
+        """Return rows of a table without their checksums; raises DamagedRows where one is not what was written."""
+        rows = self._checked_rows(table, clause, *given)
+        if damaged := [row for row in rows if isinstance(row, DamagedRow)]:
+            raise DamagedRows(self.path, damaged)
+        return rows
+
+    def _checked_rows(
+        self, table: str, clause: str = "ORDER BY rowid", *given: str
+    ) -> list[tuple[Any, ...] | DamagedRow]:
+        with self._open() as connection:
+            connection.text_factory = bytes  # a damaged text may be no UTF-8
+            asked = f"SELECT {', '.join(COLUMNS[table])}, checksum FROM {table} {clause}"
+            return [checked(table, row) for row in connection.execute(asked, given)]
 
     @contextmanager
     def _open(self) -> Generator[sqlite3.Connection]:
@@ -250,9 +306,12 @@ class Store:
             raise StoreError(
                 f"{self.path} was written by another version of canon: use that one, or another file"
             )
-        found = connection.execute("PRAGMA quick_check(1)").fetchone()[0]
+        found = connection.execute("PRAGMA integrity_check(1)").fetchone()[0]
+        made = connection.execute("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY rowid")
+        if found == "ok" and [sql for (sql,) in made] != _statements():
+            found = "its tables are not those of a study"
         if found != "ok":
-            raise StoreError(f"{self.path} is damaged ({found}); restore a copy, or start another file")
+            raise StoreError(f"{self.path} is damaged ({found.splitlines()[-1]}); {self._remedy()}")
 
     def _make(self, connection: sqlite3.Connection) -> None:
         """Make the tables; another process may have done so since we looked."""
@@ -260,7 +319,7 @@ class Store:
             return
         if connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
             raise StoreError(f"{self.path} is a database of another program; give another file")
-        for statement in TABLES.split(";"):
+        for statement in _statements():
             connection.execute(statement)
         connection.execute(f"PRAGMA application_id = {APPLICATION}")
         connection.execute(f"PRAGMA user_version = {VERSION}")
@@ -271,7 +330,7 @@ class Store:
         told = str(error)
         remedies = {
             "not a database": "it is no SQLite file; give another file",
-            "malformed": "it is damaged; restore a copy, or start another file",
+            "malformed": f"it is damaged; {self._remedy()}",
             "readonly": "it can't be written; check its permissions, or copy it",
             "unable to open": "it can't be opened; check that the folder exists and may be written",
             "disk I/O": "the disk is full or failing; what was finished before is kept: make room and run again",
@@ -280,6 +339,13 @@ class Store:
         }
         remedy = next((remedy for sign, remedy in remedies.items() if sign in told), told)
         return f"{self.path}: {remedy} (SQLite says: {told})"
+
+    def _remedy(self) -> str:
+        return f"'canon study mend {self.path}' keeps what can be read, or restore a copy"
+
+
+def _statements() -> list[str]:
+    return [statement.strip() for statement in TABLES.split(";") if statement.strip()]
 
 
 def _pragma(connection: sqlite3.Connection, name: str) -> int:

@@ -1,0 +1,54 @@
+"""Counts of attacks: how many, what came of them, and the first that went wrong."""
+
+from __future__ import annotations
+
+import io
+import traceback
+from collections import Counter
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass, field
+
+from canon.cli import main
+
+__all__ = ["BAD", "Count", "command"]
+
+BAD = ("traceback", "other numbers", "code run", "over budget", "left running", "wrong status", "false line")
+"""What must not come of an attack."""
+
+
+@dataclass
+class Count:
+    """What came of one sort of attack."""
+
+    sort: str
+    outcomes: Counter[str] = field(default_factory=Counter)
+    first: dict[str, str] = field(default_factory=dict)
+
+    def add(self, outcome: str, attack: str) -> None:
+        self.outcomes[outcome] += 1
+        if outcome in BAD:
+            self.first.setdefault(outcome, attack)
+
+    @property
+    def bad(self) -> int:
+        return sum(self.outcomes[outcome] for outcome in BAD)
+
+    def __str__(self) -> str:
+        told = ", ".join(f"{number} {outcome}" for outcome, number in sorted(self.outcomes.items()))
+        lines = [f"{self.sort}: {self.outcomes.total()}: {told}; {self.bad} bad"]
+        return "\n".join([*lines, *(f"  {outcome}: {attack}" for outcome, attack in self.first.items())])
+
+
+def command(*arguments: object) -> tuple[int | None, str, str]:
+    """Return what a command ends with and prints, in this process; None and a traceback where it raises."""
+    out, err = io.StringIO(), io.StringIO()
+    with redirect_stdout(out), redirect_stderr(err):
+        try:
+            status = main([str(argument) for argument in arguments])
+        except SystemExit as ended:
+            status = int(ended.code or 0)
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            return None, out.getvalue(), traceback.format_exc()
+    return status, out.getvalue(), err.getvalue()
