@@ -13,6 +13,7 @@ from canon.expression.symbols.symbol import (
     velocity,
 )
 from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.lagrange.force import rayleigh_forces
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.vanish import vanishes
 
@@ -215,3 +216,23 @@ def test_a_mass_matrix_singular_by_an_identity_is_found():
 def test_refusals_say_what_is_wrong(make, words):
     with pytest.raises((ValueError, TypeError), match=words):
         make()
+
+
+def test_rayleighs_function_adds_its_forces_to_the_given_ones() -> None:
+    x, y = coordinates("x y")
+    c, m, k = parameters("c m k", positive=True)
+    L = m * (x.dot**2 + y.dot**2) / 2
+    F = c * (x.dot - y.dot) ** 2 / 2
+    both = [sp.expand(Q) for Q in Lagrangian(L, [x, y], forces=[-k * x, 0], dissipation=F).forces]
+    assert both == [sp.expand(-k * x - c * (x.dot - y.dot)), sp.expand(c * (x.dot - y.dot))]
+    assert both != [sp.expand(-k * x + c * (x.dot - y.dot)), sp.expand(-c * (x.dot - y.dot))]
+    assert Lagrangian(L, [x, y], dissipation=F).forces == rayleigh_forces(F, [x, y])
+
+
+def test_a_quadratic_rayleigh_function_takes_twice_itself_from_the_energy() -> None:
+    x, y = coordinates("x y")
+    c, m, k = parameters("c m k", positive=True)
+    F = c * (x.dot**2 + 3 * x.dot * y.dot + 5 * y.dot**2) / 2
+    system = Lagrangian(m * (x.dot**2 + y.dot**2) / 2 - k * (x**2 + y**2) / 2, [x, y], dissipation=F)
+    power = sum(Q * v for Q, v in zip(system.forces, system.velocities, strict=True))
+    assert sp.expand(power + 2 * F) == 0

@@ -38,6 +38,8 @@ class Lagrangian:
         The generalized forces Q(q, q̇, t), one a coordinate, or nothing.
     t
         The time.
+    dissipation
+        Rayleigh's dissipation function F(q, q̇, t), whose forces −∂F/∂q̇ are added to the given ones [1]_.
 
     Raises
     ------
@@ -55,6 +57,13 @@ class Lagrangian:
     (g*l*m*sin(theta) + l**2*m*theta_ddot,)
     >>> pendulum.accelerations
     (-g*sin(theta)/l,)
+    >>> c = parameters("c", positive=True)
+    >>> Lagrangian(pendulum.L, [theta], dissipation=c*theta.dot**2/2).equations
+    (c*theta_dot + g*l*m*sin(theta) + l**2*m*theta_ddot,)
+
+    References
+    ----------
+    .. [1] H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd ed., 2002, section 1.5.
     """
 
     L: Expr
@@ -63,14 +72,21 @@ class Lagrangian:
     t: Symbol = time
 
     def __init__(
-        self, L: Expr, q: Sequence[Expr] | Expr, forces: Sequence[Expr] | None = None, t: Symbol = time
+        self,
+        L: Expr,
+        q: Sequence[Expr] | Expr,
+        forces: Sequence[Expr] | Expr | None = None,
+        t: Symbol = time,
+        *,
+        dissipation: Expr | None = None,
     ) -> None:
         symbols = coordinate_symbols(q)
         if not symbols:
             raise ValueError("no coordinates given; a system moves in at least one")
         if len({*symbols}) < len(symbols):
             raise ValueError(f"the coordinates {symbols} are not all different; every one moves on its own")
-        expressions = [plain(e, symbols, t) for e in (L, *as_tuple(forces or ()))]
+        given = () if forces is None else as_tuple(forces)
+        expressions = [plain(e, symbols, t) for e in (L, *given)]
         object.__setattr__(self, "L", expressions[0])
         object.__setattr__(self, "q", symbols)
         object.__setattr__(self, "t", t)
@@ -87,6 +103,11 @@ class Lagrangian:
                 f"L holds the accelerations {', '.join(found)}; a Lagrangian of canon depends on "
                 "q, q̇ and t only"
             )
+        if dissipation is not None:
+            F = plain(dissipation, symbols, t)
+            rest = self.forces or (sp.S.Zero,) * len(symbols)
+            forces_of_all = tuple(Q - F.diff(velocity(s)) for Q, s in zip(rest, symbols, strict=True))
+            object.__setattr__(self, "forces", forces_of_all)
 
     @cached_property
     def velocities(self) -> tuple[Symbol, ...]:
