@@ -1,0 +1,10 @@
+from .birkhoff import NormalForm as NormalForm
+from .birkhoff import NormalFormError as NormalFormError
+from .birkhoff import birkhoff_normal_form as birkhoff_normal_form
+from .gustavson import FormalIntegral as FormalIntegral
+from .gustavson import formal_integral as formal_integral
+from .near_identity import NearIdentityMap as NearIdentityMap
+from .near_identity import is_normal_form as is_normal_form
+from .near_identity import near_identity_map as near_identity_map
+from .remainder import optimal_order as optimal_order
+from .remainder import remainder_norms as remainder_norms

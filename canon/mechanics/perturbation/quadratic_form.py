@@ -1,0 +1,279 @@
+"""Quadratic Hamiltonians in Williamson's form: variables in which H₂ is a sum over pairs, each with its eigenvalue.
+
+For ẋ = A x with A = J ∂²H₂ a row ℓ with ℓ A = λ ℓ makes a = ℓ·x move by ȧ = λ a. Rows come in pairs ±λ, and
+{aⱼ, bⱼ} = cⱼ is all that is left of the bracket (J. Williamson, Am. J. Math. 58, 141 (1936), doi:10.2307/2371062).
+Rows are never divided by roots, so coefficients stay in the field of the eigenvalues: an elliptic pair is z, z̄ with
+{z, z̄} = −2iκ, κ > 0, and its part of H₂ is ω z z̄/(2κ).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr
+
+from canon.mechanics.perturbation.lie_transform import Brackets
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial, PolynomialRing
+
+__all__ = ["DiagonalForm", "NoDiagonalFormError", "characteristic_exponents", "diagonal_form"]
+
+Row = list["PhasePolynomial"]
+
+
+class NoDiagonalFormError(ValueError):
+    """The quadratic part of a Hamiltonian cannot be made diagonal."""
+
+
+@dataclass(frozen=True)
+class DiagonalForm:
+    """Variables a₁ … aₙ, b₁ … bₙ with {aⱼ, bⱼ} = cⱼ, {aⱼ, H₂} = λⱼ aⱼ, {bⱼ, H₂} = −λⱼ bⱼ.
+
+    Parameters
+    ----------
+    rows
+        (a, b) as linear functions of (q, p): 2n polynomials of degree 1.
+    columns
+        (q, p) as linear functions of (a, b).
+    brackets
+        The bracket in (a, b).
+    eigenvalues
+        λ₁ … λₙ as polynomials of degree 0.
+    exponents
+        The same as SymPy numbers: iω with ω > 0 or < 0 where a pair is elliptic.
+    """
+
+    rows: tuple[PhasePolynomial, ...]
+    columns: tuple[PhasePolynomial, ...]
+    brackets: Brackets
+    eigenvalues: tuple[PhasePolynomial, ...]
+    exponents: tuple[Expr, ...]
+
+    def is_elliptic(self, j: int) -> bool:
+        """Tell whether the j-th pair oscillates: z, z̄ with {z, z̄} = −2iκ."""
+        return not self.eigenvalues[j].re
+
+    def frequency(self, j: int) -> Expr:
+        """Return ω, or the rate λ of a hyperbolic pair."""
+        return sp.expand(self.exponents[j] * sp.I) if self.is_elliptic(j) else self.exponents[j]
+
+    def action(self, j: int) -> PhasePolynomial:
+        """Return z z̄/(2κ) of an elliptic pair, a b/c of a hyperbolic one: H₂ = Σ ω I + Σ λ I."""
+        n = len(self.eigenvalues)
+        ring = self.eigenvalues[0].ring
+        factor = self.brackets.constants[j].inverse()
+        if self.is_elliptic(j):
+            factor = factor * -ring.i
+        return ring.variable(j) * ring.variable(n + j) * factor
+
+
+def characteristic_exponents(hessian: sp.MatrixBase) -> list[tuple[Expr, int]]:
+    """Return the eigenvalues λ of J ∂²H, one of each pair ±λ, with multiplicity.
+
+    Of an elliptic pair it is −iω with ω > 0, of a hyperbolic one λ > 0, of four α ± iβ, −α ± iβ the two with α > 0.
+
+    Raises
+    ------
+    NoDiagonalFormError
+        Where one is zero, has a sign that depends on parameters, or has no closed form.
+    """
+    n = hessian.rows // 2
+    square = sp.Dummy("lambda2")
+    line = sp.Dummy("lambda")
+    J = sp.Matrix(sp.BlockMatrix([[sp.zeros(n), sp.eye(n)], [-sp.eye(n), sp.zeros(n)]]))
+    powers = (J * hessian).charpoly(line).all_coeffs()[::2]  # the odd ones are zero
+    even = sp.Poly(powers, square)
+    found = sp.roots(even, multiple=False)
+    if sum(found.values()) < n:
+        raise NoDiagonalFormError(
+            f"the squares of the exponents satisfy {even.as_expr()} = 0, which is not solved in radicals; "
+            "put numbers for the parameters"
+        )
+    return [(_root(mu), times) for mu, times in found.items()]
+
+
+def _root(mu: Expr) -> Expr:
+    mu = sp.factor(sp.radsimp(mu)) if mu.free_symbols else sp.radsimp(mu)
+    if mu.is_zero:
+        raise NoDiagonalFormError(
+            "an exponent is zero: the equilibrium is not isolated, or the pair is parabolic; "
+            "reduce an ignorable coordinate first"
+        )
+    if mu.is_negative:
+        return -sp.I * sp.sqrtdenest(sp.sqrt(-mu))
+    if mu.is_positive:
+        return sp.sqrtdenest(sp.sqrt(mu))
+    x, y = mu.as_real_imag()
+    if not mu.free_symbols and y != 0:
+        modulus = sp.sqrtdenest(sp.sqrt(sp.expand(x**2 + y**2)))
+        alpha, beta = sp.sqrtdenest(sp.sqrt((modulus + x) / 2)), sp.sqrtdenest(sp.sqrt((modulus - x) / 2))
+        return alpha + sp.I * (beta if y.is_positive else -beta)
+    raise NoDiagonalFormError(
+        f"the sign of {mu}, the square of an exponent, depends on the parameters; "
+        "declare them so that it is known, or put numbers for them"
+    )
+
+
+def diagonal_form(
+    hessian: Sequence[Sequence[PhasePolynomial]],
+    exponents: Sequence[tuple[Expr, int]],
+    ring: PolynomialRing,
+) -> DiagonalForm:
+    """Return Williamson's variables of ½ x·(hessian) x.
+
+    Parameters
+    ----------
+    hessian
+        ∂²H₂ in (q, p), of shape (2n, 2n), as constants of the ring.
+    exponents
+        What :func:`characteristic_exponents` returns.
+    ring
+        The ring, whose field holds real and imaginary parts of the exponents.
+
+    Raises
+    ------
+    NoDiagonalFormError
+        Where H₂ is not semisimple.
+    """
+    size = len(hessian)
+    n = size // 2
+    flow: list[Row] = [[*hessian[n + j]] for j in range(n)] + [[-h for h in hessian[j]] for j in range(n)]
+    a_rows: list[Row] = []
+    b_rows: list[Row] = []
+    constants: list[PhasePolynomial] = []
+    values: list[PhasePolynomial] = []
+    shown: list[Expr] = []
+    for exponent, times in exponents:
+        re, im = exponent.as_real_imag()
+        value = ring.number(re) + ring.i * ring.number(im)
+        right, left = (_left_null_rows(flow, v, ring) for v in (value, -value))
+        if len(right) < times:
+            raise NoDiagonalFormError(
+                f"the exponent {exponent} occurs {times} times and has {len(right)} directions: the quadratic part "
+                "is not semisimple, and its normal form has a nilpotent part, which is not computed here"
+            )
+        elliptic = not value.re
+        pairs = _elliptic_pairs(right, ring) if elliptic else _dual_pairs(right, left, ring)
+        for a, b, c in pairs:
+            flipped = elliptic and _is_negative(c * ring.i, ring)  # c = −2iκ
+            a_rows.append(b if flipped else a)
+            b_rows.append(a if flipped else b)
+            constants.append(-c if flipped else c)
+            values.append(-value if flipped else value)
+            shown.append(-exponent if flipped else exponent)
+    rows = tuple(_linear(row, ring) for row in (*a_rows, *b_rows))
+    columns = tuple(_coordinate(k, a_rows, b_rows, constants, ring) for k in range(size))
+    return DiagonalForm(rows, columns, Brackets(tuple(constants)), tuple(values), tuple(shown))
+
+
+def _left_null_rows(flow: Sequence[Row], value: PhasePolynomial, ring: PolynomialRing) -> list[Row]:
+    """Return a basis of the rows ℓ with ℓ A = λ ℓ, by elimination in Aᵀ − λ."""
+    size = len(flow)
+    matrix = [[flow[j][i] - value if i == j else flow[j][i] for j in range(size)] for i in range(size)]
+    pivots: list[int] = []
+    for column in range(size):
+        top = len(pivots)
+        row = next((r for r in range(top, size) if matrix[r][column]), None)
+        if row is None:
+            continue
+        matrix[top], matrix[row] = matrix[row], matrix[top]
+        scale = matrix[top][column].inverse()
+        matrix[top] = [entry * scale for entry in matrix[top]]
+        for r in range(size):
+            factor = matrix[r][column]
+            if r != top and factor:
+                matrix[r] = [x - factor * y for x, y in zip(matrix[r], matrix[top], strict=True)]
+        pivots.append(column)
+    free = [c for c in range(size) if c not in pivots]
+    basis: list[Row] = []
+    for c in free:
+        row = [ring.zero] * size
+        row[c] = ring.one
+        for top, pivot in enumerate(pivots):
+            row[pivot] = -matrix[top][c]
+        first = next(x for x in row if x).inverse()  # q has the coefficient 1: z = q + i p, not p − i q
+        basis.append([x * first for x in row])
+    return basis
+
+
+def _form(a: Row, b: Row, ring: PolynomialRing) -> PhasePolynomial:
+    """Return the bracket {a·x, b·x} of two linear functions."""
+    n = len(a) // 2
+    up = ring.sum_of_products([(a[j], b[n + j]) for j in range(n)])
+    return up - ring.sum_of_products([(a[n + j], b[j]) for j in range(n)])
+
+
+def _bar(row: Row) -> Row:
+    return [x.conjugate_coefficients() for x in row]
+
+
+def _elliptic_pairs(rows: list[Row], ring: PolynomialRing) -> list[tuple[Row, Row, PhasePolynomial]]:
+    """Return z, z̄ and {z, z̄}, the rows made orthogonal in the Hermitian form {ℓ, ℓ̄}."""
+    rows, pairs = [*rows], []
+    while rows:
+        j = next((j for j, row in enumerate(rows) if _form(row, _bar(row), ring)), None)
+        if j is None:  # all are isotropic: the sum of two that are not orthogonal is not
+            other = next(k for k in range(1, len(rows)) if _form(rows[0], _bar(rows[k]), ring))
+            pairing = _form(rows[0], _bar(rows[other]), ring)
+            turned = [x * pairing for x in rows[other]]
+            rows[0] = [x + y * ring.i for x, y in zip(rows[0], turned, strict=True)]
+            if not _form(rows[0], _bar(rows[0]), ring):
+                rows[0] = [x + y * (ring.one - ring.i) for x, y in zip(rows[0], turned, strict=True)]
+            j = 0
+        z = rows.pop(j)
+        bar = _bar(z)
+        c = _form(z, bar, ring)
+        inverse = c.inverse()
+        pairs.append((z, bar, c))
+        rows = [_less(row, z, _form(row, bar, ring) * inverse) for row in rows]
+    return pairs
+
+
+def _dual_pairs(
+    right: list[Row], left: list[Row], ring: PolynomialRing
+) -> list[tuple[Row, Row, PhasePolynomial]]:
+    """Return a, b and {a, b} = 1 from the rows of λ and those of −λ, which are dual to each other."""
+    right, left, pairs = [*right], [*left], []
+    while right:
+        a = right.pop(0)
+        j = next(j for j, row in enumerate(left) if _form(a, row, ring))
+        b = left.pop(j)
+        inverse = _form(a, b, ring).inverse()
+        b = [x * inverse for x in b]
+        pairs.append((a, b, ring.one))
+        right = [_less(row, a, _form(row, b, ring)) for row in right]
+        left = [_less(row, b, _form(a, row, ring)) for row in left]
+    return pairs
+
+
+def _less(row: Row, other: Row, factor: PhasePolynomial) -> Row:
+    return [x - factor * y for x, y in zip(row, other, strict=True)]
+
+
+def _is_negative(minus_c_over_i: PhasePolynomial, ring: PolynomialRing) -> bool:
+    """Tell whether κ < 0, for i c = 2κ."""
+    kappa = ring.expression(minus_c_over_i, [sp.S.Zero] * ring.size)
+    return bool(kappa.is_negative) if kappa.free_symbols else bool(kappa.evalf(50) < 0)
+
+
+def _linear(row: Row, ring: PolynomialRing) -> PhasePolynomial:
+    return ring.sum_of_products([(x, ring.variable(j)) for j, x in enumerate(row)])
+
+
+def _coordinate(
+    k: int, a_rows: list[Row], b_rows: list[Row], constants: list[PhasePolynomial], ring: PolynomialRing
+) -> PhasePolynomial:
+    """Return x_k = Σ ({x_k, b} a − {x_k, a} b)/c."""
+    n = len(a_rows)
+    unit = [ring.one if j == k else ring.zero for j in range(2 * n)]
+    total = ring.zero
+    for j, (a, b, c) in enumerate(zip(a_rows, b_rows, constants, strict=True)):
+        inverse = c.inverse()
+        total = total + ring.variable(j) * _form(unit, b, ring) * inverse
+        total = total - ring.variable(n + j) * _form(unit, a, ring) * inverse
+    return total
