@@ -69,7 +69,7 @@ def _radical_parts(values: Iterable[Any]) -> list[Expr]:
     """Return the product of the roots in each term of some sums."""
     sums = (sp.Add.make_args(sp.expand(value)) for value in values)
     terms: Iterator[tuple[Any, ...]] = (sp.Mul.make_args(term) for several in sums for term in several)
-    products = (sp.Mul(*(f for f in factors if f.is_Pow and not f.exp.is_Integer)) for factors in terms)
+    products: Iterator[Any] = (sp.Mul(*(f for f in factors if f.is_Pow and not f.exp.is_Integer)) for factors in terms)
     return sorted({product for product in products if product != 1}, key=sp.default_sort_key)
 
 
@@ -87,7 +87,8 @@ def _with_square_root(radicals: list[Expr], size: int, parameters: tuple[Symbol,
 
 
 def _without_squares(product: Expr) -> Expr:
-    number, factors = sp.factor_list(product)
+    found: Any = sp.factor_list(product)
+    number, factors = found
     return number * sp.Mul(*(f for f, times in factors if times % 2))
 
 
