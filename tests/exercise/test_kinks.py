@@ -175,6 +175,7 @@ CLAIMS = [
      ["Abs(z)"], ["Abs(x)"]),
     ("positive-real", {"variables": "s", "is": ["positive-real"], "parameters": {"a": "real"}, "domain": ["a >= 0"]},
      "H", "1/(s + Abs(a))", f"{up('a - 1')}/(s + 1)"),
+    ("number", {"value": "Abs(-2)"}, "claim", "Max(2, -2)", "Min(2, -2)"),
     ("variation", {"q": "x", "L": "x_dot**2/2 - Abs(x)", "boundary": "x_dot*delta_x"}, "integrand",
      f"-(x_ddot + {up('x')})*delta_x", "-(x_ddot + 1)*delta_x"),
     ("differential", {"x": "x", "f": "Abs(x)"}, "claim", f"{up('x')}*d_x", "d_x"),

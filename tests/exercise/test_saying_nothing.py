@@ -105,6 +105,7 @@ COMPLETE = {
     "invariance": ({**QP, **TURN, "of": "poisson-brackets"}, ["q", "p"]),
     "jacobi-identity": ({**BODY, "casimirs": ["a**2 + b**2 + c**2", "7"]}, ["a", "b", "c"]),
     "positive-real": ({"variables": ["s"], "H": "1/(s + 1)", "is": ["positive-real"]}, []),
+    "number": ({"value": ["1", "-2"], "claim": "(-1 ± 3)/2"}, []),
     "parameters": ({**QP, "of": "canonicity", "Q": ["a*q"], "P": ["b*p"], "find": ["a"],
                     "parameters": {"a": "real", "b": "nonzero"}, "values": [{"a": "1/b"}]}, []),
     "variation": ({**SPRING, "boundary": "m*x_dot*delta_x", "integrand": "-(m*x_ddot + k*x)*delta_x"},

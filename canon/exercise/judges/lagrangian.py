@@ -1,4 +1,9 @@
-"""Claims about Lagrange's equations: free, damped, reduced by Routh, equivalent Lagrangians."""
+"""Claims about Lagrange's equations: free, damped, reduced by Routh, equivalent Lagrangians; Appell's equations.
+
+For the Gibbs–Appell function: S = Σ ½ m a² + ½ I α² over the bodies; ∂S/∂u̇ⱼ = Σ (Qᵢ − ∂V/∂qᵢ) ∂q̇ᵢ/∂uⱼ (P. Appell,
+J. reine angew. Math. 121 (1900) 310). A rotor with ``omega`` as a list of three has them along axes fixed in it, where
+Euler's gyroscopic terms join in: the torque is I ω̇ + ω × I ω, so that of principal axes I₁ω̇₁ + (I₃ − I₂)ω₂ω₃.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +15,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.continuous_answer import is_continuous
+from canon.exercise.question.given_bodies import given_bodies
 from canon.exercise.question.question import (
     Determines,
     Part,
@@ -25,6 +31,7 @@ from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.linear import solve_affine
 from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.lagrange.appell import GibbsAppell
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian as routh
 from canon.proof.continuity.smooth import PIECED
@@ -34,7 +41,14 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.reading import Reading
 
-__all__ = ["dissipative", "euler_lagrange", "lagrangian_equivalence", "lagrangian_of", "routhian"]
+__all__ = [
+    "dissipative",
+    "euler_lagrange",
+    "gibbs_appell",
+    "lagrangian_equivalence",
+    "lagrangian_of",
+    "routhian",
+]
 
 
 def euler_lagrange(reading: Reading) -> Iterator[Question]:
@@ -209,3 +223,42 @@ def _total_derivative_conditions(difference: Expr, q: Sequence[Symbol], t: Symbo
         yield Part(f"the derivatives by {x} and {y} agree", a.diff(y), b.diff(x))
     for a, x in zip(slopes, q, strict=True):
         yield Part(f"the derivatives by {x} and {t} agree", a.diff(t), rest.diff(x))
+
+
+def gibbs_appell(reading: Reading) -> Iterator[Question]:
+    """S has the right derivatives by the accelerations, and the equations are Appell's."""
+    appell = _appell_system(reading)
+    kinematics, domain = appell.kinematics, reading.domain
+    if reading.has("S"):
+        S = kinematics.along(reading.expression("S"))
+        parts = (Part(f"∂S/∂{a}", S.diff(a), s) for a, s in zip(appell.u_dot, appell.slopes, strict=True))
+        yield Same(tuple(parts), domain)
+        yield is_continuous(S, (*appell.q, *kinematics.u, *appell.u_dot, kinematics.t), domain, "S")
+    if reading.has("claim"):
+        written = reading.equations("claim")
+        claims = tuple(kinematics.along(claim) for claim in written)
+        natural = kinematics.u == tuple(velocity(x) for x in appell.q)
+        yield SameEquations(
+            claims,
+            appell.equations,
+            appell.u_dot,
+            domain,
+            lambda: appell.equations,
+            written,
+            {} if natural else kinematics.through,
+        )
+        yield more_than_zero(claims, domain)
+
+
+def _appell_system(reading: Reading) -> GibbsAppell:
+    if reading.has("quasi") and not reading.has("q_dot"):
+        reading.fault("q_dot", "missing; say what each velocity is in terms of the quasi-velocities")
+    return GibbsAppell(
+        tuple(body for _, body in given_bodies(reading)),
+        reading.symbols("q"),
+        reading.expression("V", sp.S.Zero),
+        reading.symbols("quasi") if reading.has("quasi") else None,
+        reading.expressions("q_dot", like="q") if reading.has("quasi") else None,
+        reading.expressions("Qnc", like="q") if reading.has("Qnc") else None,
+        reading.time,
+    )

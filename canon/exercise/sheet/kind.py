@@ -93,6 +93,8 @@ class Kind:
         Keys of what is claimed together with the answer.
     components
         Keys of lists that hold components, where others have equations.
+    several
+        Keys of lists that hold values in any order, of which ``±`` is two.
     unknowns
         What a complete answer determines.
     implied
@@ -129,6 +131,7 @@ class Kind:
     exclusive: bool = False
     answer: tuple[str, ...] = ()
     components: tuple[str, ...] = ()
+    several: tuple[str, ...] = ()
     unknowns: str = ""
     claimed_too: tuple[str, ...] = ()
     implied: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))

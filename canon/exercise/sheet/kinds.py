@@ -124,7 +124,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             opposite="the one that `convention` says",
         ),
         "gibbs-appell": Kind(
-            "gibbs_appell.gibbs_appell",
+            "lagrangian.gibbs_appell",
             {"q": _N, "bodies": Shape.BODIES},
             {"quasi": _N, "q_dot": _TS, "V": _T, "Qnc": _TS, "S": _T, "claim": _TS},
             one_of=(("S",), ("claim",)),
@@ -353,6 +353,15 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             unknowns="whether H is positive real",
             claimed_too=("H",),
             complex_names=("variables",),
+        ),
+        "number": Kind(
+            "number.number",
+            {"value": _TS, "claim": _TS},
+            {"tolerance": _T, "unit": Shape.WORD, "given": Shape.EXPRESSIONS, "name": Shape.WORD},
+            answer=("claim",),
+            several=("value", "claim"),
+            unknowns="all values",
+            diagnoses=(),
         ),
         "parameters": Kind(
             "parameter_values.parameters",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from canon.expression.text.declared_names import key_of
@@ -18,8 +19,20 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["Label", "Quantity", "is_definition", "label_of"]
+__all__ = ["OTHER_SPELLINGS", "Label", "Quantity", "is_definition", "label_of"]
 
+OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "F": ("f", "S", "W", "G", "Lambda"),
+        "L1": ("L_1",),
+        "L2": ("L_2", "L'"),
+        "I": ("I", "C"),
+        "energy_rate": (),
+        "rhs": (),
+        "lhs": (),
+    }
+)
+"""Other names that people give to what a key holds."""
 _PAIRS = {"{": "}", "[": "]", "(": ")", "<": ">"}
 _DEFINITIONS: Mapping[str, str] = {
     "L": r"[TK]-[VU]",

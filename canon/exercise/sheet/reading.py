@@ -80,6 +80,8 @@ class Reading:
         Equations between the sides of chains, each with the key under which it stands.
     passed
         What was passed over in reading left sides.
+    units
+        The unit behind a value, by its place in the claim.
     names
         Symbols that the judge of a kind adds to the declared ones, such as ``d_x`` and ``delta_x``.
     instead
@@ -96,6 +98,7 @@ class Reading:
     claim: Claim
     links: tuple[tuple[str, str], ...] = ()
     passed: tuple[str, ...] = ()
+    units: Mapping[str, str] = field(default_factory=lambda: FrozenMapping({}))
     names: Mapping[str, Symbol] = field(default_factory=lambda: FrozenMapping({}))
     instead: Mapping[str, Expr] = field(default_factory=lambda: FrozenMapping({}))
     at: Mapping[Symbol, Expr] = field(default_factory=lambda: FrozenMapping({}))
@@ -112,7 +115,9 @@ class Reading:
         written = cls(claim)
         plain = typed_answers(claim, written.scope, written.error)
         keys = FrozenMapping(plain.keys)
-        return cls(replace(claim, keys=keys), tuple(plain.links), tuple(plain.passed))
+        return cls(
+            replace(claim, keys=keys), tuple(plain.links), tuple(plain.passed), FrozenMapping(plain.units)
+        )
 
     def error(self, key: str, error: LanguageError) -> InvalidClaim:
         """Return the error of a text under a key."""

@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from canon.exercise.sheet.field_texts import components_of, equation_between, whole_statement
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
-from canon.exercise.sheet.left_sides import Label, Quantity, is_definition, label_of
+from canon.exercise.sheet.left_sides import OTHER_SPELLINGS, Label, Quantity, is_definition, label_of
+from canon.exercise.sheet.typed_values import both_signs, typed_values
 from canon.expression.parse import LanguageError, parse_expression, statements_of
 from canon.expression.text.declared_names import key_of
 
@@ -30,17 +31,6 @@ __all__ = ["TypedAnswers", "typed_answers"]
 
 _EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
 _UNTOUCHED = ("domain", "class")
-_OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "F": ("f", "S", "W", "G", "Lambda"),
-        "L1": ("L_1",),
-        "L2": ("L_2", "L'"),
-        "I": ("I", "C"),
-        "energy_rate": (),
-        "rhs": (),
-        "lhs": (),
-    }
-)
 
 
 @dataclass
@@ -55,11 +45,14 @@ class TypedAnswers:
         Pairs of a place in the claim and an equation that stands there between two sides of a chain.
     passed
         Sentences for the warnings.
+    units
+        The unit behind a value, by its place in the claim.
     """
 
     keys: dict[str, Any] = field(default_factory=dict[str, Any])
     links: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
     passed: list[str] = field(default_factory=list[str])
+    units: dict[str, str] = field(default_factory=dict[str, str])
 
 
 def typed_answers(
@@ -104,6 +97,8 @@ class _Plain:
         """Return what stands under a key in plain form."""
         if key in _UNTOUCHED:
             return value
+        if key in self.kind.several:
+            return self.several(key, value)
         match self.kind.shapes.get(key):
             case Shape.TEXT:
                 return self.of_text(key, value)
@@ -116,10 +111,46 @@ class _Plain:
                 }
             case Shape.LISTS if isinstance(value, Mapping):
                 return {part: self.components(f"{key}.{part}", texts) for part, texts in value.items()}
+            case Shape.VALUES:
+                return [one for i, table in enumerate(value) for one in self.both_signs(f"{key}[{i}]", table)]
             case Shape.BRACKETS:
                 return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(value)]
             case _:
                 return value
+
+    def several(self, key: str, value: Any) -> list[Any]:
+        """Return values one by one, each with the unit behind it kept apart."""
+        found: list[Any] = []
+        for i, text in enumerate(value if isinstance(value, list) else [value]):
+            place, measured = f"{key}[{i}]", "unit" in self.of.keys
+            try:
+                name = str(self.of.keys.get("name", ""))
+                values, passed = typed_values(str(text), self.scope, measured=measured, name=name)
+            except LanguageError as error:
+                raise self.fault(place, error) from None
+            self.found.passed += [
+                f"{side} in {key} is passed over: it holds names that are not declared" for side in passed
+            ]
+            if measured and key in self.kind.answer:
+                bare = (value.text.strip(" $") for value in values if not value.unit)
+                asked = f"is read in {self.of.keys['unit']}, the unit that is asked for"
+                self.found.passed += [f"{text} {asked}" for text in bare]
+            self.found.units |= {f"{key}[{len(found) + j}]": value.unit for j, value in enumerate(values)}
+            found += [value.text for value in values]
+        return found
+
+    def both_signs(self, place: str, table: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+        """Return the one or two tables that values with ``±`` stand for."""
+        try:
+            signed = {name: both_signs(text) for name, text in table.items() if isinstance(text, str)}
+        except LanguageError as error:
+            raise self.fault(place, error) from None
+        two = [name for name, texts in signed.items() if len(texts) == 2]
+        if len(two) > 1:
+            text = str(table[two[1]])
+            told = f"is ± of {two[0]} and of {two[1]} chosen together, or each by itself?"
+            raise self.fault(place, LanguageError(text, 1, told, "write the tables one by one"))
+        return [{**table, two[0]: text} for text in signed[two[0]]] if two else [table]
 
     def has_equations(self, key: str) -> bool:
         """Tell whether a list holds equations, whose left sides are no names."""
@@ -135,7 +166,7 @@ class _Plain:
 
     def quantity(self, key: str) -> Quantity:
         """Return what a key of one expression asks for, by its names."""
-        names = [key, *_OTHER_SPELLINGS.get(key, ())]
+        names = [key, *OTHER_SPELLINGS.get(key, ())]
         if key == "F" and (number := self.kind.implied.get("type")):
             names += [f"F_{number}", f"G_{number}"]
         if key == "energy_rate":
@@ -186,7 +217,7 @@ class _Plain:
                 self.read(place, text, side, asked)
                 readable.append(side)
         readable.append(sides[-1])
-        self.found.links += [(place, _equation(a, b)) for a, b in pairwise(readable)]
+        self.found.links += [(place, equation_between(a, b)) for a, b in pairwise(readable)]
         return sides[-1].text
 
     def passed(self, place: str, side: Side) -> None:
@@ -307,8 +338,8 @@ class _Plain:
         """Return the components that stand in one text: in one bracket, or as several equations."""
         statements = self.statements(place, text)
         if len(statements) > 1:
-            return [_whole(statement, text) for statement in statements]
-        return _vector(text) or [text]
+            return [whole_statement(statement, text) for statement in statements]
+        return components_of(text) or [text]
 
     def in_order(self, place: str, texts: Sequence[str], names: tuple[Quantity, ...]) -> list[str]:
         """Return components in the order that is asked for, where their left sides say another one."""
@@ -347,7 +378,9 @@ class _Plain:
         sides = statement.sides
         rest = tuple(side for side in sides if not is_definition(side.said, "claim", self.scope))
         if len(rest) == len(sides):
-            return [sides[0].text] if len(sides) == 1 else [_equation(a, b) for a, b in pairwise(sides)]
+            return (
+                [sides[0].text] if len(sides) == 1 else [equation_between(a, b) for a, b in pairwise(sides)]
+            )
         whole = len(rest) == 1 and "-" in sides[0].said and rest[0].said.strip("$0. ")
         if len(rest) < 2 and not whole:
             reason = "this is Lagrange's equation itself, true of every system"
@@ -355,7 +388,7 @@ class _Plain:
         for side in sides:
             if side not in rest:
                 self.passed(place, side)
-        return [rest[0].text] if len(rest) == 1 else [_equation(a, b) for a, b in pairwise(rest)]
+        return [rest[0].text] if len(rest) == 1 else [equation_between(a, b) for a, b in pairwise(rest)]
 
     def statements(self, place: str, text: str) -> tuple[Statement, ...]:
         """Return the statements of a text."""
@@ -367,37 +400,3 @@ class _Plain:
     def told(self, place: str, text: str, side: Side, reason: str, remedy: str) -> Exception:
         """Return the error of one side of a text."""
         return self.fault(place, LanguageError(text, side.column, reason, remedy))
-
-
-def _equation(left: Side, right: Side) -> str:
-    """Return the text ``left = right``, each side at its column."""
-    start = right.column - 1
-    latex = right.text[start : start + 1] == "$"
-    sign = start if latex else start - 1
-    return f"{left.text}{' ' * (sign - len(left.text))}={right.text[sign + 1 :]}"
-
-
-def _whole(statement: Statement, text: str) -> str:
-    """Return a statement on its own, at its columns."""
-    first, last = statement.sides[0], statement.sides[-1]
-    return f"{first.text}{text[len(first.text) : len(last.text)]}"
-
-
-def _vector(text: str) -> list[str]:
-    """Return the components of ``(a, b)`` or ``[a, b]``, each at its column; nothing where it is no such bracket."""
-    stripped = text.strip().rstrip(".")
-    pairs = {"(": ")", "[": "]", "{": "}", "⟨": "⟩"}
-    if len(stripped) < 3 or pairs.get(stripped[0]) != stripped[-1]:
-        return []
-    begin = text.index(stripped[0])
-    depth, cuts = 0, [begin]
-    for i, character in enumerate(stripped):
-        depth += (character in pairs) - (character in pairs.values())
-        if depth == 0 and i < len(stripped) - 1:
-            return []
-        if depth == 1 and character == ",":
-            cuts.append(begin + i)
-    cuts.append(begin + len(stripped) - 1)
-    if len(cuts) < 3:
-        return []
-    return [" " * (a + 1) + text[a + 1 : b] for a, b in pairwise(cuts)]

@@ -1,0 +1,77 @@
+"""Field texts: pieces of a field as texts of their own, every character at the column where it was typed."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from canon.expression.text.statement import Side, Statement
+
+__all__ = ["components_of", "entries_of", "equation_between", "whole_statement"]
+
+
+def equation_between(left: Side, right: Side) -> str:
+    """Return the text ``left = right``, each side at its column."""
+    start = right.column - 1
+    latex = right.text[start : start + 1] == "$"
+    sign = start if latex else start - 1
+    return f"{left.text}{' ' * (sign - len(left.text))}={right.text[sign + 1 :]}"
+
+
+def whole_statement(statement: Statement, text: str) -> str:
+    """Return a statement on its own, at its columns."""
+    first, last = statement.sides[0], statement.sides[-1]
+    return f"{first.text}{text[len(first.text) : len(last.text)]}"
+
+
+def components_of(text: str) -> list[str]:
+    """Return the components of ``(a, b)`` or ``[a, b]``, each at its column; nothing where it is no such bracket."""
+    stripped = text.strip().rstrip(".")
+    pairs = {"(": ")", "[": "]", "{": "}", "⟨": "⟩"}
+    if len(stripped) < 3 or pairs.get(stripped[0]) != stripped[-1]:
+        return []
+    begin = text.index(stripped[0])
+    depth, cuts = 0, [begin]
+    for i, character in enumerate(stripped):
+        depth += (character in pairs) - (character in pairs.values())
+        if depth == 0 and i < len(stripped) - 1:
+            return []
+        if depth == 1 and character == ",":
+            cuts.append(begin + i)
+    cuts.append(begin + len(stripped) - 1)
+    if len(cuts) < 3:
+        return []
+    return [" " * (a + 1) + text[a + 1 : b] for a, b in pairwise(cuts)]
+
+
+def entries_of(text: str) -> list[str]:
+    """Return the entries of a set or list, each at its column; the text itself where it is none."""
+    inside = re.sub(r"\\left(?![A-Za-z])|\\right(?![A-Za-z])", lambda found: " " * len(found.group()), text)
+    inside = inside.replace("\\{", " {").replace("\\}", " }") if "\\{" in inside else inside
+    dollar = inside.lstrip().startswith("$")
+    stripped = inside.strip(" $.")
+    pairs = {"(": ")", "[": "]", "{": "}"}
+    set_ = len(stripped) > 1 and pairs.get(stripped[0]) == stripped[-1]
+    cuts = _commas(inside, set_)
+    if not cuts:
+        return [text]
+    begin = inside.index(stripped[0]) if set_ else (inside.index("$") if dollar else -1)
+    end = inside.rindex(stripped[-1]) if set_ else len(inside.rstrip(" $"))
+    marks = zip([begin, *cuts], [*cuts, end], strict=True)
+    return [_at(inside, a + 1, b, dollar=dollar) for a, b in marks]
+
+
+def _at(text: str, start: int, end: int, *, dollar: bool) -> str:
+    return f"{' ' * (start - 1)}{'$' if dollar else ' '}{text[start:end]}"[-end if start else 0 :]
+
+
+def _commas(text: str, set_: bool) -> list[int]:
+    """Return the places of the commas and semicolons that part entries."""
+    depth, found = 0, list[int]()
+    for at, sign in enumerate(text):
+        depth += (sign in "([{") - (sign in ")]}")
+        if sign in ",;" and depth == int(set_) and text[at - 1 : at] != "\\":
+            found.append(at)
+    return found

@@ -1,0 +1,154 @@
+"""Measures: units after the numbers of an answer, turned into the unit that the sheet asks for, exactly.
+
+Factors are those of the SI brochure (9th edition, 2019): prefixes are powers of ten, an hour is 3600 s, a degree π/180.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Rational
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from canon.expression.text.scope import Scope
+
+__all__ = ["Measure", "measure_of", "unit_behind"]
+
+_PREFIXES = {"": 0, "T": 12, "G": 9, "M": 6, "k": 3, "h": 2, "d": -1, "c": -2, "m": -3, "µ": -6, "μ": -6, "u": -6,
+             "n": -9, "p": -12}  # fmt: skip
+_BASE = ("m", "kg", "s", "A", "K", "mol")
+_SCALED: Mapping[str, tuple[Expr, tuple[int, ...]]] = {
+    "m": (sp.S.One, (1,)), "g": (Rational(1, 1000), (0, 1)), "s": (sp.S.One, (0, 0, 1)),
+    "A": (sp.S.One, (0, 0, 0, 1)), "K": (sp.S.One, (0, 0, 0, 0, 1)), "mol": (sp.S.One, (0, 0, 0, 0, 0, 1)),
+    "N": (sp.S.One, (1, 1, -2)), "J": (sp.S.One, (2, 1, -2)), "W": (sp.S.One, (2, 1, -3)),
+    "Pa": (sp.S.One, (-1, 1, -2)), "Hz": (sp.S.One, (0, 0, -1)), "C": (sp.S.One, (0, 0, 1, 1)),
+    "V": (sp.S.One, (2, 1, -3, -1)), "T": (sp.S.One, (0, 1, -2, -1)), "Wb": (sp.S.One, (2, 1, -2, -1)),
+    "H": (sp.S.One, (2, 1, -2, -2)), "F": (sp.S.One, (-2, -1, 4, 2)), "Ω": (sp.S.One, (2, 1, -3, -2)),
+    "eV": (Rational(1602176634, 10**28), (2, 1, -2)), "rad": (sp.S.One, ()), "L": (Rational(1, 1000), (3,)),
+}  # fmt: skip
+"""Units that take prefixes: factor, and powers of metre, kilogram, second, ampere, kelvin, mole."""
+_PLAIN: Mapping[str, tuple[Expr, tuple[int, ...]]] = {
+    "min": (Rational(60), (0, 0, 1)), "h": (Rational(3600), (0, 0, 1)), "d": (Rational(86400), (0, 0, 1)),
+    "°": (sp.pi / 180, ()), "deg": (sp.pi / 180, ()), "%": (Rational(1, 100), ()), "1": (sp.S.One, ()),
+    "rev": (2 * sp.pi, ()), "rpm": (sp.pi / 30, (0, 0, -1)), "t": (Rational(1000), (0, 1)),
+    "au": (Rational(149597870700), (1,)),
+}  # fmt: skip
+_MOST = 80
+"""Characters of a unit."""
+_LONGEST = 2_000
+"""Characters of an answer in which a unit is looked for."""
+_FACTOR = re.compile(r"(?P<name>[A-Za-zµμΩ]+|°|%|1)(?:(?:\^|\*\*)?(?P<power>[({]?[-−]?[0-9]{1,2}[)}]?))?")
+_SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_LATEX = re.compile(
+    r"\\(?:mathrm|text|textrm|rm|si|unit|operatorname|,|;|:|!| )|\\(?=%)|[{}$~]|\\[lr]?(?:brack)?(?![A-Za-z])"
+)
+_UNIT = r"(?:[A-Za-zµμΩ]+|°|%)(?:(?:\^|\*\*)?[({]?[-−]?[0-9]{1,2}[)}]?|[⁻¹²³⁴]{1,3})?"
+_BEHIND = re.compile(
+    rf"(?<=[0-9.)\s°%}}])(?P<unit>\(?{_UNIT}\)?(?:\s?[*·⋅/]\s?\(?{_UNIT}\)?|\s\(?{_UNIT}\)?){{0,5}}|1?/{_UNIT})\s*$"
+)
+_IN_BRACKET = re.compile(r"\[(?P<unit>[^\[\]]{1,80})\]\s*$")
+_UPRIGHT = re.compile(
+    r"(?P<unit>(?:\\(?:mathrm|text|textrm|si|unit)\s?\{[^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4}\}"
+    r"(?:\^\{?-?[0-9]\}?)?(?:\s|\\[,;:! ]|\\cdot|/)*){1,4}|\^\{?\\circ\}?|\\%|\\degree)\s*\$?\s*$"
+)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A unit by its factor in SI units and its powers of metre, kilogram, second, ampere, kelvin and mole.
+
+    Examples
+    --------
+    >>> measure_of("km/h").factor, measure_of("km/h").powers == measure_of("m s^-1").powers
+    (5/18, True)
+    """
+
+    factor: Expr
+    powers: tuple[int, ...]
+
+
+def measure_of(unit: str) -> Measure | None:
+    r"""Return what a unit measures; None where it is none.
+
+    Examples
+    --------
+    >>> measure_of("N m") == measure_of(r"\mathrm{kg\,m^2/s^2}") == measure_of("J"), measure_of("furlong")
+    (True, None)
+    """
+    if len(unit) > _MOST:
+        return None
+    plain = unit.replace(r"\cdot", "*").replace(r"\circ", "°").replace(r"\degree", "°").replace("^°", "°")
+    plain = re.sub(r"\\mu(?![A-Za-z])", "µ", plain).replace(r"\Omega", "Ω")
+    plain = re.sub(r"\s*\^\s*", "^", _LATEX.sub(" ", plain)).strip(" []")
+    below, at, depth, open_ = False, 0, 0, False
+    factor, powers = sp.S.One, [0] * len(_BASE)
+    while at < len(plain):
+        sign = plain[at]
+        found = _FACTOR.match(plain, at)
+        small = re.match(r"[⁻¹²³⁴⁵⁶]{1,3}", plain[found.end() :]) if found else None
+        if found is not None and (open_ or plain[at - 1 : at].isalnum()):  # J/kg K is J/(kg K), or J K/kg
+            return None
+        if found is not None:
+            power = int((found["power"] or "1").strip("(){}").replace("−", "-"))
+            if small and not found["power"]:
+                power = int(small.group().translate(_SMALL))
+            one = _one(found["name"])
+            if one is None:
+                return None
+            sense = -power if below else power
+            factor *= one[0] ** sense
+            powers = [p + sense * (one[1][i] if i < len(one[1]) else 0) for i, p in enumerate(powers)]
+            at = found.end() + (small.end() if small and not found["power"] else 0)
+            below, open_ = below and depth > 0, below and depth == 0
+            continue
+        if sign in "()":
+            depth += 1 if sign == "(" else -1
+            below = below and depth > 0
+        elif sign == "/":
+            below, open_ = True, False
+        elif sign not in "*·⋅ ":
+            return None
+        at += 1
+    return Measure(factor, tuple(powers)) if plain and depth == 0 else None
+
+
+def _one(name: str) -> tuple[Expr, tuple[int, ...]] | None:
+    """Return factor and powers of one unit, with or without a prefix."""
+    if name in _PLAIN:
+        return _PLAIN[name]
+    for prefix, ten in _PREFIXES.items():
+        scaled = _SCALED.get(name.removeprefix(prefix)) if name.startswith(prefix) else None
+        if scaled is not None:
+            return Rational(10) ** ten * scaled[0], scaled[1]
+    return None
+
+
+def unit_behind(text: str, scope: Scope) -> tuple[str, str]:
+    r"""Return a text with blanks in place of the unit at its end, and that unit; letters that are declared are none.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> unit_behind("36 km/h", Scope()), unit_behind(r"$2\,\mathrm{m}$", Scope()), unit_behind("2*pi", Scope())
+    (('36     ', 'km/h'), ('$2           $', '\\mathrm{m}'), ('2*pi', ''))
+    """
+    for pattern in (_IN_BRACKET, _UPRIGHT, _BEHIND) if len(text) <= _LONGEST else ():
+        found = pattern.search(text)
+        while found is not None and measure_of(found["unit"]) is None:
+            found = pattern.search(text, found.start() + 1)
+        if found is None:
+            continue
+        letters = re.findall(r"[A-Za-zΩµμ]+", found["unit"])
+        if pattern is _BEHIND and any(x in scope.functions or scope.declares(x) for x in letters):
+            continue
+        blanked = text[: found.start("unit")] + " " * (found.end("unit") - found.start("unit"))
+        ending = text[found.end("unit") :].replace("]", " ")
+        if pattern is _IN_BRACKET:
+            blanked = blanked[: found.start()] + " " * (len(blanked) - found.start())
+        return re.sub(r"\\[,;:! ](?=\s*$)", "  ", blanked) + ending, found["unit"].strip()
+    return text, ""

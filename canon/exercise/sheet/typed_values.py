@@ -1,0 +1,172 @@
+"""Typed values: what people write where numbers are asked, ``x = ±√2``, ``0.588 m/s``, ``{1, 3}``, one by one.
+
+``±`` is two values, ``≈`` is read as ``=``, and every side of ``x = 10/17 ≈ 0.588`` is a value that must be right. A
+comma between figures, ``0,588``, and ``±`` between decimals, which may be an uncertainty, are refused.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from canon.exercise.sheet.field_texts import entries_of
+from canon.exercise.sheet.left_sides import label_of
+from canon.exercise.sheet.measures import unit_behind
+from canon.expression.parse import parse_expression, statements_of
+from canon.expression.text.declared_names import key_of
+from canon.expression.text.markup import unmarked
+from canon.expression.text.tokens import LanguageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from canon.expression.text.scope import Scope
+    from canon.expression.text.statement import Side
+
+__all__ = ["Value", "both_signs", "typed_values"]
+
+MOST_VALUES = 100
+"""Most values in one field."""
+_OR = re.compile(
+    r"\\(?:text|textrm|mbox|mathrm)\s*\{[\s~]*(?:or|and)[\s~]*\}|\\(?:lor|vee)(?![A-Za-z])|\bor\b|∨"
+)
+_NEARLY = re.compile(r"\\(?:approx|simeq|in)(?![A-Za-z])|[≈≃≅≐∈]|~=|(?<!\\)(?<=\s)~(?=\s*[-0-9.])|^\s*~")
+_TEN = re.compile(r"(?<=[0-9])\s?([xX])\s?(?=10(?:\^|\*\*|[⁻⁺⁰¹²³⁴-⁹]))")
+_DOTS = re.compile(r"(?<=[0-9])(?:\.\.\.+|…|\\(?:dots|ldots|cdots)(?![A-Za-z]))")
+_COMMA = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]+,[0-9]+(?![0-9,])")
+_SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
+_ABOUT = re.compile(r"\b(?:about|approximately|approx\.?|roughly|ca\.|circa)(?=\s*[-0-9.])")
+_UNCERTAIN = re.compile(r"[0-9]*\.[0-9]+\s*(?:±|\\pm|\+/-)\s*[0-9]*\.[0-9]+|[0-9]\.[0-9]+\([0-9]+\)")
+
+
+@dataclass(frozen=True)
+class Value:
+    """One value as it was written, at its columns, and the unit behind it."""
+
+    text: str
+    unit: str = ""
+
+
+def both_signs(text: str) -> tuple[str, ...]:
+    r"""Return the two texts that one with ``±`` stands for, or the text itself; ``∓`` has the opposite sign.
+
+    Raises
+    ------
+    LanguageError
+        Where it stands for more than two, or for a measured value.
+
+    Examples
+    --------
+    >>> both_signs("1 ± sqrt(2)"), both_signs(r"$\mp a$"), both_signs("2")
+    (('1 + sqrt(2)', '1 - sqrt(2)'), ('$-   a$', '$+   a$'), ('2',))
+    """
+    if found := _UNCERTAIN.search(text):
+        reason = f"is {found.group()} two values, or one with its uncertainty?"
+        raise LanguageError(
+            text, found.start() + 1, reason, "write both values, or leave the uncertainty out"
+        )
+    if found := re.search(r"\+[-−]", text):
+        raise LanguageError(text, found.start() + 1, "is this ±, or a minus?", "write ± or -")
+    signs = list(_SIGNS.finditer(text))
+    if not signs:
+        return (text,)
+    if len([sign for sign in signs if sign.group() not in ("∓", "\\mp")]) > 1:
+        told = "is each ± chosen by itself here, or all of them together?"
+        raise LanguageError(text, signs[1].start() + 1, told, "write the values one by one")
+
+    def with_sign(plus: str, minus: str) -> str:
+        def chosen(sign: re.Match[str]) -> str:
+            return (minus if sign.group() in ("∓", "\\mp") else plus).ljust(len(sign.group()))
+
+        return _SIGNS.sub(chosen, text)
+
+    return with_sign("+", "-"), with_sign("-", "+")
+
+
+def typed_values(text: str, scope: Scope, *, measured: bool, name: str = "") -> tuple[list[Value], list[str]]:
+    """Return the values that a field says, and what was passed over in reading it.
+
+    Parameters
+    ----------
+    text
+        The field as it was typed.
+    scope
+        The declared names.
+    measured
+        Whether units behind the values are taken off, to be turned into another one.
+    name
+        What is asked for, by its name; where it is not given any name may stand before ``=``.
+
+    Raises
+    ------
+    LanguageError
+        Where it can be read in two ways.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> [value.text.strip() for value in typed_values("x = 1 ± sqrt(2) or x = 7/2 = 3.5", Scope(), measured=False)[0]]
+    ['1 + sqrt(2)', '1 - sqrt(2)', '7/2', '3.5']
+    """
+    text = _plain_signs(unmarked(text), scope)
+    found = _COMMA.search(text)
+    if found and text.count("{", 0, found.start()) + text.count("(", 0, found.start()) == 0:
+        whole, _, part = found.group().partition(",")
+        reason = f"is {found.group()} the decimal {whole}.{part}, or two values?"
+        raise LanguageError(text, found.start() + 1, reason, f"write {whole}.{part}, or {whole}; {part}")
+    values: list[Value] = []
+    passed: list[str] = []
+    for statement in statements_of(text, scope):
+        sides = [side for side in statement.sides if side.text.strip(" $.,;")]
+        for side in sides:
+            if side is sides[-1] or _is_value(side, scope, measured=measured):
+                values += _of_side(side, scope, measured=measured)
+            elif (label := label_of(side.said)) is not None:
+                _refuse_another(text, side, label.name, name)
+            else:
+                passed.append(side.text.strip().lstrip("$"))
+        if len(values) > MOST_VALUES:
+            raise LanguageError(text, 1, f"more than {MOST_VALUES} values", "split the claim")
+    return values, passed
+
+
+def _plain_signs(text: str, scope: Scope) -> str:
+    """Return a text with ``=`` for ≈ and ``;`` for or, and figures that go on cut, every column as it was."""
+    text = _OR.sub(lambda found: ";".ljust(len(found.group())), text)
+    text = _NEARLY.sub(lambda found: "=".rjust(len(found.group())), text)
+    text = _ABOUT.sub(lambda found: " " * len(found.group()), text)
+    text = _DOTS.sub(lambda found: " " * len(found.group()), text)
+    if not scope.declares("x"):
+        text = _TEN.sub(lambda found: re.sub("[xX]", "*", found.group()), text)
+    return text
+
+
+def _refuse_another(text: str, side: Side, said: str, name: str) -> None:
+    """Refuse the name of another quantity than the one that is asked for; figures count its values."""
+    if name and key_of(said.rstrip("0123456789_")) != key_of(name.rstrip("0123456789_")):
+        reason = f"{name} is asked for here, and this says {said} = …"
+        raise LanguageError(
+            text, side.column, reason, f"write {name} = … if that is meant, or only the value"
+        )
+
+
+def _of_side(side: Side, scope: Scope, *, measured: bool) -> Iterator[Value]:
+    """Yield the values of one side: the entries of a set, both signs, each without its unit."""
+    for entry in entries_of(side.text):
+        for one in both_signs(entry):
+            yield Value(*unit_behind(one, scope)) if measured else Value(one)
+
+
+def _is_value(side: Side, scope: Scope, *, measured: bool) -> bool:
+    """Tell whether a side before the last is a value and no name or formula of other quantities."""
+    label = label_of(side.said)
+    if label is not None and label.name and not scope.declares(label.name):
+        return False
+    try:
+        for value in _of_side(side, scope, measured=measured):
+            if parse_expression(value.text, scope).free_symbols and label is not None:
+                return False
+    except LanguageError:
+        return False
+    return True

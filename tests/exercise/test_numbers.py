@@ -1,0 +1,124 @@
+"""Numbers as answers: read as typed, held against the right values exactly, ends of tolerances included."""
+
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from canon.exercise.explained_judgement import judgements
+from canon.exercise.judges.number import sign_of
+from canon.exercise.sheet.measures import measure_of
+from canon.exercise.sheet.sheet import claim_from
+from canon.proof import Undecided
+
+
+def judged(**keys):
+    claim = claim_from({"id": "a", "kind": "number", **keys})
+    assert not claim.errors
+    return [judgement for judgement, _ in judgements(claim)][-1]
+
+
+TWO = {"value": ["1 + sqrt(2)", "1 - sqrt(2)"], "complete": True}
+SPEED = {"value": "10", "unit": "m/s"}
+HOLD = [
+    ({"value": "10/17", "tolerance": "0.0005"}, "0.588", "0.587"),
+    ({"value": "10/17", "tolerance": "0.0005"}, "≈ 0.588", "≈ 0.598"),
+    ({"value": "10/17", "tolerance": "0.0005"}, "x = 10/17 ≈ 0.588", "x = 10/17 ≈ 0.578"),
+    ({"value": "10/17", "tolerance": "0.0005"}, "x = 10/17 ≈ 0.588", "x = 9/17 ≈ 0.588"),
+    ({"value": "10/17", "tolerance": "0.1 %"}, "5.88x10^-1", "5.88x10^-2"),
+    ({"value": "10/17", "tolerance": "0.1 %"}, r"$5.88 \times 10^{-1}$", r"$5.88 \times 10^{1}$"),
+    ({"value": "10/17", "tolerance": "0.1 %"}, "0.5882…", "0.5892…"),
+    (TWO, "1 ± √2", "-1 ± √2"),
+    (TWO, r"$x_{1,2} = 1 \pm \sqrt 2$", r"$x_{1,2} = 1 \pm \sqrt 3$"),
+    (TWO, "x = 1 - √2 or x = 1 + √2", "x = 1 - √2 or x = 1 + √3"),
+    (TWO, "{1 - √2, 1 + √2}", "{1 - √2, 1 - √2}"),
+    (TWO, r"$x \in \{1 - \sqrt 2, 1 + \sqrt 2\}$", r"$x \in \{1 - \sqrt 2, 2 + \sqrt 2\}$"),
+    (TWO, ["1 ∓ √2"], ["√2 ∓ 1"]),
+    (SPEED, "36 km/h", "36 m/s"),
+    (SPEED, "10", "36"),
+    (SPEED, "10 [m/s]", "10 [m]"),
+    (SPEED, r"$10\,\mathrm{m\,s^{-1}}$", r"$10\,\mathrm{m\,s^{-2}}$"),
+    (SPEED, "10 m s⁻¹", "10 cm s⁻¹"),
+    ({"value": "pi/6", "unit": "rad"}, "30°", "31°"),
+    ({"value": "2", "unit": "J"}, "2 N m", "2 N/m"),
+    ({"value": "1 + 2*I"}, "1 + 2I", "1 - 2I"),
+]
+
+
+@pytest.mark.parametrize(("question", "answer", "twin"), HOLD)
+def test_right_values_hold_and_their_twins_do_not(question, answer, twin):
+    assert judged(**question, claim=answer).status == "holds"
+    assert judged(**question, claim=twin).status == "fails"
+
+
+@pytest.mark.parametrize(
+    ("answer", "told"),
+    [
+        ("0,588", "the decimal 0.588, or two values"),
+        ("0.588 ± 0.001", "two values, or one with its uncertainty"),
+        ("1.2(3)", "two values, or one with its uncertainty"),
+        ("+-2", "±, or a minus"),
+        ("± 1 ± 2", "chosen by itself here, or all of them together"),
+        ("y = 2", "x is asked for here, and this says y = …"),
+        ("a", "a is not declared"),
+        ("t", "a number is asked for, and this holds t"),
+    ],
+)
+def test_what_can_be_read_in_two_ways_is_refused(answer, told):
+    found = judged(value="2", name="x", claim=answer)
+    assert found.status == "invalid"
+    assert told in found.known
+
+
+RATIONAL = st.fractions(min_value=-100, max_value=100, max_denominator=50)
+
+
+@given(right=RATIONAL, reach=st.fractions(0, 10, max_denominator=50), beyond=st.integers(1, 60))
+def test_both_ends_of_a_tolerance_are_right_and_nothing_beyond_is(right, reach, beyond):
+    keys = {"value": str(right), "tolerance": str(reach)}
+    for side in (-1, 1):
+        end = right + side * reach
+        assert judged(**keys, claim=str(end)).status == "holds"
+        assert judged(**keys, claim=str(end + side * Fraction(1, 10**beyond))).status == "fails"
+
+
+@given(a=st.integers(1, 60), b=st.integers(1, 60), far=st.integers(1, 300))
+def test_the_end_of_a_tolerance_is_told_from_its_neighbours_where_nothing_is_rational(a, b, far):
+    root = sp.sqrt(a + b + 2 * sp.sqrt(a * b)) - sp.sqrt(a) - sp.sqrt(b)  # zero, in a form that hides it
+    tiny = sp.Rational(1, 10**far)
+    assert (sign_of(root), sign_of(root + tiny), sign_of(root - tiny)) == (0, 1, -1)
+
+
+def test_what_no_ball_tells_from_zero_is_left_open():
+    with pytest.raises(Undecided, match="too near to its end"):
+        sign_of(sp.exp(sp.pi * 7) - sp.exp(sp.pi * 7 + sp.Rational(1, 10**2000)))
+
+
+@pytest.mark.parametrize(
+    ("unit", "same"),
+    [("km/h", "1/3.6 m/s"), ("N m", "J"), ("kg m^2/s^2", "J"), (r"\mathrm{kW\,h}", "3600 kJ"), ("rpm", "rev/min"),
+     ("µm", "1e-6 m"), ("hPa", "100 Pa"), ("L", "dm^3")],
+)  # fmt: skip
+def test_units_have_the_factors_of_the_si_brochure(unit, same):
+    number, _, other = same.rpartition(" ") if same[0].isdigit() else ("1", "", same)
+    left, right = measure_of(unit), measure_of(other)
+    factor = sp.prod(
+        [sp.Rational(n) if i == 0 else 1 / sp.Rational(n) for i, n in enumerate(number.split("/"))]
+    )
+    assert left.powers == right.powers
+    assert sp.simplify(left.factor - factor * right.factor) == 0
+
+
+@pytest.mark.parametrize("unit", ["furlong", "J/kg K", "m^", "", "mm2mm", "x" * 200, "kkg"])
+def test_what_is_no_unit_is_none(unit):
+    assert measure_of(unit) is None
+
+
+def test_values_of_parameters_may_be_two():
+    keys = {"id": "a", "kind": "parameters", "of": "canonicity", "q": ["q"], "p": ["p"], "Q": ["a*q"], "P": ["a*p"],
+            "parameters": {"a": "nonzero"}, "find": ["a"]}  # fmt: skip
+    both = [judgement for judgement, _ in judgements(claim_from({**keys, "values": [{"a": "±1"}]}))][-1]
+    one = [judgement for judgement, _ in judgements(claim_from({**keys, "values": [{"a": "±2"}]}))][-1]
+    assert (both.status, one.status) == ("holds", "fails")
