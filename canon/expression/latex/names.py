@@ -297,7 +297,7 @@ class Names:
         function = next((f for f in sorted(FUNCTIONS, key=len, reverse=True) if rest.startswith(f)), None)
         if function:
             remedy = f"write \\{function} for the function"
-        elif rest in ("i", "j"):
+        elif rest in ("i", "j", "I"):
             remedy = r"write \mathrm{i} for the imaginary unit"
         elif rest == "pi":
             remedy = r"write \pi"
