@@ -259,7 +259,7 @@ def _ended() -> Iterator[Row]:
     yield Row(
         "memory-1GiB-sheet", "RLIMIT_AS of 1 GiB: a sheet judged by workers",
         lambda: ran(
-            limited + "from canon import Claim, Sheet, check\n"
+            limited + "from canon import check\nfrom canon.exercise import Claim, Sheet\n"
             "print(check(Sheet('s', (Claim('a', 'equality-only', {'lhs': '1+1', 'rhs': '2'}),))).counts)",
             "'holds': 1",
         ),
@@ -332,7 +332,7 @@ def _surroundings() -> Iterator[Row]:
         limit=120.0,
     )
     yield Row("ascii-only", "LC_ALL=C, standard output in ASCII", lambda: ran(
-        "from canon import Claim, judge\nv = str(judge(Claim('a', 'lie-bracket', {'x': ['x'], 'X': ['x'], "
+        "from canon import judge\nfrom canon.exercise import Claim\nv = str(judge(Claim('a', 'lie-bracket', {'x': ['x'], 'X': ['x'], "
         "'Y': ['1'], 'claim': ['1']})))\nprint(v.split()[0])",
         "FAILS",
         env={"LC_ALL": "C", "PYTHONIOENCODING": "ascii:backslashreplace", "PYTHONUTF8": "0"}), limit=120.0)  # fmt: skip
@@ -431,7 +431,7 @@ def target(cpu, features):
 def kepler(method, precision):
     x, y = coordinates("x y")
     H = Hamiltonian((x.momentum**2 + y.momentum**2)/2 - 1/sp.sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum])
-    return propagate(H, (0.4, 0.0, 0.0, 2.0), (0.0, 20.0), method=method, step=0.01, precision=precision)
+    return propagate(H, (0.0, 20.0), (0.4, 0.0, 0.0, 2.0), method=method, step=0.01, precision=precision)
 def all_bits():
     found = []
     for run in (motion, kepler):
