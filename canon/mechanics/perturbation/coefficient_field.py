@@ -68,8 +68,10 @@ def ring_over(constants: Iterable[Expr], size: int) -> PolynomialRing:
 def _radical_parts(values: Iterable[Any]) -> list[Expr]:
     """Return the product of the roots in each term of some sums."""
     sums = (sp.Add.make_args(sp.expand(value)) for value in values)
-    terms: Iterator[tuple[Any, ...]] = (sp.Mul.make_args(term) for several in sums for term in several)
-    products: Iterator[Any] = (sp.Mul(*(f for f in factors if f.is_Pow and not f.exp.is_Integer)) for factors in terms)
+    terms: list[list[Any]] = [list(sp.Mul.make_args(term)) for several in sums for term in several]
+    products: Iterator[Any] = (
+        sp.Mul(*(f for f in factors if f.is_Pow and not f.exp.is_Integer)) for factors in terms
+    )
     return sorted({product for product in products if product != 1}, key=sp.default_sort_key)
 
 
