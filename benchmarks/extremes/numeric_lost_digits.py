@@ -42,6 +42,9 @@ def rows() -> Iterator[Row]:
                 f"a force exp(−((t − 50)/w)²)/w for the time w = {width:g} about t = 50, {name}; truth by erf"
             )
             yield _row(f"pulse-{width:g}-{name}", said, partial(pulse, width), how)
+        for name, how in STEPPED.items():
+            said = f"a force w²/((t − 50)² + w²)/w for w = {width:g}, steps that pass over it, {name}; truth by atan"
+            yield _row(f"swell-{width:g}-{name}", said, partial(swell, width), how)
         for shape in ("gauss", "tanh", "lorentz"):
             for name in ("taylor", "quad", "dop853"):
                 said = f"a {shape} hill {width:g} wide at x = 20, met at t = 20 with p = 1, {name}; heyoka, 50 digits"
@@ -55,6 +58,9 @@ def rows() -> Iterator[Row]:
         yield _row(f"zero-pendulum-{name}", said, released, how)
         said = f"a parabolic comet, whose energy is 0 but for rounding, {name}; heyoka, 50 digits"
         yield _row(f"zero-parabola-{name}", said, parabola, how)
+    for name, how in METHODS.items():
+        said = f"a slow body with its rest energy, √(1 + p²) with p = 1e-6, {name}; heyoka, 50 digits"
+        yield _row(f"rest-energy-{name}", said, slow_body, how)
     for exponent in (-30, -20, -10, 10, 20, 30):
         for name in ("taylor", "quad", "dop853", "split", "gauss"):
             said = f"{name}: an oscillator of mass 1e{exponent} and amplitude 1; truth by cos"
@@ -85,6 +91,25 @@ def pulse(width: float) -> Problem:
         return [mpf(s) + wide * (area(z) - area(z0)) - mp.sqrt(mp.pi) / 2 * (1 + mp.erf(z0)) * mpf(s), p]
 
     return Problem(H, (0.0, 1.0), (0.0, 100.0), _digits(at))
+
+
+def swell(width: float) -> Problem:
+    w = sp.Rational(width)
+    H = Hamiltonian(x.momentum**2 / 2 - x * w / ((t - 50) ** 2 + w**2), [x], [x.momentum])
+
+    def at(s: float) -> list[mpf]:
+        wide = mpf(width)
+        z, z0 = (mpf(s) - 50) / wide, -50 / wide
+        area = [u * mp.atan(u) - mp.log(1 + u**2) / 2 for u in (z, z0)]
+        return [mpf(s) + wide * (area[0] - area[1]) - mp.atan(z0) * mpf(s), 1 + mp.atan(z) - mp.atan(z0)]
+
+    return Problem(H, (0.0, 1.0), (0.0, 100.0), _digits(at))
+
+
+def slow_body() -> Problem:
+    H = Hamiltonian(sp.sqrt(1 + x.momentum**2) + (1 - sp.exp(-x / 2)) ** 2 / 2**40, [x], [x.momentum])
+    start = (0.0625, 2.0**-20)
+    return Problem(H, start, (0.0, 20.0), by_taylor(H, start, 50))
 
 
 def hill(shape: str, width: float) -> Problem:

@@ -22,10 +22,10 @@ from canon.flow.integrate import integrate
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.number_formats import FIXED
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.flow.run.observables_along import jumped
+from canon.flow.run.observables_along import jumped, rounding_of, size_of_terms
+from canon.flow.run.passed_terms import may_have_passed
 from canon.flow.run.sampling_plan import Plan
 from canon.kernel.llvm.number_types import EXTENDED
-from canon.kernel.program.localised_terms import exponents_of, sights
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -186,7 +186,12 @@ def error_estimate(
     if judged and not any(met.after is not None for met in samples.crossings):
         change = energy_change.reshape(len(samples.t), -1)[:, chosen]
         deluded = _contradicted_by_energy(
-            task.system, replace(samples, y=samples.y[:, :, chosen]), change, away / scale, scale
+            task.system,
+            task.precision_name,
+            replace(samples, y=samples.y[:, :, chosen]),
+            change,
+            away / scale,
+            scale,
         )
         away = np.where(np.maximum.accumulate(deluded, axis=0), np.inf, away)
     if task.plan.h is not None:  # its states are those of exact times, which t has rounded
@@ -201,16 +206,18 @@ def error_estimate(
 
 
 def _contradicted_by_energy(
-    system: HamiltonEquations, samples: Samples, change: Array, relative: Array, scale: Array
+    system: HamiltonEquations, precision: str, samples: Samples, change: Array, relative: Array, scale: Array
 ) -> npt.NDArray[np.bool_]:
     """Return where the energy's error shows that a motion errs by more than it differs from its companion.
 
     Both may have jumped over the same singularity. An error of size ε in parts of the motion's size changes H by no
-    more than ε Σ |∂H/∂y| · size, to first order.
+    more than ε Σ |∂H/∂y| · size, to first order; beside that stands the rounding of H itself, which is large where slow
+    bodies have rest energies.
     """
     slopes = np.roll(_rates(system, samples.t, samples.y), len(scale) // 2, axis=0)
     reach = (slopes * scale).sum(axis=0)
-    return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach)
+    unseen = rounding_of(precision) * size_of_terms(system, samples)
+    return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach + unseen)
 
 
 def _rates(system: HamiltonEquations, t: Array, y: Array) -> npt.NDArray[Any]:
@@ -267,7 +274,7 @@ class _CompanionTask:
 def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
     """Yield companions, each more exact than the one before."""
     plan = task.plan
-    if plan.h is None or _may_have_passed(task, samples):
+    if plan.h is None or may_have_passed(task.system, samples, float(plan.h)):
         # An event that has ended the motion may end the companion a little later.
         t = plan.instants if samples.crossings and len(samples.t) < len(plan.instants) else samples.t
         ends = sorted({round(k * (len(t) - 1) / _SLICES) for k in range(1, _SLICES + 1)} - {0})
@@ -284,15 +291,6 @@ def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
     for precision in _wider(task):
         words = f"{task.method}, step {float(half.h or 0):g}, {precision}"
         yield _CompanionTask(replace(task, plan=half, precision=precision), words, 2.0 ** -_BITS[precision])
-
-
-def _may_have_passed(task: Task, samples: Samples) -> bool:
-    """Return whether steps may have passed over a localised term, which steps of half their size may do again."""
-    exponents = exponents_of(task.system.graph, task.system.rates)
-    point = dict(zip(task.system.inputs, (*samples.y, samples.t[:, np.newaxis]), strict=True))
-    with np.errstate(all="ignore"):
-        found = task.system.graph.evaluate(exponents, point)
-    return any(not (abs(np.asarray(x)) <= sights(2.0**-52)[1]).all() for x in found)
 
 
 def _wider_taylor(given: str) -> list[tuple[str | int, int]]:

@@ -161,3 +161,35 @@ def test_steps_over_a_pulse_are_told_by_the_estimate(method):
     assert missed > 1e-4
     assert (abs(motion.y - exact.y) <= estimate.error).all()
     assert estimate.companion.startswith("Taylor")
+
+
+@pytest.mark.parametrize("method", [Splitting("kahan-li-8"), RK4(), Gauss(4)])
+@pytest.mark.parametrize("force", [1 / ((1000 * (t - 5)) ** 2 + 1), 1 / ((1000 * (x - 5)) ** 2 + 1)])
+def test_steps_past_a_divisor_that_nearly_vanishes_are_told_by_the_estimate(method, force):
+    H = moving(x**2 / 2 + force / 10 if force.has(x) else x**2 / 2 - x * force / 10)
+    motion = propagate(H, y0=[0, 10], t_span=(0, 10), method=method, step=0.0625, samples=20)
+    exact = propagate(H, y0=[0, 10], t_span=(0, 10), samples=20, precision="extended")
+    estimate = motion.error_estimate()
+    assert (abs(motion.y - exact.y) <= estimate.error).all()
+    assert estimate.companion.startswith("Taylor")
+
+
+def test_divisors_that_are_seen_well_need_no_other_companion():
+    motion = propagate(
+        moving(-1 / sp.sqrt(x**2 + 1)), y0=[0, 1], t_span=(0, 10), method=RK4(), step=0.0625, samples=20
+    )
+    assert motion.error_estimate().companion.startswith("RK4")
+
+
+def test_a_first_step_that_ends_at_a_sample():
+    """Its end is halved out of the span, and so are the samples: a grid of times must not hold it twice."""
+    V = sp.cos(x) + sp.Rational(21, 32) * x * sp.exp(-((128 * t - 80) ** 2))
+    slow = Hamiltonian(x.momentum**2 / (2**41 * (9 * x**2 / 8 + 1)) - V, [x], [x.momentum])
+    motion = propagate(slow, y0=[math.pi / 2, 2.0**20], t_span=(0, 10), samples=8)
+    assert motion.error_estimate().relative[-1] < 1e-13
+
+
+def test_a_rest_energy_is_no_sign_of_an_error():
+    H = Hamiltonian(sp.sqrt(1 + x.momentum**2) + (1 - sp.exp(-x / 2)) ** 2 / 2**40, [x], [x.momentum])
+    motion = propagate(H, y0=[1 / 16, 2.0**-20], t_span=(0, 20), samples=8)
+    assert motion.error_estimate().relative[-1] < 1e-14

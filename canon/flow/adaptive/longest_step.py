@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.run.passed_terms import rate_along
 from canon.kernel.llvm.loop import field_function
 from canon.kernel.program.localised_terms import exponents_of, sights
 
@@ -29,8 +30,8 @@ def longest_step(system: HamiltonEquations) -> Callable[[float, Array], float]:
     exponents = exponents_of(graph, system.rates)
     if not exponents:
         return lambda _t, _y: math.inf
-    speeds = [_rate(system, node) for node in exponents]
-    nodes = (*exponents, *speeds, *(_rate(system, node) for node in speeds))
+    speeds = [rate_along(system, node) for node in exponents]
+    nodes = (*exponents, *speeds, *(rate_along(system, node) for node in speeds))
     field, (_, reach, _) = field_function(system.program(nodes)), sights(2.0**-52)
     x, out = np.empty(len(system.inputs)), np.empty(len(nodes))
 
@@ -45,11 +46,3 @@ def longest_step(system: HamiltonEquations) -> Callable[[float, Array], float]:
         return float(times.min()) if times.size else math.inf
 
     return longest
-
-
-def _rate(system: HamiltonEquations, node: int) -> int:
-    """Return dg/dt along the motion."""
-    graph = system.graph
-    slopes = graph.gradient(node, system.inputs)
-    rates = (*system.velocity, *system.force, graph.one)
-    return graph.add([graph.mul([a, b]) for a, b in zip(slopes, rates, strict=True)])

@@ -174,10 +174,11 @@ class TaylorOrbit:
             self.new = False
             end = first_step(self._without_events(), times[-1])
             if end is not None:
-                before = [t for t in times if abs(t - integrator.time) < abs(end - integrator.time)]
-                taken, found, outcome = self._some_steps(integrator, [*before, end], dense=dense)
-                if len(found) <= len(before):
-                    return taken, found, outcome
+                before = [t for t in times if abs(t - integrator.time) <= abs(end - integrator.time)]
+                ends = before if before[-1:] == [end] else [*before, end]
+                taken, found, outcome = self._some_steps(integrator, ends, dense=dense)
+                if len(found) < len(ends) or len(before) == len(times):
+                    return taken, found[: len(before)], outcome
                 steps, rows = taken, found[: len(before)]
         while True:
             self.safe = (integrator.state.copy(), integrator.dtime)

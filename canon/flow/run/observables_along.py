@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["AccuracyWarning", "jumped", "measured", "size_of_terms", "values_in", "warn_of_jumps"]
+__all__ = [
+    "AccuracyWarning", "jumped", "measured", "rounding_of", "size_of_terms", "values_in", "warn_of_jumps",
+]  # fmt: skip
 
 _IMPLAUSIBLE = 0.5
 """An energy that changes by more than this part of the size of H's terms at the start is no small error."""
@@ -39,10 +41,18 @@ def measured(
     one (x86), with 40 digits otherwise, at the state with what it is beyond doubles: what is reported is
     the trajectory's error, not the evaluation's.
     """
-    doubles = precision in ("single", "double", "compensated")
-    values = _wide_values if _WIDE and doubles else _many_digits
+    values = _wide_values if _in_long_doubles(precision) else _many_digits
     found = values(system, nodes, samples.t, samples.y, samples.carried)
     return [(_rounded(value), _rounded(value - value[0])) for value in found]
+
+
+def rounding_of(precision: str) -> float:
+    """Return the part of the size of its terms that :func:`measured` may get a function of the state wrong by."""
+    return 2.0**-60 if _in_long_doubles(precision) else 1e-37
+
+
+def _in_long_doubles(precision: str) -> bool:
+    return _WIDE and precision in ("single", "double", "compensated")
 
 
 def values_in(

@@ -3,6 +3,7 @@
 A pulse exp(−((t − t₀)/w)²) or a bump 1/cosh²((x − x₀)/w) is rounded to nothing a few widths away, and with it all of
 its Taylor coefficients: no method that chooses its steps by values of the term can know that it is there. The exponent
 can: it is an ordinary function all the way, and the term is to be seen where the exponent is of moderate size.
+Quotients 1/(1 + ((t − t₀)/w)²) are seen from afar by a series, but not by steps of one size, which may pass the middle.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
     from canon.expression.graph.graph import Graph
 
-__all__ = ["exponents_of", "sights"]
+__all__ = ["denominators_of", "exponents_of", "sights"]
 
 _EXPONENTIAL = ("exp", "sinh", "cosh", "tanh")
 _MARGIN = 14.0
@@ -53,6 +54,28 @@ def exponents_of(graph: Graph, nodes: Sequence[int]) -> tuple[int, ...]:
             found[graph.mul([operands[1], graph.function("log", operands[0])])] = None
     varying = sorted(node for node in found if graph.symbols(node))
     return tuple(node for k, node in enumerate(varying) if graph.negative(node) not in varying[:k])
+
+
+def denominators_of(graph: Graph, nodes: Sequence[int]) -> tuple[int, ...]:
+    """Return the sums that stand in denominators, and whose quotients may therefore be large for a short way.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> from canon.expression.graph.graph import Graph
+    >>> x, t = symbols("x t")
+    >>> graph = Graph()
+    >>> [graph.to_sympy(g) for g in denominators_of(graph, [graph.from_sympy(x / (1 + t**2) ** 2 + 1 / x)])]
+    [t**2 + 1]
+    """
+    found = dict[int, None]()
+    for each in graph.reachable(nodes):
+        kind, operands, _ = graph.nodes[each]
+        if kind == "pow" and graph.nodes[operands[0]].kind == "add" and graph.symbols(operands[0]):
+            exponent = graph.nodes[operands[1]]
+            if exponent.kind != "number" or exponent.value < 0:
+                found[operands[0]] = None
+    return tuple(found)
 
 
 def sights(unit: float) -> tuple[float, ...]:
