@@ -135,7 +135,7 @@ def reference(case: RandomMotion, times: np.ndarray, width: str = "extended", sh
     rows: dict[float, np.ndarray] = {}
     for before, stop in zip([case.span[0], *stops], stops, strict=False):
         longest = min(
-            [case.scale / 16, *(w / 4 for t, w in case.moments if abs((before + stop) / 2 - t) < 9 * w)]
+            [case.scale / 16, *(w / 4 for t, w in case.moments if abs((before + stop) / 2 - t) < 40 * w)]
         )
         outcome, *_ = own.propagate_until(kind(stop), max_delta_t=kind(longest / shorter), max_steps=200_000)
         if (
@@ -150,7 +150,7 @@ def reference(case: RandomMotion, times: np.ndarray, width: str = "extended", sh
 
 def near_pulses(case: RandomMotion) -> list[float]:
     a, b = sorted(case.span)
-    return [s for t, w in case.moments for s in (t - 9 * w, t - w, t, t + w, t + 9 * w) if a < s < b]
+    return [s for t, w in case.moments for s in (t - 40 * w, t - 8 * w, t, t + 8 * w, t + 40 * w) if a < s < b]
 
 
 # strategies ------------------------------------------------------------------------------------------
