@@ -150,7 +150,9 @@ def reference(case: RandomMotion, times: np.ndarray, width: str = "extended", sh
 
 def near_pulses(case: RandomMotion) -> list[float]:
     a, b = sorted(case.span)
-    return [s for t, w in case.moments for s in (t - 40 * w, t - 8 * w, t, t + 8 * w, t + 40 * w) if a < s < b]
+    return [
+        s for t, w in case.moments for s in (t - 40 * w, t - 8 * w, t, t + 8 * w, t + 40 * w) if a < s < b
+    ]
 
 
 # strategies ------------------------------------------------------------------------------------------
