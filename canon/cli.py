@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import io
-import os
+import signal
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from canon.command import COMMANDS
+from canon.command.standard_streams import silenced, streams_open, why_not_written
+from canon.printable import in_one_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,6 +33,10 @@ examples:
 """
 BROKEN_PIPE = 141
 """Exit status of a program whose reader went away, as shells report it: 128 + SIGPIPE."""
+INTERRUPTED = 130
+"""Exit status of a program that was interrupted: 128 + SIGINT."""
+UNWRITTEN = 2
+"""Exit status where what was found can't be told: none of those that say something of claims."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -42,26 +48,47 @@ def main(argv: Sequence[str] | None = None) -> int:
         The arguments after ``canon``; those of the process unless given.
     """
     given = list(sys.argv[1:] if argv is None else argv)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without ✓ shows ?
+    try:
+        streams_open()
+        status = _status(given)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        status = BROKEN_PIPE
+    except KeyboardInterrupt:
+        with suppress(ValueError):  # where this is not the main thread
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second one has nothing left to stop
+        _tell("canon: interrupted")
+        status = INTERRUPTED
+    except OSError as error:
+        if not (why := why_not_written(error)):
+            raise
+        _tell(f"canon: standard output can't be written: {why}")
+        status = UNWRITTEN
+    silenced()
+    return status
+
+
+def _tell(line: str) -> None:
+    with suppress(OSError):  # where standard error takes no more either
+        print(line, file=sys.stderr)
+
+
+def _status(given: list[str]) -> int:
     if not given:
         _parser(given).print_help(sys.stderr)
         return 2
     if (word := given[0]) not in COMMANDS and not word.startswith("-"):
-        print(f"canon: there is no command {word!r}{_near(word)}; 'canon --help' lists all", file=sys.stderr)
+        print(
+            in_one_line(f"canon: there is no command {word!r}{_near(word)}; 'canon --help' lists all"),
+            file=sys.stderr,
+        )
         return 2
-    arguments = _parser(given).parse_args(given)
     try:
-        status = arguments.run(arguments)
+        arguments = _parser(given).parse_args(given)
+    except SystemExit:
         sys.stdout.flush()
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return BROKEN_PIPE
-    except KeyboardInterrupt:
-        print("canon: interrupted", file=sys.stderr)
-        return 130
-    return status
+        raise
+    return arguments.run(arguments)
 
 
 def _near(word: str) -> str:

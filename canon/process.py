@@ -3,7 +3,8 @@
 Parent and child exchange messages of bytes over pipes. The child finds nothing but the standard library, canon and
 what canon rests on, each in the folder from which the parent has it; neither ``PYTHONPATH`` nor the working folder
 nor what an interpreter usually runs at its start (``sitecustomize``, ``.pth`` files) reaches it. Each message says
-for how long its answer is waited for, and a child whose parent has gone ends by itself then.
+for how long its answer is waited for, and a child whose parent has gone ends by itself: at once where the system
+tells it that a pipe was closed, else then.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from typing import TYPE_CHECKING, BinaryIO, cast
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable
 
-__all__ = ["Child", "Ended", "Late", "folders", "safe_path", "serve"]
+__all__ = ["Child", "Ended", "Late", "end_when_closed", "end_with_parent", "folders", "safe_path", "serve"]
 
 RESTS_ON = ("sympy", "mpmath", "numpy", "flint", "lark")
 """What proofs and judgements import beside the standard library."""
@@ -54,11 +55,13 @@ START = """
 import sys
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
-module, home, *folders = sys.argv[1:]
+module, home, lifeline, *folders = sys.argv[1:]
 sys.path += folders
 found = PathFinder.find_spec("canon", [home])
 canon = sys.modules["canon"] = module_from_spec(found)
 found.loader.exec_module(canon)
+if lifeline:
+    __import__("canon.process", fromlist=["end_when_closed"]).end_when_closed(int(lifeline))
 __import__(module, fromlist=["main"]).main()
 """
 
@@ -91,14 +94,22 @@ class Child:
         self._killed = False
         self._heard: queue.SimpleQueue[bytes | Ended] = queue.SimpleQueue()
         self._sender: threading.Thread | None = None
+        lifeline, self._held = os.pipe() if sys.platform != "win32" else (-1, -1)
         self._process = subprocess.Popen(  # the interpreter that runs now, and nothing that a stranger wrote
-            [sys.executable, "-P", "-s", "-S", "-c", START, module, str(HOME), *folders()],
+            [
+                *(sys.executable, "-P", "-s", "-S", "-c", START, module, str(HOME)),
+                str(lifeline) if lifeline >= 0 else "",
+                *folders(),
+            ],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             start_new_session=leads,
+            pass_fds=(lifeline,) if lifeline >= 0 else (),
             env={name: value for name, value in os.environ.items() if name != "PYTHONPATH"},
         )
+        if lifeline >= 0:
+            os.close(lifeline)
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._listener.start()
 
@@ -185,6 +196,8 @@ class Child:
             if stream is not None:
                 with suppress(OSError):
                     stream.close()
+        if self._held >= 0:
+            os.close(self._held)
 
 
 def folders() -> list[str]:
@@ -255,6 +268,53 @@ def safe_path() -> Generator[None]:
             del os.environ["PYTHONSAFEPATH"]
         else:
             os.environ["PYTHONSAFEPATH"] = before
+
+
+def end_when_closed(pipe: int) -> None:
+    """Let this process end as soon as the other end of a pipe is closed, as by the death of who holds it.
+
+    Where it can, the system itself ends the process, whatever it is computing; everywhere a thread looks.
+
+    Parameters
+    ----------
+    pipe
+        Descriptor of the end for reading; nothing is ever written to the other.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        pass
+    else:
+        if hasattr(signal, "SIGIO") and hasattr(os, "O_ASYNC"):
+            signal.signal(signal.SIGIO, signal.SIG_DFL)  # which ends a process
+            fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
+            fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
+
+    def watch() -> None:
+        with suppress(OSError):
+            os.read(pipe, 1)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def end_with_parent() -> None:
+    """Let this process of a pool end with the one that started it, which alone handles interrupts from the terminal."""
+    from multiprocessing import parent_process
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = parent_process()
+    if parent is None:
+        return
+    if sys.platform != "win32":
+        end_when_closed(parent.sentinel)
+        return
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def serve(answers: Callable[[bytes], Iterable[bytes]], memory: int) -> None:

@@ -192,6 +192,8 @@ def _read(name: str) -> Sheet:
 
     if name != "-":
         return read_sheet(name)
+    if sys.stdin is None:  # pyright: ignore[reportUnnecessaryComparison]  # where the program was started with it closed
+        raise SheetError("standard input: it is closed")
     data = sys.stdin.buffer.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
         raise SheetError(f"standard input: more than {MAX_BYTES} bytes; split the sheet")

@@ -269,11 +269,16 @@ def _executor(arguments: argparse.Namespace) -> Generator[tuple[Executor | None,
         import multiprocessing
         from concurrent.futures import ProcessPoolExecutor
 
-        from canon.process import safe_path
+        from canon.process import end_with_parent, safe_path
 
         spawned = multiprocessing.get_context("spawn")
-        with safe_path(), ProcessPoolExecutor(arguments.jobs, spawned) as pool:
-            yield pool, arguments.jobs + 1
+        with safe_path(), ProcessPoolExecutor(arguments.jobs, spawned, end_with_parent) as pool:
+            try:
+                yield pool, arguments.jobs + 1
+            except BaseException:  # an interrupt above all: nobody waits for what they compute any more
+                for worker in multiprocessing.active_children():
+                    worker.kill()
+                raise
     else:
         yield None, None
 

@@ -59,8 +59,8 @@ class Report:
 
     @property
     def exit_status(self) -> int:
-        """0 where all hold, 1 where some fail, 3 where none fails but some are undecided, 2 where one is invalid."""
-        if self.count("invalid"):
+        """0: all hold; 1: some fail; 3: none fails, some are undecided; 2: one is invalid, or there is none."""
+        if self.count("invalid") or not self.judgements:
             return 2
         if self.count("fails"):
             return 1

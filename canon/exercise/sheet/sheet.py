@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from canon.exercise.sheet.key_shapes import MAX_DIGITS, faults
 from canon.expression.symbols.input_in_words import counted, given_kind
 from canon.frozen_mapping import FrozenMapping
+from canon.given_file import UnreadableFile, bytes_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -159,13 +160,9 @@ def read_sheet(path: str | Path) -> Sheet:
     """
     path = Path(given_kind(path, (str, Path), "the path of the sheet"))
     try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)  # never more, even of what has no size, such as a pipe
-        if len(data) > MAX_BYTES:
-            size = path.stat().st_size
-            raise SheetError(f"{path}: {size} bytes, and at most {MAX_BYTES} are read; split the sheet")
-    except OSError as error:
-        raise SheetError(f"{path}: can't be read ({error.strerror or error})") from error
+        data = bytes_of(path, MAX_BYTES, "split the sheet")
+    except UnreadableFile as error:
+        raise SheetError(f"{path}: {error}") from error
     return sheet_from(data, file=str(path), toml=path.suffix.lower() == ".toml")
 
 
@@ -197,7 +194,7 @@ def sheet_from(data: bytes, *, file: str = "", toml: bool = False) -> Sheet:
     """
     shown = file or "the sheet"
     try:
-        text = data.decode("utf-8")
+        text = data.decode("utf-8-sig")  # what Windows writes begins with a byte order mark
     except UnicodeDecodeError as error:
         raise SheetError(f"{shown}: not UTF-8 text (byte {error.start})") from error
     try:
@@ -281,7 +278,13 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
     if isinstance(found, dict):
         unknown = sorted(set(found) - {"title", "claims", "claim", "source", *_FOR_ALL})
         if unknown:
-            raise SheetError(f"{shown}: unknown key {unknown[0]!r} beside the claims")
+            raise SheetError(f"{shown}: unknown key {unknown[0][:60]!r} beside the claims")
+        if {"claims", "claim"} <= found.keys():
+            raise SheetError(
+                f"{shown}: claims stand under 'claims' and under 'claim'; put them under one of them"
+            )
+    if not raw:
+        raise SheetError(f"{shown}: a list of claims without a claim")
     if len(raw) > MAX_CLAIMS:
         raise SheetError(f"{shown}: {len(raw)} claims, and at most {MAX_CLAIMS} are read; split the sheet")
     for_all = {key: found[key] for key in _FOR_ALL if key in found} if isinstance(found, dict) else {}

@@ -1,0 +1,69 @@
+"""Files that are given by name: read up to a limit, and never from a device or a pipe that may not end."""
+
+from __future__ import annotations
+
+import os
+import stat
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["UnreadableFile", "bytes_of"]
+
+PIPES_OF_SHELLS = ("/dev/fd/", "/dev/stdin", "/proc/self/fd/")
+"""What a shell hands over for ``<(…)``: a pipe that whoever gives the command has just made."""
+
+KINDS = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFSOCK: "a socket",
+}
+
+
+class UnreadableFile(ValueError):
+    """Something that can't be read as a file; says why, without its name."""
+
+
+def bytes_of(path: Path, most: int, instead: str) -> bytes:
+    """Return what stands in a file.
+
+    Parameters
+    ----------
+    path
+        The file. A pipe only where a shell made it for the command.
+    most
+        Bytes that it may have; no more are ever read.
+    instead
+        What to do where it has more.
+
+    Raises
+    ------
+    UnreadableFile
+        Where it is not there, no file, or too long.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> bytes_of(Path("/dev/null"), 100, "split it")
+    Traceback (most recent call last):
+        ...
+    canon.given_file.UnreadableFile: it is a device and no file
+    """
+    try:
+        with os.fdopen(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:
+            kind = stat.S_IFMT(os.fstat(file.fileno()).st_mode)
+            if kind == stat.S_IFIFO and str(path).startswith(PIPES_OF_SHELLS):
+                os.set_blocking(file.fileno(), True)
+            elif kind != stat.S_IFREG:
+                raise UnreadableFile(f"it is {KINDS.get(kind, 'something else')} and no file")
+            data = file.read(most + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, UnreadableFile):
+            raise
+        raise UnreadableFile(f"can't be read ({getattr(error, 'strerror', None) or error})") from error
+    if len(data) > most:
+        raise UnreadableFile(f"it has more than {most} bytes, and no more are read; {instead}")
+    return data
