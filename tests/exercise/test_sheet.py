@@ -62,7 +62,7 @@ def test_files_that_cannot_be_read(tmp_path):
         read_sheet(tmp_path / "missing.toml")
     large = tmp_path / "large.json"
     large.write_bytes(b" " * 10_000_001)
-    with pytest.raises(SheetError, match="10000001 bytes"):
+    with pytest.raises(SheetError, match="more than 10000000 bytes"):
         read_sheet(large)
 
 
