@@ -332,7 +332,8 @@ def _surroundings() -> Iterator[Row]:
         limit=120.0,
     )
     yield Row("ascii-only", "LC_ALL=C, standard output in ASCII", lambda: ran(
-        "from canon import judge\nfrom canon.exercise import Claim\nv = str(judge(Claim('a', 'lie-bracket', {'x': ['x'], 'X': ['x'], "
+        "from canon import judge\nfrom canon.exercise import Claim\n"
+        "v = str(judge(Claim('a', 'lie-bracket', {'x': ['x'], 'X': ['x'], "
         "'Y': ['1'], 'claim': ['1']})))\nprint(v.split()[0])",
         "FAILS",
         env={"LC_ALL": "C", "PYTHONIOENCODING": "ascii:backslashreplace", "PYTHONUTF8": "0"}), limit=120.0)  # fmt: skip
