@@ -16,8 +16,8 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.fixed_step.fixed_steps import planned
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.method import TimeTransformed
-from canon.flow.method.method_text import MethodGiven, method_of
-from canon.flow.run.event import Event, prepared_events
+from canon.flow.method.method_text import method_of
+from canon.flow.run.event import prepared_events
 from canon.flow.run.range_check import check_magnitudes, is_narrow
 from canon.flow.run.sampling_plan import adaptive_plan, fictitious_plan, sampling
 from canon.flow.task import Task
@@ -26,13 +26,14 @@ from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import HamiltonEquations, equations, exact_number, exact_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
     import numpy.typing as npt
     from sympy import Expr
 
     from canon.array import Array
     from canon.flow.method.method import Method
+    from canon.flow.request import Request
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
@@ -42,74 +43,61 @@ _KEPT = 64
 """Systems kept for the next call."""
 
 
-def task_of(
-    hamiltonian: HamiltonianSystem,
-    t_span: tuple[float | Fraction, float | Fraction],
-    y0: Sequence[Any] | npt.NDArray[Any],
-    *,
-    method: MethodGiven | None = None,
-    step: float | None = None,
-    tolerance: float | None = None,
-    max_step: float | None = None,
-    precision: str | int | None = None,
-    parameters: Mapping[Symbol | str, Any] | None = None,
-    samples: int | None = None,
-    times: npt.ArrayLike | None = None,
-    observables: Mapping[str, Expr] | None = None,
-    cadence: int | None = None,
-    events: Sequence[Event] = (),
-    dense: bool = False,
-) -> Task:
-    """Return the task of :func:`canon.flow.propagate.propagate`, which documents the arguments and errors."""
-    fixed, varying = parted_by_orbit(parameters or {})
+def task_of(request: Request) -> Task:
+    """Return the task of a request for the motion of a Hamiltonian.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        As :func:`canon.flow.propagate.propagate` documents them.
+    """
+    hamiltonian: HamiltonianSystem = request.system
+    fixed, varying = parted_by_orbit(request.parameters or {})
     system = hamilton_equations_of(hamiltonian, fixed, tuple(varying))
-    ends = two_ends(t_span, y0)
-    given, single = _with_parameters(y0, len(hamiltonian.q), varying)
+    ends = two_ends(request.t_span, request.y0)
+    given, single = _with_parameters(request.y0, len(hamiltonian.q), varying)
 
     def in_fictitious_time(method: TimeTransformed) -> ExtendedSystem:
         larger = extended(hamiltonian, method)
         equations = hamilton_equations_of(larger, fixed, tuple(varying))
-        return extended_system(larger, equations, hamiltonian, Fraction(step or 0))
+        return extended_system(larger, equations, hamiltonian, Fraction(request.step or 0))
 
-    return task_with(
-        system, given, ends, single=single, method=method, step=step, tolerance=tolerance, precision=precision,
-        max_step=max_step,
-        samples=samples, times=times, observables=observables, cadence=cadence, events=events, dense=dense,
-        in_fictitious_time=in_fictitious_time,
-    )  # fmt: skip
+    return task_with(request, system, given, ends, single=single, in_fictitious_time=in_fictitious_time)
 
 
 def task_with(
+    request: Request,
     system: HamiltonEquations,
     given: tuple[Array, Array],
-    t_span: tuple[float | Fraction, float | Fraction],
+    ends: tuple[Fraction, Fraction],
     *,
     single: bool,
-    method: MethodGiven | None = None,
-    step: float | None = None,
-    tolerance: float | None = None,
-    max_step: float | None = None,
-    precision: str | int | None = None,
-    samples: int | None = None,
-    times: npt.ArrayLike | None = None,
-    observables: Mapping[str, Expr] | None = None,
-    cadence: int | None = None,
-    events: Sequence[Event] = (),
-    dense: bool = False,
     in_fictitious_time: Callable[[TimeTransformed], ExtendedSystem] | None = None,
 ) -> Task:
-    """Return the task of equations with starting states, each of shape (2n, orbits), all arguments checked."""
-    method = _with_tolerance(method_of(method), tolerance)
-    extra = dict(observables or {})
+    """Return the task of equations with starting states, each of shape (2n, orbits), and the rest of a request.
+
+    Parameters
+    ----------
+    request
+        Method, precision and what to keep; its system, span, start and parameters have been looked at already.
+    system, given, ends
+        The equations, the starting states as sums of two doubles, the first and the last time.
+    single
+        Whether one state was given rather than several.
+    in_fictitious_time
+        What makes the system that a time-transformed method integrates.
+    """
+    method = _with_tolerance(method_of(request.method), request.tolerance)
+    step, precision, times, cadence = request.step, request.precision, request.times, request.cadence
+    extra = dict(request.observables or {})
     if "energy" in extra:
         raise ValueError(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
     nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
-    start, end = (exact_number(t, "t_span") for t in t_span)
-    wanted = sampling((start, end), samples, times)
-    _check_start(system, given, start, precision)
-    check_magnitudes(system, given[0], (start, end), method, precision)
+    wanted = sampling(ends, request.samples, times)
+    _check_start(system, given, ends[0], precision)
+    check_magnitudes(system, given[0], ends, method, precision)
     frame = None
     if method.engine is FIXED_STEPS:
         plan = planned(wanted, step, method)
@@ -131,10 +119,10 @@ def task_with(
         names=tuple(extra),
         nodes=tuple(nodes),
         cadence=cadence,
-        events=tuple(events),
-        dense=dense,
+        events=tuple(request.events),
+        dense=request.dense,
         fictitious=frame,
-        max_step=_longest(max_step, method),
+        max_step=_longest(request.max_step, method),
     )
     _check_events(task)
     return task
@@ -213,7 +201,7 @@ def parted_by_orbit(
 
 
 def _with_parameters(
-    y0: Sequence[Any] | npt.NDArray[Any], n: int, varying: Mapping[str, npt.NDArray[Any]]
+    y0: Any, n: int, varying: Mapping[str, npt.NDArray[Any]]
 ) -> tuple[tuple[Array, Array], bool]:
     """Return the starting states with the parameters that vary, and whether it is a single one."""
     high, low = _states(y0, n)
@@ -254,7 +242,7 @@ def two_ends(t_span: Any, y0: Any) -> tuple[Fraction, Fraction]:
     return start, end
 
 
-def _states(y0: Sequence[Any] | npt.NDArray[Any], n: int) -> tuple[Array, Array]:
+def _states(y0: Any, n: int) -> tuple[Array, Array]:
     """Return the starting states as sums of two doubles, each of shape (2n, orbits)."""
     given = np.asarray(y0)
     if given.ndim not in (1, 2) or given.shape[0] != 2 * n or not given.size:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.checked_request import hamilton_equations_of
+from canon.flow.request import Request
 from canon.flow.run.hamiltonian_system import HamiltonianSystem
 from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.run_record import recorded
 from canon.flow.system_request import any_task
-from canon.flow.trajectory import Interrupted, Trajectory, carried_out
+from canon.flow.trajectory import Interrupted, Trajectory, finished
 from canon.progress import reporting
 
 if TYPE_CHECKING:
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "HamiltonianSystem", "Interrupted", "NonFiniteStateError", "Trajectory", "is_separable", "propagate",
+    "propagated",
 ]  # fmt: skip
 
 
@@ -163,14 +166,27 @@ def propagate(
     >>> propagate("rolling-disc", (0, 1)).residuals.shape
     (2, 1001)
     """
-    task, moving = any_task(
-        system, t_span, y0, method=method, step=step, tolerance=tolerance, max_step=max_step,
-        precision=precision,
-        parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,
-        events=events, dense=dense,
+    return propagated(
+        Request(
+            system, t_span, y0, method=method, step=step, tolerance=tolerance, max_step=max_step,
+            precision=precision, parameters=parameters, samples=samples, times=times, observables=observables,
+            cadence=cadence, events=events, dense=dense,
+        ),
+        progress,
     )  # fmt: skip
+
+
+def propagated(request: Request, progress: Callable[[float], None] | bool | None = None) -> Trajectory:
+    """Return the motion of a request, as :func:`propagate` does.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError, NonFiniteStateError, Interrupted
+        As :func:`propagate` documents them.
+    """
+    task, moving = any_task(request)
     with reporting(progress) as report:
-        return carried_out(task, report, moving=moving)
+        return finished(recorded(task, report, moving=moving))
 
 
 def is_separable(hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, Any]) -> bool:

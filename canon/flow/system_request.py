@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.flow.method.method import Method
-    from canon.flow.method.method_text import MethodGiven
+    from canon.flow.request import Request
     from canon.flow.run.event import Event
     from canon.flow.system.first_order_motion import FirstOrderMotion, MovingSystem
     from canon.flow.task import Task
@@ -45,49 +45,34 @@ def is_hamiltonian(system: Any) -> bool:
     return all(hasattr(system, name) for name in ("H", "q", "p", "t"))
 
 
-def any_task(
-    system: Any,
-    t_span: tuple[float | Fraction, float | Fraction],
-    y0: Any,
-    *,
-    parameters: Mapping[Symbol | str, Any] | None = None,
-    **settings: Any,
-) -> tuple[Task, MovingSystem | None]:
-    """Return the task of :func:`canon.flow.propagate.propagate`, and what the system is where it is no Hamiltonian.
+def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
+    """Return the task of a request, and what its system is where it is no Hamiltonian.
 
     Raises
     ------
     TypeError, KeyError, ValueError
-        As ``propagate`` documents them.
+        As :func:`canon.flow.propagate.propagate` documents them.
     """
-    scene = is_scene(system)
+    scene = is_scene(request.system)
     if scene:
-        system, y0, parameters = opened(system, y0, parameters or {})
-    if not is_hamiltonian(system):
-        return _system_task(system, t_span, y0, parameters or {}, of_scene=scene, **settings)
-    if isinstance(y0, Mapping):
-        y0 = state_in_order(y0, (*system.q, *system.p))
-    return task_of(system, t_span, y0, parameters=parameters, **settings), None
+        system, y0, parameters = opened(request.system, request.y0, request.parameters or {})
+        request = replace(request, system=system, y0=y0, parameters=parameters)
+    if not is_hamiltonian(request.system):
+        return _system_task(request, of_scene=scene)
+    if isinstance(request.y0, Mapping):
+        variables = (*request.system.q, *request.system.p)
+        request = replace(request, y0=state_in_order(request.y0, variables))
+    return task_of(request), None
 
 
-def _system_task(
-    system: Any,
-    t_span: tuple[float | Fraction, float | Fraction],
-    y0: Any,
-    parameters: Mapping[Symbol | str, Any],
-    *,
-    of_scene: bool,
-    method: MethodGiven | None = None,
-    observables: Mapping[str, Expr] | None = None,
-    events: Sequence[Event] = (),
-    **settings: Any,
-) -> tuple[Task, MovingSystem]:
+def _system_task(request: Request, *, of_scene: bool) -> tuple[Task, MovingSystem]:
     """Return the task of a system without a Hamiltonian; a scene may have parameters that do not matter."""
-    ends = two_ends(t_span, y0)
-    found, given = recognised(system), dict(parameters)
+    y0: Any = request.y0
+    ends = two_ends(request.t_span, y0)
+    found, given = recognised(request.system), dict(request.parameters or {})
     variables = (*found.state, found.t)
-    observed = {name: _plain(f, variables) for name, f in (observables or {}).items()}
-    met = tuple(_plain_event(event, variables) for event in events)
+    observed = {name: _plain(f, variables) for name, f in (request.observables or {}).items()}
+    met = tuple(_plain_event(event, variables) for event in request.events)
     named = {str(key) for key in given}
     functions = [*observed.values(), *(event.function for event in met)]
     others = {s for f in functions for s in f.free_symbols if str(s) in named and isinstance(s, Symbol)}
@@ -110,20 +95,11 @@ def _system_task(
     check_constraints(motion, start, _words(motion))
     unit = _work_unit(motion, first)
     moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying], unit)
-    chosen = method_of(method)
+    chosen = method_of(request.method)
     _check_method(chosen, moving)
     full = _full_states(moving, states, varying, orbits)
-    task = task_with(
-        moving.equations,
-        full,
-        ends,
-        single=single,
-        method=chosen,
-        observables=observed,
-        events=met,
-        **settings,
-    )
-    return task, moving
+    checked = replace(request, method=chosen, observables=observed, events=met)
+    return task_with(checked, moving.equations, full, ends, single=single), moving
 
 
 def _plain(f: Any, variables: Sequence[Symbol]) -> Expr:

@@ -1,25 +1,18 @@
-"""Trajectories, and the energy along them in higher precision than their states."""
+"""Trajectories: sampled motions with their energies and observables, and what is asked of them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.expression.symbols.symbol import momentum, velocity
 from canon.expression.symbols.user_input import counted
 from canon.flow.error_estimate import ErrorEstimate, error_estimate
-from canon.flow.integrate import integrate, silently
 from canon.flow.interpolation import states_at
 from canon.flow.labelled_motion import labelled
-from canon.flow.run.observables_along import measured, size_of_terms, warn_of_jumps
-from canon.flow.run.samples import Samples, Statistics
-from canon.flow.system.left_out import check_left_out
-from canon.flow.system.named_values import node_along, variables_of
-from canon.frozen_mapping import FrozenMapping
-from canon.kernel.program.hamilton_equations import exact_number
+from canon.flow.run_record import recorded
 from canon.progress import reporting
 
 if TYPE_CHECKING:
@@ -28,26 +21,15 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas
     import xarray
-    from sympy import Expr, Symbol
+    from sympy import Expr
 
     from canon.array import Array
     from canon.flow.method.method import Method
     from canon.flow.run.event import Crossing
-    from canon.flow.system.first_order_motion import MovingSystem
-    from canon.flow.task import Task
+    from canon.flow.run.samples import Statistics
+    from canon.flow.run_record import Energies, RunRecord
 
-__all__ = ["Interrupted", "Trajectory", "carried_out"]
-
-_ROUNDING = 2.0**-44
-"""A starting energy below this part of the size of H's terms is what rounding the start has left of zero."""
-
-
-class Energies(NamedTuple):
-    """The energy along a motion, its change, and what the change exceeds the work done by, each of shape (times,)."""
-
-    values: Array
-    change: Array
-    defect: Array
+__all__ = ["Interrupted", "Trajectory", "finished"]
 
 
 @dataclass(frozen=True)
@@ -86,10 +68,8 @@ class Trajectory:
         one sample and the next, by name.
     events
         The events met, in their order.
-    task, samples
-        What was to be done, and what came out in full: what :meth:`resume` goes on from.
-    moving
-        Of other systems than Hamiltonians: what their states, energies and constraints are.
+    record
+        What was to be done and what came out in full, from which all else is read and goes on.
     """
 
     t: Array
@@ -104,45 +84,33 @@ class Trajectory:
     cpu_seconds: float
     compile_seconds: float
     autonomous: bool
-    observables: Mapping[str, Array] = field(default_factory=lambda: FrozenMapping({}))
-    changes: Mapping[str, Array] = field(default_factory=lambda: FrozenMapping({}))
-    statistics: Mapping[str, Statistics] = field(default_factory=lambda: FrozenMapping({}))
-    events: tuple[Crossing, ...] = ()
-    task: Task | None = field(default=None, repr=False, compare=False)
-    samples: Samples | None = field(default=None, repr=False, compare=False)
-    moving: MovingSystem | None = field(default=None, repr=False, compare=False)
+    observables: Mapping[str, Array]
+    changes: Mapping[str, Array]
+    statistics: Mapping[str, Statistics]
+    events: tuple[Crossing, ...]
+    record: RunRecord = field(repr=False, compare=False)
 
     def __repr__(self) -> str:
         return (
-            f"Trajectory({self._size}, t = {self.t[0]:g} … {self.t[-1]:g}, "
+            f"Trajectory({self.record}, t = {self.t[0]:g} … {self.t[-1]:g}, "
             f"{counted(len(self.t), 'sample')}, {self.method}, "
             f"{counted(self.steps, 'step')}, {self.cpu_seconds:.3g} s)"
         )
 
     @property
-    def _size(self) -> str:
-        if self.moving is None:
-            return f"{counted(len(self.q), 'degree')} of freedom"
-        return f"{self.moving.kind} in {', '.join(s.name for s in self.moving.state)}"
-
-    @property
     def q(self) -> Array:
         """Coordinates, shape (n, times)."""
-        return self.y[: len(self.y) // 2 if self.moving is None else len(self.moving.q)]
+        return self.record.part("q")
 
     @property
     def p(self) -> Array:
         """Momenta, shape (n, times): of the state, or ∂L/∂q̇ of a motion whose state is (q, q̇)."""
-        if self.moving is None:
-            return self.y[len(self.y) // 2 :]
-        return self._of_each(momentum, "momenta")
+        return self.record.part("p")
 
     @property
     def v(self) -> Array:
         """Velocities q̇, shape (n, times)."""
-        if self.moving is not None and self.moving.letter == "v":
-            return self.y[len(self.moving.q) :]
-        return self._of_each(velocity, "velocities")
+        return self.record.part("v")
 
     @property
     def u(self) -> Array:
@@ -153,9 +121,7 @@ class Trajectory:
         AttributeError
             The state of the system has none.
         """
-        if self.moving is None or self.moving.letter not in ("u", "v"):
-            raise AttributeError("the state of this system has no quasi-velocities")
-        return self.y[len(self.moving.q) :]
+        return self.record.part("u")
 
     @property
     def multipliers(self) -> Array:
@@ -163,18 +129,17 @@ class Trajectory:
 
         That of a constraint which depends on others is 0: only the forces of constraint are determined then.
         """
-        return self._read("multipliers", () if self.moving is None else self.moving.multipliers)
+        return self.record.of_constraints("multipliers")
 
     @property
     def reactions(self) -> Array:
         """The generalized forces of constraint Σ λ a, shape (n, times)."""
-        return self._read("reactions", () if self.moving is None else self.moving.reactions)
+        return self.record.of_constraints("reactions")
 
     @property
     def residuals(self) -> Array:
         """What the constraints f and the rates A q̇ + a₀ are along the motion, where they should be 0."""
-        kept = () if self.moving is None else tuple(each.node for each in self.moving.residuals)
-        return self._read("residuals", kept)
+        return self.record.of_constraints("residuals")
 
     def __getitem__(self, what: str | Expr) -> Array:
         """Return a variable, velocity, momentum, multiplier or observable by name, or any function of them.
@@ -209,11 +174,7 @@ class Trajectory:
                 return self.observables[what]
             if what in ("t", "energy", "work"):
                 return {"t": lambda: self.t, "energy": lambda: self.energy, "work": lambda: self.work}[what]()
-        task, _ = self.origin
-        for row, symbol in enumerate(variables_of(task.system)):
-            if what in (symbol, symbol.name):
-                return self.y[row]
-        return self._values([node_along(task.system, what)])[0]
+        return self.record.along(what)
 
     @property
     def energy(self) -> Array:
@@ -224,17 +185,17 @@ class Trajectory:
         AttributeError
             No energy is known of the system.
         """
-        return self._energies.values
+        return self.record.energies.values
 
     @property
     def energy_change(self) -> Array:
         """The energy less that at the start, subtracted before rounding, shape (times,)."""
-        return self._energies.change
+        return self.record.energies.change
 
     @property
     def energy_defect(self) -> Array:
         """The energy's change less the work done, which is an error; of a Hamiltonian the change; shape (times,)."""
-        return self._energies.defect
+        return self.record.energies.defect
 
     @property
     def work(self) -> Array:
@@ -242,58 +203,17 @@ class Trajectory:
 
         It was integrated along as a further variable; 0 where the energy is conserved.
         """
-        if self.moving is None:
-            raise AttributeError("the work done on a Hamiltonian system is its energy_change")
-        node = self.moving.work
-        return np.zeros_like(self.energy) if node is None else self._values([node])[0]
-
-    @property
-    def _energies(self) -> Energies:
-        if self.energies is None:
-            kind = "system" if self.moving is None else self.moving.kind
-            raise AttributeError(
-                f"no energy is known of a {kind}: give it as an observable, observables={{name: expression}}"
-            )
-        return self.energies
-
-    def _of_each(self, made: Callable[[Symbol], Symbol], what: str) -> Array:
-        """Return what belongs to each coordinate."""
-        task, _ = self.origin
-        q = (
-            task.system.q[: len(task.system.q) - task.system.varying]
-            if self.moving is None
-            else self.moving.q
-        )
-        try:
-            return np.array([self[made(s).name] for s in q])
-        except KeyError:
-            raise AttributeError(
-                f"{what} are not known of this system: its variables are {', '.join(map(str, q))}"
-            ) from None
-
-    def _read(self, what: str, nodes: Sequence[int]) -> Array:
-        if not nodes:
-            raise AttributeError(f"the system has no constraints, so the motion has no {what}")
-        return np.array(self._values(nodes))
-
-    def _values(self, nodes: Sequence[int]) -> list[Array]:
-        """Return nodes at the samples, evaluated in higher precision than the states."""
-        task, samples = self.origin
-        found = _single(samples) if task.single else samples
-        return [value for value, _ in measured(task.system, nodes, found, task.precision_name)]
+        return self.record.work
 
     @property
     def final(self) -> Array:
         """The state at the last time, shape (2n,)."""
         return self.y[:, -1]
 
-    @cached_property
+    @property
     def relative(self) -> bool:
         """Whether ``energy_error`` is relative: the starting energy is not zero but for rounding (of no orbit)."""
-        start = self.energy[0]
-        if self.moving is not None or self.task is None or self.samples is None or not np.all(start != 0):
-            return bool(np.all(start != 0))
-        return bool(np.all(np.abs(start) > _ROUNDING * size_of_terms(self.task.system, self.samples)))
+        return self.record.relative
 
     @cached_property
     def energy_error(self) -> Array:
@@ -308,9 +228,9 @@ class Trajectory:
         ValueError
             H depends on time, so that its change is no error; see ``energy_change``.
         """
-        if self.moving is None and not self.autonomous:
+        if self.record.moving is None and not self.autonomous:
             raise ValueError("H depends on t, so its change is no error; energy_change has it")
-        defect = self._energies.defect
+        defect = self.record.energies.defect
         return defect / abs(self.energy[0]) if self.relative else defect
 
     def error_estimate(self, orbits: Sequence[int] | None = None) -> ErrorEstimate:
@@ -325,11 +245,6 @@ class Trajectory:
         orbits
             Which orbits of many to estimate; all of them where not given.
 
-        Raises
-        ------
-        ValueError
-            The trajectory does not come from ``propagate``.
-
         Examples
         --------
         >>> from canon import Hamiltonian, Splitting, coordinates, propagate
@@ -341,14 +256,13 @@ class Trajectory:
         >>> bool(0.02 < estimate.relative[-1] < 0.1), estimate.meaningful_until, estimate.lyapunov_time
         (True, None, None)
         """
-        task, samples = self.origin
+        record = self.record
         change = np.zeros(self.y.shape[1:]) if self.energies is None else self.energies.defect
-        return error_estimate(task, samples, change, orbits)
+        return error_estimate(record.task, record.samples, change, orbits)
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the variables, the energy and the observables as an xarray dataset along ``t`` (extra ``export``)."""
-        task, _ = self.origin
-        columns = {symbol.name: self.y[row] for row, symbol in enumerate(variables_of(task.system))}
+        columns = dict(zip(self.record.names, self.y, strict=True))
         if self.energies is not None:
             columns["energy"] = self.energy
         said = {"method": str(self.method), "precision": self.precision, "steps": self.steps}
@@ -361,7 +275,7 @@ class Trajectory:
     @property
     def stopped(self) -> bool:
         """Whether an event ended the motion."""
-        return bool(self.events) and self.events[-1].event.action == "stop"
+        return self.record.stopped
 
     def __call__(self, t: npt.ArrayLike) -> Array:
         """Return the state at any time inside the span, shape (2n,), or at many, (2n, times).
@@ -376,9 +290,9 @@ class Trajectory:
         ValueError
             A time lies outside the span; or what is needed was not kept.
         """
-        task, samples = self.origin
-        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
-        found = states_at(task, samples, times)[task.system.rows]
+        record = self.record
+        task, times = record.task, np.atleast_1d(np.asarray(t, dtype=np.float64))
+        found = states_at(task, record.samples, times)[task.system.rows]
         found = found[:, :, 0] if task.single else found
         return found[:, 0] if np.ndim(t) == 0 else found
 
@@ -424,24 +338,10 @@ class Trajectory:
         >>> bool((half.resume(20).y == whole.y).all())
         True
         """
-        task, kept = self.origin
-        if self.stopped:
-            raise ValueError(f"the motion was ended by the event {self.events[-1].event}: it does not go on")
-        if until is not None:
-            if not task.arrived(kept):
-                raise ValueError("complete the interrupted run first: run.resume()")
-            task = task.until(exact_number(until, "until"), kept, samples, times)
-        elif task.arrived(kept):
-            raise ValueError(f"the motion has arrived at t = {self.t[-1]:g}: say how far to go on, until=")
+        record = self.record
+        task = record.continued(until, samples, times)
         with reporting(progress) as report:
-            return carried_out(task, report, kept, self.moving)
-
-    @property
-    def origin(self) -> tuple[Task, Samples]:
-        """What was to be done and what came out in full."""
-        if self.task is None or self.samples is None:
-            raise ValueError("this trajectory does not come from propagate(): its task is not known")
-        return self.task, self.samples
+            return finished(recorded(task, report, record.samples, record.moving))
 
 
 class Interrupted(KeyboardInterrupt):
@@ -460,71 +360,20 @@ class Interrupted(KeyboardInterrupt):
         self.motion = motion
 
 
-def carried_out(
-    task: Task,
-    progress: Callable[[float], None] = silently,
-    so_far: Samples | None = None,
-    moving: MovingSystem | None = None,
-) -> Trajectory:
-    """Carry a task out, from the start or from what was done before.
+def finished(record: RunRecord) -> Trajectory:
+    """Return the trajectory of a record, with the energy and the observables along it.
 
     Raises
     ------
     Interrupted
-        Ctrl-C; the error has the motion as far as it came.
-    NonFiniteStateError
-        The motion can't be continued.
-    ValueError
-        A constraint that was left out, as others imply it at the start, is violated on the way.
+        The motion was interrupted; the error has it as far as it came.
     """
-    found = integrate(task, progress, so_far)
-    made = _trajectory_of(task, found, moving)
-    if not (task.arrived(found) or made.stopped):
-        raise Interrupted(made)
-    return made
-
-
-def _single(samples: Samples) -> Samples:
-    """Return the samples of one orbit without the axis of the orbits."""
-    return replace(samples, y=samples.y[:, :, 0], carried=samples.carried[:, :, 0])
-
-
-def _trajectory_of(task: Task, found: Samples, moving: MovingSystem | None) -> Trajectory:
-    """Return what samples say, with the energy and the observables along them."""
-    watched, kept = found.watched, found
-    if task.single:
-        watched = None if watched is None else watched[..., 0]
-        found = _single(found)
-    extra = () if moving is None or moving.energy is None else (moving.energy,)
-    (value, defect), *rest = measured(task.system, (*task.nodes, *extra), found, task.precision_name)
-    energy, change = rest.pop() if extra else (value, defect)
-    rows, names = task.system.rows, ("energy", *task.names)
-    all_rows = len(rows) == len(found.y)
-    changed = any(met.after is not None for met in found.crossings)
-    if task.system.autonomous and not changed:
-        warn_of_jumps(task.system, kept, defect.reshape(len(defect), -1))
-    if moving is not None:
-        check_left_out(moving, kept)
-    return Trajectory(
-        t=found.t,
-        y=found.y if all_rows else found.y[rows],
-        carried=found.carried if all_rows else found.carried[rows],
-        energies=None if moving is not None and not extra else Energies(energy, change, defect),
-        method=task.method,
-        precision=task.precision_name,
-        step=found.step,
-        steps=found.steps,
-        evaluations=found.evaluations,
-        cpu_seconds=found.cpu_seconds,
-        compile_seconds=found.compile_seconds,
-        autonomous=task.system.autonomous,
-        observables=FrozenMapping(dict(zip(task.names, (value for value, _ in rest), strict=True))),
-        changes=FrozenMapping(dict(zip(task.names, (each for _, each in rest), strict=True))),
-        statistics=FrozenMapping(
-            {} if watched is None else {k: Statistics(*v) for k, v in zip(names, watched, strict=True)}
-        ),
-        events=found.crossings,
-        task=task.ended(found),
-        samples=kept,
-        moving=moving,
-    )
+    task, found, seen = record.task, record.shown, record.measured
+    motion = Trajectory(
+        found.t, found.y, found.carried, seen.energies, task.method, task.precision_name, found.step, found.steps,
+        found.evaluations, found.cpu_seconds, found.compile_seconds, task.system.autonomous,
+        seen.observables, seen.changes, seen.statistics, found.crossings, record,
+    )  # fmt: skip
+    if not (task.arrived(found) or record.stopped):
+        raise Interrupted(motion)
+    return motion

@@ -11,11 +11,13 @@ import numpy as np
 from canon.expression.symbols.user_input import counted
 from canon.flow.geometry.solvable_jacobian import solvable_jacobian
 from canon.flow.geometry.transformed_jacobian import transformed_jacobian
-from canon.flow.propagate import propagate
+from canon.flow.propagate import propagated
+from canon.flow.request import Request
 from canon.flow.run.sampling_plan import Plan, fixed_plan
+from canon.flow.run_record import recorded
 from canon.flow.system.scene_door import is_scene, opened
 from canon.flow.system_request import any_task
-from canon.flow.trajectory import carried_out
+from canon.flow.trajectory import finished
 from canon.kernel.program.variational import variational
 
 if TYPE_CHECKING:
@@ -124,10 +126,11 @@ def flow_jacobian(
     """
     if samples is None and times is None:
         samples = 1
-    task, moving = any_task(
+    request = Request(
         system, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=samples, times=times,
     )  # fmt: skip
+    task, moving = any_task(request)
     if not task.single:
         raise ValueError(
             "the Jacobian is made of one orbit at a time: give one state and one set of parameters"
@@ -150,7 +153,7 @@ def flow_jacobian(
         states=(_varied(task.states[0], orbits, columns), _varied(task.states[1], orbits, columns, unit=0.0)),
         single=False,
     )
-    found = carried_out(made)
+    found = finished(recorded(made))
     y, M = _parted(found.y, size, columns)
     _, low = _parted(found.carried, size, columns)
     if moving is None:
@@ -252,17 +255,18 @@ def reversal_error(
     >>> bool(far[0] < 1e-13), bool(far[1] > 1e-3)
     (True, True)
     """
-    there = propagate(
+    request = Request(
         system, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=1,
     )  # fmt: skip
-    task, kept = there.origin
+    there = propagated(request).record
+    task, kept = there.task, there.samples
     plan, (high, low) = task.plan, task.states
     if plan.h is None:
         back = Plan(Fraction(float(plan.instants[-1])), plan.instants[::-1].copy(), ends=plan.ends)
     else:
         back = fixed_plan(plan.last(-1), -plan.h, plan.stops)
-    returned = carried_out(replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back))
-    _, end = returned.origin
+    returned = finished(recorded(replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back)))
+    end = returned.record.samples
     missed = ((end.y[:, -1] - high) + (end.carried[:, -1] - low))[task.system.rows]
     return missed[:, 0] if task.single else missed

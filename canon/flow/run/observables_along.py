@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import warnings
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -113,8 +114,16 @@ def warn_of_jumps(system: HamiltonEquations, samples: Samples, change: Array) ->
         f"{samples.t[first - 1]:.9g} before that): a step jumped over a collision or is far too large; what follows is "
         "not the system's motion. Take a smaller step, Taylor(), or stop before with an Event",
         AccuracyWarning,
-        stacklevel=5,  # the line that called propagate() or resume()
+        stacklevel=_frames_of_canon(),  # the line that called propagate() or resume()
     )
+
+
+def _frames_of_canon() -> int:
+    """Return the stack level, for a warning of the caller, of the first line that is not canon's."""
+    frame, level = inspect.currentframe(), 0
+    while frame is not None and str(frame.f_globals.get("__name__")).startswith("canon."):
+        frame, level = frame.f_back, level + 1
+    return level
 
 
 def jumped(system: HamiltonEquations, samples: Samples, change: Array) -> npt.NDArray[np.bool_]:

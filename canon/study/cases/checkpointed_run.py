@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
+from canon.flow.request import Request
 from canon.flow.run.sampling_plan import steps_over
 from canon.study.cases.case import part_count
 from canon.study.cases.case_numbers import judged_energy, judged_observable
 from canon.study.cases.case_observables import followed
 from canon.study.drift.sample_times import is_resolved, scattered
 from canon.study.motion.extended_phase_space import driven
+from canon.study.motion.observables import expressions_of
 from canon.study.motion.quiet_run import run_quietly
 
 if TYPE_CHECKING:
@@ -237,16 +239,16 @@ def _run(
     along: Sequence[Observable] = (),
 ) -> Trajectory:
     timed = _with_time(case)
-    return run_quietly(
+    motion = Request(
         case.hamiltonian if timed is None else timed.hamiltonian,
         span,
         np.array(state, dtype=object),
-        replace(case.setting, step=step),
         parameters={**case.values},
-        samples=samples,
+        samples=samples if times is None else None,
         times=times,
-        along=along,
+        observables=expressions_of(along),
     )
+    return run_quietly(motion.by(replace(case.setting, step=step)))
 
 
 def _evenly(case: Case) -> bool:

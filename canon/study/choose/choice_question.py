@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.setting import Setting
+from canon.flow.request import Request
 from canon.kernel.llvm.number_types import EXTENDED
-from canon.study.motion.observables import Observable
 from canon.study.motion.quiet_run import run_quietly
 
 if TYPE_CHECKING:
@@ -75,18 +75,17 @@ class Question:
         times: Array | None = None,
     ) -> Trajectory:
         """Return a run of that duration from the start; its samples are even unless times are named."""
-        along = () if self.integral is None else (Observable(self.observable, self.integral),)
-        return run_quietly(
+        motion = Request(
             self.hamiltonian,
             (self.since, self.since + duration),
             self.y0,
-            setting,
             parameters=self.values,
-            samples=samples,
+            samples=samples if times is None else None,
             times=times,
-            along=along,
+            observables=None if self.integral is None else {self.observable: self.integral},
             cadence=cadence,
         )
+        return run_quietly(motion.by(setting))
 
     def positions(self, duration: float, precision: str) -> tuple[Array, Array]:
         """Return the reference's coordinates at PLACES + 1 even times as sums of doubles, each (n, times).

@@ -208,7 +208,7 @@ def _energy(found: Trajectory, largest: float | None = None) -> float:
     """Return the largest energy error, relative where the energy is not zero; 0 where H depends on time."""
     if not found.autonomous:
         return 0.0
-    if found.moving is not None:
+    if found.record.moving is not None:
         return float(np.abs(found.energy_error).max())
     change = float(np.abs(found.energy_change).max()) if largest is None else largest
     return change / (float(abs(found.energy[0])) if found.relative else 1.0)
@@ -234,7 +234,7 @@ def change_of(motion: Trajectory, question: Question) -> Array:
     """Return the change of what should stay constant; where forces do work, of the energy less their work."""
     if question.integral is not None:
         return motion.changes[question.observable]
-    if motion.moving is None:
+    if motion.record.moving is None:
         return motion.energy_change
     return motion.energy_error * (np.abs(motion.energy[0]) if motion.relative else 1.0)
 

@@ -13,6 +13,7 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.method_text import method_of
 from canon.flow.method.setting import Setting
+from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.study.choose.choice_table import duration_in_words
 from canon.study.choose.resonance import resonant_steps
@@ -208,9 +209,10 @@ def _settings(
 
 
 def _run(subject: Subject, setting: Setting, span: float, samples: int) -> Trajectory:
-    return run_quietly(
-        subject.hamiltonian, (0.0, span), subject.state, setting, parameters=subject.values, samples=samples
+    motion = Request(
+        subject.hamiltonian, (0.0, span), subject.state, parameters=subject.values, samples=samples
     )
+    return run_quietly(motion.by(setting))
 
 
 def _row(

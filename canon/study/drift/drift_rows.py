@@ -9,8 +9,9 @@ import numpy as np
 
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.setting import Setting
+from canon.flow.request import Request
 from canon.study.drift.drift import Growth, judged_series
-from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, tangent_of
+from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, expressions_of, tangent_of
 from canon.study.motion.quiet_run import run_quietly
 
 if TYPE_CHECKING:
@@ -114,17 +115,16 @@ class Run:
         progress: Callable[[float], None] | None = None,
     ) -> Trajectory:
         """Return a run of that duration."""
-        return run_quietly(
+        motion = Request(
             self.hamiltonian,
             (0.0, duration),
             self.y0,
-            self.setting,
             parameters=self.parameters,
             samples=samples,
-            along=observables,
+            observables=expressions_of(observables),
             cadence=cadence,
-            progress=progress,
         )
+        return run_quietly(motion.by(self.setting), progress)
 
 
 def drift_row(
@@ -174,7 +174,9 @@ def drift_rows(
 def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftRow:
     if observable.name == ENERGY:
         relative, unit = found.relative, np.abs(found.energy[0]) if found.relative else 1.0
-        moving = found.moving is not None  # its energy changes by the work of forces, its balance should not
+        moving = (
+            found.record.moving is not None
+        )  # its energy changes by the work of forces, its balance should not
         change = found.energy_error * unit if moving or not found.autonomous else found.energy_change
     else:
         relative, unit, change = observable.relative, observable.unit, found.changes[observable.name]

@@ -116,7 +116,7 @@ def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None
 def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
     """Return the changes of a quantity since the start, and its value there."""
     if observable == ENERGY:
-        if motion.moving is None and not motion.autonomous:
+        if motion.record.moving is None and not motion.autonomous:
             raise ValueError(
                 "H depends on t, so its change is no error; drift_study(system, …) follows the energy less the work "
                 "done from outside, or name an observable that should stay constant"
@@ -132,9 +132,7 @@ def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
 
 def _sizes_of_terms(motion: Trajectory, orbit: int) -> Array:
     """Return Σ|y ∂H/∂y| at some states: what rounding each y by a part u of it does to H, in parts of u."""
-    if motion.task is None:
-        return np.zeros(1)
-    system = motion.task.system
+    system = motion.record.task.system
     nodes = (*system.force, *system.velocity)
     places = np.unique(np.linspace(0, len(motion.t) - 1, LOOKED_AT).astype(int))
     states = motion.y[:, places, orbit] if motion.y.ndim == 3 else motion.y[:, places]

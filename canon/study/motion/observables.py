@@ -22,7 +22,15 @@ if TYPE_CHECKING:
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
-__all__ = ["ENERGY", "SYMPLECTICITY", "Observable", "Tangent", "observables_of", "tangent_of"]
+__all__ = [
+    "ENERGY",
+    "SYMPLECTICITY",
+    "Observable",
+    "Tangent",
+    "expressions_of",
+    "observables_of",
+    "tangent_of",
+]
 
 ENERGY = "energy"
 SYMPLECTICITY = "symplecticity"
@@ -51,6 +59,11 @@ class Observable:
     expression: Expr | None = None
     unit: float = 1.0
     relative: bool = True
+
+
+def expressions_of(observables: Iterable[Observable]) -> dict[str, Expr]:
+    """Return the functions of observables by name, but for those that every motion has."""
+    return {of.name: of.expression for of in observables if of.expression is not None}
 
 
 def observables_of(
