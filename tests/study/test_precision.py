@@ -9,6 +9,7 @@ import pytest
 
 from canon import DOP853, RK4, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon.flow.method.method import TimeTransformed
+from canon.flow.propagate import propagated
 from canon.plot import plot_work_precision
 from canon.scene import find
 from canon.study.choose.work_precision import WorkRow, _marked, work_precision
@@ -74,13 +75,13 @@ def test_time_is_that_of_the_steps_and_not_of_samples(monkeypatch):
     """Errors come from a run with samples, times from runs without."""
     kept, seconds = [], []
 
-    def watched(*arguments, samples, **options):
-        found = propagate(*arguments, samples=samples, **options)
-        kept.append(samples)
+    def watched(request, progress):
+        found = propagated(request, progress)
+        kept.append(request.samples)
         seconds.append(found.cpu_seconds)
         return found
 
-    monkeypatch.setattr("canon.study.motion.quiet_run.propagate", watched)
+    monkeypatch.setattr("canon.study.motion.quiet_run.propagated", watched)
     found = work_precision(
         find("henon-heiles"), 30.0, methods=[Splitting("verlet")], steps=[0.01], repetitions=3
     )

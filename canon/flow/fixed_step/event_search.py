@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -12,15 +13,18 @@ from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
 from canon.flow.run.event import Crossing
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.observables_along import values_in
+from canon.kernel.loops.event_loop import event_function
 from canon.kernel.loops.statistics_loop import wide_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.flow.run.event import PreparedEvent
+    from canon.kernel.llvm.loop import Loop
+    from canon.kernel.llvm.machine_code import MachineCode
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["EventLocator"]
+__all__ = ["EventLocator", "compiled_watch"]
 
 _IN_ONE_STEP = 100
 """More events in one step than this pile up towards an instant."""
@@ -29,6 +33,23 @@ _AT_ONCE = Fraction(1, 2**30)
 """Nor does one that changes the state come again after so small a part of a step unless it does."""
 
 _TRIES = 200
+
+
+def compiled_watch(
+    system: HamiltonEquations, events: Sequence[PreparedEvent], loop: Loop, timed: int | None = None
+) -> MachineCode:
+    """Return the code that steps until an event may have happened, or a time has come, kept from an earlier call.
+
+    Parameters
+    ----------
+    system, events, loop, timed
+        As :func:`canon.kernel.loops.event_loop.event_function` takes them.
+    """
+    values, rates = tuple(e.value for e in events), tuple(e.rate for e in events)
+    return _kept_watch(system, values, rates, loop, timed)
+
+
+_kept_watch = functools.lru_cache(maxsize=64)(event_function)
 
 
 class EventLocator:

@@ -29,6 +29,17 @@ class LoopState:
     low: Array
     beyond: Memory | None = None
 
+    @classmethod
+    def of(cls, buffers: LoopBuffers) -> LoopState:
+        """Return the state that buffers hold."""
+        return cls(*buffers.states(), buffers.beyond())
+
+    @classmethod
+    def in_copy(cls, buffers: LoopBuffers, y: Memory, e: Memory) -> LoopState:
+        """Return the state of which y and e, copies of the buffers' memory, are made."""
+        high, low = buffers.states_in(y[np.newaxis], e[np.newaxis])
+        return cls(high[:, 0], low[:, 0], buffers.beyond_in(e).copy())
+
 
 def coefficient_pairs(
     coefficients: Callable[[Fraction], list[Fraction]], t: Fraction, h: Fraction
@@ -68,11 +79,11 @@ class PartialSteps:
         pairs = coefficient_pairs(self.coefficients, self.time(n, begin), (end - begin) * self.h)
         buffers = LoopBuffers(self.loop, state.high, state.low, pairs, memory=state.beyond)
         buffers.advance(0, 1)
-        return LoopState(*buffers.states(), buffers.beyond())
+        return LoopState.of(buffers)
 
     def whole(self, state: LoopState, n: int, steps: int) -> LoopState:
         """Return the state after whole steps of the run, from the one at t0 + n h."""
         pairs = coefficient_pairs(self.coefficients, self.t0, self.h)
         buffers = LoopBuffers(self.loop, state.high, state.low, pairs, memory=state.beyond)
         buffers.advance(n, steps)
-        return LoopState(*buffers.states(), buffers.beyond())
+        return LoopState.of(buffers)

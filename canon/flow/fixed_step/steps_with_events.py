@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import time
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -10,10 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.fixed_step.advance import AdvancedStates, Interruption
-from canon.flow.fixed_step.event_search import EventLocator
+from canon.flow.fixed_step.event_search import EventLocator, compiled_watch
 from canon.flow.fixed_step.loop_buffers import LoopBuffers
 from canon.flow.fixed_step.partial_step import LoopState, PartialSteps, coefficient_pairs
-from canon.kernel.loops.event_loop import event_function
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -22,21 +20,12 @@ if TYPE_CHECKING:
     from canon.flow.fixed_step.loop_buffers import Memory
     from canon.flow.run.event import Crossing, PreparedEvent
     from canon.kernel.llvm.loop import Loop
-    from canon.kernel.llvm.machine_code import MachineCode
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["run_with_events"]
 
-_KEPT = 64
 _SLICE = 10_000
 """Steps between looks at progress, interruptions and whether the state is finite."""
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_event_function(
-    system: HamiltonEquations, values: tuple[int, ...], rates: tuple[int, ...], loop: Loop
-) -> MachineCode:
-    return event_function(system, values, rates, loop)
 
 
 def run_with_events(
@@ -76,7 +65,7 @@ def run_with_events(
         A state is not finite, or events pile up.
     """
     loop, locator = steps.loop, EventLocator(system, steps, events)
-    code = _kept_event_function(system, tuple(e.value for e in events), tuple(e.rate for e in events), loop)
+    code = compiled_watch(system, events, loop)
     pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
     buffers = LoopBuffers(loop, start.high, start.low, pairs, memory=start.beyond)
     kept = np.zeros(1 + 3 * len(events))
@@ -96,8 +85,8 @@ def run_with_events(
                 n = int(done[0])
                 if not buffers.finite():
                     raise buffers.lost(*safe, first, n - first, np.array(system.rows))
-                old = LoopState(*buffers.states(), buffers.beyond())
-                new, part, known = locator.locate(n - 1, _state_in(buffers, before), old)
+                old = LoopState.of(buffers)
+                new, part, known = locator.locate(n - 1, LoopState.in_copy(buffers, *before), old)
                 if not known:  # stopped, maybe at the very end of the step
                     states.append((new.high, new.low))
                     beyond.append(buffers.beyond())
@@ -113,14 +102,6 @@ def run_with_events(
         last = float(steps.time(int(reached), Fraction(0)))
         locator.crossings = [met for met in locator.crossings if (met.t - last) * locator.forward <= 0]
     return _run(states, beyond, loop, started), tuple(locator.crossings), reached
-
-
-def _state_in(buffers: LoopBuffers, memory: tuple[Memory, Memory]) -> LoopState:
-    own = buffers.y, buffers.e
-    buffers.y, buffers.e = memory
-    found = LoopState(*buffers.states(), buffers.beyond())
-    buffers.y, buffers.e = own
-    return found
 
 
 def _run(

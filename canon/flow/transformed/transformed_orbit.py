@@ -7,7 +7,6 @@ every step. So no motion is asked for more than one step behind its end.
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -15,23 +14,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.fixed_step.advance import AdvancedStates, advance_orbits
-from canon.flow.fixed_step.event_search import EventLocator
+from canon.flow.fixed_step.event_search import EventLocator, compiled_watch
 from canon.flow.fixed_step.loop_buffers import LoopBuffers
 from canon.flow.fixed_step.partial_step import LoopState, PartialSteps, coefficient_pairs
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.transformed.land_at_time import Segment, iterations, state_at_time, time_of
-from canon.kernel.loops.event_loop import event_function
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from canon.flow.fixed_step.loop_buffers import Memory
     from canon.flow.run.event import PreparedEvent
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
     from canon.flow.transformed.land_at_time import StateAtTime
-    from canon.kernel.llvm.loop import Loop
-    from canon.kernel.llvm.machine_code import MachineCode
-    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["StepEnd", "TransformedOrbit"]
 
@@ -62,13 +56,6 @@ class StepEnd:
     state: LoopState
     sides: tuple[int, ...] = ()
     met: int = 0
-
-
-@functools.lru_cache(maxsize=64)
-def _kept_event_function(
-    system: HamiltonEquations, values: tuple[int, ...], rates: tuple[int, ...], loop: Loop, clock: int
-) -> MachineCode:
-    return event_function(system, values, rates, loop, clock)
 
 
 class TransformedOrbit:
@@ -102,8 +89,7 @@ class TransformedOrbit:
         self.frame, self.steps, self.events, self.bits, self.report = frame, steps, events, bits, report
         self.forward = 1 if steps.h > 0 else -1
         self.pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
-        values, rates = tuple(e.value for e in events), tuple(e.rate for e in events)
-        self.code = _kept_event_function(frame.system, values, rates, steps.loop, frame.clock)
+        self.code = compiled_watch(frame.system, events, steps.loop, frame.clock)
         self.n, self.stopped, self.work, self.interrupted = step_end.n, False, 0, False
         self.before, self.segments, self._earlier = (
             step_end,
@@ -132,7 +118,7 @@ class TransformedOrbit:
 
     def _read(self) -> None:
         """Note the state and the time at the end of the latest step, or where an event ended the motion."""
-        self.state = LoopState(*self.buffers.states(), self.buffers.beyond())
+        self.state = LoopState.of(self.buffers)
         self.time = float(time_of(self.state, self.frame.clock))
 
     @property
@@ -226,7 +212,9 @@ class TransformedOrbit:
         if not buffers.finite():
             raise buffers.lost(*safe, first, self.n - first, np.array(self.frame.system.rows))
         self._read()
-        self.before = StepEnd(self.n - 1, _state_in(buffers, *before), tuple(self.locator.sides), self._met)
+        self.before = StepEnd(
+            self.n - 1, LoopState.in_copy(buffers, *before), tuple(self.locator.sides), self._met
+        )
         self.segments = [Segment(Fraction(0), self.before.state)]
         if self.events:
             self._pass_events()
@@ -288,9 +276,3 @@ class TransformedOrbit:
         found = state_at_time(self.frame, self.steps, ends, goal, self.fine, Fraction(4, 2**self.bits))
         self.work += found.work
         return found
-
-
-def _state_in(buffers: LoopBuffers, y: Memory, e: Memory) -> LoopState:
-    """Return the state of which y and e are a copy."""
-    high, low = buffers.states_in(y[np.newaxis], e[np.newaxis])
-    return LoopState(high[:, 0], low[:, 0], buffers.beyond_in(e).copy())
