@@ -8,6 +8,7 @@ from .expression.symbols.symbol import coordinates as coordinates
 from .expression.symbols.symbol import parameters as parameters
 from .expression.symbols.symbol import time_derivative as time_derivative
 from .flow.geometry.flow_jacobian import flow_jacobian as flow_jacobian
+from .flow.loaded_motion import load_motion as load_motion
 from .flow.method.adaptive_methods import DOP853 as DOP853
 from .flow.method.adaptive_methods import Taylor as Taylor
 from .flow.method.method import RK4 as RK4

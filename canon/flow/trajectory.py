@@ -12,10 +12,12 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.error_estimate import ErrorEstimate, error_estimate
 from canon.flow.interpolation import states_at
 from canon.flow.labelled_motion import labelled
+from canon.flow.record_file import write_record
 from canon.flow.run_record import recorded
 from canon.progress import reporting
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Callable, Mapping, Sequence
 
     import numpy.typing as npt
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
     from canon.flow.run.samples import Statistics
     from canon.flow.run_record import Energies, RunRecord
 
-__all__ = ["Interrupted", "Trajectory", "finished"]
+__all__ = ["Interrupted", "Trajectory", "finished", "trajectory_of"]
 
 
 @dataclass(frozen=True)
@@ -272,6 +274,16 @@ class Trajectory:
         """Return the same as a pandas frame, a row a time, or a row a time and orbit (extra ``export``)."""
         return self.to_xarray().to_dataframe()
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the motion to one file, ``"pendulum.npz"``, from which :func:`canon.load_motion` has it back exactly.
+
+        Raises
+        ------
+        ValueError
+            It can't be kept exactly, as Taylor's polynomials of ``dense=True`` can't; the message says what to do.
+        """
+        write_record(self.record, path)
+
     @property
     def stopped(self) -> bool:
         """Whether an event ended the motion."""
@@ -361,19 +373,24 @@ class Interrupted(KeyboardInterrupt):
 
 
 def finished(record: RunRecord) -> Trajectory:
-    """Return the trajectory of a record, with the energy and the observables along it.
+    """Return the trajectory of a record whose run was not interrupted.
 
     Raises
     ------
     Interrupted
-        The motion was interrupted; the error has it as far as it came.
+        It was; the error has the motion as far as it came.
     """
+    motion = trajectory_of(record)
+    if not (record.task.arrived(record.samples) or record.stopped):
+        raise Interrupted(motion)
+    return motion
+
+
+def trajectory_of(record: RunRecord) -> Trajectory:
+    """Return the trajectory of a record, with the energy and the observables along it."""
     task, found, seen = record.task, record.shown, record.measured
-    motion = Trajectory(
+    return Trajectory(
         found.t, found.y, found.carried, seen.energies, task.method, task.precision_name, found.step, found.steps,
         found.evaluations, found.cpu_seconds, found.compile_seconds, task.system.autonomous,
         seen.observables, seen.changes, seen.statistics, found.crossings, record,
     )  # fmt: skip
-    if not (task.arrived(found) or record.stopped):
-        raise Interrupted(motion)
-    return motion

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = [
-    "heyoka_equations", "heyoka_expressions", "heyoka_functions", "heyoka_number", "taylor_integrator",
+    "fraction_of", "heyoka_equations", "heyoka_expressions", "heyoka_functions", "heyoka_number", "is_heyoka_number",
+    "taylor_integrator",
 ]  # fmt: skip
 
 _SAME_NAME = (
@@ -35,6 +36,9 @@ _COMPACT_FROM = 300
 
 
 _ONE = Fraction(1)
+
+_SMALL = 2.0**-512
+"""Smaller numbers are scaled up before a double is made of them."""
 
 _LARGEST_PRODUCT = 64
 """Natural powers up to this one are written as products."""
@@ -77,6 +81,39 @@ def heyoka_number(precision: str | int) -> Callable[[Fraction], Any]:
 def _decimal(value: Fraction, digits: int) -> str:
     with decimal.localcontext(prec=digits):
         return str(decimal.Decimal(value.numerator) / decimal.Decimal(value.denominator))
+
+
+def is_heyoka_number(x: object) -> bool:
+    """Tell whether a number is one of heyoka's own, wider than the platform's."""
+    return type(x).__module__.startswith("heyoka") and type(x).__name__ in ("real128", "real")
+
+
+def fraction_of(x: Any) -> Fraction:
+    """Return one of heyoka's numbers, or a long double, exactly.
+
+    Raises
+    ------
+    ValueError
+        It is not finite.
+
+    Examples
+    --------
+    >>> fraction_of(heyoka_number(40)(Fraction(3, 8)))
+    Fraction(3, 8)
+    """
+    if not math.isfinite(float(x)):
+        raise ValueError(f"{x} is no finite number")
+    if hasattr(x, "as_integer_ratio"):
+        return Fraction(*x.as_integer_ratio())
+    kind, found, scale = type(x), Fraction(0), Fraction(1)
+    while x != kind(0.0):
+        part = float(x)
+        if abs(part) < _SMALL:
+            x, scale = x * kind(1 / _SMALL), scale * Fraction(_SMALL)
+            continue
+        found += Fraction(part) * scale
+        x = x - kind(part)
+    return found
 
 
 def heyoka_expressions(
