@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from canon.plot.energy import plot_block_means, plot_energy_error, plot_errors
 from canon.plot.ensemble import plot_ensemble_fan
+from canon.plot.integral_drift_plot import plot_integral_drift
 from canon.plot.phase import plot_phase_portrait, plot_poincare_section
 from canon.plot.scene import animate_scene, plot_scene
 from canon.plot.study import plot_study_heatmap
@@ -24,6 +25,7 @@ __all__ = [
     "plot_energy_error",
     "plot_ensemble_fan",
     "plot_errors",
+    "plot_integral_drift",
     "plot_phase_portrait",
     "plot_poincare_section",
     "plot_scene",

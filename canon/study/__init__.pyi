@@ -22,4 +22,6 @@ from .drift.drift import Growth as Growth
 from .drift.drift_rows import DriftRow as DriftRow
 from .drift.drift_study import DriftStudy as DriftStudy
 from .drift.drift_study import drift_study as drift_study
+from .drift.integral_drift import IntegralDrift as IntegralDrift
+from .drift.integral_drift import integral_drift as integral_drift
 from .errors import StudyError as StudyError

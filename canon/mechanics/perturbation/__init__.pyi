@@ -1,3 +1,7 @@
+from .averaging import Averaged as Averaged
+from .averaging import AveragingError as AveragingError
+from .averaging import adiabatic_invariant as adiabatic_invariant
+from .averaging import average as average
 from .birkhoff import NormalForm as NormalForm
 from .birkhoff import NormalFormError as NormalFormError
 from .birkhoff import birkhoff_normal_form as birkhoff_normal_form

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.perturbation.lie_transform import added, bracket_parts, truncated_product
+from canon.mechanics.perturbation.normal_form_step import Module, weight_of
 from canon.proof.domain.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
@@ -134,17 +135,13 @@ def is_normal_form(form: NormalForm) -> Verdict:
         carried = added(carried, _composed(part, variables, form.order))
     difference = added(carried, {d: -f for d, f in form.parts.items()})
     wrong = {d: f for d, f in sorted(difference.items()) if f and d <= form.order}
-    moving = (
-        {}
-        if form.resonances is not None
-        else bracket_parts(form.parts, {2: form.original[2]}, form.order, form.diagonal.brackets)
-    )
+    moving = _moving(form)
     seconds = clock.monotonic() - started
     left = wrong or moving
     if not left:
         return Verdict(Status.HOLDS, question, "exact", seconds=seconds)
     degree = min(left)
-    why = "H∘Φ − K" if wrong else "{K, H₂}"
+    why = "H∘Φ − K" if wrong else "what should not stay in K"
     residual = form.expression({degree: left[degree]})
     return Verdict(
         Status.FAILS,
@@ -154,6 +151,18 @@ def is_normal_form(form: NormalForm) -> Verdict:
         seconds=seconds,
         feedback=f"{why} has a part of degree {degree}",
     )
+
+
+def _moving(form: NormalForm) -> Parts:
+    """Return the parts of K that do not commute with H₂, or are outside the resonances that were named."""
+    if form.resonances is None:
+        return bracket_parts(form.parts, {2: form.original[2]}, form.order, form.diagonal.brackets)
+    module = Module(form.resonances)
+    strangers = {
+        d: [term for weight, term in f.split(weight_of).items() if weight not in module]
+        for d, f in form.parts.items()
+    }
+    return {d: terms[0] for d, terms in strangers.items() if terms}
 
 
 def _linear_in(row: PhasePolynomial, images: Sequence[Parts], order: int) -> Parts:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial
 
-__all__ = ["Module", "SmallDivisor", "ZeroDivisorError", "homological_solution"]
+__all__ = ["Module", "SmallDivisor", "ZeroDivisorError", "homological_solution", "weight_of"]
 
 Weight = tuple[int, ...]
 

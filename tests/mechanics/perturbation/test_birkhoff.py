@@ -165,6 +165,7 @@ def test_near_resonances_are_kept_when_they_are_named():
     assert kept.small_divisors[0].value > 0.9
     assert 3 in kept.parts
     assert is_normal_form(kept).holds
+    assert is_normal_form(replace(kept, resonances=((1, 0),))).fails
     with pytest.raises(ValueError, match="resonant terms"):
         kept.in_actions()
     assert formal_integral(kept, [1, 2]).is_formal_integral().holds

@@ -1,0 +1,274 @@
+"""Averaging over fast angles: the averaged Hamiltonian to an order in ε, its generator, F₂, adiabatic invariants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import comb, factorial
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+from sympy import Expr, Symbol
+
+from canon.expression.symbols.user_input import given_kind, given_symbols
+from canon.mechanics.canonical.generating_function import GeneratingFunction
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.perturbation.fourier_series import (
+    fourier_bracket,
+    fourier_expression,
+    fourier_series,
+)
+from canon.mechanics.perturbation.lie_series import lie_deprit, powers_of
+from canon.mechanics.perturbation.normal_form_step import Module
+from canon.proof.domain.verdict import Status, Verdict, all_hold
+from canon.proof.vanish import vanishes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from canon.mechanics.perturbation.fourier_series import Harmonic, Series
+
+__all__ = ["Averaged", "AveragingError", "adiabatic_invariant", "average"]
+
+
+class AveragingError(ValueError):
+    """An average ends before the order that was asked for.
+
+    Parameters
+    ----------
+    message
+        Why, and what to do instead.
+    reached
+        The average to the last order that was finished; None where there is none.
+    """
+
+    def __init__(self, message: str, reached: Averaged | None = None) -> None:
+        super().__init__(message)
+        self.reached = reached
+
+
+@dataclass(frozen=True)
+class Averaged:
+    """The averaged Hamiltonian K to an order in ε, and the generator W of the map that leads to it.
+
+    Parameters
+    ----------
+    source
+        The Hamiltonian.
+    angles, actions
+        The fast angles and their momenta.
+    small
+        ε.
+    order
+        The highest power of ε.
+    resonances
+        The vectors whose span stays, as they were given; None where only k·ω = 0 stays.
+    terms
+        The coefficients of 1, ε … in K.
+    generators
+        W₁, W₂ …, where W = Σ Wₙ₊₁ εⁿ/n! is Deprit's.
+    divisors
+        The k·ω that were divided by, by k.
+    """
+
+    source: Hamiltonian
+    angles: tuple[Symbol, ...]
+    actions: tuple[Symbol, ...]
+    small: Symbol
+    order: int
+    resonances: tuple[tuple[int, ...], ...] | None
+    terms: tuple[Expr, ...]
+    generators: tuple[Expr, ...]
+    divisors: Mapping[Harmonic, Expr] = field(repr=False)
+
+    @cached_property
+    def K(self) -> Expr:
+        """The averaged Hamiltonian, in the new variables under the names of the old ones."""
+        return sp.Add(*(term * self.small**n for n, term in enumerate(self.terms)))
+
+    @cached_property
+    def W(self) -> Expr:
+        """Deprit's generator Σ Wₙ₊₁ εⁿ/n!."""
+        return sp.Add(*(w * self.small**n / factorial(n) for n, w in enumerate(self.generators)))
+
+    @property
+    def F2(self) -> GeneratingFunction:
+        """Von Zeipel's generating function Σ q P + ε S₁(q, P) of the map from old to new variables, to first order."""
+        q, p = self.source.q, self.source.p
+        new_q, new_p = (tuple(Symbol(f"{s}_new", real=True) for s in side) for side in (q, p))
+        first = -self.generators[0] if self.generators else sp.S.Zero
+        bare = sp.Add(*(x * y for x, y in zip(q, new_p, strict=True)))
+        S = bare + self.small * first.subs(list(zip(p, new_p, strict=True)))
+        return GeneratingFunction(2, S, q, p, new_q, new_p)
+
+    def to_new(self, f: Expr) -> Expr:
+        """Return a function of the old variables in terms of the new ones, to the order."""
+        return lie_deprit(f, self.W, self.source.q, self.source.p, self.order, self.small)
+
+    def from_new(self, f: Expr) -> Expr:
+        """Return a function of the new variables in terms of the old ones, to the order."""
+        known = f
+        for n in range(1, self.order + 1):
+            image = lie_deprit(known, self.W, self.source.q, self.source.p, n, self.small)
+            excess = sp.expand(image - f).coeff(self.small, n)
+            known = known - self.small**n * excess
+        return known
+
+    def is_average(self, budget: float = 10.0) -> Verdict:
+        """Tell whether Deprit's transform of H with W is K to the order, and K is free of the angles' fast terms.
+
+        The transform is taken by SymPy's derivatives of the whole expressions, not by Fourier series.
+        """
+        question = f"K is H averaged over {', '.join(map(str, self.angles))} to order {self.order}"
+        frequencies = [self.terms[0].diff(action) for action in self.actions]
+        module = None if self.resonances is None else Module(self.resonances)
+        for n, term in enumerate(self.terms):
+            for k in fourier_series(term, self.angles):
+                if any(k) and not (_divisor(k, frequencies) == 0 if module is None else k in module):
+                    why = f"the coefficient of {self.small}**{n} still has the fast term of k = {k}"
+                    return Verdict(Status.FAILS, question, "exact", term, feedback=why)
+        image = self.to_new(self.source.H)
+        each = (
+            vanishes(sp.expand(image - self.K).coeff(self.small, n), budget=budget / (self.order + 1)).about(
+                f"the coefficient of {self.small}**{n} is that of K"
+            )
+            for n in range(self.order + 1)
+        )
+        return all_hold(each, question)
+
+
+def average(
+    H: Hamiltonian,
+    angles: Sequence[Symbol] | Symbol,
+    order: int,
+    small: Symbol,
+    resonances: Sequence[Sequence[int]] | None = None,
+) -> Averaged:
+    """Return H averaged over fast angles to an order in ε, by Deprit's method.
+
+    H = H₀(I) + ε H₁ + …, where H₀ depends on the momenta of the fast angles alone, and Hₙ are trigonometric polynomials
+    in these angles with any dependence on all else. Slow variables may stand in Hₙ. A Hamiltonian with the time in it
+    is averaged over τ = Ω t as an angle, with Ω T added to H. To first order the map is von Zeipel's (``F2``). Any
+    consistent units (H. von Zeipel, Ark. Mat. Astr. Fys. 11 (1916); A. Deprit, doi:10.1007/BF01230629).
+
+    Parameters
+    ----------
+    H
+        The Hamiltonian, a polynomial in ε.
+    angles
+        The fast angles, among H.q.
+    order
+        The highest power of ε, at least 1.
+    small
+        ε.
+    resonances
+        Vectors k whose span stays, with the angles k·θ slow; without them only terms with k·ω = 0 identically stay.
+
+    Raises
+    ------
+    AveragingError
+        Where H₀ depends on more than the actions, or a divisor k·ω is zero for a k outside ``resonances``; ``reached``
+        keeps what was found.
+    NoFourierSeriesError
+        Where H is no trigonometric polynomial in the angles.
+
+    Examples
+    --------
+    >>> theta, I, w, eps = sp.symbols("theta I omega epsilon", positive=True)
+    >>> H = Hamiltonian(w * I + eps * I**2 * sp.cos(theta) ** 4, theta, I)
+    >>> average(H, theta, 2, eps).K
+    -17*I**3*epsilon**2/(64*omega) + 3*I**2*epsilon/8 + I*omega
+    """
+    given_kind(H, Hamiltonian, "H", "give Hamiltonian(H, q, p)")
+    fast = given_symbols(angles, "angles")
+    if not fast or not {*fast} <= {*H.q}:
+        raise ValueError(f"the angles should be among the coordinates {', '.join(map(str, H.q))}")
+    if order < 1:
+        raise ValueError(f"the order should be a whole number from 1, not {order}")
+    momentum = dict(zip(H.q, H.p, strict=True))
+    actions = tuple(momentum[theta] for theta in fast)
+    slow = [(x, y) for x, y in zip(H.q, H.p, strict=True) if x not in fast]
+    slow_q, slow_p = [x for x, _ in slow], [y for _, y in slow]
+    parts = powers_of(H.H, small, order)
+    others = {*H.q, *H.p} - {*actions}
+    if parts[0].has(*others):
+        found = sorted((s for s in others if parts[0].has(s)), key=str)
+        raise AveragingError(
+            f"H at {small} = 0 depends on {', '.join(map(str, found))}; it may depend on the momenta of the fast "
+            f"angles alone: put {small} before what is slow, or change to action and angle first"
+        )
+    frequencies = [parts[0].diff(action) for action in actions]
+    named = None if resonances is None else tuple(tuple(int(k) for k in v) for v in resonances)
+    module = None if named is None else Module(named)
+    column = [fourier_series(part * factorial(n), fast) for n, part in enumerate(parts)]
+    divisors: dict[Harmonic, Expr] = {}
+    terms, generators = [parts[0]], list[Expr]()
+    W: list[Series] = []
+
+    def bracket(f: Series, g: Series) -> Series:
+        return fourier_bracket(f, g, actions, slow_q, slow_p)
+
+    def result() -> Averaged:
+        return Averaged(H, fast, actions, small, len(W), named, tuple(terms), tuple(generators), divisors)
+
+    for n in range(1, order + 1):
+        known = _diagonal(column, W, n, bracket)
+        kept, w = {}, {}
+        for k, c in known.items():
+            divisor = _divisor(k, frequencies)
+            if not any(k) or (divisor == 0 if module is None else k in module):
+                kept[k] = c
+            elif divisor == 0:
+                raise AveragingError(
+                    f"at order {n} the term of k = {k} has the divisor k·ω = 0 and is not among the resonances; name "
+                    f"it: resonances=[{k}]; the average to order {n - 1} is in `reached` of this error",
+                    result(),
+                )
+            else:
+                divisors[k] = divisor
+                w[k] = c / (sp.I * divisor)
+        W.append(w)
+        terms.append(sp.expand(fourier_expression(kept, fast) / factorial(n)))
+        generators.append(fourier_expression(w, fast))
+    return result()
+
+
+def _divisor(k: Harmonic, frequencies: Sequence[Expr]) -> Expr:
+    factored: Any = sp.factor(sp.Add(*(j * omega for j, omega in zip(k, frequencies, strict=True))))
+    return factored
+
+
+def _diagonal(
+    column: Sequence[Series], W: Sequence[Series], n: int, bracket: Callable[[Series, Series], Series]
+) -> Series:
+    """Return f₀⁽ⁿ⁾ of Deprit's triangle without the bracket with Wₙ, which is not known yet."""
+    row = [dict(f) for f in column[: n + 1]]
+    while len(row) > 1:
+        following: list[Series] = []
+        for m in range(len(row) - 1):
+            total = dict(row[m + 1])
+            for j in range(m + 1):
+                if j < len(W):
+                    for k, c in bracket(row[m - j], W[j]).items():
+                        total[k] = total.get(k, sp.S.Zero) + comb(m, j) * c
+            following.append({k: value for k, c in total.items() if (value := sp.expand(c)) != 0})
+        row = following
+    return row[0]
+
+
+def adiabatic_invariant(averaged: Averaged, action: Symbol | None = None) -> Expr:
+    """Return the action of an average as a function of the old variables, to the order: I + ε … .
+
+    Examples
+    --------
+    >>> theta, I, w, eps = sp.symbols("theta I omega epsilon", positive=True)
+    >>> H = Hamiltonian(w * I + eps * I**2 * sp.cos(theta) ** 2, theta, I)
+    >>> adiabatic_invariant(average(H, theta, 1, eps))
+    I**2*epsilon*cos(2*theta)/(2*omega) + I
+    """
+    chosen = averaged.actions[0] if action is None else action
+    if chosen not in averaged.actions:
+        raise ValueError(f"{chosen} is no momentum of a fast angle; those are {averaged.actions}")
+    if averaged.K.has(averaged.angles[averaged.actions.index(chosen)]):
+        raise ValueError(f"{chosen} is no invariant of the average, which keeps resonant terms in its angle")
+    return averaged.from_new(chosen)
