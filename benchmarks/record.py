@@ -20,6 +20,7 @@ BENCHMARKS = {
     "import_cost": "What `import canon` costs",
     "zero_test": "The zero test on its corpus of identities",
     "canonical": "Canonical maps and generating functions",
+    "normal_forms": "Normal forms of the Hénon–Heiles system",
     "derivation": "Equations of motion, beside SymPy's LagrangesMethod",
     "operations": "Operations of a pendulum's equations, by four designs",
     "minimal": "Only what is asked for",
@@ -34,7 +35,7 @@ BENCHMARKS = {
     "robustness": "Attacks, counted",
     "choose": "What `choose` foretells, beside what came of it",
 }
-ARGUMENTS = {"kernels": ["--large"], "drift_calibration": ["200"]}
+ARGUMENTS = {"kernels": ["--large"], "normal_forms": ["--large"], "drift_calibration": ["200"]}
 HEAD = """\
 # What was measured
 

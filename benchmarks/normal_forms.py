@@ -1,0 +1,91 @@
+"""Normal forms: canon's exact arithmetic on FLINT beside the same algorithm with SymPy's polynomials, in one run.
+
+    python benchmarks/normal_forms.py            # orders 8, 16, 24; SymPy to 8
+    python benchmarks/normal_forms.py --large    # and order 32
+
+The Hénon–Heiles system, exactly over ℚ. Seconds are of the processor; ratios within one run are what can be compared.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from canon import Hamiltonian, birkhoff_normal_form
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+x, y, px, py = sp.symbols("x y p_x p_y", real=True)
+HENON_HEILES = Hamiltonian((px**2 + py**2 + x**2 + y**2) / 2 + x**2 * y - y**3 / 3, [x, y], [px, py])
+Z = sp.symbols("z1 z2 zbar1 zbar2")
+
+
+def seconds(work: Callable[[], object], repeats: int) -> float:
+    best = float("inf")
+    for _ in range(repeats):
+        started = time.process_time()
+        work()
+        best = min(best, time.process_time() - started)
+    return best
+
+
+def by_sympy(order: int) -> dict[int, sp.Poly]:
+    """The same steps on SymPy's sparse polynomials over ℚ(i)."""
+    ring = {"gens": Z, "domain": "QQ_I"}
+    z1, z2, w1, w2 = Z
+    a, b = (z1 + w1) / 2, (z2 + w2) / 2
+    parts = {2: sp.Poly((z1 * w1 + z2 * w2) / 2, **ring), 3: sp.Poly(a**2 * b - b**3 / 3, **ring)}
+    for degree in range(3, order + 1):
+        if degree not in parts:
+            continue
+        chi = {}
+        for powers, c in parts[degree].terms():
+            k = powers[0] + powers[1] - powers[2] - powers[3]
+            if k:
+                chi[powers] = c / (-sp.I * k)
+        if chi:
+            parts = transformed(parts, sp.Poly(chi, **ring), degree, order)
+    return parts
+
+
+def transformed(parts: dict[int, sp.Poly], chi: sp.Poly, degree: int, order: int) -> dict[int, sp.Poly]:
+    found = dict(parts)
+    for start, part in parts.items():
+        term, at, k = part, start, 1
+        while at + degree - 2 <= order:
+            brackets = [
+                term.diff(Z[j]) * chi.diff(Z[2 + j]) - term.diff(Z[2 + j]) * chi.diff(Z[j]) for j in (0, 1)
+            ]
+            term = (brackets[0] + brackets[1]) * sp.Poly(-2 * sp.I / k, *Z, domain="QQ_I")
+            at, k = at + degree - 2, k + 1
+            found[at] = found[at] + term if at in found else term
+    return {d: f for d, f in found.items() if not f.is_zero}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--large", action="store_true", help="order 32 too")
+    chosen = parser.parse_args()
+    canons = birkhoff_normal_form(HENON_HEILES, 8)
+    assert sp.expand(sum(f.as_expr() for f in by_sympy(8).values()) - canons.K) == 0, "the two disagree"
+    print("| order | canon, s | the same steps with SymPy's Poly, s | ratio |\n|---|---|---|---|")
+    for order in (8, 16, 24, *([32] if chosen.large else [])):
+        ours = seconds(lambda order=order: birkhoff_normal_form(HENON_HEILES, order), 3 if order < 32 else 1)
+        if order > 8:
+            print(f"| {order} | {ours:.3f} | – | – |")
+            continue
+        theirs = seconds(lambda order=order: by_sympy(order), 1)
+        print(f"| {order} | {ours:.3f} | {theirs:.2f} | {theirs / ours:.0f} |")
+
+
+if __name__ == "__main__":
+    main()
