@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import comb, factorial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -117,7 +117,8 @@ def powers_of(f: Expr, small: Symbol, order: int) -> list[Expr]:
     expanded = sp.expand(f)
     if not expanded.is_polynomial(small):
         raise ValueError(f"{f} is no polynomial in {small}; expand it in {small} first")
-    return [expanded.coeff(small, n) for n in range(order + 1)]
+    coefficients: list[Any] = [expanded.coeff(small, n) for n in range(order + 1)]
+    return coefficients
 
 
 def _counted(order: int) -> None:
