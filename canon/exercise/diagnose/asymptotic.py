@@ -49,8 +49,7 @@ class _Limit:
 
 def right_to_an_order(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield in what, and to which order, all components are right, once that is proved."""
-    parts, domain = wrong.parts, wrong.domain
-    residuals = [(part.residual, _of_first_order(part)) for part in parts]
+    residuals = [(part.residual, _of_first_order(part)) for part in wrong.parts]
     residuals = [(r, c) for r, c in residuals if r != 0]
     if any(r.has(*_KINKED) or sp.count_ops(r) > MOST_OPERATIONS for r, _ in residuals):
         return
@@ -58,16 +57,24 @@ def right_to_an_order(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     for limit in _limits([r for r, _ in residuals], epsilon):
         if not wrong.effort.spend(LIMIT_STEPS):
             return
-        scaled = [(substitute(r, limit.values), substitute(c, limit.values)) for r, c in residuals]
-        orders = [_order(r, c, epsilon, domain) for r, c in scaled]
-        order = min((0 if k is None else k for k in orders), default=0)
-        truncated = all(_is_truncated(_in_variables(part), tuple(limit.values), order) for part in parts)
-        if (
-            truncated
-            and 2 <= order <= MOST_ORDERS
-            and all(_vanishes_to(r, epsilon, order, _without(domain, limit)) for r, _ in scaled)
-        ):
+        order = _order_in(wrong, residuals, limit, epsilon)
+        if order is not None:
             yield Diagnosis.stated(Mistake.ONLY_SMALL, limit.name, order - 1)
+
+
+def _order_in(
+    wrong: WrongAnswer, residuals: Sequence[tuple[Expr, Expr]], limit: _Limit, epsilon: Symbol
+) -> int | None:
+    """Return the order of smallness of all residuals, at least 2, where that is proved and the answer ends there."""
+    scaled = [(substitute(r, limit.values), substitute(c, limit.values)) for r, c in residuals]
+    orders = [_order(r, c, epsilon, wrong.domain) for r, c in scaled]
+    order = min((0 if k is None else k for k in orders), default=0)
+    if not 2 <= order <= MOST_ORDERS:
+        return None
+    if not all(_is_truncated(_in_variables(part), tuple(limit.values), order) for part in wrong.parts):
+        return None
+    proved = all(_vanishes_to(r, epsilon, order, _without(wrong.domain, limit)) for r, _ in scaled)
+    return order if proved else None
 
 
 def _of_first_order(part: Part) -> Expr:

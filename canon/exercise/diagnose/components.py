@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import islice
+from itertools import islice, product
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -107,24 +107,25 @@ def _hints(wrong: WrongAnswer) -> list[tuple[Expr, ...]]:
     if not isinstance(question, SameEquations):
         return [() for _ in wrong.parts]
     right_equations = _in_the_claims_terms(question)
-    hints: list[tuple[Expr, ...]] = []
-    for claimed in question.written:
-        terms: dict[Expr, None] = {}
-        for right in right_equations:
-            for u in question.unknowns:
-                above, below = claimed.diff(u), right.diff(u)
-                if above != 0 and below != 0:
-                    small = sp.count_ops(above) + sp.count_ops(below) < 60
-                    scale = sp.cancel(above / below) if small else above / below
-                    scaled = (
-                        scale * t for t in sp.Add.make_args(sp.expand(right)) if not t.has(*question.unknowns)
-                    )
-                    rest = list(scaled)
-                    terms |= dict.fromkeys(rest)
-                    if 1 < len(rest) <= MOST_TOGETHER:
-                        terms[sp.Add(*rest)] = None
-        hints.append(tuple(terms))
-    return hints
+    return [_terms_to_scale(claimed, right_equations, question.unknowns) for claimed in question.written]
+
+
+def _terms_to_scale(
+    claimed: Expr, right_equations: Sequence[Expr], unknowns: Sequence[Symbol]
+) -> tuple[Expr, ...]:
+    """Return the terms of the right equations, as large as the claimed one has them, and their sums."""
+    terms: dict[Expr, None] = {}
+    for right, unknown in product(right_equations, unknowns):
+        above, below = claimed.diff(unknown), right.diff(unknown)
+        if above == 0 or below == 0:
+            continue
+        small = sp.count_ops(above) + sp.count_ops(below) < 60
+        scale = sp.cancel(above / below) if small else above / below
+        rest = [scale * t for t in sp.Add.make_args(sp.expand(right)) if not t.has(*unknowns)]
+        terms |= dict.fromkeys(rest)
+        if 1 < len(rest) <= MOST_TOGETHER:
+            terms[sp.Add(*rest)] = None
+    return tuple(terms)
 
 
 def _in_the_claims_terms(question: SameEquations) -> tuple[Expr, ...]:

@@ -26,14 +26,7 @@ def corrected(finding: Finding) -> str:
     if not isinstance(question, Same | SameEquations | Stated):
         return ""
     if question.answer is None:
-        parts = (
-            [p for p in question.parts if not p.through and p.residual != 0]
-            if isinstance(question, Same)
-            else []
-        )
-        derived = finding.reading.kind.derived or finding.reading.has("solution")
-        parts = [] if derived or (isinstance(question, Same) and question.said) else parts
-        return "; ".join(f"{p.name} = {shown(p.right)}" for p in parts[:MOST_SENTENCES])
+        return _right_parts(finding, question) if isinstance(question, Same) else ""
     try:
         answer = question.answer()
     except (ValueError, Undecided):
@@ -46,3 +39,11 @@ def corrected(finding: Finding) -> str:
             return ""
     ending = " = 0" if isinstance(question, SameEquations) else ""
     return "; ".join(f"{shown(e)}{ending}" for e in (answer if isinstance(answer, tuple) else (answer,)))
+
+
+def _right_parts(finding: Finding, question: Same) -> str:
+    """Return what the wrong components should be, where a claim writes them as they are compared."""
+    if finding.reading.kind.derived or finding.reading.has("solution") or question.said:
+        return ""
+    parts = [p for p in question.parts if not p.through and p.residual != 0]
+    return "; ".join(f"{p.name} = {shown(p.right)}" for p in parts[:MOST_SENTENCES])

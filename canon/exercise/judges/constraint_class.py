@@ -97,23 +97,13 @@ def degrees_of_freedom(reading: Reading) -> Iterator[Question]:
 
 def _constraints(reading: Reading) -> ConstraintSystem:
     q, t = reading.symbols("q"), reading.time
+    v = tuple(velocity(x) for x in q)
     given = reading.claim.keys.get("constraints", [])
-    texts = given if isinstance(given, list) else [given]
     equations: list[Expr] = []
     inequalities: list[Expr] = []
-    for i, text in enumerate(texts):
-        latex = str(text).strip().startswith("$")
-        pieces = _RELATION.split(str(text).strip().strip("$") if latex else str(text))
-        sides = reading.inside(f"constraints[{i}]", [f"${p}$" if latex else p for p in pieces[::2]])
-        relations = pieces[1::2]
-        if len(sides) == 1:
-            equations.append(sides[0])
-        for left, relation, right in zip(sides, relations, sides[1:], strict=False):
-            target = equations if relation == "=" else inequalities
-            target.append(left - right)
-        if any(side.has(*(acceleration(x) for x in q)) for side in sides):
-            reading.fault(f"constraints[{i}]", "a constraint holds no accelerations")
-    v = tuple(velocity(x) for x in q)
+    for i, text in enumerate(given if isinstance(given, list) else [given]):
+        for relation, f in _relations(reading, f"constraints[{i}]", str(text)):
+            (equations if relation == "=" else inequalities).append(f)
     for i, f in enumerate((*equations, *inequalities)):
         if not f.has(*q, *v):
             reading.fault(f"constraints[{i}]", "this constrains no coordinate and no velocity")
@@ -126,6 +116,19 @@ def _constraints(reading: Reading) -> ConstraintSystem:
         reading.domain,
         clock.monotonic() + 0.8 * reading.claim.budget,
     )
+
+
+def _relations(reading: Reading, where: str, text: str) -> Iterator[tuple[str, Expr]]:
+    """Yield each relation in a constraint, with the difference of its sides; an expression alone is one that is = 0."""
+    latex = text.strip().startswith("$")
+    pieces = _RELATION.split(text.strip().strip("$") if latex else text)
+    sides = reading.inside(where, [f"${p}$" if latex else p for p in pieces[::2]])
+    if any(side.has(*(acceleration(x) for x in reading.symbols("q"))) for side in sides):
+        reading.fault(where, "a constraint holds no accelerations")
+    if len(sides) == 1:
+        yield "=", sides[0]
+    for left, relation, right in zip(sides, pieces[1::2], sides[1:], strict=False):
+        yield relation, left - right
 
 
 def _first_of(pair: tuple[str, str], constraints: ConstraintSystem) -> Verdict:

@@ -62,32 +62,41 @@ def parameters(reading: Reading, ask: Ask) -> Iterator[Question]:
     for family in claimed:
         verdict = _holds_with(ask, inner, family, Deadline.after(SHARE * budget / len(claimed)))
         if verdict.fails:
-            why = verdict.feedback or (f"{verdict.question} comes out wrong" if verdict.question else "")
-            wrong = replace(verdict, feedback=f"{_written(family)} is no solution{': ' if why else ''}{why}")
-            yield Stated(wrong.about(f"the claim with {_written(family)}"), all_of_them)
+            yield Stated(_no_solution(family, verdict), all_of_them)
             return
         held.append(verdict)
     whole = all_hold(held) if held else Verdict(Status.HOLDS, certificate="exact")
     found += _found(ask, reading, inner, wanted, Deadline.after(SHARE * budget))
     if not found:
-        open_ = "the values that are claimed are right, as far as was decided; whether there are more was not decided"
-        yield Stated(all_hold([whole, Verdict(Status.UNDECIDED, evidence=(Evidence("open", open_),))]))
+        yield Stated(
+            _left_open(
+                whole,
+                "the values that are claimed are right, as far as was decided; whether there are more was not decided",
+            )
+        )
         return
     missing = [f for f in found[0] if not any(covers(c, f, inner.domain) for c in claimed)]
-    for family in missing:
-        if all(_certainly_beyond(family, c, inner) for c in claimed):
-            why = (
-                f"a solution is missing: {_written(family)}"
-                if claimed
-                else f"there is a solution: {_written(family)}"
-            )
-            yield Stated(Verdict(Status.FAILS, "all values", "exact", feedback=why), all_of_them)
-            return
+    lost = next((f for f in missing if all(_certainly_beyond(f, c, inner) for c in claimed)), None)
+    if lost is not None:
+        why = f"{'a solution is missing' if claimed else 'there is a solution'}: {_written(lost)}"
+        yield Stated(Verdict(Status.FAILS, "all values", "exact", feedback=why), all_of_them)
+        return
     if missing:
-        open_ = f"whether {_written(missing[0])} is among the values that are claimed was not decided"
-        whole = all_hold([whole, Verdict(Status.UNDECIDED, evidence=(Evidence("open", open_),))])
+        among = f"whether {_written(missing[0])} is among the values that are claimed was not decided"
+        whole = _left_open(whole, among)
     certificate = " + ".join(dict.fromkeys([*(v.certificate for v in held), "exact"]))
     yield Stated(replace(whole, question="all values", certificate=certificate) if whole.holds else whole)
+
+
+def _no_solution(family: Family, verdict: Verdict) -> Verdict:
+    """Return the verdict on claimed values at which the inner claim fails, with why it does."""
+    why = verdict.feedback or (f"{verdict.question} comes out wrong" if verdict.question else "")
+    wrong = replace(verdict, feedback=f"{_written(family)} is no solution{': ' if why else ''}{why}")
+    return wrong.about(f"the claim with {_written(family)}")
+
+
+def _left_open(verdict: Verdict, what: str) -> Verdict:
+    return all_hold([verdict, Verdict(Status.UNDECIDED, evidence=(Evidence("open", what),))])
 
 
 def _inner(reading: Reading) -> Reading:

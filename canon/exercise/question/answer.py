@@ -66,25 +66,22 @@ def _answers(reading: Reading) -> Iterator[Expr]:
     """Yield the expressions of the answer as they were written."""
     shapes, extended = reading.kind.shapes, reading.with_names(_displacements(reading))
     for key in reading.kind.answer:
-        if not reading.has(key) or shapes[key] is Shape.WORDS:
-            continue
-        value: Any = reading.claim.keys[key]
-        if shapes[key] is Shape.BRACKETS:
-            texts = {f"{key}[{i}].value": pair["value"] for i, pair in enumerate(value)}
-        elif shapes[key] is Shape.VALUES:
-            texts = {
-                f"{key}[{i}].{name}": text for i, table in enumerate(value) for name, text in table.items()
-            }
-        elif shapes[key] is Shape.EXPRESSIONS:
-            texts = {f"{key}.{name}": text for name, text in value.items()}
-        elif isinstance(value, list):
-            texts = {
-                f"{key}[{i}]" if shapes[key] is Shape.TEXTS else key: text for i, text in enumerate(value)
-            }
-        else:
-            texts = {key: value}
-        for where, text in texts.items():
-            yield extended.equation(where, text)
+        if reading.has(key) and shapes[key] is not Shape.WORDS:
+            for where, text in _texts(key, shapes[key], reading.claim.keys[key]):
+                yield extended.equation(where, text)
+
+
+def _texts(key: str, shape: Shape, value: Any) -> list[tuple[str, Any]]:
+    """Return the expressions under a key as texts, and where each of them stands."""
+    if shape is Shape.BRACKETS:
+        return [(f"{key}[{i}].value", pair["value"]) for i, pair in enumerate(value)]
+    if shape is Shape.VALUES:
+        return [(f"{key}[{i}].{name}", text) for i, row in enumerate(value) for name, text in row.items()]
+    if shape is Shape.EXPRESSIONS:
+        return [(f"{key}.{name}", text) for name, text in value.items()]
+    if isinstance(value, list):  # a list under a key for one expression holds one
+        return [(f"{key}[{i}]" if shape is Shape.TEXTS else key, text) for i, text in enumerate(value)]
+    return [(key, value)]
 
 
 def links(reading: Reading) -> Iterator[Chain]:

@@ -26,7 +26,7 @@ from canon.proof.refute.sample_functions import with_example_functions
 from canon.proof.trees.sympy_types import rational
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from sympy import Expr
 
@@ -120,22 +120,37 @@ def solved_somewhere(
         off = off_kinks(shown, domain)
         there = [off.seen(equation) for equation in shown]
         given = [s for s in symbols_of(*there, *old, *_named(off.strictly)) if s not in new]
-        drawn = _of_given(off.strictly, given)
         with precision(PRECISION):
-            for point in (
-                *drawn.points(given, POINTS, seed=seed),
-                *drawn.points(given, POINTS, in_box=False),
-            ):
-                for start in ([point[s] for s in old], [_ONE] * len(new)):
-                    if time.monotonic() > until:
-                        return False
-                    try:
-                        box = enclosed(there, new, point, start)
-                        if box is not None and _allowed(off.strictly, new, point, box):
-                            return True
-                    except (NotDecided, Undefined, Unmodelled):
-                        continue
+            for point, start in _starts(off.strictly, given, old, new, seed):
+                if time.monotonic() > until:
+                    return False
+                if _solved_near(there, new, point, start, off.strictly):
+                    return True
     return False
+
+
+def _starts(
+    domain: Domain, given: Sequence[Symbol], old: Sequence[Symbol], new: Sequence[Symbol], seed: int
+) -> Iterator[tuple[Mapping[Symbol, sp.Rational], list[sp.Rational]]]:
+    """Yield points of a domain, each with new variables that are as the old ones there, and with ones."""
+    drawn = _of_given(domain, given)
+    for point in (*drawn.points(given, POINTS, seed=seed), *drawn.points(given, POINTS, in_box=False)):
+        yield point, [point[s] for s in old]
+        yield point, [_ONE] * len(new)
+
+
+def _solved_near(
+    equations: Sequence[Expr],
+    new: Sequence[Symbol],
+    point: Mapping[Symbol, sp.Rational],
+    start: Sequence[sp.Rational],
+    domain: Domain,
+) -> bool:
+    try:
+        box = enclosed(equations, new, point, start)
+        return box is not None and _allowed(domain, new, point, box)
+    except (NotDecided, Undefined, Unmodelled):
+        return False
 
 
 def _named(domain: Domain) -> set[Symbol]:
@@ -168,17 +183,10 @@ def enclosed(
     (True, True)
     """
     slopes = [[equation.diff(u) for u in unknowns] for equation in equations]
-    size = len(unknowns)
-    at = [arb(int(s.p)) / int(s.q) for s in start]
-    for _ in range(ITERATIONS):
-        step = _newton_step(equations, slopes, unknowns, point, at)
-        if step is None:
-            return None
-        at = [(a - s).mid() for a, s in zip(at, step, strict=True)]
-        if all(abs(s) < RADIUS / 1024 for s in step):
-            break
-    else:
+    at = _newton_root(equations, slopes, unknowns, point, start)
+    if at is None:
         return None
+    size = len(unknowns)
     around = [arb(a, RADIUS) for a in at]
     inverse = _inverse(_matrix(slopes, unknowns, point, at))
     whole = _column(equations, unknowns, point, around)
@@ -191,6 +199,25 @@ def enclosed(
     image = arb_mat([[a] for a in at]) - inverse * _column(equations, unknowns, point, at) + spread * gaps
     krawczyk = image.entries()
     return krawczyk if all(a.contains_interior(k) for a, k in zip(around, krawczyk, strict=True)) else None
+
+
+def _newton_root(
+    equations: Sequence[Expr],
+    slopes: Sequence[Sequence[Expr]],
+    unknowns: Sequence[Symbol],
+    point: Mapping[Symbol, sp.Rational],
+    start: Sequence[sp.Rational],
+) -> list[arb] | None:
+    """Return where Newton's method converges to, which encloses nothing yet; None where it does not converge."""
+    at = [arb(int(s.p)) / int(s.q) for s in start]
+    for _ in range(ITERATIONS):
+        step = _newton_step(equations, slopes, unknowns, point, at)
+        if step is None:
+            return None
+        at = [(a - s).mid() for a, s in zip(at, step, strict=True)]
+        if all(abs(s) < RADIUS / 1024 for s in step):
+            return at
+    return None
 
 
 def _newton_step(

@@ -146,12 +146,12 @@ def _next_step(
     """Return values of one more parameter by which expressions may vanish; none where they certainly do not."""
     why = "the conditions on the parameters were not found"
     for most in (FEW_CONDITIONS, MOST_CONDITIONS):
-        conditions = sorted(set(_conditions(left, free, search.given, domain, most)), key=_simplicity)
+        found = sorted(set(_conditions(left, free, search.given, domain, most)), key=_simplicity)
         seconds = min(SECONDS, search.deadline.left)
-        of_given = [vanishes(c, domain, budget=seconds) for c in conditions if not free or not c.has(*free)]
+        conditions = [c for c in found if c.has(*free)]
+        of_given = [vanishes(c, domain, budget=seconds) for c in found if not c.has(*free)]
         if any(verdict.fails for verdict in of_given):
             return []
-        conditions = [c for c in conditions if free and c.has(*free)]
         if any(verdict.undecided for verdict in of_given) or not conditions:
             continue
         if rounds == 0 or search.deadline.left < LAST:
@@ -178,17 +178,17 @@ def _solved_first(conditions: Sequence[Expr], free: Sequence[Symbol], domain: Do
 
 def _of_factor(factor: Expr, free: Sequence[Symbol], domain: Domain) -> list[Family] | None:
     """Return values of one parameter where a factor vanishes, and those of another where the first is left open."""
-    for s in (s for s in free if factor.has(s)):
+    unknowns = [s for s in free if factor.has(s)]
+    for s in unknowns:
         slope = factor.diff(s)
         if slope.has(s):
             continue
         regular: Family = {s: sp.cancel(-exchanged(factor, {s: sp.S.Zero}) / slope)}
         if not slope.has(*free):
             return [regular]
-        others = [t for t in free if slope.has(t)]
-        singular = _solved_first([slope], others, domain)
+        singular = _solved_first([slope], [t for t in free if slope.has(t)], domain)
         return None if singular is None else [regular, *singular]
-    for s in (s for s in free if factor.has(s)):
+    for s in unknowns:
         roots = real_solutions(factor, s, domain)
         if roots is not None and not any(r.value.atoms(sp.Dummy) for r in roots):
             return [{s: root.value} for root in roots if _real(root.conditions)]
@@ -274,7 +274,7 @@ def _value(f: Expr, point: Mapping[Symbol, Expr], free: Sequence[Symbol], domain
         return None
     there = _in_one_wave(there)
     below = sp.denom(sp.together(there))
-    if below.has(*free) if free else False:
+    if below.has(*free):
         there = there * below * below
     value = sp.factor_terms(sp.expand(sp.numer(sp.together(there))))
     return value if value != 0 and sp.count_ops(value) < LONGEST else None
@@ -294,7 +294,7 @@ def _in_one_wave(f: Expr) -> Expr:
 
 
 def _has_value(part: sp.Basic, free: Sequence[Symbol], domain: Domain) -> bool:
-    if not free or not part.has(*free):
+    if not part.has(*free):
         return True
     if isinstance(part, sp.Pow):
         if part.exp.is_integer:

@@ -19,6 +19,8 @@ from canon.expression.text.tokens import GREEK
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from canon.exercise.sheet.kind import Kind
+
 __all__ = ["ASSUMPTIONS", "MAX_NAMES", "faults"]
 
 ASSUMPTIONS = ("positive", "negative", "nonzero", "real", "integer")
@@ -53,21 +55,8 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "of", f"should be one of {', '.join(wanted.about)}"
         return
     known = {**COMMON, **wanted.shapes}
-    for key, shape in wanted.required.items():
-        if key not in keys:
-            yield key, f"missing ({shape.value})"
-    if wanted.one_of and not any(all(key in keys for key in group) for group in wanted.one_of):
-        groups = " or ".join(" with ".join(group) for group in wanted.one_of)
-        yield wanted.one_of[0][-1], f"missing; a claim of kind {kind} needs {groups}"
-    complete = [group for group in wanted.one_of if all(key in keys for key in group)]
-    if wanted.exclusive and len(complete) > 1:
-        groups = " and ".join(" with ".join(group) for group in complete)
-        yield complete[1][-1], f"{groups} both say what it is about; leave one out"
-    given = [key for key in wanted.answer if key in keys and known[key] is not Shape.VALUES]
-    if given and all(keys[key] in ([], {}) and _fits(keys[key], known[key]) for key in given):
-        yield given[0], "nothing is claimed: the answer is empty"
-    elif empty := [key for key in given if keys[key] == {}]:
-        yield empty[0], "nothing is claimed here: the table is empty; leave it out, or say what is in it"
+    yield from _missing_or_double(kind, wanted, keys)
+    yield from _empty_answer(wanted, known, keys)
     for key, value in keys.items():
         if key not in known:
             close = difflib.get_close_matches(key[:60], known, n=1, cutoff=0.6)
@@ -79,20 +68,49 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             yield key, f"should be {known[key].value}{_remedy(value, known[key])}"
 
 
+def _missing_or_double(kind: str, wanted: Kind, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield keys that a kind needs and that are not there, and those of two groups where one should be given."""
+    for key, shape in wanted.required.items():
+        if key not in keys:
+            yield key, f"missing ({shape.value})"
+    complete = [group for group in wanted.one_of if all(key in keys for key in group)]
+    if wanted.one_of and not complete:
+        groups = " or ".join(" with ".join(group) for group in wanted.one_of)
+        yield wanted.one_of[0][-1], f"missing; a claim of kind {kind} needs {groups}"
+    if wanted.exclusive and len(complete) > 1:
+        groups = " and ".join(" with ".join(group) for group in complete)
+        yield complete[1][-1], f"{groups} both say what it is about; leave one out"
+
+
+def _empty_answer(
+    wanted: Kind, known: Mapping[str, Shape], keys: Mapping[str, Any]
+) -> Iterator[tuple[str, str]]:
+    given = [key for key in wanted.answer if key in keys and known[key] is not Shape.VALUES]
+    if given and all(keys[key] in ([], {}) and _fits(keys[key], known[key]) for key in given):
+        yield given[0], "nothing is claimed: the answer is empty"
+    elif empty := [key for key in given if keys[key] == {}]:
+        yield empty[0], "nothing is claimed here: the table is empty; leave it out, or say what is in it"
+
+
 def _remedy(value: Any, shape: Shape) -> str:
     """Say which entry is at fault, where one is."""
     table = value if isinstance(value, Mapping) else {}
-    names = [value] if isinstance(value, str) else value if isinstance(value, list) else list(table)
-    for name in names if shape in _OF_NAMES else ():
-        if isinstance(name, str) and not _name(name):
-            plain = "".join(GREEK.get(letter, letter) for letter in name)
-            return f"; write {plain} for {name[:60]}" if _name(plain) else f"; {name[:60]!r} is not a name"
+    if shape in _OF_NAMES:
+        names = [value] if isinstance(value, str) else value if isinstance(value, list) else table
+        wrong = next((name for name in names if isinstance(name, str) and not _name(name)), None)
+        if wrong is not None:
+            return _remedy_of_name(wrong)
     for name, item in table.items():
         if shape is Shape.ASSUMPTIONS and item not in ASSUMPTIONS:
             return f"; {name} is {', '.join(ASSUMPTIONS[:-1])} or {ASSUMPTIONS[-1]}, not {str(item)[:60]!r}"
         if shape is Shape.BOX and not _interval(item):
             return f"; that of {name} should be two numbers, the smaller one first"
     return ""
+
+
+def _remedy_of_name(wrong: str) -> str:
+    plain = "".join(GREEK.get(letter, letter) for letter in wrong)
+    return f"; write {plain} for {wrong[:60]}" if _name(plain) else f"; {wrong[:60]!r} is not a name"
 
 
 _OF_NAMES = (Shape.NAMES, Shape.ASSUMPTIONS, Shape.FUNCTIONS, Shape.BOX, Shape.EXPRESSIONS)

@@ -15,7 +15,7 @@ from canon.expression.text.declared_names import key_of
 from canon.expression.text.tokens import LanguageError, Token, tokens
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from canon.expression.text.scope import Scope
 
@@ -120,11 +120,18 @@ def label_of(said: str) -> Label | None:
         return Label(first.text, first.primes)
     if first.text.startswith("d") and [t.text for t in rest] == ["/", "dt"] and len(first.text) > 1:
         return Label(first.text[1:], first.primes + 1)
-    if rest[0].text in ("(", "[") and rest[-1].text == _PAIRS[rest[0].text]:
-        inside = rest[1:-1]
-        if all(t.atoms or t.text in (",", "0", ";") for t in inside):
-            return Label(first.text, first.primes, tuple(t.text for t in inside if t.atoms))
-    return None
+    arguments = _arguments(rest)
+    return None if arguments is None else Label(first.text, first.primes, arguments)
+
+
+def _arguments(bracket: Sequence[Token]) -> tuple[str, ...] | None:
+    """Return the names between brackets after a name; None where something else is there."""
+    if bracket[0].text not in ("(", "[") or bracket[-1].text != _PAIRS[bracket[0].text]:
+        return None
+    inside = bracket[1:-1]
+    if not all(t.atoms or t.text in (",", "0", ";") for t in inside):
+        return None
+    return tuple(t.text for t in inside if t.atoms)
 
 
 def _entries(said: str, inside: list[Token]) -> tuple[str, ...]:

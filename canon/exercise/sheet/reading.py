@@ -170,24 +170,7 @@ class Reading:
     @cached_property
     def scope(self) -> Scope:
         """The declared names."""
-        keys = self.claim.keys
-        names: dict[str, Symbol] = {}
-        for key in _NAME_KEYS:
-            if not self.is_names(key):
-                continue
-            for name in _as_list(keys[key]):
-                if name == self.time.name:
-                    self.fault(key, f"{name} is the name of the time; choose another, or say t = 'tau'")
-                if key == "cyclic":
-                    continue
-                if name in names:
-                    self.fault(key, f"{name} is declared twice")
-                real = key not in self.kind.complex_names
-                said = self._assumptions(name) if real else {"complex": True}
-                names[name] = _MAKERS.get(key, Symbol)(name, **said)
-        for name in names:
-            if _is_rate(name, names):
-                self.fault("q", f"{name} is the velocity of a coordinate that is declared too; rename one")
+        keys, names = self.claim.keys, self._variables()
         functions = {name: tuple(_as_list(args)) for name, args in keys.get("functions", {}).items()}
         for name in keys.get("parameters", {}):
             if name not in functions and name != self.time.name and not _is_rate(name, names):
@@ -202,6 +185,25 @@ class Reading:
         implicit = keys.get("implicit_multiplication") is True
         moving = frozenset(name for key in _MOVING if self.is_names(key) for name in _as_list(keys[key]))
         return Scope({**self.names, **names}, functions, self.time, signs, implicit, moving)
+
+    def _variables(self) -> dict[str, Symbol]:
+        """Return the symbols of the names that stand under keys of their own, each declared once."""
+        names: dict[str, Symbol] = {}
+        declared = ((key, name) for key in _NAME_KEYS if self.is_names(key) for name in self.words(key))
+        for key, name in declared:
+            if name == self.time.name:
+                self.fault(key, f"{name} is the name of the time; choose another, or say t = 'tau'")
+            if key == "cyclic":
+                continue
+            if name in names:
+                self.fault(key, f"{name} is declared twice")
+            real = key not in self.kind.complex_names
+            said = self._assumptions(name) if real else {"complex": True}
+            names[name] = _MAKERS.get(key, Symbol)(name, **said)
+        for name in names:
+            if _is_rate(name, names):
+                self.fault("q", f"{name} is the velocity of a coordinate that is declared too; rename one")
+        return names
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import chain, combinations, permutations
+from itertools import chain, combinations, permutations, product
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -253,18 +253,22 @@ def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
 
 def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
     """One symbol for another in one function, or as one factor."""
-    places = arguments(node) if node.is_Mul or node.is_Add else (node,) if node.is_Function else ()
-    for place in places:
-        for old in symbols_of(place) if place.is_Function or place.is_Pow or place.is_Symbol else ():
-            for new in symbols:
-                changed = slipped(place, {old: new}) if new != old else None
-                if changed is not None:
-                    rest = (
-                        node.func(*(changed if p == place else p for p in arguments(node)))
-                        if place != node
-                        else changed
-                    )
-                    yield rest, _of(Mistake.SYMBOL, place, changed)
+    if node.is_Function:
+        for changed in _with_another_symbol(node, symbols):
+            yield changed, _of(Mistake.SYMBOL, node, changed)
+    if not (node.is_Mul or node.is_Add):
+        return
+    for place in (a for a in arguments(node) if a.is_Function or a.is_Pow or a.is_Symbol):
+        for changed in _with_another_symbol(place, symbols):
+            whole = node.func(*(changed if a == place else a for a in arguments(node)))
+            yield whole, _of(Mistake.SYMBOL, place, changed)
+
+
+def _with_another_symbol(f: Expr, symbols: Sequence[Symbol]) -> Iterator[Expr]:
+    for old, new in product(symbols_of(f), symbols):
+        changed = slipped(f, {old: new}) if new != old else None
+        if changed is not None:
+            yield changed
 
 
 def _by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -311,25 +315,26 @@ def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[E
         new = slipped(expression, slip)
         if new is not None:
             yield new, change
+    for angle in (s for s in symbols_of(expression) if isinstance(s, Coordinate)):
+        change = _everywhere_of(Mistake.FUNCTION_MISSING, angle, sp.sin(angle))
+        yield _outside_of_functions(expression, angle), change
+    yield from _renamed(expression, symbols)
+    if expression.has(*_TWINS):
+        for angle in _CONSTANTS:
+            yield expression + angle, _of(Mistake.TERM_MISSING, angle)
+
+
+def _renamed(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """Two symbols exchanged in all places, one symbol for another in all places."""
     own = symbols_of(expression)
-    for angle in own:
-        if isinstance(angle, Coordinate):
-            yield (
-                _outside_of_functions(expression, angle),
-                _everywhere_of(Mistake.FUNCTION_MISSING, angle, sp.sin(angle)),
-            )
     for a, b in combinations(own, 2):
         other = slipped(expression, {a: b, b: a})
         if other is not None:
             yield other, _of(Mistake.SYMBOLS_EXCHANGED, None, a, b)
-    for old in own:
-        for new in symbols:
-            renamed = slipped(expression, {old: new}) if new != old else None
-            if renamed is not None:
-                yield renamed, _everywhere_of(Mistake.SYMBOL, old, new)
-    if expression.has(*_TWINS):
-        for angle in _CONSTANTS:
-            yield expression + angle, _of(Mistake.TERM_MISSING, angle)
+    for old, new in product(own, symbols):
+        renamed = slipped(expression, {old: new}) if new != old else None
+        if renamed is not None:
+            yield renamed, _everywhere_of(Mistake.SYMBOL, old, new)
 
 
 def _outside_of_functions(f: Expr, angle: Symbol) -> Expr:
