@@ -146,6 +146,11 @@ class Builder:
             return self.piecewise(node)
         if name not in FUNCTIONS:
             self.refuse(node, f"{name} is not a function of the language", self.scope.near(name))
+        return self.of_vocabulary(node)
+
+    def of_vocabulary(self, node: syntax.Call) -> Expr:
+        """Return the value of a function that every scope has."""
+        name = node.function
         function, least, most = FUNCTIONS[name]
         if not least <= len(node.arguments) <= most:
             wanted = str(least) if least == most else f"{least} to {most}"

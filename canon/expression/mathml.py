@@ -261,18 +261,15 @@ def _call(node: Call) -> Element:
 
 def _derivative(function: Node, variables: Sequence[Node]) -> Element:
     orders: list[tuple[Node, Node | None]] = []
-    total: int | None = 0
     for variable in variables:
         if isinstance(variable, Tuple) and len(variable.items) == 2:
-            order = variable.items[1]
-            orders.append((variable.items[0], order))
-            total = total + order.numerator if total is not None and isinstance(order, Number) else None
+            orders.append((variable.items[0], variable.items[1]))
         else:
             orders.append((variable, None))
-            total = None if total is None else total + 1
     single = len(orders) == 1 and isinstance(function, Call) and len(function.arguments) == 1
     sign = "d" if single else "∂"
     above = _leaf("mo", sign)
+    total = _total_order([order for _, order in orders])
     if total != 1:
         above = _over("msup", above, _leaf("mn", str(total)) if total is not None else _leaf("mi", "n"))
     below = _row()
@@ -283,6 +280,16 @@ def _derivative(function: Node, variables: Sequence[Node]) -> Element:
     if isinstance(function, Name):
         return _over("mfrac", _row(above, mathml(function)), below)
     return _row(_over("mfrac", above, below), _in_brackets(function, Sum, Negative, Product, Comparison))
+
+
+def _total_order(orders: Sequence[Node | None]) -> int | None:
+    """Return how often is differentiated in all; None where an order is no number."""
+    total = 0
+    for order in orders:
+        if order is not None and not isinstance(order, Number):
+            return None
+        total += 1 if order is None else order.numerator
+    return total
 
 
 def _piecewise(pieces: Sequence[Node]) -> Element:

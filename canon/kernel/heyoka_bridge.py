@@ -135,34 +135,41 @@ def heyoka_expressions(
     for each in graph.reachable(nodes):
         kind, operands, value = graph.nodes[each]
         x = [done[o] for o in operands]
-        if kind == "symbol":
-            done[each] = variables[value]
-        elif kind == "number":
-            done[each] = hy.expression(number(value))
-        elif kind == "named":
-            done[each] = hy.pi if value == "pi" else hy.expression(number(exact_value(graph, each)))
-        elif kind == "add":
-            done[each] = hy.sum(x)
-        elif kind == "mul":
-            done[each] = hy.prod(x)
-        elif kind == "pow":
-            exponent = graph.nodes[operands[1]]
-            value = exponent.value if exponent.kind == "number" else None
-            if value == Fraction(1, 2):
-                done[each] = hy.sqrt(x[0])
-            elif value is not None and value.denominator == 1 and 2 < value <= _LARGEST_PRODUCT:
-                done[each] = _product_of_squares(x[0], int(value))
-            else:
-                done[each] = x[0] ** x[1]
-        elif kind in _SAME_NAME:
-            done[each] = getattr(hy, kind)(*x)
-        elif kind == "Abs":
-            done[each] = hy.select(hy.gte(x[0], hy.expression(0.0)), x[0], -x[0])
-        else:
-            raise ValueError(
-                f"{kind}(…) has no Taylor series where it jumps: use a smooth Hamiltonian, or RK4()"
-            )
+        match kind:
+            case "symbol":
+                done[each] = variables[value]
+            case "number":
+                done[each] = hy.expression(number(value))
+            case "named":
+                is_pi = value == "pi"
+                done[each] = hy.pi if is_pi else hy.expression(number(exact_value(graph, each)))
+            case "add":
+                done[each] = hy.sum(x)
+            case "mul":
+                done[each] = hy.prod(x)
+            case "pow":
+                exponent = graph.nodes[operands[1]]
+                done[each] = _power(x[0], x[1], exponent.value if exponent.kind == "number" else None)
+            case "Abs":
+                done[each] = hy.select(hy.gte(x[0], hy.expression(0.0)), x[0], -x[0])
+            case _ if kind in _SAME_NAME:
+                done[each] = getattr(hy, kind)(*x)
+            case _:
+                raise ValueError(
+                    f"{kind}(…) has no Taylor series where it jumps: use a smooth Hamiltonian, or RK4()"
+                )
     return [done[node] for node in nodes]
+
+
+def _power(base: Any, exponent: Any, known: Fraction | None) -> Any:
+    """Return a power, by a root or by products where the exponent is a known number that allows it."""
+    import heyoka as hy
+
+    if known == Fraction(1, 2):
+        return hy.sqrt(base)
+    if known is not None and known.denominator == 1 and 2 < known <= _LARGEST_PRODUCT:
+        return _product_of_squares(base, int(known))
+    return base**exponent
 
 
 def heyoka_functions(

@@ -193,18 +193,7 @@ def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]
     from canon.study.drift.drift_study import DriftStudy
 
     if isinstance(of, DriftStudy):
-        rows = [row for row in of.rows if row.drift is not None]
-        unit = 1.0 if of.period is None else of.period
-        several_followed = len(of.observables) > 1
-        lines = [
-            line
-            for row in rows
-            for line in _line(f"{row.observable}, " * several_followed + _name(row), row.t / unit, row.error)
-        ]
-        axis = "time (periods)" if of.period is not None else _time(of.time_unit)
-        single = of.observables[0] if len(of.observables) == 1 else ""
-        title = of.title if single in ("", "energy") or of.title == single else f"{single}. {of.title}"
-        return _Lines(lines, axis, all(row.relative for row in rows), title, of.observables)
+        return _lines_of_drifts(of)
     of_study, motions = [], []
     for each in several(of):
         (of_study if isinstance(each, Result) else motions).append(each)
@@ -223,6 +212,22 @@ def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]
         for line in _line(str(motion.method), motion.t - motion.t[0], motion.energy_error)
     ]
     return _Lines(lines, relative=all(motion.relative for motion in motions))
+
+
+def _lines_of_drifts(study: DriftStudy) -> _Lines:
+    rows = [row for row in study.rows if row.drift is not None]
+    unit = 1.0 if study.period is None else study.period
+    lines = [
+        line
+        for row in rows
+        for line in _line(
+            f"{row.observable}, " * (len(study.observables) > 1) + _name(row), row.t / unit, row.error
+        )
+    ]
+    axis = "time (periods)" if study.period is not None else _time(study.time_unit)
+    single = study.observables[0] if len(study.observables) == 1 else ""
+    title = study.title if single in ("", "energy", study.title) else f"{single}. {study.title}"
+    return _Lines(lines, axis, all(row.relative for row in rows), title, study.observables)
 
 
 def _arrays(curve: Mapping[str, Sequence[float]]) -> tuple[Array, Array, Array]:

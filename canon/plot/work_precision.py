@@ -22,6 +22,16 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_drift_by_step", "plot_work_precision"]
 
+_COSTS = {
+    "cpu": ("cpu_seconds", "processor time (s)"),
+    "evaluations": ("evaluations", "evaluations of the force"),
+}
+"""What a run measures as its cost, and the axis of it."""
+_ERRORS = {
+    "position": "relative error of the final position",
+    "energy": "largest relative energy error |ΔE/E|",
+}
+
 
 def plot_work_precision(
     found: WorkPrecision,
@@ -54,20 +64,19 @@ def plot_work_precision(
     ValueError
         Where there is no such cost or error, or the choice was made for another error.
     """
-    if cost not in ("cpu", "evaluations") or error not in ("position", "energy"):
+    if cost not in _COSTS or error not in _ERRORS:
         raise ValueError(f"cost={cost!r}, error={error!r}: there are cpu, evaluations; position, energy")
     if chosen is not None and chosen.observable != error:
         raise ValueError(
             f"the choice keeps the error of the {chosen.observable}; draw error={chosen.observable!r}"
         )
     axes = new_axes(ax)
+    measure, label = _COSTS[cost]
     family = _families(found.rows)
     for index, name in enumerate(dict.fromkeys(family.values())):
         rows = [row for k, row in enumerate(found.rows) if family[k] == name and not row.failure]
-        x = np.array(
-            [row.cpu_seconds if cost == "cpu" else row.evaluations for row in rows], dtype=np.float64
-        )
-        y = np.array([row.position_error if error == "position" else row.energy_error for row in rows])
+        x = np.array([getattr(row, measure) for row in rows], dtype=np.float64)
+        y = np.array([getattr(row, f"{error}_error") for row in rows])
         drawn = (x > 0.0) & (y > 0.0)
         if not drawn.any():
             continue
@@ -76,12 +85,8 @@ def plot_work_precision(
     if chosen is not None:
         _draw_choice(axes, chosen, found.span, cost)
     logarithmic(axes)
-    axes.set_xlabel("processor time (s)" if cost == "cpu" else "evaluations of the force")
-    axes.set_ylabel(
-        "relative error of the final position"
-        if error == "position"
-        else "largest relative energy error |ΔE/E|"
-    )
+    axes.set_xlabel(label)
+    axes.set_ylabel(_ERRORS[error])
     axes.set_title(found.title, loc="left", fontsize="medium")
     _legend(axes)
     tidy(axes)
@@ -165,24 +170,29 @@ class _Point:
 
 def _points(of: WorkPrecision | Sequence[DriftRow] | Sequence[Result], what: str) -> list[_Point]:
     from canon.study.choose.work_precision import WorkPrecision
-    from canon.study.drift.drift_study import DriftRow
 
-    found: list[_Point] = []
     if isinstance(of, WorkPrecision):
         family = _families(of.rows)
         found = [_Point(family[k], row.step or 0.0, row.energy_error) for k, row in enumerate(of.rows)]
     else:
-        for each in of:
-            if isinstance(each, DriftRow):
-                if each.drift is not None:
-                    drift, name = each.drift, str(each.method)
-                    values = (drift.bound, drift.slope, drift.detection_limit, drift.verdict.value)
-                    found.append(_point(name, each.step, what, *values))
-            elif each.numbers:
-                case, values = each.case, ("bound", "slope", "detection_limit", "verdict")
-                name = ", ".join(part for part in (str(case.method), case.precision) if part)
-                found.append(_point(name, each.numbers["step"], what, *(each.numbers[v] for v in values)))
+        found = [point for each in of if (point := _point_of_drift(each, what)) is not None]
     return [point for point in found if point.step > 0.0 and point.size > 0.0]
+
+
+def _point_of_drift(of: DriftRow | Result, what: str) -> _Point | None:
+    from canon.study.drift.drift_study import DriftRow
+
+    if isinstance(of, DriftRow):
+        drift = of.drift
+        if drift is None:
+            return None
+        values = (drift.bound, drift.slope, drift.detection_limit, drift.verdict.value)
+        return _point(str(of.method), of.step, what, *values)
+    if not of.numbers:
+        return None
+    name = ", ".join(part for part in (str(of.case.method), of.case.precision) if part)
+    numbers = (of.numbers[v] for v in ("bound", "slope", "detection_limit", "verdict"))
+    return _point(name, of.numbers["step"], what, *numbers)
 
 
 def _point(

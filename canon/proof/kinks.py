@@ -141,31 +141,33 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
     found = anatomy([evaluated(f) for f in functions])
     if not found.has(*WITH_PIECES):
         return OffKinks(domain, domain, domain)
-    thin: dict[Boolean, None] = {}
-    doubtful: dict[Boolean, None] = {}
     settled: dict[Expr, bool | None] = {}
     off: dict[sp.Basic, sp.Basic] = {}
-    for part, gap in _gaps(found):
-        if not gap.free_symbols <= found.symbols or not _varies(gap):
-            continue
+    gaps = ((part, gap) for part, gap in _gaps(found) if gap.free_symbols <= found.symbols and _varies(gap))
+    for part, gap in gaps:
         variants = _variants(gap) if len(settled) < MOST_KINKS else None
-        known = True
-        for factor in _factors(variants if variants is not None else [gap], touching=touching):
-            if factor not in settled:
-                settled[factor] = _is_thin(factor, domain) if variants is not None else False
-            condition = cast("Boolean", sp.Ne(factor, 0, evaluate=False))
-            if settled[factor] is True:
-                thin[condition] = None
-            elif settled[factor] is False:
-                doubtful[condition] = None
-            known = known and settled[factor] is True
-        if known and isinstance(part, sp.DiracDelta):
-            off[part] = sp.Integer(0)
-        elif known and touching and isinstance(part, sp.Eq | sp.Ne) and _are_asked(variants or []):
-            off[part] = sp.true if isinstance(part, sp.Ne) else sp.false
+        factors = list(_factors([gap] if variants is None else variants, touching=touching))
+        new = dict.fromkeys(f for f in factors if f not in settled)
+        settled |= {f: False if variants is None else _is_thin(f, domain) for f in new}
+        if all(settled[factor] is True for factor in factors):
+            off |= _off_its_kink(part, variants or [], touching=touching)
+    thin, doubtful = (_not_zero(f for f, is_thin in settled.items() if is_thin is so) for so in (True, False))
     narrowed = Domain((*domain.conditions, *thin), domain.box) if thin else domain
     strictly = Domain((*narrowed.conditions, *doubtful), domain.box) if doubtful else narrowed
     return OffKinks(domain, narrowed, strictly, off)
+
+
+def _not_zero(factors: Iterable[Expr]) -> list[Boolean]:
+    return [cast("Boolean", sp.Ne(factor, 0, evaluate=False)) for factor in factors]
+
+
+def _off_its_kink(part: sp.Basic, variants: Sequence[Expr], *, touching: bool) -> dict[sp.Basic, sp.Basic]:
+    """Return what δ(u), u = 0 and u ≠ 0 are off the places where u vanishes."""
+    if isinstance(part, sp.DiracDelta):
+        return {part: sp.Integer(0)}
+    if touching and isinstance(part, sp.Eq | sp.Ne) and _are_asked(variants):
+        return {part: sp.true if isinstance(part, sp.Ne) else sp.false}
+    return {}
 
 
 def vanishes_off_kinks(expr: Expr | sp.MatrixBase, domain: Domain, budget: float = 10.0) -> Verdict:

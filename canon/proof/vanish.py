@@ -266,6 +266,17 @@ def _decide(left: object, right: object, domain: Domain, deadline: float, names:
         return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", said),))
 
 
+def _thorough(quick: Attempt, difference: Expr, domain: Domain, deadline: float) -> Attempt:
+    """Return what the thorough rungs did in the worker; the quick attempt where they can add nothing in time."""
+    seconds = deadline - time.monotonic()
+    if not quick.capped or seconds <= 0:
+        return quick
+    answer = prove_in_worker([difference], domain, seconds)
+    if isinstance(answer, str):
+        return replace(quick, obstacles=[*quick.obstacles, answer])
+    return answer[0]
+
+
 def _climb(left: Expr, right: Expr, domain: Domain, deadline: float, names: tuple[str, ...]) -> Verdict:
     """Climb the ladder: a few balls, the quick proof, many balls, the thorough proof in the worker."""
     found = anatomy([left, right])
@@ -298,17 +309,11 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float, names: tupl
     search = look_in_corners(left, right, domain, _share(CORNER_SHARE, deadline), search)
     if search.counterexample is not None:
         return _refuted(left, right, search)
-    obstacles = proof.obstacles
-    if proof.capped and (seconds := deadline - time.monotonic()) > 0:
-        answer = prove_in_worker([left - right], domain, seconds)
-        if isinstance(answer, str):
-            obstacles = [*obstacles, answer]
-        elif answer[0].holds:
-            valued = search.agreements > 0
-            return _with_values(_proved(answer[0]), sides, names, domain, deadline, valued=valued)
-        else:
-            obstacles = answer[0].obstacles
-    tried = tuple(Evidence("tried", obstacle) for obstacle in obstacles)
+    proof = _thorough(proof, left - right, domain, deadline)
+    if proof.holds:
+        valued = search.agreements > 0
+        return _with_values(_proved(proof), sides, names, domain, deadline, valued=valued)
+    tried = tuple(Evidence("tried", obstacle) for obstacle in proof.obstacles)
     known = Evidence("balls", search.known)
     undecided = Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, known))
     if search.unmodelled:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import count
 from typing import TYPE_CHECKING
 
 from sympy import Add, Mul, Symbol
@@ -55,7 +56,7 @@ def shared_to_sympy(
     taken = {s.name for node in nodes for s in graph.symbols(node)}
     written: dict[int, Expr] = {}
     replacements: list[tuple[Symbol, Expr]] = []
-    number = 0
+    free = (f"{prefix}{number}" for number in count() if f"{prefix}{number}" not in taken)
     for each in reachable:
         kind, operands, _ = graph.nodes[each]
         if not operands:
@@ -64,10 +65,7 @@ def shared_to_sympy(
         x = [written[o] for o in operands]
         found = Add(*x) if kind == "add" else Mul(*x) if kind == "mul" else _other(graph, each, x)
         if uses[each] > 1 and not _is_short(graph, each):
-            while f"{prefix}{number}" in taken:
-                number += 1
-            symbol = Symbol(f"{prefix}{number}", real=True)
-            number += 1
+            symbol = Symbol(next(free), real=True)
             replacements.append((symbol, found))
             found = symbol
         written[each] = found

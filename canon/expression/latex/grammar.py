@@ -210,27 +210,29 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         signs: list[Word | None] = [None, *children[1::2], None]
         for before, piece, after in zip(signs[:-1], children[::2], signs[1:], strict=True):
             items = _items(piece)
-            divides = before is not None and before.kind == "SLASH"
             found = self.meaning.factors(items)
-            if after and after.kind == "TIMES" and self.meaning.leaves_open(items):
-                self.meaning.refuse(
-                    after.column,
-                    "does this factor still belong to the argument before it?",
-                    r"write brackets, \cos(\omega t)",
-                )
-            if divides and before:
+            self._refuse_open_end(items, after)
+            if before is None or before.kind != "SLASH":
+                factors += [(False, node) for node in found]
+            else:
                 above = [node for _, node in factors]
                 last = dividing(above, items, found, self.meaning.ends)
                 if last is None:
                     self.open_quotient(before, above, found)
                 factors += [(number < last, node) for number, node in enumerate(found)]
-                found = []
             if after and after.kind == "SLASH" and bare_argument(items):
                 self.meaning.refuse(
                     after.column, "does this divide the function or its argument?", r"write \frac{a}{b}"
                 )
-            factors += [(divides, node) for node in found]
         return Product(tuple(factors), children[0].column)
+
+    def _refuse_open_end(self, items: tuple[Piece, ...], after: Word | None) -> None:
+        if after and after.kind == "TIMES" and self.meaning.leaves_open(items):
+            self.meaning.refuse(
+                after.column,
+                "does this factor still belong to the argument before it?",
+                r"write brackets, \cos(\omega t)",
+            )
 
     def with_derivatives(self, children: list[Any]) -> list[Any]:
         r"""Return pieces and signs, a derivative with a slash, ``d\theta/dt``, made one piece."""

@@ -187,17 +187,11 @@ class Meaning:
         taken: list[Node] = []
         numeric = True
         while end < len(items) and not is_function(items[end]) and not isinstance(items[end], Operator):
-            item = items[end]
-            if not numeric and self.ends.lies_before(taken, item):
+            if not numeric and self.ends.lies_before(taken, items[end]):
                 break
-            if not numeric and not self.ends.goes_on(taken, item):
-                self._open(item, taken, function)
-            if isinstance(item, Head) and isinstance(item.function, Applied):
-                node, end = self._declared(items, end, item, item.function)
-            elif isinstance(item, Mark):
-                node, end = self._varied(items, end, item), end + 2
-            else:
-                node, end = self.node(item), end + 1
+            if not numeric and not self.ends.goes_on(taken, items[end]):
+                self._open(items[end], taken, function)
+            node, end = self._of_argument(items, end)
             taken.append(node)
             numeric = numeric and self.ends.is_numeric(node)
         if not taken:
@@ -214,6 +208,15 @@ class Meaning:
         if len(taken) == 1:
             return taken[0], end
         return Product(tuple((False, node) for node in taken), taken[0].column), end
+
+    def _of_argument(self, items: tuple[Piece, ...], at: int) -> tuple[Node, int]:
+        """Return one factor of an argument without brackets, and where it ends."""
+        item = items[at]
+        if isinstance(item, Head) and isinstance(item.function, Applied):
+            return self._declared(items, at, item, item.function)
+        if isinstance(item, Mark):
+            return self._varied(items, at, item), at + 2
+        return self.node(item), at + 1
 
     def _open(self, item: Piece, taken: list[Node], function: Function) -> NoReturn:
         """Refuse a factor that may or may not belong to an argument, with both readings."""

@@ -180,13 +180,7 @@ def _without_displays(text: str, bare: str) -> str:
             continue
         if name not in _DISPLAYS:
             _refuse_display(text, name, match.start())
-        end = match.end()
-        if word == "begin" and name in ("array", "alignat", "alignedat"):
-            columns = _COLUMNS.match(bare, end)
-            end = columns.end() if columns else end
-        elif word == "end" and name in ("array", "aligned", "gathered"):
-            closing = _SYSTEM_CLOSES.match(bare, end)
-            end = closing.end() if closing else end
+        end = _end_of_display(bare, match)
         pieces += (bare[at : match.start()], " " * (end - match.start()))
         at = end
     if open_:
@@ -195,6 +189,17 @@ def _without_displays(text: str, bare: str) -> str:
             text, start + 1, f"\\begin{{{name}}} is never closed", f"write \\end{{{name}}} at its end"
         )
     return "".join((*pieces, bare[at:]))
+
+
+def _end_of_display(bare: str, match: re.Match[str]) -> int:
+    r"""Return where ``\begin`` or ``\end`` is over, with the columns of an array, the bracket after a system."""
+    word, name = match.group(1), match.group(2)
+    after = None
+    if word == "begin" and name in ("array", "alignat", "alignedat"):
+        after = _COLUMNS.match(bare, match.end())
+    elif word == "end" and name in ("array", "aligned", "gathered"):
+        after = _SYSTEM_CLOSES.match(bare, match.end())
+    return after.end() if after else match.end()
 
 
 def _refuse_display(text: str, name: str, start: int) -> NoReturn:

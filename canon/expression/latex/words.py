@@ -266,43 +266,41 @@ class _Reader:
             self.named((word,), start)
 
     def command(self, command: str) -> None:
-        start = self.at
-        word = upright(self.text, start)
+        start, column = self.at, self.at + 1
         if self.out.in_cases and (said := CONDITION.match(self.text, start, self.end)):
-            self.at = said.end()
-            if said.group(1) in OTHERWISE or command in ("\\wedge", "\\land"):
-                kind = "CAND" if said.group(1) is None else "COTHERWISE"
-                self.out.emit(kind, said.group(), start + 1)
-            return
-        if command in SIGNS:
+            self.condition(said, command)
+        elif command in SIGNS:
             self.at += len(command)
-            self.out.emit(SIGNS[command], command, start + 1)
-        elif command == "\\partial" and (match := PARTIAL.match(self.text, self.at, self.end)):
+            self.out.emit(SIGNS[command], command, column)
+        elif command == "\\partial" and (match := PARTIAL.match(self.text, start, self.end)):
             self.partial(match)
-        elif word:
+        elif word := upright(self.text, start):
             self.at = word[1]
             self.upright(word[0], start)
-        elif stems(command[1:]):
+        elif letters := stems(command[1:]):
             self.at += len(command)
-            self.named(stems(command[1:]), start)
+            self.named(letters, start)
         elif command[1:] in (*_ACCENTS, *DECORATIONS):
             self.accent(command)
         elif (cases := CASES.match(self.text, start, self.end)) or (command == "\\\\" and self.out.in_cases):
             self.case(cases.group() if cases else command)
-        elif command in ("\\dd", "\\diff") or (command == "\\d" and not self.names.declares("d")):
+        elif item := self.mark_or_function(command, column):
             self.at += len(command)
-            self.put([Mark("d", start + 1)], start + 1)
-        elif command == "\\partial" or command[1:] in FUNCTIONS:
-            self.at += len(command)
-            column = start + 1
-            item = (
-                Mark("partial", column)
-                if command == "\\partial"
-                else Function(FUNCTIONS[command[1:]], column)
-            )
             self.put([item], column)
         elif not self.bracket(command, ""):
-            self.refuse(start + 1, f"{command} is not read", REMEDIES.get(command[1:], ""))
+            self.refuse(column, f"{command} is not read", REMEDIES.get(command[1:], ""))
+
+    def condition(self, said: re.Match[str], command: str) -> None:
+        if said.group(1) in OTHERWISE or command in ("\\wedge", "\\land"):
+            self.out.emit("CAND" if said.group(1) is None else "COTHERWISE", said.group(), self.at + 1)
+        self.at = said.end()
+
+    def mark_or_function(self, command: str, column: int) -> Mark | Function | None:
+        if command in ("\\dd", "\\diff") or (command == "\\d" and not self.names.declares("d")):
+            return Mark("d", column)
+        if command == "\\partial":
+            return Mark("partial", column)
+        return Function(FUNCTIONS[command[1:]], column) if command[1:] in FUNCTIONS else None
 
     def delimiter(self, size: str) -> None:
         r"""Read the bracket after ``\left``, ``\bigr`` and the like."""

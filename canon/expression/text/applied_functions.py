@@ -151,13 +151,7 @@ def _bare(reader: FactorParser, name: str, chain: int) -> Node:
     """Return the argument of a function without brackets."""
     first = reader.token
     if first.kind == "name" and (inner := function_name(first.text, reader.scope)) in _BARE:
-        if chain >= _MAX_CHAIN:
-            raise reader.fault(f"more than {_MAX_CHAIN} functions without brackets", "write brackets")
-        reader.at += 1
-        node = applied(reader, first, chain + 1)
-        if node is None or isinstance(node, Name):
-            raise reader.fault(f"{inner} needs its argument", "write brackets")
-        return node
+        return _applied_inside(reader, first, inner, chain)
     taken: list[Node] = []
     numeric = True
     while reader.starts(reader.token) and (numeric or _still(reader, first, name, taken)):
@@ -166,16 +160,29 @@ def _bare(reader: FactorParser, name: str, chain: int) -> Node:
             break
         node = reader.atom()
         taken.append(node)
-        numeric = numeric and (
-            isinstance(node, Number)
-            or (isinstance(node, Name) and node.text == "pi" and not reader.scope.declares("pi"))
-        )
+        numeric = numeric and _is_numeric(reader, node)
         if not isinstance(node, Number | Name):
             break
     if numeric and reader.token.text == "*":
         number = reader.text[first.column - 1 : reader.token.column - 1].strip()
         raise reader.fault(f"{name}({number}) times this, or {name} of the product?", "write brackets")
     return taken[0] if len(taken) == 1 else Product(tuple((False, node) for node in taken), first.column)
+
+
+def _applied_inside(reader: FactorParser, token: Token, name: str, chain: int) -> Node:
+    """Return the argument of a function that is a function without brackets, ``sin cos x``."""
+    if chain >= _MAX_CHAIN:
+        raise reader.fault(f"more than {_MAX_CHAIN} functions without brackets", "write brackets")
+    reader.at += 1
+    node = applied(reader, token, chain + 1)
+    if node is None or isinstance(node, Name):
+        raise reader.fault(f"{name} needs its argument", "write brackets")
+    return node
+
+
+def _is_numeric(reader: FactorParser, node: Node) -> bool:
+    is_pi = isinstance(node, Name) and node.text == "pi" and not reader.scope.declares("pi")
+    return is_pi or isinstance(node, Number)
 
 
 def _still(reader: FactorParser, first: Token, name: str, taken: list[Node]) -> bool:

@@ -148,27 +148,20 @@ class Words:
         marks = sum(1 for atom in atoms[start:end] if atom.rates)
         if "_" in (piece[0], piece[-1]) or marks > 1:
             return None
-        if piece.isdigit():
-            after = (
-                bool(way)
-                and way[-1].kind == "function"
-                and not (end < len(atoms) and atoms[end].plain.isdigit())
-            )
-            return _Part("number", piece, start, end) if after and not marks else None
         if piece[0].isdigit():
-            return None
+            whole = piece.isdigit() and not (end < len(atoms) and atoms[end].plain.isdigit())
+            after_function = bool(way) and way[-1].kind == "function"
+            return _Part("number", piece, start, end) if whole and after_function and not marks else None
         names = self.declared(piece)
         if len(names) == 1 and (piece == names[0] or end < len(atoms) or start > 0):
             return _Part("name", names[0], start, end)
-        if names or marks:
-            return None
-        if (
-            end - start > 1
-            and function_name(piece, self.scope)
-            and piece not in ("th", "sh", "ch", "tg", "e")
-        ):
-            return _Part("function", piece, start, end)
-        return _Part("constant", "pi", start, end) if piece == "pi" and end - start == 1 else None
+        return None if names or marks else self._of_vocabulary(piece, start, end)
+
+    def _of_vocabulary(self, piece: str, start: int, end: int) -> _Part | None:
+        if end - start == 1:
+            return _Part("constant", "pi", start, end) if piece == "pi" else None
+        is_function = piece not in ("th", "sh", "ch", "tg", "e") and function_name(piece, self.scope)
+        return _Part("function", piece, start, end) if is_function else None
 
     def _tokens(self, token: Token, way: list[_Part]) -> Iterator[Token]:
         for part in way:

@@ -42,26 +42,32 @@ def families_of(steps: Program) -> tuple[list[OperationFamily], list[tuple[int, 
             operands = tuple(sorted(operands, key=lambda o: family_of[o]))
         kinds = tuple(family_of[o] for o in operands)
         is_time = operation == "input" and value == len(steps.inputs) - 1
-        key = (operation, kinds, value if operation == "constant" or is_time else None)
+        constant = value if operation == "constant" else None
+        key = (operation, kinds, value if is_time else constant)
         if key not in number:
             number[key] = len(found)
-            found.append(
-                OperationFamily(
-                    "time" if is_time else operation, value if operation == "constant" else None, kinds
-                )
-            )
+            found.append(OperationFamily("time" if is_time else operation, constant, kinds))
         family_of.append(number[key])
         operands_of.append(operands)
         found[number[key]].members.append(register)
-    place = [0] * len(family_of)
-    for family in found:
+    return found, list(zip(family_of, _places(steps, found, operands_of), strict=True))
+
+
+def _places(
+    steps: Program, families: Sequence[OperationFamily], operands_of: Sequence[tuple[int, ...]]
+) -> list[int]:
+    """Sort the members of families, and return each register's place; that of an input is its number."""
+    place = [0] * len(operands_of)
+    for family in families:
+        if family.operation == "input":
+            for register in family.members:
+                place[register] = int(steps.instructions[register].value)
+            continue
         # In the order of their operands, members tend to read and to be read with a stride.
-        if family.operation != "input":
-            family.members.sort(key=lambda register: [place[o] for o in operands_of[register]])
+        family.members.sort(key=lambda register: [place[o] for o in operands_of[register]])
         for position, register in enumerate(family.members):
-            value = steps.instructions[register].value
-            place[register] = int(value) if family.operation == "input" else position
-    return found, list(zip(family_of, place, strict=True))
+            place[register] = position
+    return place
 
 
 def operand_places(

@@ -118,32 +118,37 @@ def _pairs(
         return None
     families: dict[_Key, dict[tuple[int, int], tuple[int, Fraction, int]]] = {}
     for term in terms:
-        symbols = graph.symbols(term)
-        if not all(symbol in place for symbol in symbols):
-            continue
-        own = sorted({place[symbol] // axes for symbol in symbols})
-        if len(own) != 2:
+        pair = _pair_of(graph, term, place, axes)
+        if pair is None:
             continue
         factor, function = _factored(graph, term)
-        slots = {s: (own.index(place[s] // axes), place[s] % axes) for s in symbols}
+        slots = {s: (pair.index(place[s] // axes), place[s] % axes) for s in graph.symbols(term)}
         key = _key(graph, function, slots)
-        swapped = _key(graph, function, {s: (1 - body, axis) for s, (body, axis) in slots.items()})
-        if key != swapped:
+        if key != _key(graph, function, {s: (1 - body, axis) for s, (body, axis) in slots.items()}):
             continue
         members = families.setdefault(key, {})
-        if (own[0], own[1]) in members:
+        if pair in members:
             return None
-        members[own[0], own[1]] = term, factor, function
-    for members in families.values():
-        if len(members) == wanted:
-            first = min(members)
-            return _Pairs(
-                {pair: term for pair, (term, _, _) in members.items()},
-                {pair: factor for pair, (_, factor, _) in members.items()},
-                first,
-                members[first][2],
-            )
-    return None
+        members[pair] = term, factor, function
+    whole = next((members for members in families.values() if len(members) == wanted), None)
+    if whole is None:
+        return None
+    first = min(whole)
+    return _Pairs(
+        {pair: term for pair, (term, _, _) in whole.items()},
+        {pair: factor for pair, (_, factor, _) in whole.items()},
+        first,
+        whole[first][2],
+    )
+
+
+def _pair_of(graph: Graph, term: int, place: Mapping[Symbol, int], axes: int) -> tuple[int, int] | None:
+    """Return the two bodies whose coordinates stand in a term, and nothing else."""
+    symbols = graph.symbols(term)
+    if not all(symbol in place for symbol in symbols):
+        return None
+    bodies = sorted({place[symbol] // axes for symbol in symbols})
+    return (bodies[0], bodies[1]) if len(bodies) == 2 else None
 
 
 def _key(graph: Graph, node: int, slots: Mapping[Symbol, tuple[int, int]]) -> _Key:

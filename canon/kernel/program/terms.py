@@ -58,19 +58,21 @@ class SumTable:
         waiting, seen = list(nodes), set[int]()
         while waiting:
             node = waiting.pop()
-            if node in seen:
-                continue
-            seen.add(node)
-            kind, operands, _ = self.graph.nodes[node]
-            if kind == "add":
-                self.sums[node] = [self._term(term) for term in operands]
-                waiting.extend(o for term in self.sums[node] for o, _ in self.products[term.product])
-            elif kind in ("mul", "pow"):
-                self.meanings[node] = term = self._term(node)
-                own = [o for o, _ in self.products[term.product]]
-                waiting.extend(operands if own == [node] else own)
-            else:
-                waiting.extend(operands)
+            if node not in seen:
+                seen.add(node)
+                waiting.extend(self._entered(node))
+
+    def _entered(self, node: int) -> Sequence[int]:
+        """Enter one node; return the nodes that its terms and factors are."""
+        kind, operands, _ = self.graph.nodes[node]
+        if kind == "add":
+            self.sums[node] = [self._term(term) for term in operands]
+            return [o for term in self.sums[node] for o, _ in self.products[term.product]]
+        if kind not in ("mul", "pow"):
+            return operands
+        self.meanings[node] = term = self._term(node)
+        own = [o for o, _ in self.products[term.product]]
+        return operands if own == [node] else own
 
     def term(self, factor: int, product: Product) -> Term:
         """Return a multiple of a product, entered where it is new."""

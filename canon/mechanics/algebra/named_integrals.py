@@ -65,19 +65,20 @@ def _of_functions(form: Sequence[Expr], z: Sequence[Symbol]) -> Iterator[tuple[E
         moving = [u for u in cast("tuple[Expr, ...]", applied.args) if u.has(*z)]
         if len(moving) != 1:
             continue
-        coefficients = [a.coeff(applied) for a in form]
-        slopes = [moving[0].diff(s) for s in z]
-        ratios = {
-            sp.cancel(c / slope) if slope != 0 else None
-            for c, slope in zip(coefficients, slopes, strict=True)
-            if c != 0 or slope != 0
-        }
-        factor = ratios.pop() if len(ratios) == 1 else None
+        coefficients = [cast("Expr", a.coeff(applied)) for a in form]
+        factor = _common_ratio(coefficients, [moving[0].diff(s) for s in z])
         if factor is None or factor == 0 or factor.has(*z):
             continue
         integral = _integral(lambda s, f=applied, u=moving[0]: exchanged(f, {u: s}), moving[0])
         if integral is not None:
             yield factor * integral, [c * applied for c in coefficients]
+
+
+def _common_ratio(above: Sequence[Expr], below: Sequence[Expr]) -> Expr | None:
+    """Return a/b, where it is the same for all pairs in which not both are zero."""
+    pairs = [(a, b) for a, b in zip(above, below, strict=True) if a != 0 or b != 0]
+    ratios = {sp.cancel(a / b) if b != 0 else None for a, b in pairs}
+    return ratios.pop() if len(ratios) == 1 else None
 
 
 def _of_one_variable(term: Expr, x: Symbol) -> Expr | None:

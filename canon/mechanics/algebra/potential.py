@@ -176,6 +176,14 @@ def _common_ratio(
     return ratio or None
 
 
+def _finite_rows(equations: Sequence[Sequence[Expr]], point: BranchPoint) -> list[list[float]]:
+    """Return the coefficients of equations at a point; none where one of them has no value or is huge."""
+    rows = [[point.number(f) for f in equation] for equation in equations]
+    if not all(x is not None and abs(x) < 1e8 for row in rows for x in row):
+        return []
+    return [[float(x) for x in row if x is not None] for row in rows]
+
+
 def _by_fitting(
     form: Sequence[Expr], z: Sequence[Symbol], domain: Domain, basis: Sequence[Expr]
 ) -> list[sp.Rational] | None:
@@ -183,16 +191,11 @@ def _by_fitting(
     if not basis:
         return None
     symbols = set(z).union(*(f.atoms(Symbol) for f in (*basis, *form)))
-    gradients = [[f.diff(s) for s in z] for f in basis]
+    equations = [(*(f.diff(s) for f in basis), a) for s, a in zip(z, form, strict=True)]
     rows: list[list[float]] = []
     wanted = 2 + -(-(len(basis) + 4) // len(z))
     for point in branch_points(symbols, {}, domain, 2 * wanted, seed=11):
-        block = [
-            [point.number(g) for g in (*(gradient[j] for gradient in gradients), form[j])]
-            for j in range(len(z))
-        ]
-        if all(x is not None and abs(x) < 1e8 for row in block for x in row):
-            rows += [[float(x) for x in row if x is not None] for row in block]
+        rows += _finite_rows(equations, point)
         if len(rows) >= wanted * len(z):
             break
     return _rational_fit(np.array(rows)) if len(rows) > len(basis) else None

@@ -211,17 +211,7 @@ def isolate(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | Non
         return rhs
     inversion.known[lhs] = rhs
     if lhs.is_Add or lhs.is_Mul:
-        free, bound = lhs.as_independent(x, as_Add=lhs.is_Add)
-        if free != (0 if lhs.is_Add else 1):
-            return isolate(bound, rhs - free if lhs.is_Add else rhs / free, x, inversion)
-        if size(lhs - rhs) > _LARGEST:
-            return None
-        for kernel, value, signs in generator_values(lhs - rhs, x):
-            if inversion.witness.agree(value, kernel):
-                for sign in signs:
-                    inversion.note_sign(sign)
-                return isolate(kernel, value, x, inversion)
-        return None
+        return _of_sum_or_product(lhs, rhs, x, inversion)
     if lhs.is_Pow:
         return _of_power(lhs, rhs, x, inversion)
     if lhs.func == sp.atan2:
@@ -238,6 +228,20 @@ def isolate(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | Non
         return inversion.choose(inner, [sp.acosh(rhs), -sp.acosh(rhs)], x)
     if lhs.func == sp.Abs:
         return inversion.choose(inner, [rhs, -rhs], x)
+    return None
+
+
+def _of_sum_or_product(lhs: Expr, rhs: Expr, x: Symbol, inversion: Inversion) -> Expr | None:
+    free, bound = lhs.as_independent(x, as_Add=lhs.is_Add)
+    if free != (0 if lhs.is_Add else 1):
+        return isolate(bound, rhs - free if lhs.is_Add else rhs / free, x, inversion)
+    if size(lhs - rhs) > _LARGEST:
+        return None
+    for kernel, value, signs in generator_values(lhs - rhs, x):
+        if inversion.witness.agree(value, kernel):
+            for sign in signs:
+                inversion.note_sign(sign)
+            return isolate(kernel, value, x, inversion)
     return None
 
 

@@ -17,7 +17,7 @@ from canon.mechanics.algebra.substitution import exchanged
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from canon.mechanics.canonical.canonicity_tests import PhaseSpaceMap
     from canon.proof.domain.domain import Domain
@@ -140,6 +140,11 @@ def repair_hint(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> RepairHint 
         if left < 0:
             return None
         constants[i, j] = constant_value(T.poisson_bracket_of(i, n + j), T.variables, T.domain, left, T.t)
+    return _of_pairs(constants, n, c)
+
+
+def _of_pairs(constants: Mapping[tuple[int, int], Expr | None], n: int, c: Expr) -> RepairHint | None:
+    """Return the constants of the brackets of each new coordinate with the one momentum that is not free of it."""
     partners = [[j for j in range(n) if constants[i, j] != 0] for i in range(n)]
     if any(len(others) != 1 for others in partners):
         return None

@@ -147,19 +147,24 @@ def _of_nonlinear(
 def _candidates(
     f: Expr, gradient: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol]
 ) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
-    """Yield x(y) that may solve y = ∂f/∂x, each with Σ x y − f in terms of y.
-
-    A common radical r(x) is treated as an unknown of its own: with r held fixed the equations are often
-    linear in x (relativistic momenta are m x / r), and the definition of r then is one equation for r².
-    """
+    """Yield x(y) that may solve y = ∂f/∂x, each with Σ x y − f in terms of y."""
     radicals = {e for e in f.atoms(sp.Pow) if not _exponent(e).is_Integer and e.has(*old)}
     if not radicals and len(old) == 1:
         for root, _ in low_degree_roots(sp.numer(sp.together(gradient[0] - new[0])), old[0]):
             yield (root,), sp.factor_terms(root * new[0] - substitute(f, {old[0]: root}))
     bases = {e.as_base_exp()[0] for e in radicals}
-    if len(bases) != 1 or any((2 * _exponent(e)).is_Integer is not True for e in radicals):
-        return
-    (base,) = bases
+    if len(bases) == 1 and all((2 * _exponent(e)).is_Integer for e in radicals):
+        yield from _of_one_radical(bases.pop(), f, gradient, old, new)
+
+
+def _of_one_radical(
+    base: Expr, f: Expr, gradient: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol]
+) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
+    """Yield candidates with the common radical r(x) = √base as an unknown of its own.
+
+    With r held fixed the equations are often linear in x (relativistic momenta are m x / r), and the definition of r
+    then is one equation for r².
+    """
     r = sp.Dummy("r", positive=True)
     frozen = [
         exchanged(g, {e: r ** (2 * _exponent(e)) for e in g.atoms(sp.Pow) if e.as_base_exp()[0] == base})

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.proof.analytic import is_positive_between, is_uncut, proved_sign
-from canon.proof.continuity.jumps import continued, find_jump, shown
+from canon.proof.continuity.jumps import Jump, continued, find_jump, shown
 from canon.proof.continuity.one_sided import (
     Cut,
     cuts_of,
@@ -257,27 +257,35 @@ def _step(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float) ->
         return None
     first: tuple[Mapping[Symbol, sp.Rational], acb] | None = None
     cases = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ne)]
-    gaps: list[Expr] = [cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases]
-    around = Domain(tuple(c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne)))
-    if not around.is_connected(free_symbols(f)) or not all(map(linear, cases)):
+    if not domain.is_connected(free_symbols(f)) or not all(map(linear, cases)):
         return None
-    gaps += _nonzero(f, moving)
+    gaps = [*(cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases), *_nonzero(f, moving)]
     for point in domain.points(free_symbols(f), VALUES, deadline=deadline):
         if first is not None:
             point |= {s: number for s, number in first[0].items() if s not in moving}
-            same_side = all(_is_above(g, point) == _is_above(g, first[0]) for g in gaps)
-            if not same_side or not domain.contains(point):
+            if not (_on_one_side(gaps, point, first[0]) and domain.contains(point)):
                 continue
         with precision(128):
-            try:
-                ball = value(f, point)
-            except (NotDecided, Undefined, Unmodelled):
+            ball = _ball(f, point)
+            if ball is None:
                 continue
-            if first is None:
-                first = (point, ball)
-            elif not (ball - first[1]).contains(0):
+            first = first or (point, ball)
+            if not (ball - first[1]).contains(0):
                 return _between(first, (point, ball))
     return None
+
+
+def _on_one_side(
+    gaps: Sequence[Expr], point: Mapping[Symbol, sp.Rational], other: Mapping[Symbol, sp.Rational]
+) -> bool:
+    return all(_is_above(g, point) == _is_above(g, other) for g in gaps)
+
+
+def _ball(f: Expr, point: Mapping[Symbol, sp.Rational]) -> acb | None:
+    try:
+        return value(f, point)
+    except (NotDecided, Undefined, Unmodelled):
+        return None
 
 
 def _is_above(gap: Expr, point: Mapping[Symbol, sp.Rational]) -> bool:
@@ -325,34 +333,28 @@ def _of_cuts(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float,
     at_angles = [cut for cut in cuts if cut.part in angles]
     divided = [term for term in sp.Add.make_args(f) if _is_divided(term, moving, domain)]
     open_ = [root for term in divided for root in _touching_roots(term, moving, domain)]
-    for cut in cuts:
-        if cut.part in angles:
-            continue
+    for cut in (cut for cut in cuts if cut.part not in angles):
         jump = find_jump(f, cut, moving, domain, deadline)
         if jump is None:
-            if not _meets(f, cut, moving, domain, deadline):
-                open_.append(cut.part)
-        elif centres[cut.part] is None or any(
-            proportion(angle.gap, cut.gap) is not None for angle in at_angles
-        ):
+            open_ += [] if _meets(f, cut, moving, domain, deadline) else [cut.part]
+        elif centres[cut.part] is None or _is_at_one_of(at_angles, cut):
             open_.append(cut.part)
         else:
-            where = ", ".join(f"{x} = {place}" for x, place in jump.point.items())
-            return _failed(
-                name,
-                _Fault(
-                    jump.point,
-                    jump.before,
-                    jump.after,
-                    f"jumps at {where} from {jump.before} to {jump.after}",
-                ),
-            )
-    if open_:
-        why = f"{name} may jump, which its derivatives do not show; narrow the domain to where it does not"
-        return Verdict(
-            Status.UNDECIDED, f"{name} {CONTINUOUS}", evidence=(Evidence("open", why),), feedback=why
-        )
-    return Verdict(Status.HOLDS, f"{name} {CONTINUOUS}", "structure", assumed=assumed)
+            return _failed(name, _fault_of(jump))
+    if not open_:
+        return Verdict(Status.HOLDS, f"{name} {CONTINUOUS}", "structure", assumed=assumed)
+    why = f"{name} may jump, which its derivatives do not show; narrow the domain to where it does not"
+    return Verdict(Status.UNDECIDED, f"{name} {CONTINUOUS}", evidence=(Evidence("open", why),), feedback=why)
+
+
+def _fault_of(jump: Jump) -> _Fault:
+    where = ", ".join(f"{x} = {place}" for x, place in jump.point.items())
+    return _Fault(jump.point, jump.before, jump.after, f"jumps at {where} from {jump.before} to {jump.after}")
+
+
+def _is_at_one_of(angles: Sequence[Cut], cut: Cut) -> bool:
+    """Whether a function may jump at a cut just because an angle does."""
+    return any(proportion(angle.gap, cut.gap) is not None for angle in angles)
 
 
 def _meets(f: Expr, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline: float) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations, permutations
+from itertools import combinations, permutations, product
 from typing import TYPE_CHECKING
 
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
@@ -37,17 +37,24 @@ def common_zero(pair: tuple[Expr, Expr], variables: Sequence[Symbol], domain: Do
     >>> common_zero((q, p), [q, p], Domain()), common_zero((sp.sin(q + p), sp.cos(q + p)), [q, p], Domain())
     ('p = 0, q = 0', '')
     """
-    for first, second in (pair, pair[::-1]):
-        for s, r in permutations(variables, 2):
-            zero = _zero(first, s)
-            there = None if zero is None else _zero(second.subs(s, zero), r)
-            if zero is not None and there is not None and s not in free_symbols(there):
-                return ", ".join(f"{x} = {place}" for x, place in sorted(((s, zero), (r, there)), key=str))
+    solved = _solved_in_turn(pair, variables)
+    if solved:
+        return solved
     for point in domain.points(free_symbols(pair[0]) | free_symbols(pair[1]), STARTS):
         for two in combinations(variables, 2):
             found = _newton(pair, two, point)
             if found is not None and domain.contains(point | found):
                 return " and ".join(f"{f} = 0" for f in pair)
+    return ""
+
+
+def _solved_in_turn(pair: tuple[Expr, Expr], variables: Sequence[Symbol]) -> str:
+    """Return where two functions vanish together, one of them linear in one variable, then the other in another."""
+    for (first, second), (s, r) in product((pair, pair[::-1]), permutations(variables, 2)):
+        zero = _zero(first, s)
+        there = None if zero is None else _zero(second.subs(s, zero), r)
+        if zero is not None and there is not None and s not in free_symbols(there):
+            return ", ".join(f"{x} = {place}" for x, place in sorted(((s, zero), (r, there)), key=str))
     return ""
 
 

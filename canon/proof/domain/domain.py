@@ -218,32 +218,24 @@ class Domain:
         conditioned = {s for condition in self.conditions for s in free_symbols(condition)}
         ordered = sorted({*symbols, *conditioned}, key=lambda s: s.name)
         facts = {s: said_of(s) for s in ordered}
-        chance = random.Random(seed)
-        left_open = self.on_functions if but_functions else ()
-        settled = [c for c in self.conditions if c not in left_open]
-        steering = random.Random(seed)
+        chance, steering = random.Random(seed), random.Random(seed)
+        settled = [c for c in self.conditions if not (but_functions and c in self.on_functions)]
         found = moved = moves = unsolved = 0
         for attempt in range(40 * count + 200):
             if found + moved == count or time.monotonic() > deadline:
                 return
-            scale = rational(_SCALES[(attempt // 3) % len(_SCALES)])
-            point = {s: self._draw(s, scale, chance, in_box=in_box) for s in ordered}
-            marked = [s for s in ordered if marks.get(s)]
-            for s in chance.sample(marked, k=min(len(marked), 1 + attempt % 2)):
-                point[s] = chance.choice(marks[s])
+            point = self._drawn(ordered, attempt, chance, marks, in_box=in_box)
             solved = self._settle_equalities(point, steering)
             unsolved += not solved
             if unsolved > MOST_UNSOLVED and found + moved == 0:
                 return
-            allowed = solved and all(_allows(facts[s], number) for s, number in point.items())
-            if allowed and conditions_hold(settled, point):
+            if solved and _belongs(point, facts, settled):
                 found += 1
                 yield point
             elif found == 0 and attempt >= PATIENCE and moves < MOST_MOVES:
                 moves += 1
                 inside = moved_inside(point, settled, steering, deadline)
-                within = inside and all(_allows(facts[s], n) for s, n in inside.items())
-                if inside and within and conditions_hold(settled, inside):
+                if inside and _belongs(inside, facts, settled):
                     moved += 1
                     yield inside
 
@@ -277,17 +269,10 @@ class Domain:
 
         An intersection of half spaces is convex.
         """
-        for s in symbols:
-            if s.is_integer or declared_complex(s):
-                return False
-        for condition in parts_of(self.conditions):
-            if isinstance(condition, Ne):
-                continue
-            if not isinstance(condition, Lt | Le | Gt | Ge):
-                return False
-            if not linear(condition):
-                return False
-        return True
+        if any(s.is_integer or declared_complex(s) for s in symbols):
+            return False
+        bounds = (c for c in parts_of(self.conditions) if not isinstance(c, Ne))
+        return all(isinstance(c, Lt | Le | Gt | Ge) and linear(c) for c in bounds)
 
     def contains(self, point: Mapping[Symbol, Rational]) -> bool:
         """Tell whether every condition certainly holds at an exact point."""
@@ -299,13 +284,28 @@ class Domain:
         Conditions on arbitrary functions are left to the caller, who chooses the functions.
         """
         settled = [c for c in self.conditions if c not in self.on_functions]
-        declared = all(_allows(said_of(s), number) for s, number in point.items())
-        return declared and conditions_hold(settled, point)
+        return _belongs(point, {s: said_of(s) for s in point}, settled)
 
     @cached_property
     def on_functions(self) -> tuple[Boolean, ...]:
         """The conditions on arbitrary functions, which hold or not as the functions are chosen."""
         return tuple(c for c in self.conditions if c.has(AppliedUndef))
+
+    def _drawn(
+        self,
+        symbols: Sequence[Symbol],
+        attempt: int,
+        chance: random.Random,
+        marks: Mapping[Symbol, Sequence[Rational]],
+        *,
+        in_box: bool,
+    ) -> dict[Symbol, Rational]:
+        scale = rational(_SCALES[(attempt // 3) % len(_SCALES)])
+        point = {s: self._draw(s, scale, chance, in_box=in_box) for s in symbols}
+        marked = [s for s in symbols if marks.get(s)]
+        for s in chance.sample(marked, k=min(len(marked), 1 + attempt % 2)):
+            point[s] = chance.choice(marks[s])
+        return point
 
     def _draw(self, symbol: Symbol, scale: Rational, chance: random.Random, *, in_box: bool) -> Rational:
         if in_box and symbol in self.box:
@@ -383,6 +383,16 @@ def conditions_hold(conditions: Iterable[Boolean], point: Mapping[Symbol, Ration
             return all(holds_at(condition, point) for condition in conditions)
     except (NotDecided, Undefined, Unmodelled):
         return False
+
+
+def _belongs(
+    point: Mapping[Symbol, Rational],
+    facts: Mapping[Symbol, Mapping[str, bool]],
+    conditions: Sequence[Boolean],
+) -> bool:
+    """Whether what was declared of each symbol, and every condition, holds at a point."""
+    allowed = all(_allows(facts[s], number) for s, number in point.items())
+    return allowed and conditions_hold(conditions, point)
 
 
 def _allows(facts: Mapping[str, bool], number: Rational) -> bool:

@@ -65,23 +65,35 @@ def moved_inside(
         if time.monotonic() > deadline:
             return None
         at = _as_rationals(here, margin)
-        slacks = [_float(gap, at) for gap in gaps]
-        if any(slack is None for slack in slacks):
+        found = _most_violated(gaps, at)
+        if found is None:
             return None
-        worst, gap = min(zip(cast("list[float]", slacks), gaps, strict=True), key=lambda pair: pair[0])
+        worst, gap = found
         if worst > 0:
             return at
-        slopes = {s: _float(gap.diff(s), at) for s in free_symbols(gap) if s in here and not s.is_integer}
-        if not slopes or any(slope is None for slope in slopes.values()):
-            return None
-        square = sum(cast("float", slope) ** 2 for slope in slopes.values())
+        slopes = _gradient(gap, at)
+        square = sum(slope**2 for slope in slopes.values())
         if not 0 < square < LARGEST**2:
             return None
         for s, slope in slopes.items():
-            here[s] += cast("float", slope) * (margin * chance.uniform(0.2, 1) - worst) / square
+            here[s] += slope * (margin * chance.uniform(0.2, 1) - worst) / square
         if any(not abs(number) < LARGEST for number in here.values()):
             return None
     return None
+
+
+def _most_violated(gaps: Sequence[Expr], at: Mapping[Symbol, sp.Rational]) -> tuple[float, Expr] | None:
+    """Return the least of some functions and its value; None where one of them has no value."""
+    values = [_float(gap, at) for gap in gaps]
+    if None in values:
+        return None
+    return min(zip(cast("list[float]", values), gaps, strict=True), key=lambda pair: pair[0])
+
+
+def _gradient(gap: Expr, at: Mapping[Symbol, sp.Rational]) -> dict[Symbol, float]:
+    """Return the slopes in the directions in which a point can be moved; none where one has no value."""
+    slopes = {s: _float(gap.diff(s), at) for s in free_symbols(gap) if s in at and not s.is_integer}
+    return {} if None in slopes.values() else cast("dict[Symbol, float]", slopes)
 
 
 def _gaps(point: Mapping[Symbol, sp.Rational], conditions: Sequence[Boolean]) -> Iterator[Expr]:

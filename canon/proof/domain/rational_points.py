@@ -53,8 +53,23 @@ def rational_solution(
     settled = _solved_in_turn(equations, near)
     if settled is not None:
         return settled
-    known: dict[Symbol, Expr] = {}
     given, near = near, dict(near)
+    known = _solved_step_by_step(equations, near, chance)
+    if known is None:
+        return None
+    free = {s: number for s, number in near.items() if s not in known}
+    found = {s: f.xreplace(free) for s, f in known.items()}
+    if not all(isinstance(number, Rational) for number in found.values()):
+        return None
+    whole = {**free, **{s: rational(number) for s, number in found.items()}}
+    return {s: whole[s] for s in given}
+
+
+def _solved_step_by_step(
+    equations: Sequence[Expr], near: dict[Symbol, Rational], chance: random.Random
+) -> dict[Symbol, Expr] | None:
+    """Return some symbols in terms of the others, equations solved one by one; ``near`` gains roots as symbols."""
+    known: dict[Symbol, Expr] = {}
     left = [sp.expand(e) for e in _without_roots(equations, near, chance)]
     while left := [e for e in left if e != 0]:
         if any(e.is_number for e in left):
@@ -67,17 +82,11 @@ def rational_solution(
             if chosen is None:
                 return None
             step = {chosen: near[chosen]}
-        known = {s: cast("Expr", f.xreplace(step)) for s, f in known.items()}
-        known.update(step)
+        known = {s: cast("Expr", f.xreplace(step)) for s, f in known.items()} | dict(step)
         left = [sp.expand(cast("Expr", e.xreplace(step))) for e in left]
         if any(e.has(sp.zoo, sp.nan, sp.oo) for e in left):
             return None
-    free = {s: number for s, number in near.items() if s not in known}
-    found = {s: f.xreplace(free) for s, f in known.items()}
-    if not all(isinstance(number, Rational) for number in found.values()):
-        return None
-    whole = {**free, **{s: rational(number) for s, number in found.items()}}
-    return {s: whole[s] for s in given}
+    return known
 
 
 def _solved_in_turn(

@@ -21,7 +21,7 @@ from canon.proof.functions import angles, arcs, complex_parts, elliptic, gammas,
 from canon.proof.tower.forms import Forms
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
+    from collections.abc import Hashable, Sequence
 
     from flint import fmpq_mpoly
     from sympy import Expr
@@ -73,19 +73,20 @@ class NormalForm(Forms):
                 self.signs.learn_nonzero(gap.num)
         elif isinstance(condition, sp.StrictLessThan | sp.LessThan | sp.StrictGreaterThan | sp.GreaterThan):
             gap = self.form(cast("Expr", condition.gts) - cast("Expr", condition.lts))
-            strict = isinstance(condition, sp.StrictLessThan | sp.StrictGreaterThan)
-            if self._may_be_infinite(gap):
-                return
-            if gap.den:
-                below = self.signs.of(self.denominator(gap))
-                if below not in ("+", "-"):
-                    return
-                gap = gap if below == "+" else self.negative(gap)
-            known = self.signs.of(gap.num)
-            self.empty = self.empty or known == "-" or (strict and (known == "0-" or gap.num.is_zero()))
-            if not known.endswith("+"):
-                self._gaps.append((gap.num, strict))
-                self.signs.learn(gap.num, strict=strict)
+            if not self._may_be_infinite(gap):
+                self._learn_positive(gap, isinstance(condition, sp.StrictLessThan | sp.StrictGreaterThan))
+
+    def _learn_positive(self, gap: Fraction, strict: bool) -> None:
+        """Take from gap > 0 or gap ≥ 0 what it says of the numerator, where the sign below it is known."""
+        below = self.signs.of(self.denominator(gap)) if gap.den else "+"
+        if below not in ("+", "-"):
+            return
+        above = (gap if below == "+" else self.negative(gap)).num
+        known = self.signs.of(above)
+        self.empty = self.empty or known == "-" or (strict and (known == "0-" or above.is_zero()))
+        if not known.endswith("+"):
+            self._gaps.append((above, strict))
+            self.signs.learn(above, strict=strict)
 
     def _may_be_infinite(self, f: Fraction) -> bool:
         """Tell whether the denominator holds exp(y log u), which stands for 1/u^−y also at u = 0."""
@@ -242,16 +243,22 @@ def _derivative_key(expr: sp.Basic, forms: Forms) -> tuple[Hashable, bool]:
         variables, point = cast("tuple[sp.Symbol, ...]", expr.variables), cast("tuple[Expr, ...]", expr.point)
         places = dict(zip(variables, point, strict=True))
     if isinstance(inner, Derivative) and isinstance(inner.expr, AppliedUndef):
-        arguments = inner.expr.args
-        taken = cast("tuple[tuple[sp.Basic, sp.Basic], ...]", inner.variable_count)
-        counts = {v: int(n) for v, n in taken if isinstance(n, sp.Integer)}
-        whole = len(counts) == len(taken)
-        plain = all(isinstance(a, sp.Symbol) or not (a.free_symbols & set(counts)) for a in arguments)
-        if whole and plain and all(sum(1 for a in arguments if a == v) == 1 for v in counts):
-            orders = tuple(counts.get(a, 0) for a in arguments)
-            there = [forms.tower.canonical(forms.form(a.xreplace(places))) for a in arguments]
+        orders = _orders(inner, inner.expr.args)
+        if orders is not None:
+            there = [forms.tower.canonical(forms.form(a.xreplace(places))) for a in inner.expr.args]
             real = not declared_complex(inner.expr) and all(map(forms.is_real, there))
             keys = tuple(map(forms.fraction_key, there))
             return ("derivative", inner.expr.func, orders, keys), real
     real = isinstance(inner, Derivative) and certainly_real(cast("Expr", inner.expr))
     return ("opaque", expr), real and all(map(certainly_real, places.values()))
+
+
+def _orders(derivative: Derivative, arguments: Sequence[sp.Basic]) -> tuple[int, ...] | None:
+    """Return how often is differentiated by each argument; None where that is not by arguments, each for itself."""
+    taken = cast("tuple[tuple[sp.Basic, sp.Basic], ...]", derivative.variable_count)
+    counts = {v: int(n) for v, n in taken if isinstance(n, sp.Integer)}
+    whole = len(counts) == len(taken)
+    plain = all(isinstance(a, sp.Symbol) or not (a.free_symbols & set(counts)) for a in arguments)
+    if not whole or not plain or any(sum(1 for a in arguments if a == v) != 1 for v in counts):
+        return None
+    return tuple(counts.get(a, 0) for a in arguments)

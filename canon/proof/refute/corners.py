@@ -7,7 +7,7 @@ formula changes nothing changes, so one point between any two of them, and point
 from __future__ import annotations
 
 import time
-from itertools import combinations, islice, pairwise
+from itertools import combinations, islice, pairwise, product
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -88,27 +88,33 @@ def corner_points(
     symbols = sorted((s for s in sides.symbols if not declared_complex(s)), key=lambda s: s.name)
     moving = [s for s in symbols if not s.is_integer]
     gaps += [s for s in moving if s.is_nonnegative or s.is_nonpositive]
-    drawn = domain.points(
-        sides.symbols, BASES if len(symbols) > 1 else 1, seed=5, but_functions=True, deadline=deadline
-    )
-    bases = list(drawn)
+    number = BASES if len(symbols) > 1 else 1
+    bases = list(domain.points(sides.symbols, number, seed=5, but_functions=True, deadline=deadline))
     if any(isinstance(c, sp.Eq) for c in domain.conditions):
         marks = {s: _values(gaps, s, base) for base in bases[:1] for s in moving}
         yield from domain.points(
             sides.symbols, 60, seed=6, marks=marks, but_functions=True, deadline=deadline
         )
         return
-    for base in bases:
-        for s in moving:
-            yield from _moved(base, s, gaps, domain, deadline)
+    for base, s in product(bases, moving):
+        yield from _moved(base, s, gaps, domain, deadline)
     for base in bases[:1]:
-        for s in moving:
-            own = [g for g in gaps if g.free_symbols == {s}]
-            close = [v for root in _places(own, s, {}) for v in _beside(root, DISTANCES[:2])]
-            for there in ({**base, s: v} for v in close):
-                for other in moving:
-                    if other != s:
-                        yield from _moved(there, other, gaps, domain, deadline)
+        yield from _moved_twice(base, moving, gaps, domain, deadline)
+
+
+def _moved_twice(
+    base: dict[Symbol, sp.Rational],
+    moving: Sequence[Symbol],
+    gaps: Sequence[Expr],
+    domain: Domain,
+    deadline: float,
+) -> Iterator[dict[Symbol, sp.Rational]]:
+    """Yield a point moved in one symbol to where formulas in it alone change, and then in another."""
+    for s in moving:
+        own = [g for g in gaps if g.free_symbols == {s}]
+        close = [v for root in _places(own, s, {}) for v in _beside(root, DISTANCES[:2])]
+        for v, other in product(close, (other for other in moving if other != s)):
+            yield from _moved({**base, s: v}, other, gaps, domain, deadline)
 
 
 def _moved(base: Point, s: Symbol, gaps: Sequence[Expr], domain: Domain, deadline: float) -> Iterator[Point]:

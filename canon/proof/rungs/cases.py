@@ -304,24 +304,28 @@ def _vanishing(product: Expr) -> list[Expr]:
 def _by_slope(expr: Expr, domain: Domain) -> list[Case] | None:
     """Cut by the factors of an equality, or by whether the slope of a symbol in it vanishes."""
     staying = under_derivatives(expr, domain)
-    for condition in domain.conditions:
-        if not isinstance(condition, sp.Eq) or not isinstance(condition.lhs, sp.Expr):
-            continue
-        gap = condition.lhs - cast("Expr", condition.rhs)
+    equalities = (c for c in domain.conditions if isinstance(c, sp.Eq) and isinstance(c.lhs, sp.Expr))
+    for condition in equalities:
+        gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
         others = Domain(tuple(c for c in domain.conditions if c != condition), domain.box)
         factors = [f for f, _ in polynomial_factors(gap)]
         if len(factors) > 1 or (factors and sp.expand(gap / factors[0]).free_symbols):
             vanishing = (_equality(f) for f in factors)
             return [settle_equalities(expr, _narrowed(others, c), str(c)) for c in vanishing]
-        for s, slope, rest in _linear_in(condition, staying):
-            if slope.free_symbols and not declared_complex(s) and not _known_nonzero(slope, domain):
-                regular = _narrowed(domain, *(sp.Ne(f, 0) for f in _vanishing(slope)))
-                singular = _narrowed(others, _equality(slope), _equality(rest))
-                return [
-                    settle_equalities(expr, regular, f"{slope} ≠ 0"),
-                    settle_equalities(expr, singular, f"{slope} = 0"),
-                ]
+        cut = next((cut for cut in _linear_in(condition, staying) if _may_vanish(*cut[:2], domain)), None)
+        if cut is not None:
+            _, slope, rest = cut
+            regular = _narrowed(domain, *(sp.Ne(f, 0) for f in _vanishing(slope)))
+            singular = _narrowed(others, _equality(slope), _equality(rest))
+            return [
+                settle_equalities(expr, regular, f"{slope} ≠ 0"),
+                settle_equalities(expr, singular, f"{slope} = 0"),
+            ]
     return None
+
+
+def _may_vanish(s: Symbol, slope: Expr, domain: Domain) -> bool:
+    return bool(slope.free_symbols) and not declared_complex(s) and not _known_nonzero(slope, domain)
 
 
 def _equality(gap: Expr) -> Boolean:

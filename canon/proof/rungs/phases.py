@@ -22,7 +22,7 @@ from canon.proof.tower.tower import Fraction
 from canon.proof.trees.sympy_types import free_symbols
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
+    from collections.abc import Hashable, Sequence
 
     from flint import arb, fmpq, fmpq_mpoly
     from sympy import Expr
@@ -89,20 +89,26 @@ def _groups(n: NormalForm, p: fmpq_mpoly) -> list[Fraction] | None:
         if not special:
             plain.append((monomial, coefficient))
             continue
-        inner = tuple((k, e) for k, e in monomial if k == special[0][0] or k == unit)
-        outer = tuple((k, e) for k, e in monomial if (k, e) not in inner)
+        inner = tuple((k, e) for k, e in monomial if k in (special[0][0], unit))
+        outer = tuple((k, e) for k, e in monomial if k not in (special[0][0], unit))
         linear.setdefault(outer, {})[inner] = coefficient
-    if not linear:
+    if not linear or not _distributed(plain, linear, pi):
         return None
+    return [Fraction(_polynomial(n, terms)) for terms in linear.values()]
+
+
+def _distributed(
+    plain: Sequence[tuple[Monomial, fmpq]], linear: dict[Monomial, dict[Monomial, fmpq]], pi: int
+) -> bool:
+    """Add each term without arcs and logarithms to the group whose monomial divides it; say if all have one."""
     for monomial, coefficient in plain:
         outer = _largest_divisor(monomial, linear, pi)
         if outer is None:
-            return None
-        inner = dict(monomial)
-        for k, e in outer:
-            inner[k] -= e
-        linear[outer][tuple((k, e) for k, e in inner.items() if e)] = coefficient
-    return [Fraction(_polynomial(n, terms)) for terms in linear.values()]
+            return False
+        taken = dict(outer)
+        inner = tuple((k, e - taken.get(k, 0)) for k, e in monomial if e != taken.get(k, 0))
+        linear[outer][inner] = coefficient
+    return True
 
 
 def _largest_divisor(monomial: Monomial, groups: dict[Monomial, Any], pi: int) -> Monomial | None:
@@ -130,21 +136,27 @@ def _group_vanishes(n: NormalForm, h: Fraction) -> bool:
         (t.generators[k][0], any(t.generators[j] == ("I",) for j, _ in m)) for m, _ in terms for k, _ in m
     }
     turns = any((arc, False) in kinds for arc in ARCS) or ("log", True) in kinds
-    denominators = [int(c.q) for m, c in terms if any(t.generators[k][0] in ARCS for k, _ in m)]
-    common = lcm(*denominators) if denominators else 1
-    multiples = {1 if common <= 2 else common, common, 2 * common} if denominators else {1}
-    w = h
-    for multiple in sorted(multiples):
+    for multiple in _whole_multiples(n, terms):
         w = n.scaled(multiple, t.times(n.imaginary_unit, h) if turns else h)
         if not t.is_zero(n.minus(exponential(n, w), t.number(1))):
             continue
-        bound = POINT
-        for monomial, coefficient in t.terms(w.num):
-            part = _range(n, monomial).times(Rational(int(coefficient.p), int(coefficient.q)))
-            bound = bound.plus(part)
-        if bound.only_zero_turns() or _zero_by_continuity(n, h, w):
+        if _bound(n, w).only_zero_turns() or _zero_by_continuity(n, h, w):
             return True
     return False
+
+
+def _whole_multiples(n: NormalForm, terms: Sequence[tuple[Monomial, fmpq]]) -> list[int]:
+    """Return by what a sum is multiplied in turn: the arcs in it get whole coefficients, then even ones."""
+    of_arcs = [c for m, c in terms if any(n.tower.generators[k][0] in ARCS for k, _ in m)]
+    common = lcm(*(int(c.q) for c in of_arcs))
+    return sorted({1 if common <= 2 else common, common, 2 * common}) if of_arcs else [1]
+
+
+def _bound(n: NormalForm, w: Fraction) -> Range:
+    bound = POINT
+    for monomial, coefficient in n.tower.terms(w.num):
+        bound = bound.plus(_range(n, monomial).times(Rational(int(coefficient.p), int(coefficient.q))))
+    return bound
 
 
 def _range(n: NormalForm, monomial: Monomial) -> Range:

@@ -41,9 +41,11 @@ def split_signs(n: Forms, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]]
             content = content * p.leading_coefficient() ** e
             continue
         known = n.signs.of(p)
-        if known:
-            outside.append((Fraction(p if known.endswith("+") else -p), e))
-            sign = -sign if e % 2 and known.endswith("-") else sign
+        if known.endswith("+"):
+            outside.append((Fraction(p), e))
+        elif known:
+            outside.append((Fraction(-p), e))
+            sign *= (-1) ** (e % 2)
         elif n.signs.real(p):
             if e - e % 2:
                 outside.append((modulus_of_polynomial(n, p), e - e % 2))

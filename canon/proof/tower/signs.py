@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable
+    from collections.abc import Callable, Hashable, Iterator
 
     from flint import fmpq, fmpq_mpoly
 
@@ -192,19 +192,25 @@ class Signs:
         bad, ratio = next(open_, ((), None))
         if ratio is None:
             return ""
+        for known, strict, multiple, coefficient in self._cancelling(bad, positive=ratio > 0):
+            sign = self._of_term(multiple, positive=True)
+            if not sign.endswith("+"):
+                continue
+            for share in (1, 2) if steps > 1 and not multiple else (1,):
+                found = self._without(p, known, multiple, ratio / coefficient / share, steps)
+                if found:
+                    return "+" if (strict and sign == "+") or found == "+" else "0+"
+        return ""
+
+    def _cancelling(
+        self, term: Monomial, *, positive: bool
+    ) -> Iterator[tuple[fmpq_mpoly, bool, Monomial, fmpq]]:
+        """Yield facts, and by what monomial to multiply them so that one of their terms cancels the given one."""
         for known, strict in self._facts:
             for cancelled, coefficient in self.tower.terms(known)[:WIDEST]:
-                multiple = _quotient(bad, cancelled)
-                if multiple is None or (ratio > 0) != (coefficient > 0):
-                    continue
-                sign = self._of_term(multiple, positive=True)
-                if not sign.endswith("+"):
-                    continue
-                for share in (1, 2) if steps > 1 and not multiple else (1,):
-                    found = self._without(p, known, multiple, ratio / coefficient / share, steps)
-                    if found:
-                        return "+" if (strict and sign == "+") or found == "+" else "0+"
-        return ""
+                multiple = _quotient(term, cancelled)
+                if multiple is not None and positive == (coefficient > 0):
+                    yield known, strict, multiple, coefficient
 
     def _strictly(self, p: fmpq_mpoly) -> bool:
         """Tell whether p, a sum of nonnegative terms, stays one less a multiple of a positive fact."""

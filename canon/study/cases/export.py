@@ -37,6 +37,13 @@ OF_OBSERVABLES = ("verdict", "bound", "slope", "slope_error", "detection_limit",
 """What there is a column for of each observable beside the energy: ``NAME verdict`` and so on."""
 
 
+_SERIES = (
+    ("means", "t", "block"), ("means", "mean", "block"),
+    ("curve", "t", "point"), ("curve", "largest", "point"), ("curve", "median", "point"),
+)  # fmt: skip
+"""Series of numbers that are kept of each case, and the dimension that they lie along."""
+
+
 class ExportError(ImportError):
     """A library that writes this format is not installed."""
 
@@ -113,24 +120,23 @@ def dataset_of(store: Store) -> xarray.Dataset:
     except ImportError as missing:
         raise ExportError("NetCDF needs xarray: pip install canon-mechanics[export]") from missing
     rows, results = rows_of(store), results_of(store)
-    variables: dict[str, Any] = {}
-    for name in _columns(rows):
-        values = [row.get(name) for row in rows]
-        if _is_text(name):
-            variables[_plain(name)] = ("case", [value or "" for value in values])
-        elif name != "final":
-            variables[_plain(name)] = (
-                "case",
-                [math.nan if v is None else float(v) for v in values],
-            )
-    finals = [row.get("final") or [] for row in rows]
-    variables["final"] = (("case", "component"), _table(finals))
-    for group, dimension in (("means", "block"), ("curve", "point")):
-        for name in ("t", "mean") if group == "means" else ("t", "largest", "median"):
-            series = [result.numbers.get(group, {}).get(name, []) for result in results]
-            variables[f"{group}_{name}"] = (("case", dimension), _table(series))
+    variables: dict[str, Any] = {
+        _plain(name): ("case", _values(name, [row.get(name) for row in rows]))
+        for name in _columns(rows)
+        if name != "final"
+    }
+    variables["final"] = (("case", "component"), _table([row.get("final") or [] for row in rows]))
+    for group, name, dimension in _SERIES:
+        series = [result.numbers.get(group, {}).get(name, []) for result in results]
+        variables[f"{group}_{name}"] = (("case", dimension), _table(series))
     inputs = [name for name in variables if name in INPUTS or name.startswith("parameter_")]
     return xarray.Dataset(variables).set_coords(inputs)
+
+
+def _values(column: str, values: Sequence[Any]) -> list[str] | list[float]:
+    if _is_text(column):
+        return [value or "" for value in values]
+    return [math.nan if v is None else float(v) for v in values]
 
 
 def write_netcdf(store: Store, path: Path) -> None:

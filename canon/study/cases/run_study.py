@@ -209,25 +209,24 @@ def _on(
         except RuntimeError as error:  # BrokenExecutor among them: it takes no more work
             lost.append(f"{type(error).__name__}: {error}")
 
+    def fill() -> None:
+        while not lost and len(flying) < in_flight and (following := next(pending, None)) is not None:
+            send(*following)
+
     try:
-        while True:
-            while not lost and len(flying) < in_flight and (following := next(pending, None)) is not None:
-                send(*following)
-            if not flying:
-                break
+        fill()
+        while flying:
             done, _ = wait(flying, return_when=FIRST_COMPLETED)
             for future in done:
                 key, case = flying.pop(future)
-                if future.cancelled():
-                    lost.append("the executor gave a case back")
-                    continue
-                if (error := future.exception()) is not None:
-                    lost.append(f"{type(error).__name__}: {error}")
+                if (why := _why_lost(future)) is not None:
+                    lost.append(why)
                     continue
                 found = future.result()
                 if isinstance(found, Checkpoint) and not lost:
                     send(key, case, found)
                 yield key, found
+            fill()
     finally:
         for future in flying:
             future.cancel()
@@ -235,3 +234,11 @@ def _on(
         raise StudyError(
             f"workers died while they ran cases ({lost[0]}); what was finished is kept, run again to go on"
         )
+
+
+def _why_lost(future: Future[Checkpoint | Record]) -> str | None:
+    """Return why a case that was sent to a worker brings no result, None where it brings one."""
+    if future.cancelled():
+        return "the executor gave a case back"
+    error = future.exception()
+    return None if error is None else f"{type(error).__name__}: {error}"

@@ -107,27 +107,43 @@ def searched(
             continue
         if tried.error <= accuracy:
             good = tried
-            if tried.error >= LOWEST * accuracy:
-                break
-        elif good is None and _is_floor(bad, tried):
-            best = min((each for each in (bad, tried) if each is not None), key=lambda each: each.error)
+        elif good is None and bad is not None and _is_floor(bad, tried):
+            best = min(bad, tried, key=lambda each: each.error)
             return candidate_of(question, best, accuracy, note="its error falls no further")
         else:
             bad = tried
         knob = min(ceiling, _next_knob(tried, good, bad, accuracy))
-        if good is not None:
-            largest = knob if bad is not None else min(ceiling, max(knob, _by_its_order(good, accuracy)))
-            if knob <= SAME * good.knob or _cost_at(good, largest) > HOPELESS * cheapest:
-                break
-        elif duration / knob > LONGEST_PILOT or _cost_at(tried, knob) > HOPELESS * cheapest:
+        if good is not None and _is_enough(good, bad, knob, ceiling, accuracy, cheapest):
+            break
+        if good is None and _is_hopeless(tried, knob, duration, cheapest):
             return by_order(question, tried, accuracy)
         setting = setting.turned(knob)
-    if good is not None:
-        if good.knob * LARGER[-1] <= ceiling:
-            good = _still_larger(question, good, duration, accuracy, cheapest)
-        dearer = good.error < LOWEST * accuracy and good.cost > HOPELESS * cheapest
-        return candidate_of(question, good, accuracy, note="dearer at any step" if dearer else "")
-    return by_order(question, bad, accuracy) if bad is not None else nothing(setting, "")
+    if good is None:
+        return by_order(question, bad, accuracy) if bad is not None else nothing(setting, "")
+    if good.knob * LARGER[-1] <= ceiling:
+        good = _still_larger(question, good, duration, accuracy, cheapest)
+    dearer = good.error < LOWEST * accuracy and good.cost > HOPELESS * cheapest
+    return candidate_of(question, good, accuracy, note="dearer at any step" if dearer else "")
+
+
+def _is_hopeless(tried: TriedSetting, knob: float, duration: float, cheapest: float) -> bool:
+    """Tell whether the step that may suffice is too small for a pilot run, or too dear for a choice."""
+    return duration / knob > LONGEST_PILOT or _cost_at(tried, knob) > HOPELESS * cheapest
+
+
+def _is_enough(
+    good: TriedSetting,
+    bad: TriedSetting | None,
+    knob: float,
+    ceiling: float,
+    accuracy: float,
+    cheapest: float,
+) -> bool:
+    """Tell whether a step need not be made larger: its error is near the one allowed, or it never gets cheap."""
+    if good.error >= LOWEST * accuracy or knob <= SAME * good.knob:
+        return True
+    largest = knob if bad is not None else min(ceiling, max(knob, _by_its_order(good, accuracy)))
+    return _cost_at(good, largest) > HOPELESS * cheapest
 
 
 def _ceiling(tried: TriedSetting, natural: float) -> float:
@@ -204,9 +220,9 @@ def _by_its_order(tried: TriedSetting, accuracy: float) -> float:
     return tried.knob * (MARGIN * accuracy / tried.error) ** (1.0 / order_of(tried.pilot))
 
 
-def _is_floor(bad: TriedSetting | None, tried: TriedSetting) -> bool:
+def _is_floor(bad: TriedSetting, tried: TriedSetting) -> bool:
     """Tell whether a smaller step no longer brings a smaller error: round-off is all that is left."""
-    if bad is None or math.isinf(bad.error) or tried.knob >= bad.knob:
+    if math.isinf(bad.error) or tried.knob >= bad.knob:
         return False
     gained = math.log(bad.error / tried.error) if tried.error > 0.0 else math.inf
     return gained < FALLING * order_of(tried.pilot) * math.log(bad.knob / tried.knob)

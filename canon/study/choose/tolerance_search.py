@@ -41,29 +41,28 @@ def searched_tolerance(
     duration *= pilot_share(method)
     aim = accuracy * ADAPTIVE_MARGIN if question.span > duration else accuracy
     last = last_rung(precision)
-    good: tuple[int, TriedSetting] | None = None
-    bad: tuple[int, TriedSetting] | None = None
+    good: TriedSetting | None = None
+    bad: TriedSetting | None = None
+    low, high = LOOSEST - 1, last + 1
     rung = min(last, max(LOOSEST, round(-math.log(aim) / 2.0)))
     for _ in range(PILOTS):
         setting = Setting(method, tolerance=tolerance_at(rung), precision=precision)
         tried = tried_with(question, setting, duration)
         if tried.error <= aim:
-            good = rung, tried
+            good, high = tried, rung
         else:
-            bad = rung, tried
+            bad, low = tried, rung
             if tried.cost > HOPELESS * cheapest and good is None:
                 return by_order(question, tried, accuracy)
-        low = bad[0] if bad is not None else LOOSEST - 1
-        high = good[0] if good is not None else last + 1
         if high - low <= 1:
             break
         jump = math.log(tried.error / aim) / 2.0 if 0.0 < tried.error < math.inf else 2.0
         rung = min(max(rung + (math.ceil(jump) or -1), low + 1), high - 1)
     if good is not None:
-        return candidate_of(question, good[1], accuracy)
-    if bad is None or math.isinf(bad[1].error):
-        return nothing(Setting(method, precision=precision), bad[1].pilot.failure if bad is not None else "")
-    return candidate_of(question, bad[1], accuracy, note="its tolerance is as small as it can be")
+        return candidate_of(question, good, accuracy)
+    if bad is None or math.isinf(bad.error):
+        return nothing(Setting(method, precision=precision), bad.pilot.failure if bad is not None else "")
+    return candidate_of(question, bad, accuracy, note="its tolerance is as small as it can be")
 
 
 def tolerance_at(rung: int) -> float:
