@@ -143,22 +143,23 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
         return OffKinks(domain, domain, domain)
     settled: dict[Expr, bool | None] = {}
     off: dict[sp.Basic, sp.Basic] = {}
-    gaps = ((part, gap) for part, gap in _gaps(found) if gap.free_symbols <= found.symbols and _varies(gap))
-    for part, gap in gaps:
+    for part, gap in _gaps(found):
         variants = _variants(gap) if len(settled) < MOST_KINKS else None
         factors = list(_factors([gap] if variants is None else variants, touching=touching))
-        new = dict.fromkeys(f for f in factors if f not in settled)
-        settled |= {f: False if variants is None else _is_thin(f, domain) for f in new}
+        for factor in factors:
+            if factor not in settled:
+                settled[factor] = variants is not None and _is_thin(factor, domain)
         if all(settled[factor] is True for factor in factors):
             off |= _off_its_kink(part, variants or [], touching=touching)
-    thin, doubtful = (_not_zero(f for f, is_thin in settled.items() if is_thin is so) for so in (True, False))
+    thin, doubtful = _where(settled, so=True), _where(settled, so=False)
     narrowed = Domain((*domain.conditions, *thin), domain.box) if thin else domain
     strictly = Domain((*narrowed.conditions, *doubtful), domain.box) if doubtful else narrowed
     return OffKinks(domain, narrowed, strictly, off)
 
 
-def _not_zero(factors: Iterable[Expr]) -> list[Boolean]:
-    return [cast("Boolean", sp.Ne(factor, 0, evaluate=False)) for factor in factors]
+def _where(settled: Mapping[Expr, bool | None], *, so: bool) -> list[Boolean]:
+    """Return that factors do not vanish, those of which it was found that they vanish on thin sets, or that not."""
+    return [cast("Boolean", sp.Ne(f, 0, evaluate=False)) for f, is_thin in settled.items() if is_thin is so]
 
 
 def _off_its_kink(part: sp.Basic, variants: Sequence[Expr], *, touching: bool) -> dict[sp.Basic, sp.Basic]:
@@ -188,15 +189,20 @@ def vanishes_off_kinks(expr: Expr | sp.MatrixBase, domain: Domain, budget: float
 
 
 def _gaps(found: Anatomy) -> Iterator[tuple[sp.Basic, Expr]]:
-    """Yield each function with kinks, or bound of a piece, and what vanishes at them."""
+    """Yield each function with kinks, or bound of a piece, and what vanishes at them and may do so."""
     for part in found.of(*WITH_PIECES):
-        if isinstance(part, sp.Max | sp.Min):
-            yield from ((part, a - b) for a, b in combinations(arguments(part), 2))
-        elif isinstance(part, sp.Piecewise):
-            bounds = sorted(part.atoms(Relational), key=sp.default_sort_key)
-            yield from ((c, cast("Expr", c.lhs) - cast("Expr", c.rhs)) for c in bounds)
-        else:
-            yield part, arguments(part)[0]
+        for kink, gap in _gaps_of(part):
+            if gap.free_symbols <= found.symbols and _varies(gap):
+                yield kink, gap
+
+
+def _gaps_of(part: sp.Basic) -> list[tuple[sp.Basic, Expr]]:
+    if isinstance(part, sp.Max | sp.Min):
+        return [(part, a - b) for a, b in combinations(arguments(part), 2)]
+    if isinstance(part, sp.Piecewise):
+        bounds = sorted(part.atoms(Relational), key=sp.default_sort_key)
+        return [(c, cast("Expr", c.lhs) - cast("Expr", c.rhs)) for c in bounds]
+    return [(part, arguments(part)[0])]
 
 
 def _varies(f: Expr) -> bool:
