@@ -13,12 +13,16 @@ if TYPE_CHECKING:
 
 __all__ = ["KINDS", "kind_of"]
 
-
 _T, _TS, _N = Shape.TEXT, Shape.TEXTS, Shape.NAMES
 _FIRST = ("changed_claims.another_reading", "components.part_by_part")
 _CHANGED = ("changed_claims.only_where", "one_change.anywhere", "changed_claims.only_for")
 _OF_F = ("convention.rescaled", "convention.one_rule", *_FIRST, "components.generating_function")
+_OF_K = ("convention.lost_time_derivative", *_FIRST, "components.new_hamiltonian")
 _AT_LAST = ("asymptotic.right_to_an_order", "changed_claims.right_where")
+_OF_MAPS = (
+    "convention.valence", *_FIRST, "changed_claims.only_where", "changed_claims.staggered_step",
+    "one_change.anywhere", "changed_claims.only_for", "convention.variable_valence", *_AT_LAST,
+)  # fmt: skip
 _PHASE = {"q": _N, "p": _N}
 _NEW = {"new_q": _N, "new_p": _N}
 _LAGRANGE = {"q": _N, "L": _T}
@@ -34,16 +38,7 @@ _CANONICITY = Kind(
     derived=True,
     repaired=("P", "Q", "implicit"),
     screen="canonicity",
-    diagnoses=(
-        "convention.valence",
-        *_FIRST,
-        "changed_claims.only_where",
-        "changed_claims.staggered_step",
-        "one_change.anywhere",
-        "changed_claims.only_for",
-        "convention.variable_valence",
-        *_AT_LAST,
-    ),
+    diagnoses=_OF_MAPS,
 )
 _GENERATING = Kind(
     "canonical.generating",
@@ -175,10 +170,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             screen="bilinear_covariant",
             diagnoses=("convention.factor", *USUAL),
         ),
-        "generating-F1": replace(_GENERATING, implied={"type": 1}),
-        "generating-F2": replace(_GENERATING, implied={"type": 2}),
-        "generating-F3": replace(_GENERATING, implied={"type": 3}),
-        "generating-F4": replace(_GENERATING, implied={"type": 4}),
+        **{f"generating-F{i}": replace(_GENERATING, implied={"type": i}) for i in (1, 2, 3, 4)},
         "transformed-hamiltonian-K": Kind(
             "canonical.new_hamiltonian",
             {**_PHASE, "H": _T, **_NEW, "K": _T},
@@ -192,13 +184,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             repaired=("K", "map.P", "map.Q", "inverse_map.p", "inverse_map.q"),
             screen="new_hamiltonian",
             rereadings=("inverse_map", "exchanged_map"),
-            diagnoses=(
-                "convention.lost_time_derivative",
-                *_FIRST,
-                "components.new_hamiltonian",
-                *_CHANGED,
-                *_AT_LAST,
-            ),
+            diagnoses=(*_OF_K, *_CHANGED, *_AT_LAST),
         ),
         "constant-of-motion": Kind(
             "hamiltonian.constant_of_motion",

@@ -181,21 +181,14 @@ class _Plain:
         if len(statements) > 1:
             named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
             other = next((s for s in statements if s not in named), statements[-1]).sides[0]
-            if len(named) != 1:
-                raise self.told(
-                    place,
-                    text,
-                    other,
-                    f"one expression is asked for: {asked.shown}",
-                    "leave the others out",
+            if len(named) == 1:
+                reason, remedy = (
+                    f"this is another statement beside {asked.shown}",
+                    "put it in, or leave it out",
                 )
-            raise self.told(
-                place,
-                text,
-                other,
-                f"this is another statement beside {asked.shown}",
-                "put it in, or leave it out",
-            )
+            else:
+                reason, remedy = f"one expression is asked for: {asked.shown}", "leave the others out"
+            raise self.told(place, text, other, reason, remedy)
         sides = list(next(iter(statements)).sides)
         if len(sides) == 1:
             return text

@@ -295,13 +295,10 @@ def _blew_up(blocks: Blocks, bound: float, diverged: float) -> bool:
 
 def _diverged(blocks: Blocks, bound: float, diverged: float) -> tuple[Growth, Exponent, str]:
     exponent = power_of_time(np.hypot(blocks.mean, blocks.amplitude))
+    reason = f"the end of the run is over {BLOW_UP:.0f} times worse than its middle"
     if bound >= diverged:
-        return (
-            Growth.DIVERGED,
-            exponent,
-            f"the error reached {bound:.2g}, where the quantity has lost its meaning",
-        )
-    return Growth.DIVERGED, exponent, f"the end of the run is over {BLOW_UP:.0f} times worse than its middle"
+        reason = f"the error reached {bound:.2g}, where the quantity has lost its meaning"
+    return Growth.DIVERGED, exponent, reason
 
 
 def _secular(
@@ -350,11 +347,10 @@ def _wandering(
     elif back.evidence > PERHAPS_RETURNS:
         found += ", and perhaps returns"
     elif like_a_walk:
-        return (
-            Growth.WANDERING,
-            exponent,
-            f"{found}, as a random walk does: of round-off or of truncation, which drift(motion) or roundoff= tells",
+        found += (
+            ", as a random walk does: of round-off or of truncation, which drift(motion) or roundoff= tells"
         )
+        return Growth.WANDERING, exponent, found
     else:
         found += ", without a direction but not as t^½"
     return Growth.UNDECIDED, exponent, f"{found}: {UNCLEAR}"
