@@ -6,4 +6,4 @@ __all__ = ["StudyError"]
 
 
 class StudyError(ValueError):
-    """A study that can't be run as asked."""
+    """Raised for a study that can't be run as asked."""

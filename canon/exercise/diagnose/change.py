@@ -9,7 +9,7 @@ __all__ = ["Change", "Mistake", "rank"]
 
 
 class Mistake(enum.Enum):
-    """What is wrong with a part of an answer; beside each the items that a change of that kind holds."""
+    """Kind of mistake in an answer; beside each kind stand the items that its change holds."""
 
     # a whole component
     WRONG_SIGN = enum.auto()
@@ -68,7 +68,7 @@ class Mistake(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One thing that is wrong.
+    """Change of a wrong answer: the mistake, what it is about, and the component in which it is.
 
     Parameters
     ----------

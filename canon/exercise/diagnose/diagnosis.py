@@ -71,12 +71,12 @@ class Diagnosis:
 
     @classmethod
     def stated(cls, mistake: Mistake, *items: object, only_fault: bool = True) -> Diagnosis:
-        """Return what was proved of the question on which a claim turned, with nothing to put into it."""
+        """Return a diagnosis that states what was proved of the claim and proposes no change."""
         return cls((Change(mistake, items),), only_fault=only_fault)
 
     @property
     def proof(self) -> Proof:
-        """How it is known."""
+        """How the diagnosis was proved."""
         if self.repaired is not None:
             return Proof.REPAIRED
         return Proof.COMPARED if self.only_fault else Proof.JUDGED

@@ -262,7 +262,7 @@ def fails(question: str, feedback: str, residual: Expr | None = None) -> Verdict
 
 
 def decide(question: Question, deadline: Deadline) -> Verdict:
-    """Return the answer to one question."""
+    """Return the verdict on one question of proof that a claim comes down to."""
     match question:
         case Verdict():
             return question

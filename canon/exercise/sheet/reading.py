@@ -61,7 +61,7 @@ _MOVING = ("q", "p", "x", "variables", "new_q", "new_p", "quasi")
 
 
 class InvalidClaim(ValueError):
-    """A claim that does not say something that could be judged."""
+    """Raised for a claim that says nothing that could be judged; ``error`` names the key and the column."""
 
     def __init__(self, error: ClaimError) -> None:
         super().__init__(str(error))

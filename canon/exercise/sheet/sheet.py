@@ -47,7 +47,7 @@ DEFAULT_BUDGET = 10.0
 
 
 class SheetError(ValueError):
-    """A file that is no sheet at all."""
+    """Raised for a file that can't be read as a sheet of claims."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Claims in their order, the ill-formed among them marked."""
+    """Sheet of claims in their order; those of a wrong form carry their errors."""
 
     title: str
     claims: tuple[Claim, ...]

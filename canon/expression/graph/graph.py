@@ -29,7 +29,7 @@ __all__ = ["Graph", "Node"]
 
 
 class Graph(Arena):
-    """An arena of expression nodes.
+    """Expression graph: every distinct subexpression is a node, stored once and known by its number.
 
     Examples
     --------

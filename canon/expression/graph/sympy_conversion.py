@@ -36,7 +36,7 @@ _LOWERED: dict[type, Callable[[Arena, int], int]] = {
 
 
 class NotModelledError(ValueError):
-    """An expression holds something the graph has no operation for."""
+    """Raised for an expression with a function that the expression graph has no operation for."""
 
 
 def from_sympy(arena: Arena, expression: Expr) -> int:

@@ -27,7 +27,7 @@ MAX_REASON = 300
 
 
 class LanguageError(ValueError):
-    """Text that is not in the expression language, and where.
+    """Raised for text that is not in the expression language, with the column where it goes wrong.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class FlowJacobian:
     M
         The Jacobian, shape (2n, 2n, times): ``M[i, j]`` is ∂y_i/∂y0_j; the identity at the start.
     low
-        What M is beyond doubles: it is M + low.
+        Digits beyond double precision: the Jacobian is M + low.
     """
 
     t: Array
@@ -232,7 +232,7 @@ def reversal_error(
     precision: str | int | None = None,
     parameters: Mapping[Symbol | str, Any] | None = None,
 ) -> Array:
-    """Go there and back again and return how far from the start the motion arrives, shape of y0.
+    """Return how far from its start a motion arrives that runs forward and then back, shape of y0.
 
     A symmetric method arrives to round-off, times what the motion makes of it; others miss by their error, and so do
     time-transformed ones, which land within a step.

@@ -51,7 +51,7 @@ _SMALL = 1e-6
 
 @dataclass(frozen=True)
 class Witness:
-    """What numbers say about a claim.
+    """Numerical evidence for or against a claim, which never decides it.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ Action = Literal["record", "stop", "bounce"]
 
 @dataclass(frozen=True)
 class Event:
-    """What is to happen where g(q, p, t) crosses zero.
+    """Event of a motion: what is to happen where a function g(q, p, t) crosses zero.
 
     A crossing is a change of sign. A motion that touches g = 0 and turns back on the same side crosses nothing,
     nor does one that starts at g = 0 cross at its start.
@@ -89,7 +89,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Crossing:
-    """An event met.
+    """Crossing of an event: the time and the state at which g(q, p, t) crossed zero.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ def values_in(
 
 
 class AccuracyWarning(UserWarning):
-    """The computed motion is certainly not the system's."""
+    """Warning that a computed motion is certainly not that of the system."""
 
 
 def warn_of_jumps(system: HamiltonEquations, samples: Samples, change: Array) -> None:

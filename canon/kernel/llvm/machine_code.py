@@ -38,7 +38,7 @@ _LARGE = 200_000
 
 @dataclass(frozen=True)
 class MachineCode:
-    """A compiled function.
+    """Machine code of one function, compiled by LLVM.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ __all__ = ["SCHEMES", "Scheme", "palindrome"]
 
 @dataclass(frozen=True)
 class Scheme:
-    """A symmetric splitting method.
+    """Coefficients of a symmetric splitting method, and its source.
 
     Parameters
     ----------

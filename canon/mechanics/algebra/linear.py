@@ -24,7 +24,7 @@ __all__ = ["Elimination", "SingularMatrixError", "eliminate", "is_regular", "sol
 
 
 class SingularMatrixError(ValueError):
-    """A matrix that had to be regular has a null direction.
+    """Raised where a matrix that has to be regular is singular.
 
     Parameters
     ----------

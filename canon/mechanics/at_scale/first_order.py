@@ -122,7 +122,7 @@ def canonical_derivation(
     forces: Sequence[Expr] | None = None,
     t: Symbol = time,
 ) -> CanonicalEquations:
-    """Return Hamilton's equations of bodies.
+    """Return Hamilton's equations of bodies, derived on an expression graph.
 
     The parameters are those of :func:`canon.mechanics.at_scale.second_order.derivation`.
 

@@ -133,7 +133,7 @@ def channels(reader: Reader, bodies: Sequence[Body], field: Sequence[Expr] = ())
     for body in bodies:
         if len(body.r) not in (0, len(field)) and field:
             raise ValueError(
-                f"a field of {counted(len(field), 'component')} acts on a position of {len(body.r)}"
+                f"a field of {counted(len(field), 'component')} acts on a position of {len(body.r)}; give as many"
             )
         yield from _moving(reader, body, field)
         if isinstance(body, PlanarBody) and body.angle is not None:

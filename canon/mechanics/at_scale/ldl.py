@@ -55,7 +55,7 @@ def solved_on_graph(graph: Graph, M: Sequence[Sequence[int]], right: Sequence[in
         pivot = add((M[i][i], *map(mul, zip(opposite, row, strict=True))))
         if pivot == graph.zero:
             raise ZeroDivisionError(
-                f"pivot {i + 1} of the mass matrix is 0; L does not determine the accelerations"
+                f"pivot {i + 1} of the mass matrix is 0; L does not determine the accelerations: use fewer coordinates"
             )
         lower.append(row)
         inverse.append(graph.power(pivot, -1))

@@ -202,7 +202,9 @@ def solved(matrix: Vector, right: Sequence[float] | Vector, name: str) -> Vector
     except np.linalg.LinAlgError as singular:
         raise ArithmeticError(_SINGULAR.format(name=name)) from singular
     if not np.isfinite(found).all():
-        raise ArithmeticError(f"the equations with {name} hold a number that is not finite at this point")
+        raise ArithmeticError(
+            f"the equations with {name} hold a number that is not finite at this point; take another point"
+        )
     return found
 
 

@@ -110,7 +110,7 @@ def derivation(
     forces: Sequence[Expr] | None = None,
     t: Symbol = time,
 ) -> SecondOrderEquations:
-    """Return the equations of motion of bodies.
+    """Return Lagrange's equations M q̈ = f of bodies, derived on an expression graph.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ __all__ = [
 
 
 class NoGeneratingFunctionError(ValueError):
-    """The map has no generating function of this type.
+    """Raised where a map has no generating function of the type that is asked for.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ __all__ = ["NoClosedInverseError", "inverse_transformation"]
 
 
 class NoClosedInverseError(ValueError):
-    """The inverse of a map was not found in closed form on its domain."""
+    """Raised where the inverse of a map was not found in closed form on its domain."""
 
 
 def inverse_transformation(

@@ -97,7 +97,9 @@ class CanonicalTransformation:
                 "give as many of each"
             )
         if len({*self.q, *self.p}) < 2 * len(self.q):
-            raise ValueError(f"the variables {(*self.q, *self.p)} are not all different")
+            raise ValueError(
+                f"the variables {(*self.q, *self.p)} are not all different; each needs a symbol of its own"
+            )
 
     @property
     def variables(self) -> tuple[Symbol, ...]:
@@ -250,7 +252,7 @@ class CanonicalTransformation:
         if len(following.q) != len(self.q):
             raise ValueError(
                 f"a map of {counted(len(self.q), 'degree')} of "
-                f"freedom cannot precede one of {len(following.q)}"
+                f"freedom cannot precede one of {len(following.q)}; give maps of as many"
             )
         here = dict(zip(following.variables, self.images, strict=True))
         if following.t != self.t:

@@ -80,7 +80,9 @@ class Hamiltonian:
                 f"{counted(len(self.p), 'momentum', 'momenta')}; each coordinate needs one"
             )
         if len({*self.q, *self.p}) < 2 * len(self.q):
-            raise ValueError(f"the variables {(*self.q, *self.p)} are not all different")
+            raise ValueError(
+                f"the variables {(*self.q, *self.p)} are not all different; each needs a symbol of its own"
+            )
 
     @cached_property
     def q_dot(self) -> tuple[Expr, ...]:
@@ -118,7 +120,7 @@ class Hamiltonian:
         claimed = plain_all((*q_dot, *p_dot), (*self.q, *self.p), self.t)
         if len(claimed) != 2 * len(self.q):
             raise ValueError(
-                f"{counted(len(claimed), 'rate')} given for {2 * len(self.q)} canonical variables"
+                f"{counted(len(claimed), 'rate')} given for {2 * len(self.q)} canonical variables; give one each"
             )
         verdict = all_hold(
             (

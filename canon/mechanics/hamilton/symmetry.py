@@ -267,7 +267,9 @@ def _same_coordinates(first: Lagrangian, second: Lagrangian) -> tuple[tuple[Symb
     for each in (first, second):
         given_kind(each, Lagrangian, "what is compared")
     if first.q != second.q or first.t != second.t:
-        raise ValueError(f"the Lagrangians are about different coordinates, {first.q} and {second.q}")
+        raise ValueError(
+            f"the Lagrangians are about different coordinates, {first.q} and {second.q}; write both in the same"
+        )
     return first.q, first.t
 
 

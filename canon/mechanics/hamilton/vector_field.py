@@ -76,7 +76,9 @@ class VectorField:
 
     def _same_coordinates(self, other: VectorField) -> None:
         if other.x != self.x:
-            raise ValueError(f"the fields live on different coordinates, {self.x} and {other.x}")
+            raise ValueError(
+                f"the fields live on different coordinates, {self.x} and {other.x}; write both in the same"
+            )
 
 
 def hamiltonian_field(H: Expr, q: Sequence[Symbol], p: Sequence[Symbol]) -> VectorField:

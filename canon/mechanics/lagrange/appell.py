@@ -32,7 +32,7 @@ __all__ = ["GibbsAppell"]
 
 @dataclass(frozen=True)
 class GibbsAppell:
-    """A system of bodies in quasi-velocities.
+    """Gibbs–Appell function and equations of a system of bodies, in velocities or quasi-velocities.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ __all__ = ["DependentConstraintsError", "check_independent"]
 
 
 class DependentConstraintsError(ValueError):
-    """Constraints that are redundant or contradictory.
+    """Raised for constraints that are redundant or contradictory.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ Row = tuple[Expr, ...]
 
 @dataclass(frozen=True)
 class Pfaffian:
-    """Constraints ωₐ = Σ aₐⱼ dzⱼ = 0.
+    """Pfaffian constraints ωₐ = Σ aₐⱼ dzⱼ = 0 on the displacements of variables z.
 
     Parameters
     ----------

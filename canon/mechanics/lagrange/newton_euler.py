@@ -79,7 +79,7 @@ def weights(bodies: Sequence[Body], g: Sequence[Expr]) -> tuple[Load, ...]:
 
 @dataclass(frozen=True)
 class NewtonEuler:
-    """Bodies with the loads on them.
+    """Newton's and Euler's equations of bodies under given forces and unknown reactions.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class NewtonEuler:
             if load.force and len(load.force) != dimension:
                 raise ValueError(
                     f"a force of {counted(len(load.force), 'component')} "
-                    f"on body {load.body}, whose position has {dimension}"
+                    f"on body {load.body}, whose position has {dimension}; give as many"
                 )
 
     @cached_property

@@ -168,7 +168,7 @@ def independent_velocities(
     A = constrained.directions
     if len(dependent) != A.rows:
         raise ValueError(
-            f"{A.rows} constraints leave {len(q) - A.rows} of {len(q)} velocities free, not {len(free)}"
+            f"{A.rows} constraints leave {len(q) - A.rows} of {len(q)} velocities free, not {len(free)}; name as many"
         )
     kept = {velocity(s): velocity(s) for s in free}
     still = dict.fromkeys((velocity(q[j]) for j in dependent), sp.S.Zero)

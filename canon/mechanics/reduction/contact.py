@@ -120,7 +120,9 @@ def multiplier_along(
     at_rest = exchanged(E, {v: sp.S.Zero})
     quadratic = E.diff(v, 2) / 2
     if quadratic.has(v):
-        raise ValueError(f"the energy {E} is not quadratic in {v}, so {v}² does not follow from it alone")
+        raise ValueError(
+            f"the energy {E} is not quadratic in {v}, so {v}² does not follow from it alone; take multiplier_in_contact"
+        )
     squared = (substitute(E, started) - at_rest) / quadratic
     rates = zip(turning, reduction.ignorable_velocities, strict=True)
     through = {velocity(x): exchanged(rate, conserved) for x, rate in rates}

@@ -35,7 +35,7 @@ __all__ = ["Singularity", "singularity"]
 
 @dataclass(frozen=True)
 class Singularity:
-    """What a Lagrangian leaves undetermined.
+    """Null directions of a singular Lagrangian, and the constraints that follow from them.
 
     Parameters
     ----------

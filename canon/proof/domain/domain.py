@@ -131,7 +131,7 @@ def _unfolded(condition: Boolean) -> tuple[Boolean, ...]:
 
 @dataclass(frozen=True)
 class Domain:
-    """Conditions that hold beside the symbols' own assumptions.
+    """Domain of a claim: the conditions that hold besides its symbols' own assumptions.
 
     Parameters
     ----------

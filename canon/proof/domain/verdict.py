@@ -17,7 +17,7 @@ __all__ = ["Counterexample", "Evidence", "Status", "Undecided", "Verdict", "all_
 
 
 class Status(enum.Enum):
-    """The three answers."""
+    """Status of a verdict: proved, refuted, or neither."""
 
     HOLDS = "holds"
     FAILS = "fails"
@@ -62,7 +62,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Verdict:
-    """An answer, how it was reached, and what it rests on.
+    """Verdict on a claim: the answer, how it was reached, and what it rests on.
 
     ``bool(verdict)`` is True only for HOLDS, False for FAILS, and raises :class:`Undecided` otherwise: an
     unproved thing is never taken for a proved one.

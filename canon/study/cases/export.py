@@ -45,7 +45,7 @@ _SERIES = (
 
 
 class ExportError(ImportError):
-    """A library that writes this format is not installed."""
+    """Raised where the library that writes a format is not installed."""
 
 
 def rows_of(store: Store) -> list[dict[str, Any]]:

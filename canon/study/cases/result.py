@@ -19,7 +19,7 @@ __all__ = ["Result", "State", "motions_and_settings", "results_of"]
 
 
 class State(Enum):
-    """What became of a case."""
+    """State of a case: finished, failed or pending."""
 
     FINISHED = "finished"
     FAILED = "failed"

@@ -34,7 +34,7 @@ LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables")
 
 @dataclass(frozen=True)
 class Study:
-    """A list of cases.
+    """Study: a list of different cases, each one system, start, method and step.
 
     Parameters
     ----------

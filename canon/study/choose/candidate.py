@@ -101,7 +101,7 @@ class Candidate:
 
     @property
     def setting(self) -> Setting:
-        """The setting as pilots take it."""
+        """The method with its step or tolerance and its precision, as one value."""
         return Setting(self.method, self.step, self.tolerance, self.precision)
 
 

@@ -63,7 +63,7 @@ class Choice:
     candidates
         All that were considered, those that keep the accuracy first, the cheapest first.
     question
-        What was asked, the way pilots take it.
+        The same in the form that pilot runs take.
     outlook
         What was seen of the motion ahead of the pilots (:mod:`canon.study.choose.slow_times`).
     """

@@ -120,7 +120,7 @@ def _by_name(
         if list(names) == [ENERGY]:
             return {ENERGY: None}
         raise StudyError(
-            "of a system that is no Hamiltonian the energy has a name: give other functions yourself"
+            "of a system that is no Hamiltonian the energy has a name, no other observable: give functions by name"
         )
     free = hamiltonian.H.free_symbols
     ignorable = {str(p): p for q, p in zip(hamiltonian.q, hamiltonian.p, strict=True) if q not in free}
@@ -174,7 +174,9 @@ def _with_unit(
     point |= {s: np.float64(by_name[str(s)]) for s in free_symbols(f) if s not in point}
     value, *slopes = (float(x) for x in graph.evaluate(nodes, point))
     if not math.isfinite(value):
-        raise StudyError(f"the observable {name!r} is not finite at the start")
+        raise StudyError(
+            f"the observable {name!r} is not finite at the start: take another start, or another observable"
+        )
     terms = sum(abs(slope * x) for slope, x in zip(slopes, y0, strict=True))
     if abs(value) > NEGLIGIBLE * terms:
         return Observable(name, f, abs(value))

@@ -24,7 +24,7 @@ __all__ = ["Subject", "motion_hamiltonian", "subject_of"]
 
 @dataclass(frozen=True)
 class Subject:
-    """The motion that is studied.
+    """Motion that a study is about: a system with numbers and a start.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class Repair:
 
     @property
     def rank(self) -> int:
-        """How far back it stands among repairs that are right as well."""
+        """Rank among repairs that are right too; the likeliest has the lowest."""
         return rank(self.change) + (0 if self.besides is None else 3 + rank(self.besides))
 
     @property

@@ -38,7 +38,7 @@ PARTS = 8
 
 @dataclass(frozen=True)
 class Screening:
-    """The places at which candidates are looked at, how, and how many steps one of them takes."""
+    """Quick test of changed answers by their values at points, and how many steps one test takes."""
 
     answers: Mapping[str, Expr]
     test: Test
