@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Never
 
 from canon.flow.checked_request import hamilton_equations_of
-from canon.flow.request import Request
+from canon.flow.request import Request, refuse_unknown
 from canon.flow.run.hamiltonian_system import HamiltonianSystem
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run_record import recorded
@@ -48,6 +48,7 @@ def propagate(
     events: Sequence[Event] = (),
     dense: bool = False,
     progress: Callable[[float], None] | bool | None = None,
+    **unknown: Never,
 ) -> Trajectory:
     """Integrate the equations of motion of any system from a starting state.
 
@@ -115,6 +116,9 @@ def propagate(
     progress
         A function to call now and then with the fraction done, 0 … 1; or True for a bar with an estimate on
         standard error, where that is a terminal.
+    **unknown
+        Nothing: what other libraries call an argument (``t_eval``, ``rtol``, ``args``, …) is refused with a sentence
+        that names the one here.
 
     Returns
     -------
@@ -131,7 +135,7 @@ def propagate(
     KeyError
         A parameter has no value or a value is for no parameter, a variable no start; nothing has such a name.
     TypeError
-        What was given is no system that moves.
+        What was given is no system that moves, or there is no such argument.
     ValueError
         A start is not on the constraints, or the equations do not determine the accelerations there.
     ValueError
@@ -166,6 +170,7 @@ def propagate(
     >>> propagate("rolling-disc", (0, 1)).residuals.shape
     (2, 1001)
     """
+    refuse_unknown(unknown)
     return propagated(
         Request(
             system, t_span, y0, method=method, step=step, tolerance=tolerance, max_step=max_step,

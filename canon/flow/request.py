@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import KW_ONLY, dataclass, fields, replace
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -16,7 +17,54 @@ if TYPE_CHECKING:
     from canon.flow.method.setting import Setting
     from canon.flow.run.event import Event
 
-__all__ = ["Request"]
+__all__ = ["Request", "refuse_unknown"]
+
+# What other libraries call the arguments of a run, and what is given here.
+_ELSEWHERE = {
+    "t_eval": "times=[…] keeps the states at these times",
+    "args": "parameters={symbol or name: number} gives the numbers",
+    "rtol": "tolerance= is the relative tolerance of an adaptive method",
+    "atol": "there is no absolute tolerance; tolerance= is the relative one of an adaptive method",
+    "dense_output": "dense=True keeps the polynomials, and motion(t) evaluates them",
+    "first_step": "an adaptive method finds its first step; max_step= bounds it, and step= is for fixed steps",
+    "jac": "derivatives are taken from the formulas, so none is needed",
+    "vectorized": "many orbits are a start of shape (2n, orbits)",
+    **dict.fromkeys(
+        ("dt", "h", "timestep", "stepsize", "step_size"), "step= is the step of a fixed-step method"
+    ),
+    **dict.fromkeys(
+        ("until", "span", "duration", "t_end", "t_final", "t"), "t_span=(first, last) is the span of time"
+    ),
+    **dict.fromkeys(("x0", "state", "initial", "start", "y_init", "ic"), "y0= is the starting state"),
+    **dict.fromkeys(("n", "num", "n_samples", "points"), "samples= is how many states are kept"),
+}
+
+
+def refuse_unknown(unknown: Mapping[str, object]) -> None:
+    """Refuse arguments that :func:`canon.flow.propagate.propagate` does not have, saying what is given instead.
+
+    Raises
+    ------
+    TypeError
+        Where there is one.
+
+    Examples
+    --------
+    >>> refuse_unknown({"t_eval": [0, 1]})
+    Traceback (most recent call last):
+        ...
+    TypeError: propagate has no argument t_eval=: times=[…] keeps the states at these times
+    """
+    known = [field.name for field in fields(Request)]
+    said: list[str] = []
+    for name in unknown:
+        near = get_close_matches(name, [*known, "progress"], n=1)
+        hint = _ELSEWHERE.get(name) or (
+            f"did you mean {near[0]}=?" if near else f"it has {', '.join(known[3:])}"
+        )
+        said.append(f"propagate has no argument {name}=: {hint}")
+    if said:
+        raise TypeError("; ".join(said))
 
 
 @dataclass(frozen=True, eq=False)

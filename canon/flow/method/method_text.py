@@ -56,6 +56,25 @@ def _folded(name: str) -> str:
     return "".join(letter for letter in name.lower() if letter.isalnum())
 
 
+_ADAPTIVE = '"taylor" (to round-off) and "dop853" choose their own steps'
+_IMPLICIT = '"taylor" or "dop853" with the steps that stiffness asks for, or an implicit method, "gauss-2" … "gauss-8"'
+
+# What other libraries call their methods.
+_ELSEWHERE = {
+    **dict.fromkeys(
+        ("rk45", "rk23", "dopri5", "ode45", "tsit5", "vern9", "ias15", "bulirschstoer"), _ADAPTIVE
+    ),
+    **dict.fromkeys(("radau", "radau5", "bdf", "lsoda", "vode", "cvode"), _IMPLICIT),
+    **dict.fromkeys(("leapfrog", "stormerverlet", "störmerverlet", "velocityverlet"), '"verlet" is its name'),
+    **dict.fromkeys(
+        ("yoshida", "yoshida4"), '"forest-ruth" is Yoshida\'s method of order 4, "kahan-li-8" has order 8'
+    ),
+    **dict.fromkeys(("whfast", "symba"), '"wisdom-holman" splits off the Kepler motions'),
+    "implicitmidpoint": '"gauss-1" is the implicit midpoint rule',
+    **dict.fromkeys(("euler", "symplecticeuler"), '"verlet" costs as much and has order 2'),
+}
+
+
 def method_named(name: str) -> Method:
     """Return the method of a name; case, hyphens and blanks are forgiven.
 
@@ -81,6 +100,8 @@ def method_named(name: str) -> Method:
         return {"gauss": Gauss, "saba": SABA, "sbab": SBAB}[family](
             int(stages)
         )  # which says how many there are
+    if (here := _ELSEWHERE.get(_folded(name))) is not None:
+        raise ValueError(f"no method is called {name!r} here: {here}")
     spelled = {_folded(known): known for known in _named()}
     near = [spelled[each] for each in get_close_matches(_folded(name[:60]), spelled, n=3, cutoff=0.6)]
     there = f"did you mean {' or '.join(near)}?" if near else f"there are {_those_there_are()}"
