@@ -108,6 +108,8 @@ from .perturbation.birkhoff import NormalFormError as NormalFormError
 from .perturbation.birkhoff import birkhoff_normal_form as birkhoff_normal_form
 from .perturbation.coefficient_field import NoExactFieldError as NoExactFieldError
 from .perturbation.fourier_series import NoFourierSeriesError as NoFourierSeriesError
+from .perturbation.generator_forms import deprit_generator as deprit_generator
+from .perturbation.generator_forms import hori_generator as hori_generator
 from .perturbation.gustavson import FormalIntegral as FormalIntegral
 from .perturbation.gustavson import formal_integral as formal_integral
 from .perturbation.lie_series import lie_deprit as lie_deprit

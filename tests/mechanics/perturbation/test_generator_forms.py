@@ -1,0 +1,54 @@
+"""Hori's and Deprit's generators of the map of a normal form: by SymPy's brackets, and against a wrong twin."""
+
+import pytest
+import sympy as sp
+
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.perturbation.birkhoff import birkhoff_normal_form
+from canon.mechanics.perturbation.generator_forms import deprit_generator, hori_generator
+from canon.mechanics.perturbation.lie_series import lie_deprit, lie_series
+
+x, y, px, py = VARIABLES = sp.symbols("x y p_x p_y", real=True)
+eps = sp.Symbol("epsilon")
+KINETIC = (px**2 + py**2) / 2
+SYSTEMS = {
+    "resonant": Hamiltonian(KINETIC + (x**2 + y**2) / 2 + x**2 * y - y**3 / 3, [x, y], [px, py]),
+    "hyperbolic": Hamiltonian(KINETIC - x**2 / 2 + 2 * y**2 + x**2 * y + x**3, [x, y], [px, py]),
+}
+SCALED = {z: eps * z for z in VARIABLES}
+
+
+def degrees(f, order):
+    scaled = sp.expand(f.subs(SCALED, simultaneous=True))
+    return [sp.expand(scaled.coeff(eps, d)) for d in range(order + 1)]
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_one_exponential_takes_h_to_k(name):
+    H = SYSTEMS[name]
+    form = birkhoff_normal_form(H, 4)
+    K = degrees(form.in_variables(), 4)
+    chi = form.expression(hori_generator(form))
+    assert degrees(lie_series(H.H, chi, H.q, H.p, 2), 4) == K
+    assert degrees(lie_series(H.H, -chi, H.q, H.p, 2), 4) != K
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_deprits_flow_takes_h_to_k(name):
+    """With (q, p) → ε(q, p) and H/ε², the part of degree s has the power ε^(s−2) of Deprit's series."""
+    H = SYSTEMS[name]
+    form = birkhoff_normal_form(H, 4)
+    W = form.expression(deprit_generator(form))
+    scaled = [sp.expand(f.subs(SCALED, simultaneous=True)) for f in (H.H, W, form.in_variables())]
+    H_eps, W_eps, K_eps = (sp.expand(f / eps**power) for f, power in zip(scaled, (2, 3, 2), strict=True))
+    found = lie_deprit(H_eps, W_eps, H.q, H.p, 2, eps)
+    assert sp.expand(found - K_eps) == 0
+    assert sp.expand(lie_deprit(H_eps, -W_eps, H.q, H.p, 2, eps) - K_eps) != 0
+
+
+def test_the_three_forms_differ_beyond_their_first_parts():
+    form = birkhoff_normal_form(SYSTEMS["hyperbolic"], 5)
+    product, hori, deprit = dict(form.generators), hori_generator(form), deprit_generator(form)
+    assert product[3] == hori[3] == deprit[3]
+    assert hori[5] != product[5]
+    assert deprit[4] == hori[4].times(2)
