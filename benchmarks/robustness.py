@@ -17,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 sys.path.insert(0, str(Path(__file__).parent))
 
 from attacks.bits import flipped_bits
+from attacks.studies import hostile_studies
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
     from attacks.count import Count
 
 SORTS: dict[str, tuple[Callable[[int, Path], Count], int]] = {
-    "bits": (flipped_bits, 1500),
+    "bits": (flipped_bits, 1200),
+    "studies": (hostile_studies, 2000),
 }
 
 

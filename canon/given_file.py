@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import os
+import re
 import stat
-from typing import TYPE_CHECKING
+import tomllib
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
-__all__ = ["UnreadableFile", "bytes_of"]
+__all__ = ["UnreadableFile", "bytes_of", "tables_of"]
 
 PIPES_OF_SHELLS = ("/dev/fd/", "/dev/stdin", "/proc/self/fd/")
 """What a shell hands over for ``<(…)``: a pipe that whoever gives the command has just made."""
+
+_LONG_DOTTED_KEY = re.compile(
+    r"""(?<![\w.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""", re.ASCII
+)
+"""Python's TOML parser takes time in proportion to the square of the length of such a key."""
 
 KINDS = {
     stat.S_IFDIR: "a folder",
@@ -67,3 +75,32 @@ def bytes_of(path: Path, most: int, instead: str) -> bytes:
     if len(data) > most:
         raise UnreadableFile(f"it has more than {most} bytes, and no more are read; {instead}")
     return data
+
+
+def tables_of(text: str, number: Callable[[str], Any] = float) -> dict[str, Any]:
+    r"""Return what a text in TOML says, in time that is proportional to its length.
+
+    Parameters
+    ----------
+    text
+        The text.
+    number
+        Makes a number of a decimal.
+
+    Raises
+    ------
+    ValueError
+        Where it is not TOML, nested too deeply, or a key has more than 32 parts.
+
+    Examples
+    --------
+    >>> tables_of("[a]\\nb = 1")
+    {'a': {'b': 1}}
+    """
+    if long := _LONG_DOTTED_KEY.search(text):
+        line = text.count("\n", 0, long.start()) + 1
+        raise ValueError(f"a key of more than 32 parts, at line {line}")
+    try:
+        return tomllib.loads(text, parse_float=number)
+    except RecursionError as error:
+        raise ValueError("nested too deeply") from error

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from dataclasses import dataclass, field, replace
 from decimal import Decimal, InvalidOperation
 from importlib import resources
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from canon.exercise.sheet.key_shapes import MAX_DIGITS, faults
 from canon.expression.symbols.input_in_words import counted, given_kind
 from canon.frozen_mapping import FrozenMapping
-from canon.given_file import UnreadableFile, bytes_of
+from canon.given_file import UnreadableFile, bytes_of, tables_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -238,20 +237,10 @@ def _decimal(text: str) -> Decimal | str:
     return value if value.is_finite() and abs(value.adjusted()) <= MAX_DIGITS else text
 
 
-_LONG_DOTTED_KEY = re.compile(
-    r"""(?<![\w.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){32}""", re.ASCII
-)
-"""Python's TOML parser takes time in proportion to the square of the length of such a key."""
-
-
 def _toml(text: str) -> Any:
     if len(text) > MAX_TOML_BYTES:
         raise ValueError(f"{len(text)} characters, and at most {MAX_TOML_BYTES} are read; split the sheet")
-    long = _LONG_DOTTED_KEY.search(text)
-    if long:
-        line = text.count("\n", 0, long.start()) + 1
-        raise ValueError(f"a key of more than 32 parts, at line {line}")
-    return tomllib.loads(text, parse_float=_decimal)
+    return tables_of(text, _decimal)
 
 
 def _json(text: str) -> Any:

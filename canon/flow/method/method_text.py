@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import re
+import reprlib
 from difflib import get_close_matches
 from fractions import Fraction
 from functools import partial
@@ -29,6 +30,10 @@ _EIGHT = range(1, 9)
 """Stages of SABA and SBAB methods."""
 
 _NUMBERED = re.compile(r"(gauss|saba|sbab)([0-9]{1,3})")
+
+_RATIONAL = re.compile(r"[-+]?[0-9]{1,80}(?:\.[0-9]{0,80}|/[0-9]{1,80})?(?:[eE][-+]?[0-9]{1,2})?")
+
+_MOST_COEFFICIENTS = 1_000
 
 _CHOICES = {"corrector", "commutator", "coordinates"}
 """What a splitting by solvable parts may say beside its name."""
@@ -173,7 +178,7 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
         case {"splitting": str() as name, **rest} if not rest:
             return Splitting(name)
         case {"splitting": {"a": a, "b": b}, **rest} if not rest:
-            return Splitting(a=[Fraction(x) for x in a], b=[Fraction(x) for x in b])
+            return Splitting(a=_coefficients(a), b=_coefficients(b))
         case {"solvable": str() as name, **rest} if set(rest) <= _CHOICES:
             return _solvable(name, rest)
         case {"time_transformed": str() | dict() as inner, **rest} if not rest:
@@ -191,13 +196,26 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
         case {"dop853": float() as tolerance, **rest} if not rest:
             return DOP853(tolerance)
         case _:
-            known = ", ".join(f"{key} = {value!r}" for key, value in written.items())
+            known = ", ".join(f"{key} = {reprlib.repr(value)}" for key, value in written.items())[:200]
             raise ValueError(
                 f"no method is written {known}; there are names, {_those_there_are()}, and tables, "
                 "{ gauss = stages }, { taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
                 "{ splitting = { a, b } }, "
                 "{ solvable = name, corrector = order, commutator = true, coordinates = name }"
             )
+
+
+def _coefficients(written: Any) -> list[Fraction]:
+    """Return the coefficients of a splitting, exactly; numbers of thousands of digits are not made."""
+    if not isinstance(written, list | tuple) or len(written) > _MOST_COEFFICIENTS:
+        raise ValueError(
+            f"the coefficients of a splitting are a list of at most {_MOST_COEFFICIENTS} numbers"
+        )
+    if not all(isinstance(x, int | float | Fraction) or _RATIONAL.fullmatch(str(x)) for x in written):
+        raise ValueError(
+            'a coefficient is a number or a text such as "1/2" or "0.675603595979828817023843904"'
+        )
+    return [Fraction(x) for x in written]
 
 
 def _time_transformed(inner: Method) -> TimeTransformed:

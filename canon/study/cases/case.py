@@ -35,6 +35,15 @@ STEPS_A_PART = 2**20
 SAMPLES_A_PART = 128
 """Samples in a part of a run with an adaptive method."""
 
+MOST_STEPS = 10**12
+"""Steps of fixed size that a case may take: ten billion a day are many."""
+
+MOST_SAMPLES_KEPT = 2**22
+"""Samples that a case may keep: a checkpoint of so many is some 200 MB."""
+
+MOST_PARTS_ASKED = 10**5
+"""Parts that a run may be asked to be made of: each costs some milliseconds."""
+
 MOST_PARTS = 128
 """Parts of a run with an adaptive method: to begin one costs some milliseconds."""
 
@@ -78,6 +87,25 @@ class Case:
     precision: str | None = None
     parts: int | None = None
     observables: tuple[tuple[str, str], ...] = ()
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.span < math.inf:
+            raise ValueError(
+                f"a run over a time of {self.span} makes no sense: give a positive, finite duration"
+            )
+        if self.step is not None and not 0.0 < self.step < math.inf:
+            raise ValueError(f"a step of {self.step} makes no sense: give a positive, finite one")
+        if self.step is not None and self.span / self.step > MOST_STEPS:
+            raise ValueError(
+                f"{self.span / self.step:.1g} steps, and a case may take {MOST_STEPS:.0e}: "
+                "give a shorter duration or a larger step"
+            )
+        if not 0 < self.samples <= MOST_SAMPLES_KEPT:
+            raise ValueError(f"samples = {self.samples}: give a whole number from 1 to {MOST_SAMPLES_KEPT}")
+        if self.parts is not None and not 1 <= self.parts <= MOST_PARTS_ASKED:
+            raise ValueError(f"parts = {self.parts}: give a whole number from 1 to {MOST_PARTS_ASKED}")
+        if isinstance(self.start, tuple) and not all(map(math.isfinite, self.start)):
+            raise ValueError(f"a start has finite numbers (q, p), not {list(self.start)}")
 
     @property
     def setting(self) -> Setting:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from canon.scene import find
 from canon.study.errors import StudyError
-from canon.study.motion.hamiltonian_text import Formula
+from canon.study.motion.hamiltonian_text import Formula, require_labels
 from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, observables_of
 
 if TYPE_CHECKING:
@@ -41,7 +42,9 @@ def observables_from(written: Any) -> tuple[tuple[str, str], ...]:
         if not isinstance(table, dict) or not all(
             isinstance(part, str) for part in (*table, *table.values())
         ):
-            raise TypeError(f'an observable is a name or a table {{ name = "formula" }}, not {each!r}')
+            shown = reprlib.repr(each)
+            raise TypeError(f'an observable is a name or a table {{ name = "formula" }}, not {shown}')
+        require_labels(*table)
         found.update(table)
     if SYMPLECTICITY in found:
         raise ValueError("studies do not follow the symplecticity; 'canon drift' does")

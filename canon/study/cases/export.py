@@ -42,6 +42,8 @@ _SERIES = (
     ("curve", "t", "point"), ("curve", "largest", "point"), ("curve", "median", "point"),
 )  # fmt: skip
 """Series of numbers that are kept of each case, and the dimension that they lie along."""
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""What spreadsheets take a text for a formula by."""
 
 
 class ExportError(ImportError):
@@ -72,13 +74,15 @@ def rows_of(store: Store) -> list[dict[str, Any]]:
 def csv_of(store: Store) -> str:
     """Return all cases of a store as CSV: one line a case, pending and failed ones included.
 
-    Floats are written so that they read back exactly; lists are JSON inside their cell.
+    Floats are written so that they read back exactly; lists are JSON inside their cell. A text that a spreadsheet
+    would take for a formula (``=cmd|…``) has an apostrophe before it.
     """
     rows = rows_of(store)
     written = io.StringIO()
-    table = csv.DictWriter(written, _columns(rows), restval="", lineterminator="\n")
-    table.writeheader()
-    table.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+    columns = _columns(rows)
+    table = csv.writer(written, lineterminator="\n")
+    table.writerow(map(_cell, columns))
+    table.writerows([_cell(row.get(name)) for name in columns] for row in rows)
     return written.getvalue()
 
 
@@ -192,6 +196,8 @@ def _columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 def _cell(value: Any) -> Any:
     if value is None:
         return ""
+    if isinstance(value, str):
+        return f"'{value}" if value.startswith(FORMULA) else value
     return json.dumps(value) if isinstance(value, dict | list) else value
 
 

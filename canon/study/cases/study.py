@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-import tomllib
+import math
+import reprlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -10,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.user_input import counted
 from canon.flow.method.method_text import method_from, method_of
-from canon.scene import Scene, SceneError, find
+from canon.given_file import bytes_of, tables_of
+from canon.scene import Scene, find
 from canon.study.cases.case import Case, key_of
 from canon.study.cases.case_observables import followed, observables_from
 from canon.study.drift.drift import FEWEST
@@ -19,7 +22,7 @@ from canon.study.errors import StudyError
 from canon.study.motion.hamiltonian_text import Formula, formula_from, formula_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
 
 __all__ = ["Study", "read_study"]
@@ -28,6 +31,17 @@ AXES = ("system", "start", "method", "step", "steps_per_period", "tolerance", "p
 
 MOST_SAMPLES = 2**15
 """Samples of a run unless more are asked for."""
+
+MOST_CASES = 100_000
+"""Cases of one study."""
+
+_TOO_MANY = f"more than {MOST_CASES} cases; split the study"
+
+MAX_BYTES = 2_000_000
+"""Bytes of a study file."""
+
+LONGEST_REASON = 1_000
+"""Characters of what is told against a study; only a stranger's name or number in it can make it longer."""
 
 LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables")
 
@@ -104,11 +118,11 @@ def read_study(path: str | Path) -> Study:
     """
     file = Path(path)
     try:
-        written = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        written = tables_of(bytes_of(file, MAX_BYTES, "split the study").decode("utf-8-sig"))
+    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
         raise StudyError(f"{file}: {error}") from error
     tables, systems = written.pop("study", None), written.pop("system", {})
-    if written or not isinstance(tables, list) or not tables or not _tables(systems):
+    if written or not _tables(tables) or not _tables(systems):
         raise StudyError(
             f"{file}: a study file holds [[study]] tables, [system.NAME] tables and nothing else"
         )
@@ -116,14 +130,20 @@ def read_study(path: str | Path) -> Study:
         own = {name: formula_from(name, table) for name, table in systems.items()}
     except StudyError as error:
         raise StudyError(f"{file}, {error}") from error
-    found = [case for n, table in enumerate(tables, 1) for case in _cases(table, f"{file}, study {n}", own)]
-    return Study(tuple(dict.fromkeys(found)))
+    found: dict[Case, None] = {}
+    for n, table in enumerate(tables, 1):
+        found |= dict.fromkeys(_cases(table, f"{file}, study {n}", own))
+        if len(found) > MOST_CASES:
+            raise StudyError(f"{file}: {_TOO_MANY}")
+    return Study(tuple(found))
 
 
 def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> Iterator[Case]:
     unknown = sorted(set(table) - {*AXES, *LENGTHS})
     if unknown:
-        raise StudyError(f"{where}: unknown key {unknown[0]!r}; there are {', '.join((*AXES, *LENGTHS))}")
+        raise StudyError(
+            f"{where}: unknown key {str(unknown[0])[:60]!r}; there are {', '.join((*AXES, *LENGTHS))}"
+        )
     for name in ("system", "method"):
         if name not in table:
             raise StudyError(
@@ -133,14 +153,25 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> 
         raise StudyError(f"{where}: give the duration as periods or as span, and not as both")
     if "step" in table and "steps_per_period" in table:
         raise StudyError(f"{where}: give step or steps_per_period, and not both")
+    parameters = table.get("parameters", {})
+    if not isinstance(parameters, Mapping):
+        raise StudyError(
+            f"{where}: parameters is a table of names and values, not {reprlib.repr(parameters)}"
+        )
     try:
-        systems = [_system(each, own, table.get("parameters", {})) for each in _listed(table["system"])]
-        others = [_listed(table.get(name)) for name in AXES[1:]]
-        for system, parameters in product(systems, _settings(table.get("parameters", {}))):
-            for rest in product(*others):
-                yield _case(system, parameters, dict(zip(AXES[1:], rest, strict=True)), table)
-    except (SceneError, ValueError, TypeError, KeyError) as error:
-        raise StudyError(f"{where}: {error}") from error
+        axes = [_listed(table.get(name)) for name in AXES]
+        if math.prod(map(len, (*axes, *map(_listed, parameters.values())))) > MOST_CASES:
+            raise ValueError(_TOO_MANY)
+        systems = [_system(each, own, parameters) for each in axes[0]]
+        for system, values in product(systems, _settings(parameters)):
+            for rest in product(*axes[1:]):
+                yield _case(system, values, dict(zip(AXES[1:], rest, strict=True)), table)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        raise StudyError(f"{where}: {_shortened(str(error))}") from error
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= LONGEST_REASON else f"{text[:LONGEST_REASON]}…"
 
 
 def _system(given: Any, own: Mapping[str, Formula], parameters: Mapping[str, Any]) -> str | Formula:
@@ -156,15 +187,19 @@ def _system(given: Any, own: Mapping[str, Formula], parameters: Mapping[str, Any
                 f"give changed values of {given.name} as parameters, not inside the scene: {changed}"
             )
         return given.name
+    if not hasattr(given, "H"):
+        raise TypeError(
+            f"system = {reprlib.repr(given)}: give the name of a scene or of a [system.NAME] table, or a Hamiltonian"
+        )
     used = {str(symbol) for symbol in given.H.free_symbols}
-    first = {name: float(_listed(value)[0]) for name, value in parameters.items() if name in used}
+    first = {name: _number(name, _listed(value)[0]) for name, value in parameters.items() if name in used}
     return formula_of(given, parameters=first)
 
 
 def _settings(parameters: Any) -> list[tuple[tuple[str, float], ...]]:
     """Return every combination of the parameters' values."""
     names = sorted(parameters)
-    values = [[float(x) for x in _listed(parameters[name])] for name in names]
+    values = [[_number(name, x) for x in _listed(parameters[name])] for name in names]
     return [tuple(zip(names, chosen, strict=True)) for chosen in product(*values)]
 
 
@@ -180,24 +215,27 @@ def _case(
     period = _period(system, parameters)
     step = chosen["step"]
     if chosen["steps_per_period"] is not None:
-        step = _known(period, "steps_per_period") / float(chosen["steps_per_period"])
+        step = _known(period, "steps_per_period") / _number("steps_per_period", chosen["steps_per_period"])
     if stepped and step is None:
         raise ValueError(f"{method} needs a size of steps: give step or steps_per_period")
     span = table.get("span")
-    span = float(span) if span is not None else float(table["periods"]) * _known(period, "periods")
-    start = chosen["start"]
+    if span is not None:
+        span = _number("span", span)
+    else:
+        span = _number("periods", table["periods"]) * _known(period, "periods")
+    start, tolerance = chosen["start"], chosen["tolerance"]
     usual = usual_samples(span, period, MOST_SAMPLES, unknown=FEWEST_USUAL)
     case = Case(
         system=system,
         method=method,
         span=span,
-        samples=int(table.get("samples", usual)),
-        start=tuple(map(float, start)) if isinstance(start, list | tuple) else start,
+        samples=_whole("samples", table.get("samples", usual)),
+        start=_start(start),
         parameters=parameters,
-        step=float(step) if stepped else None,
-        tolerance=None if stepped else chosen["tolerance"],
-        precision=method.engine.understood(chosen["precision"]),
-        parts=int(table["parts"]) if "parts" in table else None,
+        step=_number("step", step) if stepped else None,
+        tolerance=None if stepped or tolerance is None else _number("tolerance", tolerance),
+        precision=method.engine.understood(_text("precision", chosen["precision"])),
+        parts=_whole("parts", table["parts"]) if "parts" in table else None,
         observables=observables_from(table.get("observables", ())),
     )
     _check(case)
@@ -223,14 +261,8 @@ def _known(period: float | None, what: str) -> float:
 
 def _check(case: Case) -> None:
     """Raise ValueError where a case makes no sense, before anything is run."""
-    if not 0.0 < case.span < float("inf"):
-        raise ValueError(f"a run over a time of {case.span} makes no sense: give a positive, finite duration")
-    if case.step is not None and not 0.0 < case.step < float("inf"):
-        raise ValueError(f"a step of {case.step} makes no sense: give a positive, finite one")
     if case.samples < FEWEST:
         raise ValueError(f"{case.samples} samples are too few to judge growth: keep at least {FEWEST}")
-    if case.parts is not None and case.parts < 1:
-        raise ValueError(f"parts = {case.parts}: give a whole number, 1 or more")
     if isinstance(case.system, Formula):
         case.system.check(case.state, "a start")
     elif isinstance(case.start, tuple):
@@ -241,9 +273,38 @@ def _check(case: Case) -> None:
     followed(case)
 
 
+def _number(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (OverflowError, TypeError, ValueError):
+        raise ValueError(f"{name} = {reprlib.repr(value)}: give a number") from None
+
+
+def _whole(name: str, value: Any) -> int:
+    number = _number(name, value)
+    if not (math.isfinite(number) and number.is_integer()):
+        raise ValueError(f"{name} = {reprlib.repr(value)}: give a whole number")
+    return int(number)
+
+
+def _text(name: str, value: Any) -> str | None:
+    if value is not None and not isinstance(value, str):
+        raise TypeError(f"{name} = {reprlib.repr(value)}: give its name")
+    return value
+
+
+def _start(given: Any) -> str | tuple[float, ...] | None:
+    if isinstance(given, list | tuple):
+        return tuple(_number("a start's number", x) for x in given)
+    return _text("start", given)
+
+
 def _listed(value: Any) -> list[Any]:
     return list(value) if isinstance(value, list | tuple) else [value]
 
 
-def _tables(systems: Any) -> bool:
-    return isinstance(systems, dict) and all(isinstance(table, dict) for table in systems.values())
+def _tables(value: Any) -> bool:
+    """Tell whether a value is a list or a table of tables, as ``[[study]]`` and ``[system.NAME]`` make it."""
+    if isinstance(value, dict):
+        return all(isinstance(table, dict) for table in value.values())
+    return isinstance(value, list) and bool(value) and all(isinstance(table, dict) for table in value)

@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 import math
+import reprlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.user_input import counted
+from canon.printable import in_one_line
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from sympy import Expr
 
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
-__all__ = ["Formula", "formula_from", "formula_of", "hamiltonian_of"]
+__all__ = ["Formula", "formula_from", "formula_of", "hamiltonian_of", "require_labels"]
+
+MOST_NAMES = 500
+"""Names of coordinates, momenta and parameters that a system of a study file may have."""
+
+LONGEST_NAME = 80
+"""Letters of a name."""
 
 KEYS = ("H", "q", "p", "parameters", "starts", "period")
 """What a table in a file may say of a system."""
@@ -59,12 +68,17 @@ class Formula:
     period: float | None = None
 
     def __post_init__(self) -> None:
+        require_labels(self.name, *(name for name, _ in self.starts))
+        if len(self.q) + len(self.p) + len(self.parameters) > MOST_NAMES:
+            raise StudyError(f"{self.name}: more than {MOST_NAMES} names; write larger systems in Python")
         if not self.q or len(self.q) != len(self.p):
             raise StudyError(
                 f"{self.name}: {counted(len(self.q), 'coordinate')} and "
                 f"{counted(len(self.p), 'momentum', 'momenta')}; each coordinate needs one"
             )
         names = (*self.q, *self.p, *(name for name, _ in self.parameters))
+        if long := [name for name in names if len(name) > LONGEST_NAME]:
+            raise StudyError(f"{self.name}: {long[0][:LONGEST_NAME]!r}… is a name of {len(long[0])} letters")
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise StudyError(f"{self.name}: {twice[0]!r} is declared twice")
@@ -130,9 +144,12 @@ def formula_from(name: str, table: Mapping[str, Any]) -> Formula:
     >>> formula_from("pendulum", {"H": "p_a**2/2 - cos(a)", "q": "a", "starts": {"high": [3.0, 0.0]}})
     Formula(name='pendulum', H='p_a**2/2 - cos(a)', q=('a',), p=('p_a',), ...
     """
+    require_labels(name)
     unknown = sorted(set(table) - set(KEYS))
     if unknown:
-        raise StudyError(f"system {name}: unknown key {unknown[0]!r}; there are {', '.join(KEYS)}")
+        raise StudyError(
+            f"system {name[:LONGEST_NAME]}: unknown key {unknown[0][:60]!r}; there are {', '.join(KEYS)}"
+        )
     for key in ("H", "q"):
         if key not in table:
             raise StudyError(f"system {name}: {key!r} is missing")
@@ -144,12 +161,17 @@ def formula_from(name: str, table: Mapping[str, Any]) -> Formula:
             H=_text(table["H"]),
             q=q,
             p=_names(table["p"]) if "p" in table else tuple(f"p_{x}" for x in q),
-            parameters=tuple((key, _number(value)) for key, value in table.get("parameters", {}).items()),
-            starts=tuple((key, tuple(map(_number, state))) for key, state in table.get("starts", {}).items()),
+            parameters=tuple(
+                (key, _number(value))
+                for key, value in _table(table.get("parameters", {}), "parameters").items()
+            ),
+            starts=tuple(
+                (key, _numbers(state)) for key, state in _table(table.get("starts", {}), "starts").items()
+            ),
             period=None if period is None else _number(period),
         )
-    except (TypeError, AttributeError) as error:
-        raise StudyError(f"system {name}: {error}") from error
+    except (TypeError, OverflowError) as error:
+        raise StudyError(f"system {name[:LONGEST_NAME]}: {str(error)[:500]}") from error
     hamiltonian_of(found)
     return found
 
@@ -248,17 +270,39 @@ def _by_name(f: Any) -> Any:
 def _names(written: Any) -> tuple[str, ...]:
     names = written.replace(",", " ").split() if isinstance(written, str) else list(written)
     if not all(isinstance(name, str) and name.isidentifier() for name in names):
-        raise TypeError(f"names are words, such as theta or x_1, not {written!r}")
+        raise TypeError(f"names are words, such as theta or x_1, not {reprlib.repr(written)}")
     return tuple(names)
 
 
 def _text(written: Any) -> str:
     if not isinstance(written, str):
-        raise TypeError(f"H is text in quotation marks, not {written!r}")
+        raise TypeError(f"H is text in quotation marks, not {reprlib.repr(written)}")
     return written
 
 
 def _number(written: Any) -> float:
     if isinstance(written, bool) or not isinstance(written, int | float):
-        raise TypeError(f"{written!r} is no number")
+        raise TypeError(f"{reprlib.repr(written)} is no number")
     return float(written)
+
+
+def _table(written: Any, key: str) -> Mapping[str, Any]:
+    if not isinstance(written, Mapping):
+        raise TypeError(f"{key} is a table of names and values, not {reprlib.repr(written)}")
+    return written
+
+
+def _numbers(written: Any) -> tuple[float, ...]:
+    if not isinstance(written, list | tuple):
+        raise TypeError(f"a start is a list of numbers (q, p), not {reprlib.repr(written)}")
+    return tuple(map(_number, written))
+
+
+def require_labels(*names: str) -> None:
+    """Raise StudyError where a name is long, has several lines, or commands a terminal: it stands in tables."""
+    for name in names:
+        if not 0 < len(name) <= LONGEST_NAME or in_one_line(name) != name:
+            raise StudyError(
+                f"something is called {name[:LONGEST_NAME]!r}: give it a name of one line, "
+                f"at most {LONGEST_NAME} letters, and no signs that command a terminal"
+            )
