@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, NoReturn
 import sympy as sp
 from sympy import Expr, Rational, Symbol
 
+from canon.expression.conditions import alternatives, related
 from canon.expression.symbols.magnitude import MOST_DIGITS, digits
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, time_derivative, velocity
 from canon.expression.text import syntax
-from canon.expression.text.differentials import PARTIAL, TOTAL
+from canon.expression.text.differentials import PARTIAL, PRIMED, TOTAL, names_outside_functions
 from canon.expression.text.syntax import LanguageError
-from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, MAX_CHOICES, RELATIONS
+from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, MAX_CHOICES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 __all__ = ["Builder"]
 
 MAX_EXPONENT = 1_000
+MAX_ORDER = 8
+"""Highest derivative."""
 MAX_BITS = 14_000
 """Longest number that is built: Python writes integers of up to 4300 digits."""
 
@@ -142,6 +145,8 @@ class Builder:
             return self.rate(node, self.expression(node.arguments[0]))
         if name in (PARTIAL, "d/dx"):
             return self.partial(node)
+        if name == PRIMED:
+            return self.primed(node)
         if name == "Piecewise":
             return self.piecewise(node)
         if name not in FUNCTIONS:
@@ -198,7 +203,7 @@ class Builder:
             for part in syntax.parts(inside)
         ):
             return True
-        bare = _outside_functions(inside, self.scope)
+        bare = names_outside_functions(inside, self.scope)
         moving = sorted(
             {name.text for name in bare if self.scope.moves(name.text) and name.text != self.scope.time.name}
         )
@@ -241,6 +246,17 @@ class Builder:
             value = value.diff(symbol, order.numerator)
         return value
 
+    def primed(self, node: syntax.Call) -> Expr:
+        """Return the derivative of a function of one variable at a place, ``V'(r - a)``."""
+        value, order = node.arguments
+        f, variable = self.expression(value), sp.Dummy("xi_1", real=True)
+        if not (len(f.args) == 1 and isinstance(order, syntax.Number) and order.numerator <= MAX_ORDER):
+            self.refuse(
+                node, "this is no derivative of a function of one variable", "write Derivative(V(x), x)"
+            )
+        slope = f.func(variable).diff(variable, order.numerator)
+        return sp.Subs(slope, variable, f.args[0])
+
     def orders(self, nodes: Sequence[syntax.Node]) -> Iterator[tuple[Symbol, int]]:
         """Yield variables with their orders: ``t, t``, ``(t, 2)`` or Maxima's ``t, 2``."""
         for node, after in zip(nodes, (*nodes[1:], None), strict=True):
@@ -276,7 +292,11 @@ class Builder:
                 self.refuse(
                     piece, "a piece is (expression, condition)", "write Piecewise((x, x > 0), (0, True))"
                 )
-            pieces.append((self.expression(piece.items[0]), self.condition(piece.items[1])))
+            value = self.expression(piece.items[0])
+            pieces += [
+                (value, self.condition(alternative))
+                for alternative in alternatives(self.text, piece.items[1], self.scope)
+            ]
         return self.joined(pieces)
 
     def joined(self, pieces: Sequence[tuple[Expr, Boolean]]) -> Expr:
@@ -292,6 +312,8 @@ class Builder:
                 return self.condition(syntax.Comparison((left, right), ("!=",), node.column))
             case syntax.Call(function="Eq", arguments=(left, right)) if "Eq" not in self.scope.functions:
                 return self.condition(syntax.Comparison((left, right), ("==",), node.column))
+            case syntax.Call(function="And", arguments=parts) if "And" not in self.scope.functions:
+                return sp.And(*(self.condition(part) for part in parts))
             case syntax.Comparison(operands, relations):
                 if "=" in relations:
                     self.refuse(
@@ -300,7 +322,7 @@ class Builder:
                 sides = [self.expression(side) for side in operands]
                 pairs = zip(sides, relations, sides[1:], strict=False)
                 try:
-                    chain = (_related(left, relation, right) for left, relation, right in pairs)
+                    chain = (related(left, relation, right) for left, relation, right in pairs)
                     return sp.And(*chain)
                 except TypeError:
                     self.refuse(node, "imaginary numbers can't be compared")
@@ -348,14 +370,6 @@ class Builder:
                 self.refuse(node, f"a multiple of a logarithm beyond {MAX_EXPONENT} in an exponent")
 
 
-def _related(left: Expr, relation: str, right: Expr) -> Boolean:
-    """Return a relation, a number on its right."""
-    if left.is_number and not right.is_number:
-        left, right = right, left
-        relation = relation.translate(str.maketrans("<>", "><"))
-    return RELATIONS[relation](left, right)
-
-
 def _first_sentence(error: Exception) -> str:
     return str(error).strip().partition("\n")[0].rstrip(".") or type(error).__name__
 
@@ -368,22 +382,23 @@ def _bits(value: Expr) -> int:
     return max(int(number.p).bit_length(), int(number.q).bit_length(), 1)
 
 
-_OWN = ("Derivative", "diff", "D", "Piecewise", "Ne", "Eq", "True", TOTAL, PARTIAL, "d/dx")
+_OWN = (
+    "Derivative",
+    "diff",
+    "D",
+    "Piecewise",
+    "Ne",
+    "Eq",
+    "And",
+    "Or",
+    "True",
+    TOTAL,
+    PARTIAL,
+    PRIMED,
+    "d/dx",
+)
 """Functions with a meaning of their own."""
 
 
 def _column(nodes: Sequence[syntax.Node]) -> int:
     return nodes[0].column if nodes else 0
-
-
-def _outside_functions(node: syntax.Node, scope: Scope) -> Iterator[syntax.Name]:
-    """Yield the names of a tree that do not stand in the argument of a declared function."""
-    stack = [node]
-    while stack:
-        part = stack.pop()
-        if isinstance(part, syntax.Name):
-            yield part
-        elif isinstance(part, syntax.Call) and part.function in ("Derivative", "diff", "D", PARTIAL):
-            stack.append(part.arguments[0])
-        elif not (isinstance(part, syntax.Call) and part.function in scope.functions):
-            stack += syntax.children(part)

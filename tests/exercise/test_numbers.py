@@ -1,5 +1,6 @@
 """Numbers as answers: read as typed, held against the right values exactly, ends of tolerances included."""
 
+import time
 from fractions import Fraction
 
 import pytest
@@ -122,3 +123,16 @@ def test_values_of_parameters_may_be_two():
     both = [judgement for judgement, _ in judgements(claim_from({**keys, "values": [{"a": "±1"}]}))][-1]
     one = [judgement for judgement, _ in judgements(claim_from({**keys, "values": [{"a": "±2"}]}))][-1]
     assert (both.status, one.status) == ("holds", "fails")
+
+
+@pytest.mark.parametrize(
+    "answer",
+    ["±" * 9000, "1 or " * 9000 + "1", "{" * 9000, "1" + " km" * 5000, "1" + " m/" * 900, "0,5 " * 5000,
+     "1 ± " * 3000 + "1", "x = " * 9000 + "1", "9" * 5000, "9**9**9**9", "± 9**999999", "1e999999999", "(" * 5000 + "1",
+     "exp(exp(exp(exp(9))))", "$" + r"\pm 1," * 4000 + "$", "1; " * 5000, "~" * 9000, "2 " + r"\mathrm{m}" * 3000],
+    ids=range(18),
+)  # fmt: skip
+def test_hostile_answers_are_refused_at_once(answer):
+    start = time.process_time()
+    assert judged(value="2", unit="m", claim=answer, tolerance="1 %").status != "holds"
+    assert time.process_time() - start < 4

@@ -1,5 +1,7 @@
 """Answers as people type them, judged: left sides, chains, several equations; each with a twin that does not hold."""
 
+import time
+
 import pytest
 
 from canon.exercise.explained_judgement import judgements
@@ -91,3 +93,59 @@ def test_what_contradicts_the_question_is_told(question, answer, told):
     assert found.status == "invalid"
     assert told in found.known
     assert "declare " not in found.known
+
+
+LIE = {"kind": "lie-bracket", "x": ["x", "y"], "X": ["y", "0"], "Y": ["0", "x"], "parameters": {}}
+
+
+@pytest.mark.parametrize(
+    ("form", "twin"),
+    [
+        (r"$\begin{pmatrix} -x \\ y \end{pmatrix}$", r"$\begin{pmatrix} y \\ -x \end{pmatrix}$"),
+        (r"\left[\begin{matrix}- x\\y\end{matrix}\right]", r"\left[\begin{matrix}x\\y\end{matrix}\right]"),
+        (r"\begin{bmatrix} -x & y \end{bmatrix}", r"\begin{bmatrix} -x & -y \end{bmatrix}"),
+        ("Matrix([-x, y])", "Matrix([-x, x])"),
+        ("sp.Matrix([[-x], [y]])", "sp.Matrix([[y], [-x]])"),
+        ("Matrix([[-x, y]])", "Matrix([[y, -x]])"),
+    ],
+)
+def test_vectors_are_read_from_columns_and_rows(form, twin):
+    assert judged(LIE, claim=form).status == "holds"
+    assert judged(LIE, claim=twin).status == "fails"
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        "(" + "1, " * 10_000 + "1)",
+        "Matrix([" + "[x], " * 10_000 + "[x]])",
+        r"\begin{pmatrix}" + r"x \\ " * 10_000 + r"y \end{pmatrix}",
+        "Matrix([" * 500 + "x" + "])" * 500,
+    ],
+    ids=("bracket", "column", "latex", "nested"),
+)
+def test_vectors_of_thousands_are_refused_at_once(claim):
+    start = time.process_time()
+    assert judged(LIE, claim=claim).status == "invalid"
+    assert time.process_time() - start < 4
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("Integral(k*x, (x, 0, a))", "write the integral out"),
+        ("∫ k x dx", "write the integral out"),
+        ("Sum(k*x**n, (n, 1, 10**9))", "write its terms one by one"),
+        (r"$\sum_{n=1}^{10^9} k x^n$", "write the sum out"),
+        ("x' = ±k", "it stands for two answers"),
+        ("Matrix([[k, 0], [0, k]])", "write the components one by one"),
+        (
+            f"Matrix([{', '.join('[' + ', '.join('1' * 50) + ']' for _ in range(100))}])",
+            "write the components one by one",
+        ),
+    ],
+)
+def test_what_is_not_read_is_told_with_what_to_write(text, told):
+    found = judged({"kind": "euler-lagrange", "q": ["x"], "L": "x_dot**2/2 - k*x**2/2"}, claim=[text])
+    assert found.status == "invalid"
+    assert told in found.known

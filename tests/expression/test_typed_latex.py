@@ -10,15 +10,15 @@ import sympy as sp
 from sympy.parsing.sympy_parser import parse_expr
 
 from canon import coordinates, parameters
-from canon.expression.parse import LanguageError, Scope, parse_expression, statements_of
+from canon.expression.parse import LanguageError, Scope, parse_equation, parse_expression, statements_of
 from canon.expression.symbols.symbol import Coordinate, Momentum, time
 
 FOLDER = Path(__file__).parents[1] / "data" / "typed"
 LABEL = re.compile(
-    r"\w+(\([\w,]*\))?|\w+'|\{\w+,\w+\}|\[\w+,\w+\]|d[A-Z]/dt|-?∂[A-Z]/∂\w+'?|[A-Z][-+][A-Z]|H\+∂F/∂t"
+    r"\w+(\([\w,']*\))?|\w+'|\{\w+,\w+\}|\[\w+,\w+\]|d\w+/dt|-?∂[A-Z]/∂\w+'?|[A-Z][-+][A-Z]|H\+∂F/∂t"
 )
 """What names an answer, or a definition from a book."""
-FILES = ("latex.json", "latex_held_out.json")
+FILES = ("latex.json", "latex_held_out.json", "outside.json")
 
 
 @cache
@@ -29,7 +29,11 @@ def corpus(name):
 @cache
 def scope_of(name):
     """Return the scope that a corpus names, and the same names for SymPy's parser."""
-    said = corpus(FILES[0])["scopes"][name]
+    said = next(
+        corpus(file)["scopes"][name]
+        for file in ("latex.json", "outside.json")
+        if name in corpus(file)["scopes"]
+    )
     q = [Coordinate(x, real=True) for x in said["q"].split()]
     names = {s.name: s for s in (*q, *parameters(said["parameters"]))}
     names |= {p: Momentum(p, real=True) for p in said["p"].split()}
@@ -54,7 +58,7 @@ def read(form, name):
     for statement in statements_of(form, scope):
         *names, last = statement.sides
         sides = [side for said in names if (side := value_or_name(said, scope)) is not None]
-        found.append((*sides, parse_expression(last.text, scope)))
+        found.append((*sides, (parse_expression if names else parse_equation)(last.text, scope)))
     return found
 
 
@@ -136,3 +140,9 @@ def test_the_table_on_the_page_is_true():
 def test_twins_are_not_taken_for_the_forms(name):
     taken = [entry["twin"] for entry in corpus(name)["forms"] if says(entry["twin"], entry)]
     assert taken == []
+
+
+def test_what_is_open_is_refused():
+    for entry in corpus("outside.json")["open"]:
+        with pytest.raises(LanguageError):
+            read(entry["form"], entry["scope"])

@@ -9,7 +9,19 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from canon.expression.text.statement import Side, Statement
 
-__all__ = ["components_of", "entries_of", "equation_between", "whole_statement"]
+__all__ = ["components_of", "entries_of", "equation_between", "of_matrix", "whole_statement"]
+
+MOST_ENTRIES = 100
+"""Most components in one field."""
+_LATEX_MATRIX = re.compile(
+    r"[\s$]*(?:\\left\s*[(\[])?\s*\\begin\{((?:[pbB]|small)?matrix)\}(?P<inside>.*)\\end\{\1\}"
+    r"\s*(?:\\right\s*[)\]])?[\s$.,]*",
+    re.DOTALL,
+)
+_PLAIN_MATRIX = re.compile(
+    r"\s*(?:\w{1,9}\.)?(?:Immutable|Mutable)?(?:Dense)?(?:Matrix|Vector)\(\s*\[(?P<inside>.*)\]\s*\)[\s.]*",
+    re.DOTALL,
+)
 
 
 def equation_between(left: Side, right: Side) -> str:
@@ -24,6 +36,40 @@ def whole_statement(statement: Statement, text: str) -> str:
     """Return a statement on its own, at its columns."""
     first, last = statement.sides[0], statement.sides[-1]
     return f"{first.text}{text[len(first.text) : len(last.text)]}"
+
+
+def of_matrix(text: str) -> list[str]:
+    r"""Return the entries of a matrix of one column or one row, each at its column; nothing where it is none.
+
+    Examples
+    --------
+    >>> [entry.strip() for entry in of_matrix(r"$\begin{pmatrix} y \\ -x \end{pmatrix}$")]
+    ['$ y', '$ -x']
+    >>> [entry.strip() for entry in of_matrix("Matrix([[y], [-x]])")], of_matrix("Matrix([[1, 0], [0, 1]])")
+    (['y', '-x'], [])
+    """
+    if found := _LATEX_MATRIX.fullmatch(text):
+        if "\\begin" in found["inside"]:
+            return []
+        begin, end = found.span("inside")
+        cuts = [*re.finditer(r"\\\\|&", found["inside"])]
+        if cuts and not found["inside"][cuts[-1].end() :].strip():
+            end = begin + cuts.pop().start()
+        if len({cut.group() for cut in cuts}) != 1 or len(cuts) >= MOST_ENTRIES:
+            return []
+        starts = [begin, *(begin + cut.end() for cut in cuts)]
+        ends = [*(begin + cut.start() for cut in cuts), end]
+        return [" " * (a - 1) + "$" + text[a:b] for a, b in zip(starts, ends, strict=True)]
+    if found := _PLAIN_MATRIX.fullmatch(text):
+        begin, end = found.span("inside")
+        rows = components_of(" " * (begin - 1) + "[" + text[begin:end] + ", 0]")[:-1]
+        nested = [components_of(row) or [row] for row in rows]
+        if len(rows) == 1:
+            return nested[0] if len(nested[0]) > 1 else []
+        if any(len(row) > 1 for row in nested):
+            return []
+        return [re.sub(r"^(\s*)\[(.*)\]\s*$", r"\1 \2", row) for row in rows]
+    return []
 
 
 def components_of(text: str) -> list[str]:
@@ -41,7 +87,7 @@ def components_of(text: str) -> list[str]:
         if depth == 1 and character == ",":
             cuts.append(begin + i)
     cuts.append(begin + len(stripped) - 1)
-    if len(cuts) < 3:
+    if not 3 <= len(cuts) <= MOST_ENTRIES + 1:
         return []
     return [" " * (a + 1) + text[a + 1 : b] for a, b in pairwise(cuts)]
 

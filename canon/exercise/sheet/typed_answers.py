@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.sheet.field_texts import components_of, equation_between, whole_statement
+from canon.exercise.sheet.field_texts import components_of, equation_between, of_matrix, whole_statement
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.left_sides import OTHER_SPELLINGS, Label, Quantity, is_definition, label_of
@@ -329,6 +329,8 @@ class _Plain:
 
     def apart(self, place: str, text: str) -> list[str]:
         """Return the components that stand in one text: in one bracket, or as several equations."""
+        if entries := of_matrix(text):
+            return entries
         statements = self.statements(place, text)
         if len(statements) > 1:
             return [whole_statement(statement, text) for statement in statements]

@@ -115,6 +115,8 @@ def typed_values(text: str, scope: Scope, *, measured: bool, name: str = "") -> 
         whole, _, part = found.group().partition(",")
         reason = f"is {found.group()} the decimal {whole}.{part}, or two values?"
         raise LanguageError(text, found.start() + 1, reason, f"write {whole}.{part}, or {whole}; {part}")
+    if text.count(",") + text.count(";") > MOST_VALUES:
+        raise LanguageError(text, 1, f"more than {MOST_VALUES} values", "split the claim")
     values: list[Value] = []
     passed: list[str] = []
     for statement in statements_of(text, scope):

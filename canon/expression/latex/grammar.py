@@ -69,7 +69,10 @@ brace: LBRACE sum (OVER sum)? _RBRACE
 bars: LBAR sum _RBAR
 cases: LCASES row (_CROW row)* _RCASES
 row: sum _COMMA? _CCOLUMN condition _COMMA?
-condition: COTHERWISE | comparison (_CAND comparison)*
+condition: COTHERWISE | disjunction
+disjunction: conjunction (_COR conjunction)*
+conjunction: clause (_CAND clause)*
+?clause: comparison | _LCLAUSE disjunction _RCLAUSE
 comparison: sum (RELATION sum)+
 fraction: FRAC part part
 root: SQRT (_LINDEX sum _RINDEX)? part
@@ -81,6 +84,7 @@ _RELATIONS = {
 }  # fmt: skip
 _SILENT = (
     "UNDER", "COMMA", "RPAR", "RBRACE", "RBAR", "LINDEX", "RINDEX", "RCASES", "CROW", "CCOLUMN", "CAND",
+    "COR", "LCLAUSE", "RCLAUSE",
 )  # fmt: skip
 
 
@@ -304,9 +308,13 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def condition(self, children: list[Any]) -> Node:
         if isinstance(children[0], Word):
             return Name("True", 0, children[0].column)
-        if len(children) > 1:
-            self.meaning.refuse(children[1].column, "a second condition of one case", "write a < x < b")
         return children[0]
+
+    def disjunction(self, children: list[Any]) -> Node:
+        return children[0] if len(children) == 1 else Call("Or", tuple(children), children[0].column)
+
+    def conjunction(self, children: list[Any]) -> Node:
+        return children[0] if len(children) == 1 else Call("And", tuple(children), children[0].column)
 
     def comparison(self, children: list[Any]) -> Node:
         nodes = tuple(self.meaning.node(child) for child in children[::2])

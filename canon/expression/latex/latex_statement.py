@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from canon.expression.latex.undressed import CASES, PART, ROW, undressed
-from canon.expression.text.statement import Side, Statement
+from canon.expression.text.statement import Side, Statement, unwrapped
 from canon.expression.text.tokens import LanguageError
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def spans(text: str) -> tuple[str, tuple[tuple[Span, ...], ...]]:
     >>> [[bare[side.start : side.end] for side in sides] for sides in statements]
     [['\\dot q', '\\frac{p}{m}'], ['\\dot p', '-kq', 'F']]
     """
-    bare = undressed(text)
+    bare = unwrapped(undressed(text))
     found = _cuts(bare)
     if found is None:  # brackets that do not close: the grammar says where
         return _clean(bare), ((_trimmed(bare, 0, len(bare)),),)
@@ -122,6 +122,8 @@ def spans(text: str) -> tuple[str, tuple[tuple[Span, ...], ...]]:
         inside = [cut for cut in equals if start <= cut.start < end]
         starts = [start, *(cut.end for cut in inside)]
         ends = [*(cut.start for cut in inside), end]
+        if inside and not bare[starts[0] : ends[0]].strip():  # it goes on with what stands before the field
+            starts, ends = starts[1:], ends[1:]
         sides = tuple(_trimmed(bare, a, b) for a, b in zip(starts, ends, strict=True))
         if inside or bare[start:end].strip(" .,;"):
             statements.append(sides)
@@ -246,7 +248,10 @@ _GREEK = (
 _SPELLINGS = tuple(
     (re.compile(pattern), spelling)
     for pattern, spelling in (
-        (r"\\(?:left|right|[bB]igg?[lrm]?|displaystyle|limits|,|;|:|!|quad|qquad| )(?![A-Za-z])", ""),
+        (
+            r"\\(?:left|right|[bB]igg?[lrm]?|displaystyle|textstyle|limits|,|;|:|!|quad|qquad| )(?![A-Za-z])",
+            "",
+        ),
         (
             r"\\(?:mathrm|operatorname|text|mathit|mathcal|mathscr|mathfrak|mathbf|boldsymbol|rm|bm)\s*\{\s*(\w+)\s*\}",
             r"\1",

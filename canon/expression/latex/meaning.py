@@ -31,6 +31,7 @@ from canon.expression.latex.pieces import (
 )
 from canon.expression.latex.quotient import shown
 from canon.expression.latex.understood_time import has_rate_or_is_momentum, without_time
+from canon.expression.text.differentials import PRIMED
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Power, Product, Tuple
 
 if TYPE_CHECKING:
@@ -119,7 +120,7 @@ class Meaning:
                 case Operator():
                     node, at = self._operated(items, at, item)
                 case Mark():
-                    node, at = self._varied(items, at, item), at + 2
+                    node, at = self._marked(items, at, item)
                 case _:
                     node, at = self.node(item), at + 1
             found.append(node)
@@ -215,7 +216,7 @@ class Meaning:
         if isinstance(item, Head) and isinstance(item.function, Applied):
             return self._declared(items, at, item, item.function)
         if isinstance(item, Mark):
-            return self._varied(items, at, item), at + 2
+            return self._marked(items, at, item)
         return self.node(item), at + 1
 
     def _open(self, item: Piece, taken: list[Node], function: Function) -> NoReturn:
@@ -301,6 +302,8 @@ class Meaning:
         if not function.order:
             return call
         variable = arguments[0]
+        if len(arguments) == 1 and not isinstance(variable, Name) and not function.dotted:
+            return Call(PRIMED, (call, Number(function.order, 1, column)), column)
         if len(arguments) > 1 or not isinstance(variable, Name):
             self.refuse(
                 column,
@@ -340,6 +343,12 @@ class Meaning:
             r"write \frac{\partial V}{\partial x}, or what it acts on in brackets",
         )
 
+    def _marked(self, items: tuple[Piece, ...], at: int, mark: Mark) -> tuple[Node, int]:
+        """Return what a letter alone means, Euler's number or with what follows a differential, and where it ends."""
+        if mark.text == "e":
+            return Call("exp", (Number(1, 1, mark.column),), mark.column), at + 1
+        return self._varied(items, at, mark), at + 2
+
     def _varied(self, items: tuple[Piece, ...], at: int, mark: Mark) -> Node:
         r"""Return the declared ``d_x`` or ``delta_x`` that ``dx`` or ``\delta x`` writes."""
         following = items[at + 1] if at + 1 < len(items) else None
@@ -366,8 +375,6 @@ class Meaning:
         return None
 
     def _stray(self, mark: Mark) -> NoReturn:
-        if mark.text == "e":
-            self.refuse(mark.column, "e is not declared", r"write e^{1} or \exp(1) for Euler's number")
         if mark.text == "partial":
             self.refuse(
                 mark.column, "a partial derivative is not complete", r"write \frac{\partial V}{\partial x}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 __all__ = [
+    "CLAUSE",
     "CONDITION",
     "DECORATIONS",
     "OF_SPECIAL_FUNCTIONS",
@@ -20,9 +21,13 @@ DECORATIONS = {
     **dict.fromkeys(("mathbf", "boldsymbol", "bm"), ("vec", "bf")),
 }  # fmt: skip
 CONDITION = re.compile(
-    r"\\(?:text|mathrm|textrm|mbox)\s*\{[\s~]*(for|if|when|otherwise|else|wenn|sonst)[\s~:,.]*\}|\\(?:wedge|land)(?![A-Za-z])"
+    r"\\(?:text|mathrm|textrm|mbox)\s*\{[\s~]*(for|if|when|otherwise|else|wenn|sonst)[\s~:,.]*\}|\\(?:wedge|land|vee|lor)(?![A-Za-z])"
 )
 """What stands before a condition in ``cases``, or in its place."""
+CLAUSE = re.compile(
+    r"\((?:[^()<>=\\]|\\(?!wedge|vee|land|lor|[lgn]eq?)[A-Za-z]*){0,400}?(?:[<>=]|\\(?:leq|geq|neq|le|ge|ne))"
+)
+"""A bracket in ``cases`` with a relation directly inside it."""
 OTHERWISE = ("otherwise", "else", "sonst")
 PLAIN = re.compile(
     r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*_(?=[A-Za-z0-9]*[A-Za-z])[A-Za-z0-9]{2,}(?![A-Za-z0-9_])"

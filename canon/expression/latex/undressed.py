@@ -30,6 +30,15 @@ _SAID_OF_THE_PAGE = re.compile(
     r"|\\(?:nonumber|notag|displaystyle|textstyle|scriptstyle|centering|noindent|hfill|par|allowbreak|mathstrut|strut"
     r"|allowdisplaybreaks|medskip|bigskip|smallskip|newline|hline|nobreak|left\s*\.\s*(?=\\left)|relax)(?![A-Za-z])"
 )
+_PRINTED_ATAN2 = re.compile(r"\\operatorname\s*\{\s*atan_\s*\{?2\}?\s*\}")
+"""How SymPy prints the name."""
+_INSIDE = r"(?:[^{}]|\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\})"
+_PRINTED_SUBS = re.compile(
+    r"\\left\.\s*\\frac\{d(?:\^\{([2-8])\})?\}\{d (?P<x>\\?[A-Za-z]{1,10}(?:_\{\w{1,3}\})?)(?:\^\{\1\})?\}\s*"
+    r"(?P<f>\\?\w{1,20}|\\operatorname\{\w{1,20}\})\{\\left\((?P=x) \\right\)\}\s*\\right\|_\{\\substack\{"
+    rf"\s*(?P=x)=(?P<place>{_INSIDE}{{1,2000}})\}}\}}"
+)
+"""How SymPy prints the derivative of a function at a place."""
 _BROKEN_BRACKET = re.compile(
     r"\\right\s*\.(?:\s|&|~|\\\\|\\(?:q?quad|nonumber|notag)(?![A-Za-z])|\\[,;:!])*\\left\s*\."
 )
@@ -39,6 +48,8 @@ _BOX = re.compile(
 _ROW = re.compile(r"\\\\\*?(?:\s*\[\s*-?[0-9.]+\s*(?:pt|em|ex|mm|cm|in|baselineskip)\s*\])?")
 _DELIMITER = re.compile(r"\$\$?|(?<!\\)\\[\[\]()]")
 _CLOSING = {"$": "$", "$$": "$$", "\\[": "\\]", "\\(": "\\)"}
+_EQUALS_FIRST = re.compile(r"(?:\s|\\(?:display|text)style(?![A-Za-z])){0,40}=")
+_EQUALS_LAST = re.compile(r"=\s*$")
 _GAP = re.compile(r"[\s,;.:]*(?:and|und|et)?[\s,;.:]*")
 _BRACE = re.compile(r"\\.|[{}]", re.DOTALL)
 _BRACE_OR_EQUALS = re.compile(r"\\.|[{}=]", re.DOTALL)
@@ -83,10 +94,19 @@ def undressed(text: str) -> str:
     if "\\" not in bare:
         return _aligned(bare) if "&" in bare else bare
     bare = _SAID_OF_THE_PAGE.sub(_blanks, bare)
+    if "\\substack" in bare:
+        bare = _PRINTED_SUBS.sub(_primed, bare)
+    bare = _PRINTED_ATAN2.sub(lambda m: r"\operatorname{atan2}".ljust(len(m.group())), bare)
     bare = _BROKEN_BRACKET.sub(_blanks, bare)
     if "\\begin" in bare or "\\end" in bare:
         bare = _without_displays(text, bare)
     return _unboxed(_rows(bare))
+
+
+def _primed(printed: re.Match[str]) -> str:
+    """Return the derivative at a place with primes, as long as it was."""
+    primes = "'" * int(printed[1] or 1)
+    return f"{printed['f']}{primes}({printed['place']})".ljust(len(printed.group()))
 
 
 def _unboxed(text: str) -> str:
@@ -154,6 +174,8 @@ def _without_delimiters(text: str) -> str:
             )
     bare = _DELIMITER.sub(_blanks, text)
     for (_, left), (right, _) in pairwise(zones):
+        if _EQUALS_FIRST.match(bare, right) or _EQUALS_LAST.search(bare[max(0, left - 20) : left]):
+            continue  # one equation in several pairs of dollars
         if _GAP.fullmatch(text, left, right) and (right > left or text[left - 2 : left] in ("$$", "\\]")):
             mark = left if right > left else left - 1
             bare = bare[:mark] + PART + " " * (right - mark - 1) + bare[right:]

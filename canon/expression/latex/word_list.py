@@ -78,7 +78,12 @@ class WordList:
     @property
     def in_cases(self) -> bool:
         r"""Whether the last bracket that opened is ``\begin{cases}``."""
-        return bool(self.open) and self.open[-1].kind == "CASES"
+        return bool(self.open) and self.open[-1].kind in ("CASES", "CLAUSE")
+
+    @property
+    def at_condition(self) -> bool:
+        """Whether a condition of cases begins here."""
+        return self.in_cases and self.last in ("CCOLUMN", "CAND", "COR", "LCLAUSE")
 
     def emit(
         self, kind: str, shown: str, column: int, item: Item | LatexFraction | Operator | None = None
@@ -132,6 +137,10 @@ class WordList:
         if closing == "\\end{cases}":
             self.open.append(_Bracket(shown, closing, "CASES", 0, column))
             self.emit("LCASES", shown, column)
+            return True
+        if closing == "clause )":
+            self.open.append(_Bracket(shown, ")", "CLAUSE", 0, column))
+            self.emit("LCLAUSE", shown, column)
             return True
         index = shown == "[" and self.last == "SQRT"
         kind = (

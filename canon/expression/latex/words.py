@@ -23,6 +23,7 @@ from canon.expression.latex.names import (
 )
 from canon.expression.latex.pieces import LatexFraction, Operator
 from canon.expression.latex.printed_forms import (
+    CLAUSE,
     CONDITION,
     DECORATIONS,
     OF_SPECIAL_FUNCTIONS,
@@ -291,8 +292,9 @@ class _Reader:
             self.refuse(column, f"{command} is not read", REMEDIES.get(command[1:], ""))
 
     def condition(self, said: re.Match[str], command: str) -> None:
-        if said.group(1) in OTHERWISE or command in ("\\wedge", "\\land"):
-            self.out.emit("CAND" if said.group(1) is None else "COTHERWISE", said.group(), self.at + 1)
+        joint = {"\\wedge": "CAND", "\\land": "CAND", "\\vee": "COR", "\\lor": "COR"}.get(command)
+        if said.group(1) in OTHERWISE or joint:
+            self.out.emit(joint or "COTHERWISE", said.group(), self.at + 1)
         self.at = said.end()
 
     def mark_or_function(self, command: str, column: int) -> Mark | Function | None:
@@ -316,6 +318,10 @@ class _Reader:
 
     def bracket(self, shown: str, side: str) -> bool:
         """Read a bracket; ``side`` says whether a bar opens or closes where it was told."""
+        if shown == "(" and self.out.at_condition and CLAUSE.match(self.text, self.at, self.end):
+            self.out.opened("(", "clause )", self.at + 1)
+            self.at += 1
+            return True
         if not self.out.bracket(shown, side, self.at + 1):
             return False
         self.at += len(shown)

@@ -35,8 +35,8 @@ def digits(number: Expr) -> float:
     --------
     >>> digits(sp.exp(1000) / 7)
     435.1...
-    >>> digits(sp.exp(sp.exp(sp.exp(10)))), digits(sp.sin(10**50))
-    (inf, 0.0)
+    >>> digits(sp.exp(sp.exp(sp.exp(10)))), digits(sp.sin(10**50)), digits(sp.exp(sp.exp(1) / 10**9)) < 1
+    (inf, 0.0, True)
     """
     return _digits(number, {})
 
@@ -89,7 +89,7 @@ def _fresh(f: sp.Basic, known: dict[sp.Basic, float]) -> float:
     if not inside:
         return 0.0
     if isinstance(f, _GROWING) or (isinstance(f, sp.Pow) and f.base is sp.E):
-        return _power_of_ten(inside[-1]) / _TEN
+        return _power_of_ten(_magnitude(f.args[-1], known)) / _TEN
     if isinstance(f, sp.Pow):
         return max(inside[0], 1.0) * _size(f.exp, inside[1])
     if isinstance(f, sp.Mul):
@@ -99,6 +99,13 @@ def _fresh(f: sp.Basic, known: dict[sp.Basic, float]) -> float:
     if isinstance(f, sp.sin | sp.cos | sp.tanh | sp.atan | sp.acot | sp.sign | sp.arg):
         return 0.0
     return max(inside)
+
+
+def _magnitude(f: sp.Basic, known: dict[sp.Basic, float]) -> float:
+    """Return about the decimal logarithm of a number, or more; below zero only where a rational factor makes it so."""
+    if isinstance(f, sp.Rational):
+        return math.log10(abs(int(f.p))) - math.log10(int(f.q)) if f.p else 0.0
+    return sum(_magnitude(part, known) for part in f.args) if isinstance(f, sp.Mul) else _digits(f, known)
 
 
 def _size(exponent: Expr, its_digits: float) -> float:

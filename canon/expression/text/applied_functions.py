@@ -286,6 +286,10 @@ def _power(column: int, arguments: list[Node]) -> Node | None:
     return Power(arguments[0], arguments[1], column) if len(arguments) == 2 else None
 
 
+def _squared(column: int, arguments: list[Node]) -> Node | None:
+    return Power(arguments[0], Number(2, 1, column), column) if len(arguments) == 1 else None
+
+
 def _itself(column: int, arguments: list[Node]) -> Node | None:  # noqa: ARG001
     return arguments[0] if len(arguments) == 1 else None
 
@@ -306,5 +310,5 @@ _CONSTRUCTORS: Mapping[str, Callable[[int, list[Node]], Node | None]] = {
     "Mul": _product, "Times": _product, "Add": _sum, "Plus": _sum, "Pow": _power, "Power": _power, "pow": _power,
     "Rational": _quotient, "Fraction": _quotient, "Integer": _itself, "Float": _itself, "S": _itself,
     "sympify": _itself, "Hold": _itself, "HoldForm": _itself, "Tuple": _tuple, "D": _derivative,
-    "Equal": _equation, "Equality": _equation,
+    "Equal": _equation, "Equality": _equation, "power": _power, "square": _squared, "rational": _quotient,
 }  # fmt: skip

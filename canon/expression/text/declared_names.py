@@ -32,6 +32,7 @@ _GREEK = frozenset(GREEK.values())
 _CALLED = frozenset((
     *FUNCTIONS, "Derivative", "diff", "Piecewise", "Eq", "Ne", "Symbol", "Function", "Integer", "Rational", "Mul",
     "Add", "Pow", "Tuple", "Hold", "Times", "Plus", "Power", "pow", "Float", "Fraction", "Equality", "Equal",
+    "power", "square", "rational", "And", "Or",
 ))  # fmt: skip
 
 
@@ -93,8 +94,8 @@ class Words:
             self.seen[word] = [word] if itself else self.keys.get(key_of(word), [])
         return self.seen[word]
 
-    def read(self, token: Token, bracket: bool) -> list[Token]:
-        """Return the tokens that a word stands for: one, or factors side by side.
+    def read(self, token: Token, bracket: bool, divided: bool = False) -> list[Token]:
+        """Return the tokens that a word stands for: one, or factors side by side, ``rdθ`` among them before a slash.
 
         Raises
         ------
@@ -118,7 +119,9 @@ class Words:
                 self.text, token.column, f"{token.text} can be read as {told}", "write * between factors"
             )
         if not ways:
-            return self._differential(token) or [token]
+            return (
+                self._differential(token) or (self._before_differential(token) if divided else []) or [token]
+            )
         return list(self._tokens(token, ways[0]))
 
     def _is_a_word(self, token: Token, bracket: bool) -> bool:
@@ -170,6 +173,17 @@ class Words:
             kind = "number" if part.kind == "number" else "name"
             tight = token.tight if part.start == 0 else True
             yield Token(kind, part.text, atoms[0].column, rates, tight)
+
+    def _before_differential(self, token: Token) -> list[Token]:
+        """Return the factors before a differential and that itself, for the ``rdθ`` of ``rdθ/dt``."""
+        for start in (i for i, atom in enumerate(token.atoms) if i and atom.plain == "d"):
+            before, rest = token.atoms[:start], token.atoms[start:]
+            name = "".join(atom.plain for atom in before)
+            found = [[_Part("name", n, 0, start)] for n in self.declared(name)] or self._split(before)
+            end = self._differential(replace(token, atoms=rest, column=rest[0].column, tight=True))
+            if len(found) == 1 and end and self.scope.declares(end[-1].text):
+                return [*self._tokens(replace(token, atoms=before), found[0]), *end]
+        return []
 
     def _differential(self, token: Token) -> list[Token]:
         """Return d and what it is of, for ``dθ`` or ``dt``."""

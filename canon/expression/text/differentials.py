@@ -7,15 +7,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from canon.expression.text.syntax import Call, Name, Node, Number
+from canon.expression.text.syntax import Call, Name, Node, Number, children
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from canon.expression.text.factor_parser import FactorParser
+    from canon.expression.text.scope import Scope
     from canon.expression.text.tokens import Token
 
-__all__ = ["PARTIAL", "TOTAL", "derivative"]
+__all__ = ["PARTIAL", "PRIMED", "TOTAL", "derivative", "names_outside_functions"]
 
-TOTAL, PARTIAL = "d/dt", "∂"
+TOTAL, PARTIAL, PRIMED = "d/dt", "∂", "f'"
 """Functions of the syntax tree that no name can spell."""
 
 
@@ -123,3 +126,16 @@ def _made(
     orders = [Number(n, 1, token.column) for _, n in variables]
     name = PARTIAL if sign == "∂" else "d/dx"
     return Call(name, (operand, *(v for v, _ in variables), *orders), token.column)
+
+
+def names_outside_functions(node: Node, scope: Scope) -> Iterator[Name]:
+    """Yield the names of a tree that do not stand in the argument of a declared function."""
+    stack = [node]
+    while stack:
+        part = stack.pop()
+        if isinstance(part, Name):
+            yield part
+        elif isinstance(part, Call) and part.function in ("Derivative", "diff", "D", PARTIAL):
+            stack.append(part.arguments[0])
+        elif not (isinstance(part, Call) and part.function in scope.functions):
+            stack += children(part)

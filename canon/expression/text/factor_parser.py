@@ -129,7 +129,7 @@ def _words(found: list[Token], words: Words) -> Iterator[Token]:
             yield token
             continue
         try:
-            read = words.read(token, after.text in ("(", "[") and after.tight)
+            read = words.read(token, after.text in ("(", "[") and after.tight, after.text == "/")
             if before.kind == "number" and token.text in OF_MECHANICS and len(read) > 1:
                 shown = "*".join(part.text for part in read)
                 told = f"is {token.text} a unit, or {shown}?"

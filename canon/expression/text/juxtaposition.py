@@ -11,8 +11,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 from unicodedata import numeric
 
-from canon.expression.text.applied_functions import applied, constructed, with_brackets
-from canon.expression.text.differentials import PARTIAL, derivative
+from canon.expression.text.applied_functions import applied, constructed, is_function, with_brackets
+from canon.expression.text.differentials import PARTIAL, PRIMED, derivative
 from canon.expression.text.factor_parser import CLOSING, FactorParser
 from canon.expression.text.quotients import divisor, ended
 from canon.expression.text.syntax import (
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Reader", "parse_juxtaposed"]
 
+MAX_TIMES = 8
+"""How often ``.diff`` may follow."""
 _PRODUCT_OR_VALUE = "write * for a product; a function is declared in functions"
 
 
@@ -102,7 +104,8 @@ class Reader(FactorParser):
             ended(self, factors, starts)
         bare = before.operand if isinstance(before, Negative) else before
         exponent = isinstance(bare, Power) and last.kind != "super" and last.text not in (")", "]", "}")
-        if exponent and token.tight and self.bare_end != self.at:
+        power_of = isinstance(bare, Power) and isinstance(bare.exponent, Number) and is_function(self)
+        if exponent and token.tight and self.bare_end != self.at and not power_of:
             raise self.fault(
                 "does this still belong to the exponent?", "put a space or * before it, or brackets"
             )
@@ -137,7 +140,7 @@ class Reader(FactorParser):
     def power(self) -> Node:
         """Read a base, and an exponent if there is one."""
         start = self.at
-        base = self.atom()
+        base = self.differentiated(self.atom())
         token = self.token
         if (token.kind == "super" or token.text in ("**", "^")) and self.bare_end == self.at > start:
             raise self.fault("does this raise the function or its argument?", "write sin(x)**2 or sin(x**2)")
@@ -149,6 +152,16 @@ class Reader(FactorParser):
             node = Power(base, self.exponent(sign), sign.column)
             self.depth -= 1
             return node
+        return base
+
+    def differentiated(self, base: Node) -> Node:
+        """Read ``.diff(t)`` behind what it differentiates, as in Python."""
+        times = 0
+        while sign := self.take(".diff"):
+            times += 1
+            if times > MAX_TIMES:
+                raise self.fault(f"differentiated more than {MAX_TIMES} times", token=sign)
+            base = Call("Derivative", (base, *with_brackets(self)), sign.column)
         return base
 
     def atom(self) -> Node:
@@ -188,7 +201,7 @@ class Reader(FactorParser):
                 if token.primes:
                     return Name(token.text, token.primes, token.column)
                 return Call(token.text, (Name(self.scope.time.name, 0, opening.column),), token.column)
-            if opening.text == "[" and opening.tight:
+            if opening.text == "[" and opening.tight and self.tokens[self.at + 2].text in ("]", "]]"):
                 raise self.fault("there is no indexing", "write ( ) for grouping, * for a product")
             return Name(token.text, token.primes, token.column)
         if token.text == "d" and (node := derivative(self, token)) is not None:
@@ -207,13 +220,15 @@ class Reader(FactorParser):
             return self.called(token) if bracket else Name(token.text, 0, token.column)
         variables = self.scope.functions[token.text]
         arguments = with_brackets(self) if bracket else tuple(Name(v, 0, token.column) for v in variables)
-        if len(variables) != 1 or len(arguments) != 1 or not isinstance(arguments[0], Name):
+        if len(variables) != 1 or len(arguments) != 1:
             raise self.fault(
                 f"a prime after {token.text}: with respect to what?",
                 f"write Derivative({token.text}(…), x)",
                 token,
             )
         value = Call(token.text, arguments, token.column)
+        if not isinstance(arguments[0], Name):
+            return Call(PRIMED, (value, Number(token.primes, 1, token.column)), token.column)
         return Call(PARTIAL, (value, arguments[0], Number(token.primes, 1, token.column)), token.column)
 
     def called(self, token: Token) -> Node:

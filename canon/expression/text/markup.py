@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
-from canon.expression.text.tokens import MAX_CHARACTERS
+from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
 
 __all__ = ["unmarked"]
 
@@ -24,11 +24,18 @@ _BREAK = re.compile(r"<br ?/?>|</(?:p|div|li|tr)>", re.IGNORECASE)
 _TAG = re.compile(
     r"</?(?:p|div|span|i|em|b|strong|var|code|pre|tt|li|ul|ol|font|u|small)(?: [^<>]{0,200})?>", re.IGNORECASE
 )
+_DRAWN = re.compile(r"[─━│⎛⎜⎝⎞⎟⎠⎡⎢⎣⎤⎥⎦⎧⎨⎩⌠⌡╲╱]|(?<=\n)[ \t]{0,99}-{3,}[ \t]{0,99}(?=\n)")
+"""Lines and large brackets that are drawn with characters."""
 _FENCE = re.compile(r"^\s*```[a-z]{0,12}\n(.*?)\n?```\s*$", re.DOTALL)
 
 
 def unmarked(text: str) -> str:
     """Return a text without the markup around its formula; text without any is returned as it is.
+
+    Raises
+    ------
+    LanguageError
+        Where it is a drawing over several lines, whose rows mean nothing one by one.
 
     Examples
     --------
@@ -39,6 +46,9 @@ def unmarked(text: str) -> str:
     """
     if len(text) > MAX_CHARACTERS:
         return text
+    if drawn := _DRAWN.search(text):
+        reason = "this is a drawing of the formula over several lines, as SymPy's pprint makes it"
+        raise LanguageError(text, drawn.start() + 1, reason, "write what print(…) or latex(…) of it shows")
     if _MATHML.search(text):
         reader = _MathML()
         reader.feed(text)

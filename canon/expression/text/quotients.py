@@ -1,8 +1,9 @@
 """Quotients with a slash: where they end, as far as that is beyond doubt.
 
 ``1/2 m`` is half of m, and ``g/l sin θ`` has g/l as a factor: numbers, or parameters before a function, without blanks.
-After a bracket the quotient ends, ``1/(2m) x``. A momentum over a number and a word is over all of it: ``p²/2m`` is
-p²/(2m). Everything else is refused with both readings: ``x/2m``, ``k/m x``.
+After a bracket the quotient ends, ``1/(2m) x``, and before one behind a blank, ``m/2 (a + b)``. A momentum over a
+number and a word is over all of it: ``p²/2m`` is p²/(2m). Everything else is refused with both readings:
+``x/2m``, ``k/m x``.
 """
 
 from __future__ import annotations
@@ -66,6 +67,8 @@ def ended(reader: FactorParser, factors: list[tuple[bool, Node]], starts: list[i
     bracketed = below[-1].text == _CLOSING.get(below[0].text)
     tight = all(t.tight for t in piece[slash:]) and not reader.token.tight
     plain = isinstance(factors[-2][1], Number) and isinstance(factors[-1][1], Number)
+    half = isinstance(factors[-1][1], Number) and _steady(reader, factors[-2][1]) and reader.token.text == "("
+    plain = plain or half
     steady = is_function(reader) and all(_steady(reader, node) for _, node in factors)
     if bracketed or (tight and (plain or steady)):
         return

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, acceleration, time, velocity
-from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES
+from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES, WRITTEN_OUT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -96,6 +96,8 @@ class Scope:
         """Return a remedy for an unknown name."""
         if name in OTHER_NAMES:
             return f"write {OTHER_NAMES[name]}"
+        if name in WRITTEN_OUT:
+            return WRITTEN_OUT[name]
         if factors := split(name, self):
             return f"write {factors}"
         known = [*self.names, self.time.name, *self.functions, *FUNCTIONS, *CONSTANTS]

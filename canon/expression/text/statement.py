@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from canon.expression.text.tokens import LanguageError
 
-__all__ = ["Side", "Statement", "plain_statements"]
+__all__ = ["Side", "Statement", "plain_statements", "unwrapped"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +71,7 @@ def plain_statements(text: str) -> tuple[Statement, ...]:
     >>> plain_statements("H(q, p) = p**2/2")[0].sides[0].said
     'H(q,p)'
     """
+    text = unwrapped(text)
     depths = _depths(text)
     if depths is None:  # brackets that do not close: the parser says where
         return (Statement((_side(text, 0, len(text)),)),)
@@ -86,10 +87,30 @@ def plain_statements(text: str) -> tuple[Statement, ...]:
         equals = [m for m in signs if start <= m.start() < end]
         starts = [start, *(m.end() for m in equals)]
         ends = [*(m.start() for m in equals), end]
+        if equals and not text[starts[0] : ends[0]].strip():  # it goes on with what stands before the field
+            starts, ends = starts[1:], ends[1:]
         sides = tuple(_side(text, a, b) for a, b in zip(starts, ends, strict=True))
         if len(sides) > 1 or text[start:end].strip():
             found.append(Statement(sides))
     return tuple(found) or (Statement((_side(text, 0, len(text)),)),)
+
+
+def unwrapped(text: str) -> str:
+    r"""Return a text without the brackets around a whole equation, ``( L = T - V )``, as ``\( \)`` leaves them.
+
+    Examples
+    --------
+    >>> unwrapped("(x' = p/m)"), unwrapped("(a + b)*(c + d)"), unwrapped("(1, 2)")
+    (" x' = p/m ", '(a + b)*(c + d)', '(1, 2)')
+    """
+    begin, end = len(text) - len(text.lstrip()), len(text.rstrip(" .,\t\n"))
+    if text[begin : begin + 1] not in ("(", "[") or text[end - 1 : end] != _CLOSE[_OPEN.index(text[begin])]:
+        return text
+    depths = _depths(text)
+    whole = depths is not None and all(depths[begin + 1 : end - 1])
+    if not whole or not any(depths and depths[m.start()] == 1 for m in _EQUALS.finditer(text)):
+        return text
+    return f"{text[:begin]} {text[begin + 1 : end - 1]} {text[end:]}"
 
 
 def _depths(text: str) -> list[int] | None:

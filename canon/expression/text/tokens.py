@@ -99,13 +99,14 @@ _AFTER = (
 )
 _TOKEN = re.compile(
     r"(?P<space>[\s\u2061\u2062\u2063]+|'(?=diff\b)|\\(?=[*_^])"
-    r"|(?:np|numpy|math|sp|sympy|sm|smp|mpmath|cmath)\.(?=[A-Za-z])|[.,;](?=\s*$))"
+    r"|(?:np|numpy|math|sp|sympy|sym|sy|sm|smp|mpmath|cmath)\.(?=[A-Za-z])|[.,;](?=\s*$))"
     r"|(?P<string>'[A-Za-z_]\w{0,40}'|\"[A-Za-z_]\w{0,40}\")"
     r"|(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
     rf"|(?P<vulgar>[{_VULGAR}])"
     rf"|(?P<super>[⁺⁻]?[{_SUPER}]+|⁻?ⁿ)"
+    r"|(?P<half>S\.Half(?!\w))"
     rf"|(?P<name>_{{0,2}}{_LETTER}{_AFTER}*|%(?:pi|e|i)(?!\w))"
-    r"|(?P<operator>\*\*|<=|>=|!=|==|:=|[-+*/^()\[\]{}|<>=,−–·×⋅∙•∗÷∕⁄√≤≥≠∂°])"
+    r"|(?P<operator>\.diff(?=\()|\*\*|<=|>=|!=|==|:=|[-+*/^()\[\]{}|<>=,−–·×⋅∙•∗÷∕⁄√≤≥≠∂°])"
 )
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta", "η": "eta", "θ": "theta",
@@ -120,6 +121,17 @@ _LETTERS = {**GREEK, "ℓ": "ell", "ℏ": "hbar", "ħ": "hbar", "ϵ": "epsilon",
             "µ": "mu", "∆": "Delta", "Ω": "Omega", "ℋ": "H", "ℒ": "L", "ı": "i", "ⅇ": "e",
             "ⅆ": "d", "ⅈ": "I"}  # fmt: skip
 _NOT_HERE = {
+    "∫": "write the integral out, as a function of its ends",
+    "∑": "write its terms one by one, with + between",
+    "∏": "write its factors one by one, with * between",
+    "±": "it stands for two answers; write the one that is meant",
+    "∓": "it stands for two answers; write the one that is meant",
+    "∞": "an expression is finite; write a bound as a condition without it",
+    "≈": "write = for an equation",
+    "∇": "write the partial derivatives, ∂V/∂x",
+    "!": "there is no factorial; write the number",
+    "%": "write a fraction of 100",
+    "&": "write And(a, b) for conditions",
     '"': "there are no string literals",
     "'": "a prime belongs directly after the name of a coordinate; there are no string literals",
     ".": "attributes are not part of the language; write 0.5 for a decimal",
@@ -220,6 +232,8 @@ def _token(text: str, match: re.Match[str], tight: bool) -> Token:
             raise LanguageError(text, column, f"an exponent of more than {MAX_SMALL} figures")
         case "super":
             return Token(kind, unicodedata.normalize("NFKC", word).replace("−", "-"), column, tight=tight)
+        case "half":
+            return Token("vulgar", "½", column, tight=tight)
         case "operator":
             return Token(kind, _ALIKE.get(word, word), column, tight=tight)
         case _:

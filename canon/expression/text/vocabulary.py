@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-__all__ = ["CONSTANTS", "FUNCTIONS", "MAX_CHOICES", "OTHER_NAMES", "RELATIONS"]
+__all__ = ["CONSTANTS", "FUNCTIONS", "MAX_CHOICES", "OTHER_NAMES", "RELATIONS", "WRITTEN_OUT"]
 
 MAX_CHOICES = 16
 """Most arguments of Max and Min and most pieces of Piecewise: SymPy compares them pairwise."""
@@ -55,3 +55,16 @@ OTHER_NAMES = {"ln": "log", "Log": "log", "arcsin": "asin", "arccos": "acos", "a
                 "ArcTanh": "atanh", "ArcCot": "acot", "elliptic_kc": "elliptic_k", "elliptic_ec": "elliptic_e",
                 "EllipticK": "elliptic_k", "EllipticE": "elliptic_e", "ProductLog": "LambertW",
                 "signum": "sign"}  # fmt: skip
+WRITTEN_OUT = {
+    **dict.fromkeys(
+        ("Integral", "integrate", "Integrate", "quad", "int"),
+        "write the integral out, as a function of its ends",
+    ),
+    **dict.fromkeys(
+        ("Sum", "Product", "summation", "sum", "prod", "Sigma"),
+        "write its terms one by one, with + or * between",
+    ),
+    **dict.fromkeys(("Matrix", "Vector", "ImmutableMatrix"), "write the components one by one, in a list"),
+    **dict.fromkeys(("Limit", "limit"), "write its value"),
+}
+"""What is no function of the language, and what to write instead."""
