@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 __all__ = ["Builder"]
 
 MAX_EXPONENT = 1_000
-MAX_ORDER = 8
-"""Highest derivative."""
 MAX_BITS = 14_000
 """Longest number that is built: Python writes integers of up to 4300 digits."""
 
@@ -250,7 +248,7 @@ class Builder:
         """Return the derivative of a function of one variable at a place, ``V'(r - a)``."""
         value, order = node.arguments
         f, variable = self.expression(value), sp.Dummy("xi_1", real=True)
-        if not (len(f.args) == 1 and isinstance(order, syntax.Number) and order.numerator <= MAX_ORDER):
+        if not (len(f.args) == 1 and isinstance(order, syntax.Number) and order.numerator <= 8):
             self.refuse(
                 node, "this is no derivative of a function of one variable", "write Derivative(V(x), x)"
             )
@@ -293,10 +291,8 @@ class Builder:
                     piece, "a piece is (expression, condition)", "write Piecewise((x, x > 0), (0, True))"
                 )
             value = self.expression(piece.items[0])
-            pieces += [
-                (value, self.condition(alternative))
-                for alternative in alternatives(self.text, piece.items[1], self.scope)
-            ]
+            ways = alternatives(self.text, piece.items[1], self.scope)
+            pieces += [(value, self.condition(way)) for way in ways]
         return self.joined(pieces)
 
     def joined(self, pieces: Sequence[tuple[Expr, Boolean]]) -> Expr:
