@@ -263,7 +263,7 @@ def _step(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float) ->
     for point in domain.points(free_symbols(f), VALUES, deadline=deadline):
         if first is not None:
             point |= {s: number for s, number in first[0].items() if s not in moving}
-            if not (_on_one_side(gaps, point, first[0]) and domain.contains(point)):
+            if not _in_one_piece(point, first[0], gaps, domain):
                 continue
         with precision(128):
             ball = _ball(f, point)
@@ -275,10 +275,13 @@ def _step(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float) ->
     return None
 
 
-def _on_one_side(
-    gaps: Sequence[Expr], point: Mapping[Symbol, sp.Rational], other: Mapping[Symbol, sp.Rational]
+def _in_one_piece(
+    point: Mapping[Symbol, sp.Rational],
+    other: Mapping[Symbol, sp.Rational],
+    gaps: Sequence[Expr],
+    domain: Domain,
 ) -> bool:
-    return all(_is_above(g, point) == _is_above(g, other) for g in gaps)
+    return all(_is_above(g, point) == _is_above(g, other) for g in gaps) and domain.contains(point)
 
 
 def _ball(f: Expr, point: Mapping[Symbol, sp.Rational]) -> acb | None:
@@ -335,12 +338,11 @@ def _of_cuts(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float,
     open_ = [root for term in divided for root in _touching_roots(term, moving, domain)]
     for cut in (cut for cut in cuts if cut.part not in angles):
         jump = find_jump(f, cut, moving, domain, deadline)
-        if jump is None:
-            open_ += [] if _meets(f, cut, moving, domain, deadline) else [cut.part]
-        elif centres[cut.part] is None or _is_at_one_of(at_angles, cut):
-            open_.append(cut.part)
-        else:
+        if jump is None and _meets(f, cut, moving, domain, deadline):
+            continue
+        if jump is not None and centres[cut.part] is not None and not _is_at_one_of(at_angles, cut):
             return _failed(name, _fault_of(jump))
+        open_.append(cut.part)
     if not open_:
         return Verdict(Status.HOLDS, f"{name} {CONTINUOUS}", "structure", assumed=assumed)
     why = f"{name} may jump, which its derivatives do not show; narrow the domain to where it does not"

@@ -78,8 +78,7 @@ def arcs_cancel(n: NormalForm, f: Fraction) -> bool:
 def _groups(n: NormalForm, p: fmpq_mpoly) -> list[Fraction] | None:
     """Write p = Σ M·h_M, each h_M linear in arcs, logarithms and π with rational coefficients."""
     t = n.tower
-    unit = t.generator(("I",)) if t.knows(("I",)) else -1
-    pi = t.generator(("pi",)) if t.knows(("pi",)) else -1
+    unit, pi = (t.generator(kernel) if t.knows(kernel) else -1 for kernel in (("I",), ("pi",)))
     linear: dict[Monomial, dict[Monomial, fmpq]] = {}
     plain: list[tuple[Monomial, fmpq]] = []
     for monomial, coefficient in t.terms(p):

@@ -122,6 +122,10 @@ def searched(
         return by_order(question, bad, accuracy) if bad is not None else nothing(setting, "")
     if good.knob * LARGER[-1] <= ceiling:
         good = _still_larger(question, good, duration, accuracy, cheapest)
+    return _at_best(question, good, accuracy, cheapest)
+
+
+def _at_best(question: Question, good: TriedSetting, accuracy: float, cheapest: float) -> Candidate:
     dearer = good.error < LOWEST * accuracy and good.cost > HOPELESS * cheapest
     return candidate_of(question, good, accuracy, note="dearer at any step" if dearer else "")
 
