@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from canon.scene.picture import Picture
 from canon.scene.scene import Integral, Parameter, Scene, SceneError, Start
@@ -48,7 +48,7 @@ def _lax_trace(s: SimpleNamespace, masses: int, power: int) -> Expr:
     rest = half * L if power % 2 else half
     trace = sp.expand(sp.Add(*(half[i, j] * rest[j, i] for i in range(masses) for j in range(masses))))
     springs = {x: sp.exp((q - r) / 2) for x, (q, r) in zip(a, ring, strict=True)}
-    return trace.xreplace(springs) / power
+    return cast("Expr", trace.xreplace(springs)) / power
 
 
 _DIGITS = "sums of large terms that cancel"
