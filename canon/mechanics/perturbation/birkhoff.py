@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.user_input import given_kind
+from canon.expression.symbols.user_input import given_expression, given_kind
 from canon.mechanics.algebra.substitution import entry, substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.perturbation.coefficient_field import ring_over
@@ -216,7 +216,7 @@ def birkhoff_normal_form(
     variables = (*H.q, *H.p)
     if H.H.has(H.t):
         raise ValueError("H depends on the time; take (t, −E) as another pair of variables, or average it")
-    place = {z: sp.sympify((at or {}).get(z, 0)) for z in variables}
+    place = {z: given_expression((at or {}).get(z, 0), f"the place of {z}") for z in variables}
     moved = substitute(
         sp.nsimplify(H.H, rational=True), {z: place[z] + z for z in variables if place[z] != 0}
     )

@@ -40,7 +40,7 @@ def ring_over(constants: Iterable[Expr], size: int) -> PolynomialRing:
     >>> ring_over([sp.sqrt(2), sp.sqrt(3)], 2).relation
     (1, 0, -10, 0, 1)
     """
-    values: list[Any] = [sp.sympify(c) for c in constants]
+    values: list[Any] = [sp.sympify(c, strict=True) for c in constants]
     parameters: tuple[Symbol, ...] = tuple(sorted({s for c in values for s in c.free_symbols}, key=str))
     radicals: set[Any] = {r for c in values for r in c.atoms(sp.Pow) if not r.exp.is_Integer}
     strange = sorted(

@@ -55,7 +55,7 @@ def test_the_quartic_oscillator_in_its_parameters():
 
 
 def test_the_fourth_degree_of_henon_and_heiles():
-    """K₄ = (7 L² − 5 (2 K₂)²/4 · 4)/12 with L = x p_y − y p_x: Braun, J. Differ. Equ. 13, 300 (1973)."""
+    """K₄ = (7 L² − 5 K₂²)/12 with L = x p_y − y p_x, the form that Braun uses, J. Differ. Equ. 13, 300 (1973)."""
     form = birkhoff_normal_form(HENON_HEILES, 4)
     K2, L = (x**2 + y**2) / 2 + KINETIC, x * py - y * px
     assert sp.expand(form.in_variables() - K2 - (7 * L**2 - 5 * K2**2) / 12) == 0
