@@ -178,7 +178,8 @@ def error_estimate(
         found, words = made, better.words
         away, (apart, rounded) = _compared(own, made.y[rows][:, :known], made.carried[rows][:, :known])
         its_own = np.where(np.isnan(rounded), scale * better.unit, rounded)
-        told = (its_own[:, -1] <= away[:, -1]).all()
+        at_rest = (own == 0).all(axis=1) & (away[:, -1] <= np.spacing(0.0))
+        told = ((its_own[:, -1] <= away[:, -1]) | at_rest).all()
         away = away + its_own
         if told:
             break

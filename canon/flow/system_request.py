@@ -17,7 +17,7 @@ from canon.flow.method.method_text import method_of
 from canon.flow.system.bounce import with_bounces
 from canon.flow.system.first_order_motion import moving_system
 from canon.flow.system.lagrangian_motion import SPAN
-from canon.flow.system.parameter_values import check_parameters
+from canon.flow.system.parameter_values import check_given, check_parameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_door import is_scene, opened
 from canon.flow.system.start_of_motion import check_constraints, state_in_order
@@ -59,9 +59,11 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
         request = replace(request, system=system, y0=y0, parameters=parameters)
     if not is_hamiltonian(request.system):
         return _system_task(request, of_scene=scene)
+    variables = (*request.system.q, *request.system.p)
     if isinstance(request.y0, Mapping):
-        variables = (*request.system.q, *request.system.p)
         request = replace(request, y0=state_in_order(request.y0, variables))
+    if request.parameters:
+        check_given(request.parameters, request.system.H.free_symbols, (*variables, request.system.t))
     return task_of(request), None
 
 

@@ -5,9 +5,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from canon import Hamiltonian, Lagrangian
 from canon.flow.geometry.flow_jacobian import flow_jacobian, reversal_error, symplecticity_defect
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
@@ -157,3 +159,31 @@ def test_the_jacobian_may_be_of_a_hamiltonian_with_parameters():
     np.testing.assert_allclose(
         found.final, [[np.cos(2), np.sin(2) / 2], [-2 * np.sin(2), np.cos(2)]], atol=1e-14
     )
+
+
+@pytest.mark.parametrize("options", [{}, {"method": "verlet", "step": 0.01}, {"method": "DOP853"}], ids=str)
+def test_neighbours_that_part_beyond_all_doubles_are_no_collision(options):
+    """At the top of p²/2 − x²/2 the Jacobian is [[cosh t, sinh t], [sinh t, cosh t]]; verlet's rate is a little less."""
+    saddle = Hamiltonian(x.momentum**2 / 2 - x**2 / 2, [x], [x.momentum])
+    found = flow_jacobian(saddle, (0, 1000), [0.0, 0.0], times=[100, 500, 1000], **options)
+    np.testing.assert_allclose(
+        found.log_size[1:] + np.log(2), [100, 500, 1000], rtol=1e-5 if options else 1e-12
+    )
+    np.testing.assert_allclose(found.M[:, :, -1] / found.M[0, 0, -1], np.ones((2, 2)), rtol=1e-4)
+    assert found.exponent[0] == 0
+    np.testing.assert_array_equal(found.y, 0)
+    with pytest.raises(ValueError, match="look earlier"):
+        _ = found.symplecticity_defect
+
+
+def test_so_do_those_of_other_systems():
+    held = Lagrangian((x.dot**2 + x**2) / 2, [x], forces=[-x.dot / 10])
+    found = flow_jacobian(held, (0, 1000), [0.0, 0.0], samples=2)
+    np.testing.assert_allclose(np.diff(found.log_size)[1], 500 * (np.sqrt(1.0025) - 0.05), rtol=1e-12)
+    assert found.M.shape == (2, 2, 3)
+
+
+def test_a_motion_that_ends_itself_is_still_an_error():
+    falling = Hamiltonian(x.momentum**2 / 2 - 1 / x, [x], [x.momentum])
+    with pytest.raises(NonFiniteStateError, match=r"t = 1\.11"):
+        flow_jacobian(falling, (0, 2), [1.0, 0.0])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from canon import Hamiltonian
 from canon.expression.symbols.symbol import coordinates, parameters
 from canon.flow.method.method import DOP853, RK4, Splitting, Taylor
 from canon.flow.propagate import propagate
@@ -195,3 +196,20 @@ def test_a_nystrom_method_asks_for_a_quadratic_kinetic_energy():
     with pytest.raises(ValueError, match="quadratic in p"):
         propagate(quartic, (0, 1), [1.0, 0.0], method=Splitting("srkn-6a"), step=0.1)
     assert propagate(quartic, (0, 1), [1.0, 0.0], method=Splitting("blanes-moan-6"), step=0.1).steps == 10
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"k": 1, parameters("k", positive=True): 1}, "give k twice"),
+        ({"k": -1}, "k was made as a positive symbol"),
+        ({"k": np.array([1.0, -1.0])}, "k was made as a positive symbol"),
+        ({"k": 1, "x": 2}, "x moves and is no parameter"),
+        ({"k": 1, "t": 2}, "t moves and is no parameter"),
+    ],
+)
+def test_parameters_of_a_hamiltonian_that_make_no_sense(given, sentence):
+    x, k = coordinates("x"), parameters("k", positive=True)
+    spring = Hamiltonian(x.momentum**2 / 2 + k * x**2 / 2, [x], [x.momentum])
+    with pytest.raises(ValueError, match=sentence):
+        propagate(spring, (0, 1), [1.0, 0.0], parameters=given)

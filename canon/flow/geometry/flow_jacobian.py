@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
+from canon.flow.geometry.jacobian_in_stretches import jacobian_in_stretches
 from canon.flow.geometry.solvable_jacobian import solvable_jacobian
 from canon.flow.geometry.transformed_jacobian import transformed_jacobian
 from canon.flow.propagate import propagated
 from canon.flow.request import Request
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import Plan, fixed_plan
 from canon.flow.run_record import recorded
 from canon.flow.system.scene_door import is_scene, opened
@@ -29,7 +31,9 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.system.first_order_motion import MovingSystem
     from canon.flow.system.recognised_system import MovableSystem
+    from canon.flow.task import Task
 
 __all__ = ["FlowJacobian", "flow_jacobian", "reversal_error", "symplecticity_defect"]
 
@@ -50,13 +54,21 @@ class FlowJacobian:
     M
         The Jacobian, shape (2n, 2n, times): ``M[i, j]`` is ∂y_i/∂y0_j; the identity at the start.
     low
+<<<<<<< HEAD
         Digits beyond double precision: the Jacobian is M + low.
+=======
+        What M is beyond doubles: it is M + low.
+    exponent
+        Of a motion whose neighbours part by more than doubles can hold: the Jacobian is M · 2**exponent at each time.
+        Empty where it is M.
+>>>>>>> 2c63f9e (Jacobians beyond 1e308 begin anew on the way; parameters of Hamiltonians are checked; rest is known at once)
     """
 
     t: Array
     y: Array
     M: Array
     low: Array
+    exponent: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
         n = len(self.M)
@@ -70,8 +82,18 @@ class FlowJacobian:
         return self.M[:, :, -1]
 
     @property
+    def log_size(self) -> Array:
+        """The logarithm of the size of the largest entry at each time; over the time a Lyapunov exponent, nearly."""
+        powers = np.array(self.exponent or (0,) * len(self.t)) * np.log(2.0)
+        return np.log(abs(self.M).max(axis=(0, 1))) + powers
+
+    @property
     def symplecticity_defect(self) -> Array:
         """The largest size of an entry of MᵀJM − J at each time, see :func:`symplecticity_defect`."""
+        if any(self.exponent):
+            raise ValueError(
+                "the Jacobian is beyond 1e308, and nothing of its symplecticity is left: look earlier"
+            )
         pairs = zip(self.M.ravel().tolist(), self.low.ravel().tolist(), strict=True)
         whole = [round((Fraction(high) + Fraction(low)) * _UNIT) for high, low in pairs]
         exact = np.array(whole, dtype=object).reshape(self.M.shape)
@@ -95,6 +117,7 @@ def flow_jacobian(
 ) -> FlowJacobian:
     """Return the Jacobian of the flow by the variational equations, with the method that carries the motion.
 
+    Where neighbours part by more than doubles can hold, the variations begin anew on the way and are multiplied.
     For methods of fixed steps it is the exact derivative of the discrete map that the compiled steps make, up to
     round-off, so that a symplectic method's is symplectic to round-off at any step. For Taylor and DOP853 it is
     the flow's, to their tolerance.
@@ -142,7 +165,25 @@ def flow_jacobian(
     if task.method.solvable is not None:
         t, motion, slopes = solvable_jacobian(task)
         return FlowJacobian(t, motion, slopes, np.zeros_like(slopes))
-    size, rows = len(task.states[0]), task.system.rows
+    rows = task.system.rows
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            t, y, M, low = _with_variations(task, moving)
+    except NonFiniteStateError:
+        t, y, M, powers = jacobian_in_stretches(
+            task, lambda stretch: _with_variations(stretch, moving)[2][:, :, -1]
+        )
+        within = slice(None) if moving is None else rows
+        M = M if moving is None else M[rows][:, rows]
+        return FlowJacobian(t, y[within], M, np.zeros_like(M), powers)
+    if moving is None:
+        return FlowJacobian(t, y, M, low)
+    return FlowJacobian(t, y[rows], M[rows][:, rows], low[rows][:, rows])
+
+
+def _with_variations(task: Task, moving: MovingSystem | None) -> tuple[Array, Array, Array, Array]:
+    """Return times, motion, Jacobians and what they are beyond doubles, of all that is integrated."""
+    size = len(task.states[0])
     # What is integrated along unseen depends on the start too, and is shown here on the way only.
     whole = task.system if moving is None else replace(task.system, varying=0, spare=0)
     # Orbits side by side, one variation each; where steps adapt, all variations of one orbit.
@@ -156,9 +197,7 @@ def flow_jacobian(
     found = finished(recorded(made))
     y, M = _parted(found.y, size, columns)
     _, low = _parted(found.carried, size, columns)
-    if moving is None:
-        return FlowJacobian(found.t, y, M, low)
-    return FlowJacobian(found.t, y[rows], M[rows][:, rows], low[rows][:, rows])
+    return found.t, y, M, low
 
 
 def _varied(state: Array, orbits: int, columns: int, unit: float = 1.0) -> Array:

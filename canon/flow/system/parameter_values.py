@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
-__all__ = ["check_parameters"]
+__all__ = ["check_given", "check_parameters"]
 
 _KINDS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "integer")
 
@@ -56,6 +56,32 @@ def check_parameters(
     ValueError: m = -1.0, but m was made as a positive symbol: give a positive number
     """
     known = {s.name: s for s in (*others, *needed)}
+    check_given(parameters, known.values(), variables)
+    seen = {str(key) for key in parameters}
+    for name in (str(key) for key in parameters):
+        if name not in known:
+            near = get_close_matches(name, known, 1)
+            has = f"it has {', '.join(sorted(known))}" if known else "it has none"
+            meant = f"; is {near[0]} meant?" if near else ""
+            raise KeyError(f"the system has no parameter {name}, {has}{meant}")
+    missing = sorted(name for name in known if name not in seen)
+    if missing:
+        raise KeyError(f"no number for {', '.join(missing)}: give each one, parameters={{symbol: value}}")
+
+
+def check_given(
+    parameters: Mapping[Symbol | str, Any], symbols: Iterable[Any], variables: Sequence[Symbol]
+) -> None:
+    """Refuse parameters that are given twice, that move, or that are against what a symbol of their name says.
+
+    Those of other names are passed over: what a Hamiltonian was made from may have had parameters that it lost.
+
+    Raises
+    ------
+    ValueError
+        A name is given twice, is that of a variable, or its number is not what the symbol is said to be.
+    """
+    known = {s.name: s for s in symbols}
     moving, seen = {s.name for s in variables}, set[str]()
     for key, value in parameters.items():
         name = str(key)
@@ -64,16 +90,9 @@ def check_parameters(
         seen.add(name)
         if name in moving:
             raise ValueError(f"{name} moves and is no parameter: its start stands in y0")
-        if name not in known:
-            near = get_close_matches(name, known, 1)
-            has = f"it has {', '.join(sorted(known))}" if known else "it has none"
-            meant = f"; is {near[0]} meant?" if near else ""
-            raise KeyError(f"the system has no parameter {name}, {has}{meant}")
-        for number in np.ravel(np.asarray(value, dtype=object)).tolist():
-            _check_kind(known[name], number)
-    missing = sorted(name for name in known if name not in seen)
-    if missing:
-        raise KeyError(f"no number for {', '.join(missing)}: give each one, parameters={{symbol: value}}")
+        if name in known:
+            for number in np.ravel(np.asarray(value, dtype=object)).tolist():
+                _check_kind(known[name], number)
 
 
 def _check_kind(symbol: Symbol, value: Any) -> None:
