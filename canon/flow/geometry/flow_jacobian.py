@@ -54,14 +54,10 @@ class FlowJacobian:
     M
         The Jacobian, shape (2n, 2n, times): ``M[i, j]`` is ∂y_i/∂y0_j; the identity at the start.
     low
-<<<<<<< HEAD
         Digits beyond double precision: the Jacobian is M + low.
-=======
-        What M is beyond doubles: it is M + low.
     exponent
-        Of a motion whose neighbours part by more than doubles can hold: the Jacobian is M · 2**exponent at each time.
-        Empty where it is M.
->>>>>>> 2c63f9e (Jacobians beyond 1e308 begin anew on the way; parameters of Hamiltonians are checked; rest is known at once)
+        Of a motion whose neighbours part by more than doubles can hold: the Jacobian is M · 2**exponent at each time,
+        with 0 where doubles hold it. Empty where they always do.
     """
 
     t: Array
@@ -78,7 +74,15 @@ class FlowJacobian:
 
     @property
     def final(self) -> Array:
-        """The Jacobian at the last time, shape (2n, 2n)."""
+        """The Jacobian at the last time, shape (2n, 2n).
+
+        Raises
+        ------
+        OverflowError
+            It is beyond the largest doubles.
+        """
+        if any(self.exponent[-1:]):
+            raise OverflowError("the Jacobian is beyond 1e308: it is M[:, :, -1] · 2**exponent[-1], see log_size")
         return self.M[:, :, -1]
 
     @property

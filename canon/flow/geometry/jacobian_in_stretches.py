@@ -26,6 +26,9 @@ __all__ = ["jacobian_in_stretches"]
 _MOST = 2**12
 """Stretches in which a motion is tried at most."""
 
+_HELD = 1000
+"""Doubles hold numbers up to a little above this power of two."""
+
 
 def jacobian_in_stretches(
     task: Task, jacobian_over: Callable[[Task], Array]
@@ -88,7 +91,7 @@ def _stretch(plan: Plan, k: int) -> Plan:
 
 
 def _multiplied(stretches: list[Array]) -> tuple[Array, list[int]]:
-    """Return the products of all stretches up to each, as matrices near 1 in size and powers of two."""
+    """Return the products of all stretches up to each, as matrices, and powers of two where doubles do not hold them."""
     so_far, power = np.eye(len(stretches[0])), 0
     products, powers = [so_far], [0]
     for each in stretches:
@@ -96,6 +99,7 @@ def _multiplied(stretches: list[Array]) -> tuple[Array, list[int]]:
         so_far = np.ldexp(each, -own) @ so_far
         shift = math.frexp(float(abs(so_far).max()))[1]
         so_far, power = np.ldexp(so_far, -shift), power + own + shift
-        products.append(so_far)
-        powers.append(power)
+        held = abs(power) < _HELD
+        products.append(np.ldexp(so_far, power) if held else so_far)
+        powers.append(0 if held else power)
     return np.stack(products, axis=2), powers
