@@ -163,7 +163,7 @@ def test_the_jacobian_may_be_of_a_hamiltonian_with_parameters():
 
 @pytest.mark.parametrize("options", [{}, {"method": "verlet", "step": 0.01}, {"method": "DOP853"}], ids=str)
 def test_neighbours_that_part_beyond_all_doubles_are_no_collision(options):
-    """At the top of p²/2 − x²/2 the Jacobian is [[cosh t, sinh t], [sinh t, cosh t]]; verlet's rate is a little less."""
+    """At the top of p²/2 − x²/2 it is [[cosh t, sinh t], [sinh t, cosh t]]; verlet's rate is a little less."""
     saddle = Hamiltonian(x.momentum**2 / 2 - x**2 / 2, [x], [x.momentum])
     found = flow_jacobian(saddle, (0, 1000), [0.0, 0.0], times=[100, 500, 1000], **options)
     np.testing.assert_allclose(

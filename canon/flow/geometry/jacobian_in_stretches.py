@@ -1,6 +1,7 @@
-"""Jacobian in stretches: where variations grow beyond the largest doubles, they begin anew on the way and are multiplied.
+"""Jacobian in stretches: variations that would grow beyond the largest doubles begin anew on the way.
 
-The motion itself stays where it is; no collision is met because its neighbours part exponentially.
+The Jacobians of the stretches are multiplied. The motion itself goes on all the while: that its neighbours part
+exponentially is no collision.
 """
 
 from __future__ import annotations

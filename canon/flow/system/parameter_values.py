@@ -91,14 +91,15 @@ def check_given(
         if name in moving:
             raise ValueError(f"{name} moves and is no parameter: its start stands in y0")
         if name in known:
-            for number in np.ravel(np.asarray(value, dtype=object)).tolist():
-                _check_kind(known[name], number)
+            numbers = np.asarray(value, dtype=object)
+            for orbit, number in enumerate(numbers.ravel().tolist()):
+                _check_kind(known[name], number, f"{name}[{orbit}]" if numbers.ndim else name)
 
 
-def _check_kind(symbol: Symbol, value: Any) -> None:
-    number: Any = sp.Rational(exact_number(value, symbol.name))
+def _check_kind(symbol: Symbol, value: Any, said: str) -> None:
+    number: Any = sp.Rational(exact_number(value, said))
     for kind in _KINDS:
         if getattr(symbol, f"is_{kind}") and not getattr(number, f"is_{kind}"):
             raise ValueError(
-                f"{symbol.name} = {value}, but {symbol.name} was made as a {kind} symbol: give a {kind} number"
+                f"{said} = {value}, but {symbol.name} was made as a {kind} symbol: give a {kind} number"
             )
