@@ -10,7 +10,7 @@ from canon.flow.run.event import Event
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from tests.flow.systems import System, theta, x, y
 
-m, k, e = sp.symbols("m k e", positive=True)
+(m, e), k = sp.symbols("m e", positive=True), sp.Symbol("k", nonnegative=True)
 px, py = x.momentum, y.momentum
 OSCILLATOR = System(px**2 / (2 * m) + k * x**2 / 2, (x,), (px,))
 PENDULUMS = System(theta.momentum**2 / (2 * m) - k * sp.cos(theta), (theta,), (theta.momentum,))

@@ -169,20 +169,17 @@ def flow_jacobian(
     if task.method.solvable is not None:
         t, motion, slopes = solvable_jacobian(task)
         return FlowJacobian(t, motion, slopes, np.zeros_like(slopes))
-    rows = task.system.rows
+    rows = slice(None) if moving is None else task.system.rows
     try:
         with np.errstate(over="ignore", invalid="ignore"):
-            t, y, M, low = _with_variations(task, moving)
+            t, motion, slopes, low = _with_variations(task, moving)
     except NonFiniteStateError:
-        t, y, M, powers = jacobian_in_stretches(
+        t, motion, slopes, powers = jacobian_in_stretches(
             task, lambda stretch: _with_variations(stretch, moving)[2][:, :, -1]
         )
-        within = slice(None) if moving is None else rows
-        M = M if moving is None else M[rows][:, rows]
-        return FlowJacobian(t, y[within], M, np.zeros_like(M), powers)
-    if moving is None:
-        return FlowJacobian(t, y, M, low)
-    return FlowJacobian(t, y[rows], M[rows][:, rows], low[rows][:, rows])
+        found = slopes[rows][:, rows]
+        return FlowJacobian(t, motion[rows], found, np.zeros_like(found), powers)
+    return FlowJacobian(t, motion[rows], slopes[rows][:, rows], low[rows][:, rows])
 
 
 def _with_variations(task: Task, moving: MovingSystem | None) -> tuple[Array, Array, Array, Array]:
@@ -199,9 +196,9 @@ def _with_variations(task: Task, moving: MovingSystem | None) -> tuple[Array, Ar
         single=False,
     )
     found = finished(recorded(made))
-    y, M = _parted(found.y, size, columns)
+    motion, slopes = _parted(found.y, size, columns)
     _, low = _parted(found.carried, size, columns)
-    return found.t, y, M, low
+    return found.t, motion, slopes, low
 
 
 def _varied(state: Array, orbits: int, columns: int, unit: float = 1.0) -> Array:
