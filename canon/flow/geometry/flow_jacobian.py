@@ -82,7 +82,9 @@ class FlowJacobian:
             It is beyond the largest doubles.
         """
         if any(self.exponent[-1:]):
-            raise OverflowError("the Jacobian is beyond 1e308: it is M[:, :, -1] · 2**exponent[-1], see log_size")
+            raise OverflowError(
+                "the Jacobian is beyond 1e308: it is M[:, :, -1] · 2**exponent[-1], see log_size"
+            )
         return self.M[:, :, -1]
 
     @property

@@ -92,7 +92,7 @@ def _stretch(plan: Plan, k: int) -> Plan:
 
 
 def _multiplied(stretches: list[Array]) -> tuple[Array, list[int]]:
-    """Return the products of all stretches up to each, as matrices, and powers of two where doubles do not hold them."""
+    """Return the products of all stretches up to each, and powers of two where doubles do not hold them."""
     so_far, power = np.eye(len(stretches[0])), 0
     products, powers = [so_far], [0]
     for each in stretches:
