@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
+import warnings
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -12,12 +14,14 @@ import numpy as np
 from sympy import Symbol
 
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE
-from canon.expression.symbols.user_input import counted
+from canon.expression.symbols.user_input import counted, given_expression
 from canon.flow.fixed_step.fixed_steps import planned
+from canon.flow.kinked.regimes import kinks_of
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.method_text import method_of
 from canon.flow.run.event import prepared_events
+from canon.flow.run.observables_along import AccuracyWarning
 from canon.flow.run.range_check import check_magnitudes, is_narrow
 from canon.flow.run.sampling_plan import adaptive_plan, fictitious_plan, sampling
 from canon.flow.task import Task
@@ -26,7 +30,7 @@ from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import HamiltonEquations, equations, exact_number, exact_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     import numpy.typing as npt
     from sympy import Expr
@@ -37,7 +41,14 @@ if TYPE_CHECKING:
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
-__all__ = ["hamilton_equations_of", "parted_by_orbit", "task_of", "task_with", "two_ends"]
+__all__ = [
+    "functions_by_name",
+    "hamilton_equations_of",
+    "parted_by_orbit",
+    "task_of",
+    "task_with",
+    "two_ends",
+]
 
 _KEPT = 64
 """Systems kept for the next call."""
@@ -89,7 +100,7 @@ def task_with(
     """
     method = _with_tolerance(method_of(request.method), request.tolerance)
     step, precision, times, cadence = request.step, request.precision, request.times, request.cadence
-    extra = dict(request.observables or {})
+    extra = functions_by_name(request.observables)
     if "energy" in extra:
         raise ValueError(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
@@ -125,7 +136,16 @@ def task_with(
         max_step=_longest(request.max_step, method),
     )
     _check_events(task)
+    if method.engine.takes_step:
+        _warn_of_kinks(system, method)
     return task
+
+
+def functions_by_name(observables: Any) -> dict[str, Expr]:
+    """Return observables as expressions by name."""
+    if observables is not None and not isinstance(observables, Mapping):
+        raise TypeError(f'observables={observables!r}: give functions by name, {{"name": function}}')
+    return {name: given_expression(f, f"the observable {name!r}") for name, f in (observables or {}).items()}
 
 
 # what the user said --------------------------------------------------------------------------------
@@ -271,7 +291,10 @@ def _check_start(
     try:
         found = system.graph.evaluate(nodes, values, FLOAT64 if narrow else LONGDOUBLE)
     except OverflowError as large:
-        raise ValueError("a constant or a parameter of H is beyond 1e308: choose other units") from large
+        raise ValueError(
+            "a constant or a parameter of H is beyond 1e308: choose other units; exponents with floats, which SymPy "
+            "takes apart, exp(a + b*t) = exp(a)*exp(b*t), keep together with exact numbers, Rational(1, 1000)"
+        ) from large
     finite = np.logical_and.reduce([np.isfinite(np.broadcast_to(x, states.shape[1:])) for x in found])
     if not finite.all():
         wrong = states[system.rows, np.argmin(finite)]
@@ -305,13 +328,24 @@ def _check_adaptive(
         )
 
 
+def _warn_of_kinks(system: HamiltonEquations, method: Method) -> None:
+    """Warn where steps of one size pass over kinks."""
+    kinks = kinks_of(system)
+    if kinks is not None:
+        where = ", ".join(f"{system.graph.to_sympy(g)} = 0" for g in kinks.functions[:4])
+        warnings.warn(
+            f"{method} steps over the kinks at {where}, where its order is lost; Taylor() and DOP853() stop there and "
+            "go on beyond",
+            AccuracyWarning,
+            stacklevel=5,
+        )
+
+
 def _check_events(task: Task) -> None:
     if task.dense and not task.method.engine.keeps_polynomials:
         raise ValueError(f"dense=True: {task.method} has no polynomials to keep; Taylor() has")
     if not task.events:
         return
-    if not task.method.engine.meets_events:
-        raise ValueError(f"events: {task.method} does not meet any; Taylor() and methods of fixed steps do")
     if task.states[0].shape[1] > 1:
         raise ValueError("events are met at times of each orbit's own: propagate the orbits one by one")
     if task.cadence is not None:

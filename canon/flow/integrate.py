@@ -80,10 +80,9 @@ def _by_heyoka(
 def _by_scipy(
     task: Task, method: DOP853, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
-    states, _ = _states(task, so_far)
-    return joined(
-        so_far, dop853_motion(task.system, states, task.plan, method, progress, so_far, task.max_step)
-    )
+    (states, _), events = _states(task, so_far), prepared_events(task.system, task.events)
+    made = dop853_motion(task.system, states, task.plan, method, progress, so_far, task.max_step, events)
+    return joined(so_far, made)
 
 
 _ENGINES: dict[Engine, Callable[[Task, Any, Callable[[float], None], Samples | None], Samples]] = {

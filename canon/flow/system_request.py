@@ -12,7 +12,7 @@ import numpy as np
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.flow.checked_request import parted_by_orbit, task_of, task_with, two_ends
+from canon.flow.checked_request import functions_by_name, parted_by_orbit, task_of, task_with, two_ends
 from canon.flow.method.method_text import method_of
 from canon.flow.system.bounce import with_bounces
 from canon.flow.system.first_order_motion import moving_system
@@ -73,7 +73,7 @@ def _system_task(request: Request, *, of_scene: bool) -> tuple[Task, MovingSyste
     ends = two_ends(request.t_span, y0)
     found, given = recognised(request.system), dict(request.parameters or {})
     variables = (*found.state, found.t)
-    observed = {name: _plain(f, variables) for name, f in (request.observables or {}).items()}
+    observed = {name: _plain(f, variables) for name, f in functions_by_name(request.observables).items()}
     met = tuple(_plain_event(event, variables) for event in request.events)
     named = {str(key) for key in given}
     functions = [*observed.values(), *(event.function for event in met)]

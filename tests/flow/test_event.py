@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.propagate import propagate
 from canon.flow.run.event import Event
 from canon.flow.run.non_finite_state import NonFiniteStateError
@@ -238,7 +238,6 @@ def test_a_driven_systems_events_read_the_clock():
         ({"events": [Event(x, 0, {y: y})]}, ValueError, "changes y"),
         ({"events": [Event(x)], "y0": [[0.5, 0.6], [0.0, 0.0]]}, ValueError, "one by one"),
         ({"events": [Event(x)], "cadence": 1}, ValueError, "cadence"),
-        ({"events": [Event(x)], "method": DOP853(), "step": None}, ValueError, "does not meet"),
     ],
 )
 def test_events_that_make_no_sense_are_refused(change, error, message):

@@ -72,10 +72,22 @@ class Arithmetic:
 
 
 def _numpy(dtype: type[np.floating[Any]]) -> Arithmetic:
+    largest = np.finfo(dtype).maxexp
+
     def number(value: Fraction) -> Any:
+        top_bits, bottom_bits = value.numerator.bit_length(), value.denominator.bit_length()
+        if top_bits - bottom_bits > largest:
+            raise OverflowError(
+                f"a number of about 2^{top_bits - bottom_bits} is beyond the range of {dtype.__name__}"
+            )
+        if max(top_bits, bottom_bits) > largest:
+            return quotient(value)
         top, bottom = dtype(value.numerator), dtype(value.denominator)
         if int(top) == value.numerator and int(bottom) == value.denominator:
             return top / bottom
+        return quotient(value)
+
+    def quotient(value: Fraction) -> Any:
         # Too long for the type: round the quotient once, from more digits than the type holds.
         shift = max(0, 80 - abs(value.numerator).bit_length() + value.denominator.bit_length())
         return np.ldexp(dtype(str((value.numerator << shift) // value.denominator)), -shift)

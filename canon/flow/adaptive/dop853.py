@@ -9,19 +9,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.adaptive.longest_step import longest_step
+from canon.flow.adaptive.watched_orbit import WatchedOrbit
+from canon.flow.kinked.regimes import kinks_of
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.samples import Samples
 from canon.kernel.llvm.loop import field_function
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from canon.array import Array
+    from canon.flow.kinked.regimes import Kinks
     from canon.flow.method.method import DOP853
+    from canon.flow.run.event import PreparedEvent
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["dop853_motion"]
+
+_LEAST = 2.3e-14
+"""SciPy's least relative tolerance."""
 
 
 def dop853_motion(
@@ -32,8 +39,11 @@ def dop853_motion(
     progress: Callable[[float], None],
     so_far: Samples | None = None,
     max_step: float | None = None,
+    events: Sequence[PreparedEvent] = (),
 ) -> Samples:
     """Integrate orbits one after the other and sample them; a resumed motion chooses its first step anew.
+
+    Events, of one orbit, and kinks of the equations are located and met on the way.
 
     Raises
     ------
@@ -41,13 +51,17 @@ def dop853_motion(
         A state stops being finite, or the step size becomes too small.
     """
     times = plan.instants[0 if so_far is None else len(so_far.t) - 1 :]
-    orbits, done = states.shape[1], list[Samples]()
+    orbits, done, kinks = states.shape[1], list[Samples](), kinks_of(system)
     for y0 in states.T:
 
         def report(fraction: float, before: int = len(done)) -> None:
             progress((before + fraction) / orbits)
 
-        done.append(_dop853(system, y0, times, method, report, max_step or math.inf))
+        longest = max_step or math.inf
+        if events or kinks is not None:
+            done.append(_watched(system, kinks, events, y0, times, method, report, longest))
+        else:
+            done.append(_dop853(system, y0, times, method, report, longest))
         if len(done[-1].t) < len(times) and orbits > 1:
             raise KeyboardInterrupt("an ensemble under DOP853 is done orbit by orbit: nothing of it is kept")
     return Samples(
@@ -59,7 +73,51 @@ def dop853_motion(
         step=None,
         cpu_seconds=sum(each.cpu_seconds for each in done),
         compile_seconds=sum(each.compile_seconds for each in done),
+        crossings=done[0].crossings if orbits == 1 else (),
     )
+
+
+def _watched(
+    system: HamiltonEquations,
+    kinks: Kinks | None,
+    events: Sequence[PreparedEvent],
+    y0: Array,
+    times: Array,
+    method: DOP853,
+    progress: Callable[[float], None],
+    max_step: float,
+) -> Samples:
+    """Integrate one orbit through its events and kinks."""
+    terms = longest_step(system)
+    started, sample = time.thread_time(), 1
+    states = np.empty((len(y0), len(times)))
+    states[:, 0] = y0
+    orbit = WatchedOrbit(
+        system,
+        kinks,
+        events,
+        _tolerances(method),
+        1 if times[-1] > times[0] else -1,
+        lambda t, y: min(max_step, terms(t, y)),
+        float(times[0]),
+        y0.copy(),
+    )
+    try:
+        sample = orbit.go(times, states, sample, progress)
+    except KeyboardInterrupt:
+        sample = int(np.searchsorted(times * orbit.forward, orbit.t * orbit.forward, side="right"))
+    times, states = times[:sample], states[:, :sample]
+    if orbit.stopped:
+        times, states = np.append(times, orbit.t), np.column_stack([states, orbit.y])
+    spent, compiled = time.thread_time() - started, orbit.compile_seconds
+    return Samples(
+        times, states, np.zeros_like(states), orbit.steps, orbit.evaluations, None, spent, compiled,
+        crossings=tuple(orbit.crossings),
+    )  # fmt: skip
+
+
+def _tolerances(method: DOP853) -> tuple[float, float]:
+    return max(method.tolerance, _LEAST), method.tolerance
 
 
 def _dop853(
@@ -83,8 +141,8 @@ def _dop853(
 
     longest = longest_step(system)
     started, steps, sample = time.thread_time(), 0, 1
-    tolerance = method.tolerance
-    integrator = integrate.DOP853(rate, times[0], y0, times[-1], rtol=max(tolerance, 2.3e-14), atol=tolerance)
+    relative, absolute = _tolerances(method)
+    integrator = integrate.DOP853(rate, times[0], y0, times[-1], rtol=relative, atol=absolute)
     states = np.empty((len(y0), len(times)))
     states[:, 0] = y0
     direction = np.sign(times[-1] - times[0])

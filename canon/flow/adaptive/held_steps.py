@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["HeldSteps", "LocalisedTerms", "finer", "stops_at"]
+__all__ = ["HeldSteps", "LocalisedTerms", "finer", "spacing", "stops_at"]
 
 _LARGEST = 1e300
 
@@ -53,7 +53,7 @@ class LocalisedTerms:
         forward: int,
     ) -> LocalisedTerms:
         """Return those of Hamilton's equations, for numbers of one kind or a larger tolerance."""
-        levels = sights(max(tolerance or 0.0, _spacing(number)))
+        levels = sights(max(tolerance or 0.0, spacing(number)))
         return cls(system, exponents_of(system.graph, system.rates), levels, number, unit, forward)
 
     def near(self, largest: Array) -> bool:
@@ -118,7 +118,7 @@ def _goes_on(_integrator: Any, _sign: int) -> bool:
     return True
 
 
-def _spacing(number: Callable[[Fraction], Any]) -> float:
+def spacing(number: Callable[[Fraction], Any]) -> float:
     """Return the distance of 1 from the next number."""
     one = number(Fraction(1))
     if isinstance(one, float):

@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.adaptive.kinked_orbit import KinkedOrbit, kinked_orbits_of
 from canon.flow.adaptive.state_unit import state_unit
 from canon.flow.adaptive.taylor_events import TaylorEvents
-from canon.flow.adaptive.taylor_orbit import Slice, TaylorOrbit, ends_of, orbits_of
+from canon.flow.adaptive.taylor_orbit import Slice, TaylorOrbit, orbits_of
+from canon.flow.kinked.regimes import kinks_of
 from canon.flow.run.samples import Samples
 from canon.kernel.heyoka_bridge import heyoka_number
 
@@ -76,15 +78,19 @@ def taylor_motion(
     t0, span = plan.last(first), grid[-1] - grid[0]
     unit = state_unit(system, states[0] if so_far is None else so_far.y[:, 0], plan)
     taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward, unit=unit)
-    orbits = orbits_of(system, states, t0, method, number, taylor_events, span, max_step)
+    kinks = kinks_of(system)
+    if kinks is None:
+        smooth = orbits_of(system, states, t0, method, number, taylor_events, span, max_step)
+        if so_far is None and events and taylor_events.at_zero(float(plan.instants[0]), *states):
+            smooth[0].leave([], (), dense=dense)
+        orbits: list[TaylorOrbit] | list[KinkedOrbit] = smooth
+    else:
+        orbits = kinked_orbits_of(kinks, states, t0, method, number, taylor_events, span, precision, max_step)
     if so_far is not None:
-        for orbit, (state, clock) in zip(orbits, so_far.beyond, strict=True):
-            orbit.integrator.state[:], orbit.integrator.dtime = state, clock
-            orbit.new = False
+        for orbit, beyond in zip(orbits, so_far.beyond, strict=True):
+            orbit.go_on_from(beyond)
     compiled = time.perf_counter() - compiling
-    if events and so_far is None and taylor_events.at_zero(float(plan.instants[0]), *states):
-        orbits[0].leave([], (), dense=dense)
-    run = _TaylorRun(orbits, taylor_events, [_stacked(states, number)], ends_of(orbits))
+    run = _TaylorRun(orbits, taylor_events, [_stacked(states, number)], [orbit.beyond for orbit in orbits])
     run.follow(grid, plan, first, progress, system.rows, dense=dense)
     found = np.concatenate(run.rows).transpose(1, 0, 2)
     y = found.astype(np.float64)
@@ -120,7 +126,7 @@ def _stacked(states: tuple[Array, Array], number: Callable[[Fraction], Any]) -> 
 class _TaylorRun:
     """Orbits side by side on their way: what was reached by all of them, and what it cost."""
 
-    orbits: list[TaylorOrbit]
+    orbits: Sequence[TaylorOrbit | KinkedOrbit]
     taylor_events: TaylorEvents
     rows: list[Any]
     beyond: list[tuple[Any, Any]]
@@ -164,13 +170,17 @@ class _TaylorRun:
         self.rows.append(found if self.taylor_events.unit == 1 else found * self.taylor_events.size)
         self.steps += sum(each.steps for each in made)
         self.seconds += sum(each.seconds for each in made)
-        self.beyond = ends_of(self.orbits)
+        self.beyond = [orbit.beyond for orbit in self.orbits]
 
 
 @contextlib.contextmanager
 def _side_by_side(
     orbits: int,
-) -> Generator[Callable[[Callable[[TaylorOrbit], Slice], list[TaylorOrbit]], Iterable[Slice]]]:
+) -> Generator[
+    Callable[
+        [Callable[[TaylorOrbit | KinkedOrbit], Slice], Sequence[TaylorOrbit | KinkedOrbit]], Iterable[Slice]
+    ]
+]:
     """Yield a map over orbits: on threads where there are several, and in this one where there is one."""
     if orbits == 1:
         yield map

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from canon.flow.run.event import PreparedEvent
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Slice", "TaylorOrbit", "ends_of", "orbits_of"]
+__all__ = ["Slice", "TaylorOrbit", "orbits_of"]
 
 _MANY_STEPS, _CREEPING = 50_000, 1e-10
 """Where so many steps pass less than this part of what is left, they shrink towards a singularity."""
@@ -62,6 +62,16 @@ class TaylorOrbit:
     new: bool = True
     pieces: list[Any] = field(default_factory=list[Any])
     safe: tuple[Any, Any] = (None, None)
+
+    @property
+    def beyond(self) -> tuple[Any, Any]:
+        """The state and the clock: what the motion goes on from with the same bits."""
+        return self.integrator.state.copy(), self.integrator.dtime
+
+    def go_on_from(self, beyond: tuple[Any, Any]) -> None:
+        """Go on from where another orbit has ended."""
+        self.integrator.state[:], self.integrator.dtime = beyond
+        self.new = False
 
     def advance(self, grid: Any, *, dense: bool) -> Slice:
         """Go from the first time of a grid to its last and return the states at all but the first.
@@ -270,8 +280,3 @@ def orbits_of(
         steps = HeldSteps(terms, held, waits=not events)
         made.append(TaylorOrbit(integrator, taylor_events, free, span, steps, longest))
     return made
-
-
-def ends_of(orbits: Sequence[TaylorOrbit]) -> list[tuple[Any, Any]]:
-    """Return each orbit's state and time, which go on with the same bits."""
-    return [(orbit.integrator.state.copy(), orbit.integrator.dtime) for orbit in orbits]

@@ -27,8 +27,6 @@ class Engine:
         Whether a number of decimal digits is a precision too.
     keeps_polynomials
         Whether the motion can be kept as a function of time, ``dense=True``.
-    meets_events
-        Whether events are met on the way.
     """
 
     name: str
@@ -37,7 +35,6 @@ class Engine:
     usual_precision: str
     takes_digits: bool = False
     keeps_polynomials: bool = False
-    meets_events: bool = True
 
     @property
     def wider(self) -> tuple[str, ...]:
@@ -75,7 +72,5 @@ HEYOKA = Engine(
 )
 """heyoka's Taylor method."""
 
-SCIPY = Engine(
-    "SciPy", takes_step=False, precisions=("double",), usual_precision="double", meets_events=False
-)
+SCIPY = Engine("SciPy", takes_step=False, precisions=("double",), usual_precision="double")
 """SciPy's Runge–Kutta method."""

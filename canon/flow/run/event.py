@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
+from canon.expression.symbols.user_input import given_expression
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -51,6 +53,8 @@ class Event:
 
     Raises
     ------
+    TypeError
+        The function is no expression.
     ValueError
         The direction or the action is none of these.
 
@@ -72,6 +76,7 @@ class Event:
     name: str = ""
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "function", given_expression(self.function, "the function of an event"))
         if self.direction not in (-1, 0, 1):
             raise ValueError(f"direction={self.direction}: 1 where g rises, -1 where it falls, 0 both")
         if not isinstance(self.action, Mapping) and self.action not in ("record", "stop", "bounce"):

@@ -144,7 +144,9 @@ def size_of_terms(system: HamiltonEquations, samples: Samples) -> Array:
     with np.errstate(all="ignore"):
         found = system.graph.evaluate(terms, values)
     sizes = np.sum([abs(np.broadcast_to(v, samples.y.shape[1:])) for v in found], axis=0)
-    usual = np.median(sizes, axis=0)
+    usual, large = np.median(sizes, axis=0), np.quantile(sizes, 0.9, axis=0)
+    # A motion that begins and soon ends at rest, as with dry friction, has terms on the way only.
+    usual = np.where(sizes[0] > 0, usual, large)
     return np.where(sizes[0] > _VANISHING * usual, sizes[0], usual)
 
 

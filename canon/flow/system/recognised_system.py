@@ -10,6 +10,7 @@ from canon.flow.system.lagrangian_motion import constraints_of, lagrangian_motio
 from canon.flow.system.listed_equations import field_motion, heyoka_field, is_heyoka_system
 from canon.flow.system.quasi_velocity_motion import appell_motion, newton_euler_motion, quasi_motion
 from canon.flow.system.routhian_motion import routhian_motion, routhian_state
+from canon.flow.system.written_with_signs import written_with_signs
 from canon.mechanics.hamilton.vector_field import VectorField
 from canon.mechanics.lagrange.appell import GibbsAppell
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
@@ -91,6 +92,7 @@ def recognised(system: Any) -> RecognisedSystem:
         system = from_sympy_mechanics(system)
     if is_heyoka_system(system):
         system = heyoka_field(system)
+    system = written_with_signs(system)
     if isinstance(system, Lagrangian | ConstrainedLagrangian):
         return _of_lagrangian(system)
     if isinstance(system, Routhian):

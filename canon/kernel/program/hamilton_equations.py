@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from canon.expression.graph.graph import Graph
+from canon.expression.graph.pieces import without_pieces
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.program import Program, exact_value, program
 from canon.kernel.program.shared_products import with_shared_products
@@ -204,7 +205,7 @@ def _is_linear(
 def _with_numbers(
     graph: Graph, expression: Expr, variables: Sequence[Symbol], parameters: Mapping[str, Fraction], what: str
 ) -> int:
-    general = graph.from_sympy(expression)
+    general = graph.from_sympy(without_pieces(expression))
     others = graph.symbols(general) - set(variables)
     unknown = sorted(symbol.name for symbol in others if symbol.name not in parameters)
     if unknown:

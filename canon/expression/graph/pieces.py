@@ -1,0 +1,99 @@
+"""Functions made of pieces, written with signs and moduli: Piecewise, Max, Min and Heaviside for the expression graph.
+
+A condition a > b is the number χ = (1 + sign(a − b))/2, which is 1 where it holds and 0 where it does not. On a border
+between two pieces, where χ = 1/2, the value is the mean of both.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+from sympy import Expr
+
+__all__ = ["without_pieces"]
+
+_MADE_OF_PIECES = (sp.Piecewise, sp.Max, sp.Min, sp.Heaviside)
+
+
+def without_pieces(expression: Expr) -> Expr:
+    """Return an expression with ``sign`` and ``Abs`` in place of Piecewise, Max, Min and Heaviside.
+
+    Parameters
+    ----------
+    expression
+        A real expression.
+
+    Raises
+    ------
+    ValueError
+        A Piecewise has no value somewhere, or a condition that is no inequality.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> without_pieces(sp.Max(x, 0) ** 2)
+    (x/2 + Abs(x)/2)**2
+    >>> without_pieces(sp.Piecewise((x**2, x > 1), (x, True)))
+    x**2*(sign(x - 1)/2 + 1/2) + x*(1/2 - sign(x - 1)/2)
+    """
+    given: Any = expression
+    if not given.has(*_MADE_OF_PIECES):
+        return expression
+    return given.replace(lambda e: isinstance(e, _MADE_OF_PIECES), _written)
+
+
+def _written(whole: Any) -> Any:
+    if isinstance(whole, sp.Heaviside):
+        return _where(whole.args[0])
+    if isinstance(whole, sp.Piecewise):
+        return _pieces(whole)
+    side = 1 if isinstance(whole, sp.Max) else -1
+    arguments: Any = whole.args
+    first, *others = arguments
+    for other in others:
+        first = (first + other) / 2 + side * sp.Abs(first - other) / 2
+    return first
+
+
+def _pieces(whole: Any) -> Any:
+    conditions = [condition for _, condition in whole.args]
+    if sp.Or(*conditions) != sp.true:
+        raise ValueError(
+            f"{_short(whole)} has no value where none of its conditions holds: say what it is there, "
+            "Piecewise(…, (value, True))"
+        )
+    value, condition = whole.args[-1]
+    for value_here, condition in reversed(whole.args[:-1]):
+        here = _number(condition, whole)
+        value = value_here * here + value * (1 - here)
+    return value
+
+
+def _number(condition: Any, whole: Any) -> Any:
+    """Return χ of a condition."""
+    if condition in (sp.true, sp.false):
+        return sp.Integer(1 if condition == sp.true else 0)
+    if isinstance(condition, sp.StrictGreaterThan | sp.GreaterThan | sp.StrictLessThan | sp.LessThan):
+        greater: Any = condition.gts
+        return _where(greater - condition.lts)
+    if isinstance(condition, sp.Eq | sp.Ne):  # which is no stretch of any motion
+        return sp.Integer(1 if isinstance(condition, sp.Ne) else 0)
+    if isinstance(condition, sp.Not):
+        return 1 - _number(condition.args[0], whole)
+    if isinstance(condition, sp.And):
+        return sp.Mul(*(_number(each, whole) for each in condition.args))
+    if isinstance(condition, sp.Or):
+        return 1 - sp.Mul(*(1 - _number(each, whole) for each in condition.args))
+    raise ValueError(
+        f"the condition {condition} in {_short(whole)} is no inequality: write it with <, >, & and |"
+    )
+
+
+def _where(positive: Any) -> Any:
+    return (1 + sp.sign(positive)) / 2
+
+
+def _short(whole: Any) -> str:
+    shown = str(whole)
+    return shown if len(shown) < 60 else f"{shown[:57]}…"

@@ -1,0 +1,331 @@
+"""DOP853 through events and kinks of one orbit: each is located in its step, and met at the end of a step to it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.adaptive.zeros_in_step import Zero, zeros_in_step
+from canon.flow.kinked.next_regime import passage, signs_at_start
+from canon.flow.kinked.place import Place
+from canon.flow.kinked.regimes import HELD, Regime
+from canon.flow.run.event import Crossing, Event
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
+from canon.kernel.llvm.loop import field_function
+from canon.kernel.llvm.number_types import DOUBLE, EXTENDED
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from canon.array import Array
+    from canon.flow.kinked.regimes import Kinks, Signs
+    from canon.flow.run.event import PreparedEvent
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
+
+__all__ = ["Rate", "WatchedOrbit", "compiled_rate"]
+
+_NEWTON = 6
+"""Steps of the method to a zero, each nearer to it."""
+
+_AT_ONCE = 2.0**-40
+"""In parts of a function's size: one that vanishes where another event is met."""
+
+_PILE = 1000
+"""So many events at one instant pile up."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rate:
+    """Nodes as a compiled function of t and y in doubles."""
+
+    call: Callable[[float, Array], Array]
+    seconds: float
+
+
+def compiled_rate(system: HamiltonEquations, nodes: Sequence[int]) -> Rate:
+    """Return nodes as a compiled function of t and y, and how long compiling took."""
+    code = field_function(system.program(nodes))
+    x, out = np.empty(len(system.inputs)), np.empty(len(nodes))
+
+    def values(t: float, y: Array) -> Array:
+        x[:-1], x[-1] = y, t
+        code.call(x.ctypes.data, out.ctypes.data)
+        return out.copy()
+
+    return Rate(values, code.seconds)
+
+
+@dataclass(frozen=True, eq=False)
+class Watch:
+    """A regime's compiled rates, and the functions looked for in it: those of its kinks, then the person's events.
+
+    ``values`` gives every function and, after them, the rate of each.
+    """
+
+    regime: Regime
+    rate: Rate
+    values: Rate
+    kinks: tuple[int, ...]
+    events: tuple[PreparedEvent, ...]
+
+    @property
+    def count(self) -> int:
+        """How many functions are looked for."""
+        return len(self.kinks) + len(self.events)
+
+
+@dataclass(eq=False)
+class WatchedOrbit:
+    """One orbit under DOP853 on its way through events and kinks.
+
+    Parameters
+    ----------
+    system, kinks, events
+        The equations, their kinks, and the person's events.
+    tolerances
+        The relative and the absolute one.
+    forward
+        1 where time runs forward, −1 where it runs back.
+    longest
+        The longest step from a time and a state.
+    t, y
+        Where the motion is.
+    """
+
+    system: HamiltonEquations
+    kinks: Kinks | None
+    events: Sequence[PreparedEvent]
+    tolerances: tuple[float, float]
+    forward: int
+    longest: Callable[[float, Array], float]
+    t: float
+    y: Array
+    crossings: list[Crossing] = field(default_factory=list[Crossing])
+    evaluations: int = 0
+    steps: int = 0
+    stopped: bool = False
+
+    def __post_init__(self) -> None:
+        self._watches: dict[Signs, Watch] = {}
+        self.signs: Signs = ()
+        if self.kinks is not None:
+            self.signs = signs_at_start(self.kinks, self._place(), self.forward)
+        self._sides = self._sides_now()
+
+    @property
+    def compile_seconds(self) -> float:
+        """How long compiling took."""
+        return sum(each.rate.seconds + each.values.seconds for each in self._watches.values())
+
+    def go(self, times: Array, states: Array, sample: int, progress: Callable[[float], None]) -> int:
+        """Put the states at times from a sample on into their columns; return how many of all were reached."""
+        in_a_row, size = 0, None
+        while sample < len(times) and not self.stopped:
+            begun, integrator = self.t, self._integrator(self.t, self.y, float(times[-1]), size)
+            met, before, kept = None, self.t, self.y
+            while sample < len(times) and met is None:
+                before, kept = float(integrator.t), integrator.y.copy()
+                integrator.max_step = self.longest(before, kept)
+                message = integrator.step()
+                self.steps += 1
+                if integrator.status == "failed" or not np.isfinite(integrator.y).all():
+                    raise _lost(before, kept[self.system.rows], message)
+                interpolant = integrator.dense_output()
+                met = self._passed(before, kept, integrator, interpolant)
+                until = integrator.t if met is None else met.t
+                while sample < len(times) and self.forward * (times[sample] - until) <= 0:
+                    states[:, sample] = interpolant(times[sample])
+                    sample += 1
+                progress(float((until - times[0]) / (times[-1] - times[0])))
+            self.evaluations += integrator.nfev
+            if met is not None:
+                size = abs(integrator.t - before)
+                self._happen(met, before, kept)
+            in_a_row = in_a_row + 1 if self.t == begun else 0
+            if in_a_row > _PILE:
+                raise self._error("events pile up there; stop the motion before")
+        return sample
+
+    # one step ------------------------------------------------------------------------------------
+
+    def _passed(self, before: float, kept: Array, integrator: Any, interpolant: Any) -> Zero | None:
+        """Note what was passed in a step, and return the first zero that ends it, if one does."""
+        watch = self._watch()
+        zeros, sides = zeros_in_step(
+            lambda t: watch.values.call(t, interpolant(t) if t != integrator.t else integrator.y)[
+                : watch.count
+            ],
+            before,
+            float(integrator.t),
+            self._sides,
+        )
+        for zero in zeros:
+            event = self._event(zero)
+            if event is not None and not event.event.counts(zero.rising):
+                continue
+            if event is None or event.event.action != "record":
+                return zero
+            t, y = self._located(zero, before, kept)
+            self.crossings.append(Crossing(event.event, t, y[self.system.rows], zero.rising))
+        self.t, self.y, self._sides = float(integrator.t), integrator.y.copy(), sides
+        return None
+
+    def _event(self, zero: Zero) -> PreparedEvent | None:
+        """Return the person's event that a zero belongs to; None for a kink."""
+        watch = self._watch()
+        place = zero.which - len(watch.kinks)
+        return watch.events[place] if place >= 0 else None
+
+    def _located(self, zero: Zero, before: float, kept: Array) -> tuple[float, Array]:
+        """Return when a function vanishes and the state there, by steps of the method from the start of its step."""
+        watch, t = self._watch(), zero.t
+        y, last = self._reached(before, kept, t), math.inf
+        for _ in range(_NEWTON):
+            found = watch.values.call(t, y)
+            value, rate = found[zero.which], found[watch.count + zero.which]
+            away = -value / rate if rate else 0.0
+            if not away or not abs(away) < last or t + away == t or (t + away - before) * self.forward < 0:
+                break
+            last, t = abs(away), float(t + away)
+            y = self._reached(before, kept, t)
+        return t, y
+
+    def _reached(self, before: float, kept: Array, t: float) -> Array:
+        if t == before:
+            return kept.copy()
+        integrator = self._integrator(before, kept, t, abs(t - before))
+        while str(integrator.status) == "running":
+            message = integrator.step()
+            if str(integrator.status) == "failed" or not np.isfinite(integrator.y).all():
+                raise _lost(before, kept[self.system.rows], message)
+        self.evaluations += integrator.nfev
+        return integrator.y.copy()
+
+    # at an event ---------------------------------------------------------------------------------
+
+    def _happen(self, zero: Zero, before: float, kept: Array) -> None:
+        self.t, self.y = self._located(zero, before, kept)
+        watch, event = self._watch(), self._event(zero)
+        if event is None:
+            self._pass(watch.kinks[zero.which], zero.which)
+        else:
+            self._meet(event, rising=zero.rising)
+        for other in self._watch().events:
+            if not self.stopped and other.event is not (event and event.event):
+                self._meet_too(other)
+        self._sides = self._sides_now(None if event is None or event.jump is not None else zero)
+
+    def _pass(self, k: int, which: int) -> None:
+        assert self.kinks is not None
+        watch = self._watch()
+        if HELD not in self.signs:
+            value, rate = watch.values.call(self.t, self.y)[[which, watch.count + which]]
+            if rate and math.isfinite(value / rate):
+                self.y = self.y - value / rate * np.nan_to_num(watch.rate.call(self.t, self.y))
+        at = self._place()
+        following = passage(self.kinks, self.signs, k, at, self.forward)
+        self.signs, after = following.signs, None
+        if following.y is not None:
+            self.y, after = following.y, following.y[self.system.rows]
+        if following.words:
+            wall: Any = self.system.graph.to_sympy(self.kinks.functions[k])
+            told = Event(wall, name=f"{following.words} at {wall} = 0")
+            y = at.y[self.system.rows]
+            self.crossings.append(Crossing(told, self.t, y, rising=following.signs[k] > 0, after=after))
+
+    def _meet(self, event: PreparedEvent, *, rising: bool) -> None:
+        y, after = self.y[self.system.rows], None
+        if event.jump is not None:
+            self.y = np.array(self._place().values(self.system, event.jump))
+            if not np.isfinite(self.y).all():
+                raise self._error("the new state of an event is not finite")
+            after = self.y[self.system.rows]
+            if self.kinks is not None:
+                self.signs = signs_at_start(self.kinks, self._place(), self.forward)
+        self.crossings.append(Crossing(event.event, self.t, y, rising, after))
+        self.stopped = event.event.action == "stop"
+
+    def _meet_too(self, event: PreparedEvent) -> None:
+        """Meet another event if its function vanishes at the same place."""
+        at = self._place()
+        value, rate = at.values(self.system, [event.value, event.rate])
+        rising = rate * self.forward > 0
+        near = abs(value) <= _AT_ONCE * at.size(self.system, event.value)
+        told = any(
+            met.event is event.event and abs(met.t - self.t) <= _AT_ONCE * (abs(met.t) + 1.0)
+            for met in self.crossings[-9:]
+        )
+        if near and rate and not told and event.event.counts(rising):
+            self._meet(event, rising=rising)
+
+    def _sides_now(self, crossed: Zero | None = None) -> Array:
+        """Return of which sign every function is from here on: of its rate where it vanishes; 0 where that does too."""
+        watch = self._watch()
+        at = self._place()
+        sides = [float(self.signs[k]) if self.signs[k] != HELD else 1.0 for k in watch.kinks]
+        for event in watch.events:
+            value, rate = at.values(watch.regime.system, [event.value, event.rate])
+            zero = abs(value) <= _AT_ONCE * at.size(watch.regime.system, event.value)
+            sides.append(
+                math.copysign(1.0, rate * self.forward) * bool(rate) if zero else math.copysign(1.0, value)
+            )
+        if crossed is not None:
+            sides[crossed.which] = 1.0 if crossed.rising else -1.0
+        return np.array(sides)
+
+    # regimes -------------------------------------------------------------------------------------
+
+    def _watch(self) -> Watch:
+        if self.signs not in self._watches:
+            self._watches[self.signs] = self._made()
+        return self._watches[self.signs]
+
+    def _made(self) -> Watch:
+        if self.kinks is None:
+            regime, folded, looked = Regime((), self.system, {}), tuple(self.events), list[tuple[int, int]]()
+        else:
+            regime = self.kinks.regime(self.signs)
+            folded, looked = self.kinks.events(self.signs, self.events), [*regime.functions.items()]
+            if HELD in self.signs:
+                held, ways = self.signs.index(HELD), self.kinks.ways_out(self.signs).values()
+                looked += [(held, node) for node in ways if self.system.graph.symbols(node)]
+        functions = [*(node for _, node in looked), *(event.value for event in folded)]
+        rates = [*(regime.rate(node) for _, node in looked), *(event.rate for event in folded)]
+        # Rates without a series at a zero have no value beyond it: those of the next regime are taken there.
+        smooth = regime.system if not regime.weak else self.system
+        return Watch(
+            regime,
+            compiled_rate(self.system, smooth.rates),
+            compiled_rate(self.system, [*functions, *rates]),
+            tuple(k for k, _ in looked),
+            folded,
+        )
+
+    def _integrator(self, t: float, y: Array, end: float, first: float | None) -> Any:
+        from scipy import integrate
+
+        relative, absolute = self.tolerances
+        first = None if first is None else min(first, abs(end - t))
+        return integrate.DOP853(
+            self._watch().rate.call, t, y, end, rtol=relative, atol=absolute, first_step=first or None
+        )
+
+    def _place(self) -> Place:
+        wide = EXTENDED if EXTENDED.available() else DOUBLE
+        return Place(wide, self.t, self.y, np.zeros_like(self.y))
+
+    def _error(self, words: str) -> NonFiniteStateError:
+        y = self.y[self.system.rows]
+        return NonFiniteStateError(f"at {time_and_state(self.t, y)}: {words}", self.t, y)
+
+
+def _lost(t: float, state: Array, reason: object) -> NonFiniteStateError:
+    return NonFiniteStateError(
+        f"the motion can't be continued after {time_and_state(t, state)} ({reason}): a collision or the edge of H's "
+        "domain; stop earlier",
+        t,
+        state,
+    )

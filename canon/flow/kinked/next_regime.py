@@ -1,0 +1,227 @@
+"""Next regime of equations with kinks: which signs a motion takes where switching functions are zero.
+
+A regime goes on from a zero where every switching function that vanishes there leaves it, along the regime's own
+motion, to the side whose sign the regime has. Where one does so the motion crosses. Where none does, both sides lead to
+the zero and the motion stays on it, as a block does that dry friction holds. Where several do, it is not determined.
+
+A Hamiltonian that jumps by ΔH at a wall g(q, t) = 0 refracts the momentum along the wall's normal, or reflects it:
+p → p + λ ∇g with H(p + λ ∇g) + λ ∂g/∂t as before, which is λ² a/2 + λ ġ + ΔH = 0 with a = ∇g·M⁻¹∇g.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.kinked.regimes import HELD, Signs, flipped
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from canon.array import Array
+    from canon.flow.kinked.place import Place
+    from canon.flow.kinked.regimes import Kinks, Regime
+
+__all__ = ["Passage", "passage", "signs_at_start", "vanishing"]
+
+_ROUNDING = 2.0**-44
+"""What part of the sizes of its terms rounding may leave of a zero."""
+
+_TOUCH = 2.0**-50
+"""What turns round within this part of the sizes of its terms touches a zero and does not pass it."""
+
+_JUMP = 2.0**-40
+"""A change of H by a larger part of the size of its terms is a jump."""
+
+_DERIVATIVES = 4
+"""So many time derivatives of a switching function are asked for the side to which it leaves its zero."""
+
+_MOST_TOGETHER = 6
+"""So many switching functions at most may vanish at one instant."""
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """What follows from a zero: the signs of the next regime, new momenta where H jumps, and what to call it."""
+
+    signs: Signs
+    y: Array | None = None
+    words: str = ""
+
+
+def vanishing(kinks: Kinks, signs: Signs, at: Place) -> list[int]:
+    """Return the switching functions of a regime that are zero but for rounding."""
+    regime = kinks.regime(signs)
+    numbers = [*regime.functions]
+    values = at.values(regime.system, [regime.functions[k] for k in numbers])
+    return [
+        k
+        for k, value in zip(numbers, values, strict=True)
+        if abs(value) <= _ROUNDING * at.size(regime.system, regime.functions[k])
+    ]
+
+
+def signs_at_start(kinks: Kinks, at: Place, forward: int) -> Signs:
+    """Return the regime that a motion begins in.
+
+    Raises
+    ------
+    NonFiniteStateError
+        The motion is not determined by its start.
+    """
+    count = len(kinks.functions)
+    signs = _settled(kinks, (1,) * count, set(), at)
+    zero = vanishing(kinks, signs, at)
+    return _goes_on(kinks, signs, zero, at, forward) if zero else signs
+
+
+def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Passage:
+    """Return what follows where a motion meets a zero of switching function k from a regime.
+
+    Raises
+    ------
+    NonFiniteStateError
+        The motion is not determined there.
+    """
+    if HELD in signs:
+        held = signs.index(HELD)
+        back = {side: (*signs[:held], side, *signs[held + 1 :]) for side in (1, -1)}
+        if k != held:  # another function vanishes meanwhile: look again from one side
+            return Passage(_goes_on(kinks, flipped(back[1], k), [k, held], at, forward), words="slips")
+        return Passage(_goes_on(kinks, back[1], [k], at, forward), words="slips")
+    fresh = {j for j in kinks.mattering(signs) if j not in kinks.nested}
+    beyond = _settled(kinks, flipped(signs, k), fresh | {k}, at)
+    jump = _jump(kinks, signs, beyond, at)
+    if jump:
+        return _refracted(kinks, signs, beyond, k, jump, at)
+    zero = sorted({k, *vanishing(kinks, signs, at), *vanishing(kinks, beyond, at)})
+    following = _goes_on(kinks, beyond, zero, at, forward)
+    return Passage(following, words="sticks" if HELD in following else "")
+
+
+def _settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:
+    """Return the signs of all functions that matter, given those of some; the others count as positive."""
+    known = set(known)
+    while True:
+        mattering = kinks.mattering(signs)
+        unknown = [k for k in mattering if k not in known]
+        if not unknown:
+            return tuple(sign if k in mattering else 1 for k, sign in enumerate(signs))
+        inner = [k for k in unknown if k not in kinks.nested] or unknown[:1]
+        nodes = kinks.folded(signs, [kinks.functions[k] for k in inner])
+        for k, value in zip(inner, at.values(kinks.system, nodes), strict=True):
+            signs = (*signs[:k], -1 if value < 0 else 1, *signs[k + 1 :])
+        known |= set(inner)
+
+
+def _goes_on(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward: int) -> Signs:
+    """Return the regime that goes on from where some functions vanish; others take the signs they have."""
+    if len(zero) > _MOST_TOGETHER:
+        raise _lost(kinks, zero, at, f"{len(zero)} kinks are met at one instant")
+    found = {
+        each for each in _candidates(kinks, signs, zero, at) if _consistent(kinks, each, zero, at, forward)
+    }
+    if len(found) == 1:
+        return found.pop()
+    if len(found) > 1:
+        first, *others = sorted(found, key=lambda each: _distance(each, signs))
+        rates = [_rates(kinks, each, at) for each in (first, *others)]
+        if all(np.allclose(rates[0], other, rtol=_JUMP, atol=0.0) for other in rates[1:]):
+            return first
+        raise _lost(kinks, zero, at, "the motion is not determined: it may leave the kink to either side")
+    if len(zero) == 1 and HELD not in signs:
+        return (*signs[: zero[0]], HELD, *signs[zero[0] + 1 :])
+    raise _lost(kinks, zero, at, "several kinks hold the motion at once")
+
+
+def _candidates(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place) -> Iterator[Signs]:
+    """Return the signs around a zero; what mattered before keeps its sign, unless a function in it changes."""
+    before = {k for k in kinks.mattering(signs) if k not in kinks.nested}
+    for sides in itertools.product((1, -1), repeat=len(zero)):
+        put = dict(zip(zero, sides, strict=True))
+        each = tuple(put.get(k, sign) for k, sign in enumerate(signs))
+        yield _settled(kinks, each, before | {*zero}, at)
+
+
+def _consistent(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward: int) -> bool:
+    """Return whether a regime's motion leaves every zero to the regime's own side, or stays on it."""
+    regime = kinks.regime(signs)
+    for k in zero:
+        node = zero_node = kinks.folded(signs, [kinks.functions[k]])[0]
+        for order in range(1, _DERIVATIVES + 1):
+            node = regime.rate(node)
+            value = at.value(regime.system, node)
+            if order == 1 and _only_touches(regime, zero_node, node, value, at):
+                continue
+            if not math.isfinite(value) or abs(value) <= _ROUNDING * at.size(regime.system, node):
+                continue
+            if (value > 0) != (signs[k] * forward**order > 0):
+                return False
+            break
+    return True
+
+
+def _only_touches(regime: Regime, g: int, rate: int, speed: float, at: Place) -> bool:
+    """Tell whether a motion turns round within rounding of a zero: g goes to ġ²/(2 |g̈|) beyond it."""
+    turn = at.value(regime.system, regime.rate(rate))
+    return speed**2 <= 2 * abs(turn) * _TOUCH * at.size(regime.system, g)
+
+
+def _rates(kinks: Kinks, signs: Signs, at: Place) -> list[float]:
+    system = kinks.regime(signs).system
+    return at.values(system, [*system.velocity, *system.force])
+
+
+def _distance(a: Signs, b: Signs) -> int:
+    return sum(x != y for x, y in zip(a, b, strict=True))
+
+
+def _jump(kinks: Kinks, signs: Signs, beyond: Signs, at: Place) -> float:
+    """Return by how much the energy would change, 0 where that is rounding or where no energy is known."""
+    before, after = kinks.regime(signs).system, kinks.regime(beyond).system
+    values = at.values(before, [before.hamiltonian, after.hamiltonian])
+    change = values[1] - values[0]
+    size = abs(values[0]) + abs(values[1]) + at.size(before, before.hamiltonian)
+    return change if abs(change) > _JUMP * size else 0.0
+
+
+def _refracted(kinks: Kinks, signs: Signs, beyond: Signs, k: int, jump: float, at: Place) -> Passage:
+    before, after = kinks.regime(signs), kinks.regime(beyond)
+    graph, q, p = before.system.graph, before.system.q, before.system.p
+    wall = before.functions[k]
+    normal_nodes = graph.gradient(wall, q)
+    if not before.system.canonical and any(
+        node != graph.zero for node in graph.gradient(wall, before.system.inputs[:-1])
+    ):
+        raise _lost(kinks, [k], at, "the potential jumps: give the system as a Hamiltonian, hamiltonian(L), which "
+            "refracts and reflects there"
+        )  # fmt: skip
+    if any(node != graph.zero for node in graph.gradient(wall, p)):
+        raise _lost(kinks, [k], at, "H jumps where a function of the momenta is zero, and no motion follows")
+    normal = np.array(at.values(before.system, normal_nodes))
+    if not normal.any():  # a switch in time
+        return Passage(beyond)
+    inverse_mass = [at.values(after.system, graph.gradient(v, p)) for v in after.system.velocity]
+    a = float(normal @ np.array(inverse_mass) @ normal)
+    speed, own = (at.value(r.system, r.rate(wall)) for r in (after, before))
+    through = speed**2 - 2 * a * jump
+    if through > 0:
+        along = (math.copysign(math.sqrt(through), speed) - speed) / a
+        words, following = "is refracted", beyond
+    else:
+        along, words, following = -2 * own / a, "is reflected", signs
+    n = len(q)
+    y = at.y + at.carried
+    y[n:] += along * normal
+    return Passage(following, y, words)
+
+
+def _lost(kinks: Kinks, zero: Sequence[int], at: Place, why: str) -> NonFiniteStateError:
+    graph, y = kinks.system.graph, at.y[kinks.system.rows]
+    where = ", ".join(f"{graph.to_sympy(kinks.functions[k])} = 0" for k in zero)
+    return NonFiniteStateError(f"at {time_and_state(at.t, y)}, where {where}: {why}", at.t, y)

@@ -1,0 +1,296 @@
+"""Regimes of equations with kinks: the smooth equations between the zeros of what stands under sign and Abs.
+
+Moduli, maxima, steps and dry friction are smooth but for the zeros of their switching functions g, which are the
+arguments of ``sign`` and ``Abs`` on the graph. A regime says of which sign each of them is; with these signs put in,
+the equations are smooth, and so is their continuation a little beyond the zeros. A switching function may hold others:
+|(|x| − 1)| has those of x and, in each regime of x, of x − 1 or −x − 1.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from canon.expression.graph.algebra import factored
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from canon.expression.graph.graph import Graph, Node
+    from canon.flow.run.event import PreparedEvent
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
+
+__all__ = ["HELD", "Kinks", "Regime", "Signs", "kinks_of"]
+
+_KEPT = 256
+
+_DERIVATIVES = 6
+"""So many time derivatives are looked through for the first that differs on two sides."""
+
+Signs = tuple[int, ...]
+"""1 or −1 for each switching function; :data:`HELD` for one that stays zero."""
+
+HELD = 0
+"""In place of a sign: the motion stays on the zero, as a block that sticks."""
+
+
+@dataclass(frozen=True, eq=False)
+class Regime:
+    """Smooth equations, and the switching functions that end them.
+
+    Parameters
+    ----------
+    signs
+        The signs of all switching functions.
+    system
+        The equations with these signs.
+    functions
+        The nodes of the switching functions in this regime, by their number: of those that matter in it.
+    """
+
+    signs: Signs
+    system: HamiltonEquations
+    functions: Mapping[int, int]
+
+    @functools.lru_cache(maxsize=_KEPT)  # noqa: B019 - regimes live as long as their run
+    def rate(self, node: int) -> int:
+        """Return dg/dt of a node along the motion in this regime."""
+        graph, system = self.system.graph, self.system
+        slopes = graph.gradient(node, system.inputs)
+        rates = (*system.velocity, *system.force, graph.one)
+        return graph.add([graph.mul(pair) for pair in zip(slopes, rates, strict=True)])
+
+    @functools.cached_property
+    def weak(self) -> frozenset[int]:
+        """The switching functions at whose zeros the rates have no Taylor series, as g^(3/2) of Hertz's contact."""
+        graph = self.system.graph
+        roots = {
+            _direction(graph, node.operands[0])
+            for node in map(graph.nodes.__getitem__, graph.reachable(self.system.rates))
+            if node.kind == "pow" and not _is_whole(graph.nodes[node.operands[1]])
+        }
+        return frozenset(k for k, g in self.functions.items() if _direction(graph, g) in roots)
+
+
+def _is_whole(node: Node) -> bool:
+    return node.kind == "number" and node.value.denominator == 1
+
+
+def _direction(graph: Graph, node: int) -> int:
+    """Return what a function and its multiples have in common."""
+    _, rest = factored(graph, node)
+    if rest is None:
+        return node
+    return min(rest, factored(graph, graph.negative(rest))[1] or rest)
+
+
+@dataclass(frozen=True, eq=False)
+class Kinks:
+    """The switching functions of equations with kinks.
+
+    Parameters
+    ----------
+    system
+        The equations, with ``sign`` and ``Abs``.
+    kinks
+        The nodes of ``sign`` and ``Abs``, those inside others first: which switching function each has, and whether
+        with the same sign or the other.
+    functions
+        The nodes of the switching functions, which may hold others.
+    """
+
+    system: HamiltonEquations
+    kinks: Mapping[int, tuple[int, int]]
+    functions: tuple[int, ...]
+
+    @cached_property
+    def _kept(self) -> dict[Signs, Regime]:
+        return {}
+
+    @cached_property
+    def _mattering(self) -> dict[Signs, tuple[int, ...]]:
+        return {}
+
+    @cached_property
+    def nested(self) -> frozenset[int]:
+        """The switching functions that hold others."""
+        graph = self.system.graph
+        return frozenset(
+            k
+            for k, g in enumerate(self.functions)
+            if any(node in self.kinks for node in graph.reachable([g]))
+        )
+
+    def regime(self, signs: Signs) -> Regime:
+        """Return the equations of a regime, made once."""
+        if signs not in self._kept:
+            self._kept[signs] = self._held(signs) if HELD in signs else self._made(signs)
+        return self._kept[signs]
+
+    def _made(self, signs: Signs) -> Regime:
+        mattering = self.mattering(signs)
+        folded = self.folded(signs, [self.functions[k] for k in mattering])
+        return Regime(signs, self._system(signs), dict(zip(mattering, folded, strict=True)))
+
+    def mattering(self, signs: Signs) -> tuple[int, ...]:
+        """Return the switching functions that the equations depend on in a regime, in rising order.
+
+        Where a product vanishes one of its vanishing factors matters: when that changes, the others are looked at.
+        """
+        if signs not in self._mattering:
+            self._mattering[signs] = self._found(signs)
+        return self._mattering[signs]
+
+    def _found(self, signs: Signs) -> tuple[int, ...]:
+        graph = self.system.graph
+        roots = [*self._rates(self.system), self.system.hamiltonian]
+        image, found, seen, waiting = self._images(signs, roots), set[int](), set[int](), list(roots)
+        while waiting:
+            each = waiting.pop()
+            if each in seen:
+                continue
+            seen.add(each)
+            if each in self.kinks:
+                found.add(self.kinks[each][0])
+            kind, operands, _ = graph.nodes[each]
+            if kind == "mul" and image[each] == graph.zero:
+                nothing = [o for o in operands if image[o] == graph.zero]
+                waiting += [] if seen & {*nothing} else nothing[:1]
+            else:
+                waiting += operands
+        return tuple(sorted(found))
+
+    def _images(self, signs: Signs, roots: Sequence[int]) -> dict[int, int]:
+        """Return every node that some are computed from, as it is in a regime."""
+        nodes = self.system.graph.reachable(roots)
+        return dict(zip(nodes, self.folded(signs, nodes), strict=True))
+
+    def _held(self, signs: Signs) -> Regime:
+        """Return the motion on a zero that both sides lead to: the mean of their rates that stays on it.
+
+        A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, § 4. It ends where one
+        side does not lead there any more.
+        """
+        k, graph = signs.index(HELD), self.system.graph
+        above, below = (self.regime((*signs[:k], side, *signs[k + 1 :])) for side in (1, -1))
+        zero = self.folded(above.signs, [self.functions[k]])[0]
+        down, up = self._ways_apart(above, below, zero)
+        share = graph.power(graph.add((up, graph.negative(down))), -1)
+
+        def mean(a: int, b: int) -> int:
+            if a == b:
+                return a
+            both = graph.add((graph.mul((up, a)), graph.negative(graph.mul((down, b)))))
+            return graph.mul((both, share))
+
+        pairs = zip(self._rates(above.system), self._rates(below.system), strict=True)
+        own = graph.symbols(zero)
+        alone = len(own) == 1 and graph.nodes[zero].kind == "symbol"
+        rates = [
+            graph.zero if alone and symbol in own else mean(a, b)
+            for symbol, (a, b) in zip(self.system.inputs[:-1], pairs, strict=True)
+        ]
+        half = len(self.system.velocity)
+        system = replace(above.system, velocity=tuple(rates[:half]), force=tuple(rates[half:]))
+        others = {j: node for j, node in above.functions.items() if j != k}
+        return Regime(signs, system, others)
+
+    def ways_out(self, signs: Signs) -> dict[int, int]:
+        """Return the functions whose zeros end a motion that stays on a zero, by the sign of the side it leaves to.
+
+        Each is positive while its side leads to the zero.
+        """
+        k, graph = signs.index(HELD), self.system.graph
+        above, below = (self.regime((*signs[:k], side, *signs[k + 1 :])) for side in (1, -1))
+        zero = self.folded(above.signs, [self.functions[k]])[0]
+        down, up = self._ways_apart(above, below, zero)
+        return {1: graph.negative(down), -1: up}
+
+    def _ways_apart(self, above: Regime, below: Regime, zero: int) -> tuple[int, int]:
+        """Return the first time derivatives of a switching function that differ on its two sides."""
+        down = up = zero
+        for _ in range(_DERIVATIVES):
+            down, up = above.rate(down), below.rate(up)
+            if down != up:
+                return down, up
+        raise NotImplementedError(f"both sides of {self.system.graph.to_sympy(zero)} = 0 lead on alike")
+
+    def folded(self, signs: Signs, nodes: Sequence[int]) -> list[int]:
+        """Return nodes with the signs of a regime put in."""
+        graph, known = self.system.graph, dict[int, int]()
+        for kink, (k, same) in self.kinks.items():
+            node, sign = graph.nodes[kink], signs[k] * same
+            if node.kind == "sign":
+                known[kink] = graph.number(sign)
+            else:
+                known[kink] = graph.scaled(sign, graph.substitute(node.operands, known)[0])
+        return graph.substitute(nodes, known)
+
+    def events(self, signs: Signs, events: Sequence[PreparedEvent]) -> tuple[PreparedEvent, ...]:
+        """Return events with their functions as they are in a regime."""
+        made: list[PreparedEvent] = []
+        for event in events:
+            value, rate, *jump = self.folded(signs, [event.value, event.rate, *(event.jump or ())])
+            made.append(replace(event, value=value, rate=rate, jump=tuple(jump) if event.jump else None))
+        return tuple(made)
+
+    def _nodes(self, signs: Signs) -> list[int]:
+        return self.folded(signs, [*self._rates(self.system), self.system.hamiltonian])
+
+    def _system(self, signs: Signs) -> HamiltonEquations:
+        n, own = len(self.system.velocity), self.system
+        named = self.folded(signs, list(own.named.values()))
+        *rates, energy = self._nodes(signs)
+        return replace(
+            own,
+            hamiltonian=energy,
+            velocity=tuple(rates[:n]),
+            force=tuple(rates[n:]),
+            named=dict(zip(own.named, named, strict=True)),
+        )
+
+    @staticmethod
+    def _rates(system: HamiltonEquations) -> list[int]:
+        return [*system.velocity, *system.force]
+
+
+def flipped(signs: Signs, k: int) -> Signs:
+    """Return the signs with one of them changed."""
+    return (*signs[:k], -signs[k], *signs[k + 1 :])
+
+
+def kinks_of(system: HamiltonEquations) -> Kinks | None:
+    """Return the kinks of equations, or None where they are smooth.
+
+    Examples
+    --------
+    >>> from canon.kernel.program.hamilton_equations import equations
+    >>> from sympy import Abs, symbols
+    >>> q, p, t = symbols("q p t", real=True)
+    >>> found = kinks_of(equations(p**2 / 2 + Abs(q), (q,), (p,), t, {}))
+    >>> [found.system.graph.to_sympy(g) for g in found.functions]
+    [q]
+    >>> [found.system.graph.to_sympy(rate) for rate in found.regime((-1,)).system.rates]
+    [p, 1]
+    """
+    graph = system.graph
+    found = [
+        node
+        for node in sorted(graph.reachable((*system.velocity, *system.force, system.hamiltonian)))
+        if graph.nodes[node].kind in ("sign", "Abs") and graph.symbols(node)
+    ]
+    if not found:
+        return None
+    functions, kinks = list[int](), dict[int, tuple[int, int]]()
+    for node in found:
+        g = graph.nodes[node].operands[0]
+        opposite = graph.negative(g)
+        if g not in functions and opposite not in functions:
+            functions.append(g)
+        same = g in functions
+        kinks[node] = (functions.index(g if same else opposite), 1 if same else -1)
+    assert all(a < b for a, b in pairwise(kinks))
+    return Kinks(system, kinks, tuple(functions))

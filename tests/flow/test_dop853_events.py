@@ -1,0 +1,69 @@
+"""DOP853 meets events where Taylor's method does, and arguments that are no functions get a sentence."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from canon import Event, Hamiltonian, Lagrangian, coordinates, propagate
+
+x = coordinates("x")
+p = x.momentum
+pendulum = Hamiltonian(p**2 / 2 - sp.cos(x), [x], [p])
+
+
+def both(events, until=30):
+    return [propagate(pendulum, (0, until), [1, 0], method=m, events=events) for m in ("taylor", "DOP853")]
+
+
+@pytest.mark.parametrize(
+    "events",
+    [
+        [Event(x), Event(p, 1), Event(x**2 - 0.3, -1)],
+        [Event(x - 0.7, 1, "bounce"), Event(p)],
+        [Event(x, -1, {p: p / 2})],
+        [Event(p - x, -1, "stop"), Event(x)],
+        [Event((x - 0.999) * 10)],
+    ],
+    ids=["record", "bounce", "kick", "stop", "twice in a step"],
+)
+def test_events_are_those_of_taylor(events):
+    exact, found = both(events)
+    assert [met.event for met in found.events] == [met.event for met in exact.events]
+    assert [met.rising for met in found.events] == [met.rising for met in exact.events]
+    assert [met.t for met in found.events] == pytest.approx([met.t for met in exact.events], abs=1e-9)
+    assert found.final == pytest.approx(exact.final, abs=1e-9)
+    assert found.t[-1] == pytest.approx(exact.t[-1], abs=1e-9)
+
+
+def test_events_leave_the_motion_as_it_is():
+    noted = propagate(pendulum, (0, 30), [1, 0], method="DOP853", events=[Event(x)])
+    assert (noted.y == propagate(pendulum, (0, 30), [1, 0], method="DOP853").y).all()
+    assert abs(np.array([met.y[0] for met in noted.events])).max() < 1e-14
+
+
+def test_backwards():
+    there = propagate(pendulum, (0, 10), [1, 0], method="DOP853", events=[Event(x)])
+    back = propagate(pendulum, (10, 0), there.final, method="DOP853", events=[Event(x)])
+    assert [met.t for met in back.events] == pytest.approx([met.t for met in there.events][::-1], abs=1e-9)
+
+
+@pytest.mark.parametrize("system", [pendulum, Lagrangian(x.dot**2 / 2 + sp.cos(x), [x])], ids=["H", "L"])
+def test_what_is_no_function_is_told(system):
+    assert (propagate(system, (0, 1), [1, 0], observables={"a": 3}, samples=2).observables["a"] == 3).all()
+    for wrong, words in [
+        ({"a": "x+"}, "the observable 'a' should be an expression, not the text"),
+        ({"a": x > 0}, "condition"),
+        ([x], "give functions by name"),
+    ]:
+        with pytest.raises(TypeError, match=words):
+            propagate(system, (0, 1), [1, 0], observables=wrong)
+    with pytest.raises(TypeError, match="the function of an event should be an expression"):
+        Event("x+")
+
+
+@pytest.mark.parametrize("precision", ["double", "quad", 40])
+def test_exponent_that_sympy_took_apart(precision):
+    """SymPy writes exp(−(t − 50)/0.001) as 5·10²¹⁷¹⁴ exp(−1000 t), whose digits are too many for Python's text."""
+    H = Hamiltonian(p**2 / 2 + x * sp.exp(-(pendulum.t - 50) / 0.001), [x], [p])
+    with pytest.raises(ValueError, match="exponents with floats, which SymPy takes apart"):
+        propagate(H, (0, 100), [1, 0], precision=precision)
