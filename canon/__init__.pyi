@@ -20,7 +20,6 @@ from .flow.method.solvable_splitting import WisdomHolman as WisdomHolman
 from .flow.propagate import propagate as propagate
 from .flow.run.event import Event as Event
 from .flow.run.observables_along import AccuracyWarning as AccuracyWarning
-from .flow.system.sampled_function import sampled_function as sampled_function
 from .mechanics.canonical.find_generating_function import generating_function as generating_function
 from .mechanics.canonical.from_generating_function import generated_transformation as generated_transformation
 from .mechanics.canonical.generating_function import GeneratingFunction as GeneratingFunction
