@@ -207,6 +207,12 @@ def test_events_at_a_kink_are_met_once():
         assert zeros == pytest.approx([math.sqrt(2) * (2 * k + 1) for k in range(7)], abs=1e-10)
 
 
+def test_an_event_at_a_kink_where_a_slice_ends():
+    """The ball comes to x = 0 at t = 1, which is a sample too."""
+    motion = propagate(one(sp.Max(x, 0) ** sp.Rational(5, 2)), (0, 5), [-1, 1], events=[Event(x)])
+    assert [met.t for met in motion.events] == pytest.approx([1, 1 + hertz_contact(0.5)], abs=1e-13)
+
+
 def test_bounce_beside_friction():
     L = Lagrangian(x.dot**2 / 2, [x], forces=[-sp.sign(x.dot) / 8])
     motion = propagate(L, (0, 3), [0, -1], events=[Event(x + 1, -1, "bounce")])

@@ -93,9 +93,8 @@ class KinkedOrbit:
             rows += found
             left = left[len(found) :]
             if made.outcome is not None or not made.stopped:
-                if made.outcome is None:
-                    self._pass_at_the_end()
-                return Slice(self._rows(rows), steps, seconds, made.outcome, stopped=False)
+                ended = made.outcome is None and self._passes_at_the_end(own)
+                return Slice(self._rows(rows), steps, seconds, made.outcome, stopped=ended)
             in_a_row = in_a_row + 1 if self._now() == began else 0
             if in_a_row > _PILE:
                 raise self._piled_up()
@@ -180,8 +179,11 @@ class KinkedOrbit:
         event = own.given[id(met.event)]
         return self._happened(event, met) or self._others(own, met.t, event)
 
-    def _pass_at_the_end(self) -> None:
-        """Go over a kink that lies where a slice ends: heyoka looks for zeros before the end of a step only."""
+    def _passes_at_the_end(self, own: RegimeOrbit) -> bool:
+        """Go over a kink that lies where a slice ends, and return whether an event ends the motion there.
+
+        heyoka looks for zeros before the end of a step only.
+        """
         assert self.signs is not None
         regime = self.regimes.kinks.regime(self.signs)
         values = self._place().values(regime.system, [*regime.functions.values()])
@@ -191,7 +193,8 @@ class KinkedOrbit:
                     raise self._error("a kink was passed unseen before: give a smaller max_step")
                 self.on_zero = True
                 self._pass(k)
-                return
+                return self._others(own, float(self._now()), None)
+        return False
 
     def _pass(self, k: int) -> None:
         """Go over to the regime beyond a kink."""
