@@ -1,3 +1,4 @@
+from .judge_pool import JudgePool as JudgePool
 from .report.judgement import Judgement as Judgement
 from .report.report import Report as Report
 from .sheet.reading import InvalidClaim as InvalidClaim

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import queue
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from canon.exercise.judging_process import Worker
+from canon.exercise.judge_pool import JudgePool
 from canon.exercise.report.report import Report
 from canon.exercise.sheet.sheet import Sheet, read_sheet
 from canon.expression.symbols.input_in_words import given_kind
@@ -23,19 +20,23 @@ if TYPE_CHECKING:
 
 __all__ = ["check", "judged"]
 
-_OWN_KEYS = frozenset(("id", "title", "source", "expect"))
-"""Keys that say nothing about mechanics."""
 
-
-def check(sheet: str | Path | Sheet, jobs: int = 1) -> Report:
+def check(
+    sheet: str | Path | Sheet | Mapping[str, Any] | Sequence[Any],
+    jobs: int = 1,
+    *,
+    budget: float | None = None,
+) -> Report:
     """Judge every claim of a sheet, each in its budget, in a process that can be killed.
 
     Parameters
     ----------
     sheet
-        A sheet, or the path of one.
+        A sheet, or what :func:`canon.exercise.sheet.sheet.read_sheet` reads: the path of one, its text, its tables.
     jobs
         How many processes judge at the same time.
+    budget
+        Seconds for each claim, whatever the sheet says; set it where strangers write the sheets.
 
     Returns
     -------
@@ -55,9 +56,14 @@ def check(sheet: str | Path | Sheet, jobs: int = 1) -> Report:
     >>> report.counts
     {'holds': 1}
     """
-    given_kind(sheet, (Sheet, str, Path), "the sheet", "write Sheet(title, claims) of claims")
+    given_kind(
+        sheet, (Sheet, str, Path, Mapping, list, tuple), "the sheet", "write Sheet(title, claims) of claims"
+    )
     read = sheet if isinstance(sheet, Sheet) else read_sheet(sheet)
-    return Report(read.title or read.file, tuple(judged(read.claims, jobs)), read.claims)
+    if budget is not None and not 0.0 < budget <= 3600.0:
+        raise ValueError(f"budget should be a number of seconds up to 3600, not {budget!r}")
+    claims = read.claims if budget is None else tuple(replace(claim, budget=budget) for claim in read.claims)
+    return Report(read.title or read.file, tuple(judged(claims, jobs)), claims)
 
 
 def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
@@ -79,36 +85,5 @@ def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
     """
     if given_kind(jobs, int, "jobs") < 1:
         raise ValueError(f"jobs should be a number of processes, 1 or more, not {jobs!r}")
-    with ExitStack() as stack:
-        workers = [stack.enter_context(Worker()) for _ in range(jobs)]
-        idle: queue.SimpleQueue[Worker] = queue.SimpleQueue()
-        for worker in workers:
-            idle.put(worker)
-        pool = stack.enter_context(ThreadPoolExecutor(jobs))
-
-        def judge(claim: Claim) -> Judgement:
-            worker = idle.get()
-            try:
-                return worker.judge(claim)
-            finally:
-                idle.put(worker)
-
-        first = {said: claim for claim in reversed(claims) if (said := _said(claim))}
-        running = {said: pool.submit(judge, claim) for said, claim in reversed(first.items())}
-        try:
-            for claim in claims:
-                found = running[_said(claim)].result()
-                title = str(claim.keys.get("title", ""))
-                yield replace(found, id=claim.id, title=title, expect=claim.expect, file=claim.file)
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-            for worker in workers:  # nobody waits for what they are judging still
-                worker.stop()
-
-
-def _said(claim: Claim) -> str:
-    """Return everything in a claim that matters to its judgement, as text; an ill-formed one is itself only."""
-    if claim.errors:
-        return f"{claim.id}: {claim.errors}"
-    keys = {key: value for key, value in claim.keys.items() if key not in _OWN_KEYS}
-    return json.dumps([keys, claim.budget], sort_keys=True, default=str)
+    with JudgePool(max(1, min(jobs, len(claims))), warm=False) as pool:
+        yield from pool.judged(claims)

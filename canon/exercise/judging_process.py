@@ -47,6 +47,9 @@ class Worker:
 
     def __init__(self) -> None:
         self._child: Child | None = None
+        self._ready = False
+        self.judged = 0
+        """Claims that its process was asked."""
 
     def __enter__(self) -> Worker:
         return self
@@ -68,6 +71,7 @@ class Worker:
         except (Late, Ended):
             self.stop()
             return _open(claim, "no process could be started to judge it", 0.0)
+        self.judged += 1
         start = time.monotonic()
         child.send(lambda: _encoded(claim), claim.budget)
         return self._answer(child, claim, start)
@@ -91,13 +95,24 @@ class Worker:
         self.stop()
         return verdict or _open(claim, why, time.monotonic() - start)
 
-    def _running(self) -> Child:
-        """Return the process once it is ready, a new one unless one is running."""
+    def start(self) -> Child:
+        """Return the process, a new one unless one is running, without waiting until it is ready."""
         if self._child is None or not self._child.usable:
             self.stop()
-            self._child = Child("canon.exercise.judging_process", leads=True)
-            self._child.receive(time.monotonic() + START)
+            self._child, self._ready, self.judged = (
+                Child("canon.exercise.judging_process", leads=True),
+                False,
+                0,
+            )
         return self._child
+
+    def _running(self) -> Child:
+        """Return the process once it is ready."""
+        child = self.start()
+        if not self._ready:
+            child.receive(time.monotonic() + START)
+            self._ready = True
+        return child
 
     def stop(self) -> None:
         """Kill the process, whatever it is doing; the next claim starts another one."""

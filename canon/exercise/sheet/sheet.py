@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from decimal import Decimal, InvalidOperation
 from importlib import resources
@@ -20,7 +21,7 @@ from canon.frozen_mapping import FrozenMapping
 from canon.given_file import UnreadableFile, bytes_of, tables_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
 
 __all__ = [
     "Claim",
@@ -139,13 +140,15 @@ class Sheet:
         return tuple(error for claim in self.claims for error in claim.errors)
 
 
-def read_sheet(path: str | Path) -> Sheet:
-    """Read a sheet of claims from a ``.toml`` or ``.json`` file.
+def read_sheet(source: str | Path | Mapping[str, Any] | Sequence[Any]) -> Sheet:
+    r"""Read a sheet of claims from a ``.toml`` or ``.json`` file, from its text, or from tables.
 
     Parameters
     ----------
-    path
-        The file; anything that does not end in ``.toml`` is read as JSON.
+    source
+        The path of a file, which is read as TOML where it ends in ``.toml`` and else as JSON; or a text that has line
+        breaks or begins with a bracket, JSON or TOML; or what JSON makes of one: a dict with ``claims``, a list of
+        dicts.
 
     Returns
     -------
@@ -156,13 +159,37 @@ def read_sheet(path: str | Path) -> Sheet:
     ------
     SheetError
         Where the file can't be read, is too large, or is no sheet.
+
+    Examples
+    --------
+    >>> read_sheet({"claims": [{"id": "a", "kind": "equality-only", "lhs": "1", "rhs": "2/2"}]}).claims
+    (<Claim 'a': equality-only>,)
+    >>> read_sheet('[[claim]]\nid = "a"\nkind = "equality-only"\nlhs = "1"\nrhs = "2/2"').claims
+    (<Claim 'a': equality-only>,)
     """
-    path = Path(given_kind(path, (str, Path), "the path of the sheet"))
+    if isinstance(source, Mapping | list | tuple):
+        try:
+            text = json.dumps(source, default=_said_as_text)
+        except (TypeError, ValueError, RecursionError) as error:
+            raise SheetError(f"the sheet: these tables hold what no sheet does ({error})") from error
+        return sheet_from(text.encode())
+    given_kind(source, (str, Path), "the path of the sheet")
+    if isinstance(source, str) and ("\n" in source or source.lstrip().startswith(("{", "["))):
+        toml = re.match(r"\ufeff?\s*(\{|\[\s*[{\]])", source) is None
+        return sheet_from(source.encode("utf-8", "surrogatepass"), toml=toml)
+    path = Path(source)
     try:
         data = bytes_of(path, MAX_BYTES, "split the sheet")
     except UnreadableFile as error:
         raise SheetError(f"{path}: {error}") from error
     return sheet_from(data, file=str(path), toml=path.suffix.lower() == ".toml")
+
+
+def _said_as_text(value: Any) -> dict[str, Any]:
+    """Return a table whose keys are those of a mapping that is no dict; anything else is refused."""
+    if isinstance(value, Mapping):
+        return dict(value)
+    raise TypeError(f"{type(value).__name__} {str(value)[:60]!r}")
 
 
 def bundled_sheet(name: str = "tour") -> Sheet:

@@ -1,0 +1,150 @@
+"""Judging pool: processes that judge claims, kept warm between questions, each killable and of bounded memory."""
+
+from __future__ import annotations
+
+import json
+import queue
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from canon.exercise.judging_process import Worker
+from canon.exercise.report.report import Report
+from canon.exercise.sheet.sheet import Claim, Sheet, claim_from, read_sheet
+from canon.expression.symbols.input_in_words import given_kind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+    from types import TracebackType
+
+    from canon.exercise.report.judgement import Judgement
+
+__all__ = ["JudgePool"]
+
+CLAIMS_A_PROCESS = 1_000
+"""Claims after which a process is replaced, so that what libraries keep in memory does not grow for ever."""
+
+WARMING = Claim(
+    "warm",
+    "euler-lagrange",
+    {"q": ["x"], "L": "x_dot**2/2 - cos(x)", "claim": ["x_ddot - sin(x) = 0"], "parameters": {"x": "real"}},
+)
+"""A claim that brings what most claims need into the memory of a process."""
+
+_OWN_KEYS = frozenset(("id", "title", "source", "expect"))
+"""Keys that say nothing about mechanics."""
+
+
+class JudgePool:
+    """Processes that judge claims, ready before they are asked; a context manager.
+
+    Any thread may ask. A process whose claim spends its budget is killed and replaced; the others go on.
+
+    Parameters
+    ----------
+    workers
+        How many processes judge at the same time.
+    budget
+        Seconds for each claim, whatever it says itself; set it where strangers write the sheets.
+    warm
+        Whether the processes judge a small claim as soon as they run, so that the first answer comes as quickly as
+        the others.
+
+    Examples
+    --------
+    >>> with JudgePool(workers=1, budget=5.0) as pool:
+    ...     claim = {"id": "a", "kind": "equality-only", "lhs": "sin(2*x)", "parameters": {"x": "real"}}
+    ...     right = pool.judge({**claim, "rhs": "2*sin(x)*cos(x)"}).status
+    ...     right, pool.judge({**claim, "rhs": "2*sin(x)"}).status
+    ('holds', 'fails')
+    """
+
+    def __init__(self, workers: int = 2, budget: float | None = None, *, warm: bool = True) -> None:
+        if given_kind(workers, int, "workers") < 1:
+            raise ValueError(f"workers should be a number of processes, 1 or more, not {workers!r}")
+        if budget is not None and not 0.0 < budget <= 3600.0:
+            raise ValueError(f"budget should be a number of seconds up to 3600, not {budget!r}")
+        self._budget = budget
+        self._all = tuple(Worker() for _ in range(workers))
+        self._idle: queue.SimpleQueue[Worker] = queue.SimpleQueue()
+        self._threads = ThreadPoolExecutor(workers)
+        self._closed = threading.Event()
+        for worker in self._all:
+            if warm:
+                worker.start()
+                self._threads.submit(self._warmed, worker)
+            else:
+                self._idle.put(worker)
+
+    def __enter__(self) -> JudgePool:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def judge(self, claim: Claim | Mapping[str, Any]) -> Judgement:
+        """Return the judgement on one claim, or on a table of its keys; waits for a process that is idle."""
+        said = claim if isinstance(claim, Claim) else claim_from(dict(claim))
+        if self._budget is not None:
+            said = replace(said, budget=self._budget)
+        worker = self._idle.get()
+        try:
+            if self._closed.is_set():
+                raise ValueError("the pool is closed: make another one")
+            return worker.judge(said)
+        finally:
+            self._put_back(worker)
+
+    def check(self, sheet: str | Path | Sheet | Mapping[str, Any]) -> Report:
+        """Return the report on a sheet, as :func:`canon.exercise.check.check` does."""
+        read = sheet if isinstance(sheet, Sheet) else read_sheet(sheet)
+        return Report(read.title or read.file, tuple(self.judged(read.claims)), read.claims)
+
+    def judged(self, claims: Sequence[Claim]) -> Iterator[Judgement]:
+        """Yield the judgement on each claim, in order; what is said twice is judged once."""
+        first = {said: claim for claim in reversed(claims) if (said := _said(claim))}
+        running = {said: self._threads.submit(self.judge, claim) for said, claim in reversed(first.items())}
+        try:
+            for claim in claims:
+                found = running[_said(claim)].result()
+                title = str(claim.keys.get("title", ""))
+                yield replace(found, id=claim.id, title=title, expect=claim.expect, file=claim.file)
+        finally:
+            for future in running.values():  # nobody waits for what is left
+                future.cancel()
+
+    def close(self) -> None:
+        """Kill the processes, whatever they are doing."""
+        self._closed.set()
+        self._threads.shutdown(wait=False, cancel_futures=True)
+        for worker in self._all:
+            worker.stop()
+
+    def _warmed(self, worker: Worker) -> None:
+        try:
+            worker.judge(WARMING)
+        finally:
+            self._put_back(worker)
+
+    def _put_back(self, worker: Worker) -> None:
+        """Let the next claim have a process, a new one where it was killed or has judged enough."""
+        if self._closed.is_set():
+            worker.stop()
+        elif worker.judged >= CLAIMS_A_PROCESS:
+            worker.stop()
+            worker.start()
+        elif worker.judged:
+            worker.start()
+        self._idle.put(worker)
+
+
+def _said(claim: Claim) -> str:
+    """Return everything in a claim that matters to its judgement, as text; an ill-formed one is itself only."""
+    if claim.errors:
+        return f"{claim.id}: {claim.errors}"
+    keys = {key: value for key, value in claim.keys.items() if key not in _OWN_KEYS}
+    return json.dumps([keys, claim.budget], sort_keys=True, default=str)

@@ -1,0 +1,117 @@
+"""The judging pool: any thread asks, every claim gets its answer, a killed process costs its claim only."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+import canon
+from canon.exercise import JudgePool, Sheet, SheetError, read_sheet
+from canon.exercise.judge_pool import CLAIMS_A_PROCESS
+from canon.exercise.sheet.sheet import Claim
+
+RIGHT = {"id": "right", "kind": "equality-only", "lhs": "2*x", "rhs": "x + x", "parameters": {"x": "real"}}
+WRONG = {**RIGHT, "id": "wrong", "rhs": "x + 1"}
+LONG = {
+    **RIGHT,
+    "id": "long",
+    "lhs": "(x + t + cos(x) + 1)**60*sin(x)**40",
+    "rhs": "(x + t + cos(x) + 1)**60*(1 - cos(x)**2)**20 + x*0",
+}
+
+
+@pytest.fixture(scope="module")
+def pool():
+    with JudgePool(workers=2, budget=5.0) as made:
+        yield made
+
+
+def test_every_thread_gets_the_answer_to_its_own_question(pool):
+    asked = [RIGHT if k % 3 else WRONG for k in range(30)]
+    with ThreadPoolExecutor(8) as threads:
+        found = list(threads.map(pool.judge, asked))
+    assert [judgement.status for judgement in found] == ["holds" if k % 3 else "fails" for k in range(30)]
+
+
+def test_an_ill_formed_claim_is_invalid(pool):
+    assert pool.judge({"id": "a", "kind": "equality-only", "lhs": "1"}).status == "invalid"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="it is killed as POSIX does")
+def test_a_killed_process_costs_its_claim_only(pool):
+    before = [worker._child.pid for worker in pool._all if worker._child]
+    for pid in before:
+        os.kill(pid, signal.SIGKILL)
+    found = [pool.judge(RIGHT).status for _ in range(6)]
+    assert found.count("holds") >= 4
+    assert found[-1] == "holds"
+    assert {worker._child.pid for worker in pool._all}.isdisjoint(before)
+
+
+def test_the_budget_of_the_pool_is_that_of_every_claim():
+    with JudgePool(workers=1, budget=0.2, warm=False) as pool:
+        late = pool.judge({**LONG, "budget": 3000})
+        assert late.status == "undecided"
+        assert pool.judge(WRONG).status == "fails"
+
+
+def test_a_process_is_replaced_after_many_claims():
+    with JudgePool(workers=1, warm=False) as pool:
+        assert pool.judge(RIGHT).status == "holds"
+        (worker,) = pool._all
+        old, worker.judged = worker._child.pid, CLAIMS_A_PROCESS
+        assert pool.judge(RIGHT).status == "holds"
+        assert worker.judged == 0
+        assert worker._child.pid != old
+        assert pool.judge(WRONG).status == "fails"
+
+
+def test_a_closed_pool_says_so():
+    pool = JudgePool(workers=1, warm=False)
+    pool.close()
+    pool.close()
+    with pytest.raises(ValueError, match="the pool is closed"):
+        pool.judge(RIGHT)
+
+
+@pytest.mark.parametrize(("given", "told"), [({"workers": 0}, "1 or more"), ({"budget": -1.0}, "up to 3600")])
+def test_what_makes_no_sense_is_refused(given, told):
+    with pytest.raises(ValueError, match=told):
+        JudgePool(**given)
+
+
+TOML = '[[claim]]\nid = "right"\nkind = "equality-only"\nlhs = "2*x"\nrhs = "x + x"\nparameters = { x = "real" }\n'
+
+
+@pytest.mark.parametrize(
+    "source", [TOML, json.dumps({"claims": [RIGHT]}), json.dumps([RIGHT]), {"claims": [RIGHT]}, [RIGHT]]
+)
+def test_a_sheet_is_read_from_text_and_from_tables(source):
+    (claim,) = read_sheet(source).claims
+    assert (claim.id, claim.errors) == ("right", ())
+
+
+def test_numbers_of_a_table_are_read_as_in_a_file():
+    table = {"claims": [{**RIGHT, "budget": 2.5}]}
+    assert read_sheet(table).claims[0] == read_sheet(json.dumps(table)).claims[0]
+    assert read_sheet(table).claims[0].budget == 2.5
+
+
+def test_what_is_no_sheet_is_refused():
+    for source in ({"claims": [{"id": {1, 2}}]}, {"claims": [{"id": float("nan")}]}, "{", "a = [\n"):
+        with pytest.raises(SheetError):
+            read_sheet(source)
+
+
+def test_a_sheet_is_checked_by_the_pool_and_by_check_within_a_budget(pool):
+    table = {"title": "two", "claims": [RIGHT, WRONG, {**RIGHT, "id": "again"}]}
+    report = pool.check(table)
+    assert [judgement.id for judgement in report] == ["right", "wrong", "again"]
+    assert report.counts == {"holds": 2, "fails": 1}
+    late = canon.check(Sheet("long", (Claim("long", "equality-only", LONG, budget=3000.0),)), budget=0.2)
+    assert late.counts == {"undecided": 1}
