@@ -163,6 +163,15 @@ def test_a_page_in_pieces_costs_its_rows_only(tmp_path):
     assert mended.store.cases().items() <= {f"case {i}": "x" * 300 for i in range(100)}.items()
 
 
+def test_damage_that_sqlite_cannot_put_in_words_is_told(path):
+    data = path.read_bytes()
+    path.write_bytes(data.replace(b"CREATE TABLE records", b"CREATE TABL\xd4 records"))
+    for action in ("status", "mend"):
+        status, _, err = command(action, path)
+        assert status == 2
+        assert err.startswith("canon study: ")
+
+
 def test_a_file_that_is_nothing_is_not_mended(tmp_path):
     file = tmp_path / "notes.sqlite"
     file.write_text("my notes " * 1000)

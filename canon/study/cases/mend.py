@@ -121,14 +121,14 @@ def _readable(file: Path) -> Iterator[tuple[str, tuple[Any, ...] | DamagedRow]]:
                     asked = f"SELECT {', '.join(columns)}, checksum FROM {table} ORDER BY rowid {order}"
                     for row in _until_it_breaks(connection, asked):
                         yield table, checked(table, row)
-    except sqlite3.Error as error:
+    except (sqlite3.Error, UnicodeDecodeError) as error:
         raise StoreError(f"{file}: it can't be opened (SQLite says: {error}); restore a copy") from error
 
 
 def _until_it_breaks(connection: sqlite3.Connection, asked: str) -> Iterator[tuple[Any, ...]]:
     try:
         yield from connection.execute(asked)
-    except sqlite3.DatabaseError:
+    except (sqlite3.DatabaseError, UnicodeDecodeError):
         return  # what stands behind is looked for from the other end
 
 

@@ -280,6 +280,8 @@ class Store:
                 connection.close()
         except sqlite3.Error as error:
             raise StoreError(self._explained(error)) from error
+        except UnicodeDecodeError as error:  # of the words that SQLite quotes from its damaged tables
+            raise StoreError(f"{self.path}: it is damaged; {self._remedy()}") from error
 
     @contextmanager
     def _writing(self) -> Generator[sqlite3.Connection]:
