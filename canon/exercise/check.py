@@ -22,7 +22,7 @@ __all__ = ["check", "judged"]
 
 
 def check(
-    sheet: str | Path | Sheet | Mapping[str, Any] | Sequence[Any],
+    sheet: str | Path | Sheet | Mapping[str, Any] | list[Any] | tuple[Any, ...],
     jobs: int = 1,
     *,
     budget: float | None = None,

@@ -13,15 +13,12 @@ from dataclasses import dataclass, field, replace
 from decimal import Decimal, InvalidOperation
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from canon.exercise.sheet.key_shapes import MAX_DIGITS, faults
 from canon.expression.symbols.input_in_words import counted, given_kind
 from canon.frozen_mapping import FrozenMapping
 from canon.given_file import UnreadableFile, bytes_of, tables_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 __all__ = [
     "Claim",
@@ -140,7 +137,7 @@ class Sheet:
         return tuple(error for claim in self.claims for error in claim.errors)
 
 
-def read_sheet(source: str | Path | Mapping[str, Any] | Sequence[Any]) -> Sheet:
+def read_sheet(source: str | Path | Mapping[str, Any] | list[Any] | tuple[Any, ...]) -> Sheet:
     r"""Read a sheet of claims from a ``.toml`` or ``.json`` file, from its text, or from tables.
 
     Parameters
