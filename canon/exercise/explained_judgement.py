@@ -10,6 +10,7 @@ import sympy as sp
 from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS
 from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.judge import InvalidClaim, examine
+from canon.exercise.question.deadline import Worked
 from canon.exercise.report.derivation_steps import steps
 from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid
 from canon.exercise.report.sentences import feedback
@@ -58,12 +59,12 @@ def _explained(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator
 
 
 def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator[tuple[Judgement, bool]]:
-    judgement = replace(judgement, steps=steps(finding))
+    judgement, start = replace(judgement, steps=steps(finding)), finding.start
     if not finding.verdict.fails:
         left = finding.left_open() if finding.verdict.holds else ()
         yield replace(judgement, warnings=(*judgement.warnings, *left)), True
         return
-    left = min(OUTER_SECONDS, claim.budget - judgement.seconds)
+    left = min(OUTER_SECONDS, claim.budget - start.since(Worked.now()))
     if left <= 0.1:
         yield judgement, True
         return

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from canon.exercise.question.answer import links, other_variables
 from canon.exercise.question.answer_values import without_value
-from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.deadline import Deadline, Worked
 from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
 from canon.exercise.sheet.key_shapes import faults
 from canon.exercise.sheet.kind import named_function
@@ -25,7 +25,7 @@ from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-__all__ = ["JUDGES", "Finding", "InvalidClaim", "examine", "judge", "questions"]
+__all__ = ["JUDGES", "Finding", "InvalidClaim", "examine", "examined", "judge", "questions"]
 
 JUDGES: Mapping[str, Callable[..., Iterator[Question]]] = MappingProxyType(
     {name: named_function("canon.exercise.judges", kind.judge) for name, kind in KINDS.items()}
@@ -38,7 +38,7 @@ class Finding:
     """A verdict on a claim, the question on which it turned where it FAILS, and how many held before it.
 
     ``asked`` has every question with its answer, in the order they were asked; ``beside`` what was not asked,
-    because no complete answer is wanted.
+    because no complete answer is wanted; ``start`` when the judgement began.
     """
 
     reading: Reading
@@ -47,6 +47,7 @@ class Finding:
     held: int = 0
     asked: tuple[tuple[Question, Verdict], ...] = ()
     beside: tuple[Determines, ...] = ()
+    start: Worked = field(default_factory=Worked.now, compare=False)
 
     def left_open(self) -> tuple[str, ...]:
         """Return in sentences what the answer leaves open, as far as that can be told."""
@@ -115,8 +116,18 @@ def examine(claim: Claim) -> Finding:
         raise InvalidClaim(claim.errors[0])
     for key, reason in faults(claim.kind, claim.keys):  # a claim made by hand was not looked at before
         raise InvalidClaim(ClaimError(claim.id, key, reason, file=claim.file))
-    start, deadline = time.monotonic(), Deadline.after(claim.budget)
-    reading = Reading.of(claim)
+    return examined(Reading.of(claim), Deadline.after(claim.budget))
+
+
+def examined(reading: Reading, deadline: Deadline) -> Finding:
+    """Judge a claim that was read, such as one with other answers put in, and keep the question on which it turned.
+
+    Raises
+    ------
+    InvalidClaim
+        Where nothing is claimed, or the domain is empty.
+    """
+    start, claim = time.monotonic(), reading.claim
     answered: list[Verdict] = []
     asked: list[tuple[Question, Verdict]] = []
     beside: list[Determines] = []
@@ -148,7 +159,7 @@ def examine(claim: Claim) -> Finding:
         raise InvalidClaim(ClaimError(claim.id, "", "nothing is claimed", file=claim.file))
     verdict = replace(all_hold(answered, named), seconds=time.monotonic() - start)
     verdict = verdict if verdict.question else verdict.about(_title(claim))
-    return Finding(reading, verdict, turned, held, tuple(asked), tuple(beside))
+    return Finding(reading, verdict, turned, held, tuple(asked), tuple(beside), deadline.start)
 
 
 def _title(claim: Claim) -> str:

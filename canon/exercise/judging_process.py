@@ -15,6 +15,7 @@ from dataclasses import replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
+from canon.exercise.question.deadline import PATIENCE
 from canon.exercise.report.judgement import Judgement, invalid
 from canon.exercise.sheet.sheet import Claim
 from canon.frozen_mapping import FrozenMapping
@@ -31,6 +32,8 @@ START = 60.0
 """Seconds that a worker may take to start, on a slow or busy machine."""
 GRACE = 0.35
 """Seconds beyond its budget that a judgement may take to come to its own end before it is killed."""
+LOOK = 0.1
+"""Seconds between looks at how long a process has worked."""
 FEEDBACK = 12.0
 """Seconds after the verdict for which its feedback is waited for, an outer limit: most takes some hundredths."""
 
@@ -78,16 +81,17 @@ class Worker:
 
     def _answer(self, child: Child, claim: Claim, start: float) -> Judgement:
         """Return the last that is said of a claim before it must have been said."""
-        deadline = start + claim.budget + GRACE
+        allowed = claim.budget + GRACE
+        before = child.processor_seconds
         verdict: Judgement | None = None
         try:
             while True:
-                answer = json.loads(child.receive(deadline))
+                answer = json.loads(_received(child, start + allowed, before, allowed))
                 seconds = verdict.seconds if verdict else time.monotonic() - start
                 verdict = replace(Judgement.from_dict(answer), seconds=seconds)
                 if answer["last"]:
                     return verdict
-                deadline = min(deadline, time.monotonic() + FEEDBACK)
+                allowed = min(allowed, time.monotonic() - start + FEEDBACK)
         except Late:
             why = f"its budget of {claim.budget:g} s was spent"
         except Ended:
@@ -119,6 +123,19 @@ class Worker:
         child, self._child = self._child, None
         if child is not None:
             child.kill()
+
+
+def _received(child: Child, deadline: float, before: float | None, allowed: float) -> bytes:
+    """Return what a process answers; on a busy machine it is waited for until it has worked as long as allowed."""
+    last = deadline + (PATIENCE - 1) * allowed
+    while True:
+        try:
+            return child.receive(deadline)
+        except Late:
+            now, worked = time.monotonic(), child.processor_seconds
+            if before is None or worked is None or worked - before >= allowed or now >= last:
+                raise
+            deadline = min(last, now + max(LOOK, allowed - worked + before))
 
 
 def _open(claim: Claim, why: str, seconds: float) -> Judgement:

@@ -14,7 +14,7 @@ import random
 from collections.abc import Callable, Iterator
 from copy import deepcopy
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -23,15 +23,24 @@ import sympy as sp
 
 from canon.exercise.diagnose.change import Mistake as M  # noqa: N817
 from canon.exercise.diagnose.diagnosis import Diagnosis  # noqa: TC001
-from canon.exercise.judge import InvalidClaim, examine
+from canon.exercise.judge import Finding, InvalidClaim, examine
 from canon.exercise.sheet.reading import Reading
 from canon.exercise.sheet.sheet import Claim, claim_from
 from canon.exercise.sheet.sympy_trees import shown
-from canon.expression.symbols.symbol import Coordinate, Rate, acceleration, velocity
+from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, acceleration, velocity
 from canon.proof.rungs.ladder import REFUSALS
 from canon.proof.vanish import vanishes
 
-__all__ = ["SLIPS", "Question", "WrongAnswer", "is_named", "questions", "wrong_answers"]
+__all__ = [
+    "SLIPS",
+    "Question",
+    "WrongAnswer",
+    "half_of",
+    "is_named",
+    "of_a_question",
+    "questions",
+    "wrong_answers",
+]
 
 CLAIMS = Path(__file__).parents[1] / "data" / "claims"
 KINDS = (
@@ -101,6 +110,11 @@ class WrongAnswer:
     question: Question
     slip: str
     wrong: dict[Place, sp.Expr]
+
+    @cached_property
+    def finding(self) -> Finding:
+        """The judgement, by which the answer is known to be wrong."""
+        return examine(self.claim)
 
     @property
     def claim(self) -> Claim:
@@ -229,7 +243,10 @@ def coordinates_of(reading: Reading) -> tuple[sp.Symbol, ...]:
 
 def unit_parameter(f: sp.Expr, reading: Reading) -> Iterator[sp.Expr]:
     """A parameter taken to be one: right for that value only."""
-    names = set(reading.claim.keys.get("parameters", {})) - {q.name for q in coordinates_of(reading)}
+    variables = (
+        s for key in ("q", "p", "x", "new_q", "new_p") if reading.is_names(key) for s in reading.symbols(key)
+    )
+    names = set(reading.claim.keys.get("parameters", {})) - {s.name for s in variables}
     for s in f.free_symbols:
         if s.name in names and not isinstance(s, Coordinate):
             yield f.xreplace({s: sp.S.One})
@@ -271,6 +288,7 @@ TERM = {
     M.OPPOSITE_CONVENTION,
     M.MAP_MENDED,
     M.RULE_OPPOSITE,
+    M.DERIVATIVE_NOT_TOTAL_IN,
 }
 FACTOR = {
     M.TERM_FACTOR,
@@ -280,6 +298,7 @@ FACTOR = {
     M.MAP_MENDED,
     M.FACTOR_OF_COVARIANT,
     M.NUMBER,
+    M.DERIVATIVE_NOT_TOTAL_IN,
 }
 LOST = {M.FACTOR_MISSING, M.EXPONENT, M.VALENCE, M.MAP_MENDED, M.DIVISOR_MISSING}
 POWER = {M.EXPONENT, M.FACTOR_MISSING, M.FACTOR_SUPERFLUOUS, M.DIVISOR_MISSING, M.SQUARE}
@@ -287,6 +306,7 @@ MISSING = {
     M.TERM_MISSING,
     M.CORIOLIS_TERM_MISSING,
     M.DERIVATIVE_NOT_TOTAL,
+    M.DERIVATIVE_NOT_TOTAL_IN,
     M.TIME_DERIVATIVE_MISSING,
     M.TIME_TERM_MISSING,
 }
@@ -425,21 +445,21 @@ def _places(keys: dict[str, Any]) -> Iterator[Place]:
             yield (key,)
 
 
-def is_open(question: Question) -> bool:
-    """Whether a question is one to build with."""
-    return hashlib.sha256(question.name.encode()).digest()[0] % 2 == 0
+def half_of(question: Question) -> str:
+    """Return ``open`` for a question to build with, ``closed`` for the others."""
+    return "open" if hashlib.sha256(question.name.encode()).digest()[0] % 2 == 0 else "closed"
 
 
-def wrong_answers(half: str, each: int = 7) -> Iterator[WrongAnswer]:
-    """Yield wrong answers to the questions of one half, ``open`` or ``closed``; each is judged to be wrong."""
-    for question in questions():
-        if is_open(question) == (half == "open"):
-            yield from of_a_question(question, random.Random(f"{half} {question.name}"), each)
+def wrong_answers(half: str, each: int = 7, part: int = 0, parts: int = 1) -> Iterator[WrongAnswer]:
+    """Yield wrong answers to the questions of one half, or to every few of them; each is judged to be wrong."""
+    asked = [question for question in questions() if half_of(question) == half]
+    for question in asked[part::parts]:
+        yield from of_a_question(question, each)
 
 
-def of_a_question(question: Question, chance: random.Random, each: int) -> Iterator[WrongAnswer]:
+def of_a_question(question: Question, each: int = 7) -> Iterator[WrongAnswer]:
     """Yield wrong answers to one question, every slip at most once."""
-    found = 0
+    found, chance = 0, random.Random(f"{half_of(question)} {question.name}")
     names = [*SLIPS, TWO]
     chance.shuffle(names)
     for name in [*DERIVATIONS, *names]:
@@ -491,7 +511,7 @@ def _in(question: Question, place: Place, name: str, chance: random.Random) -> I
 
 def _fails(answer: WrongAnswer) -> bool:
     try:
-        return examine(answer.claim).verdict.fails
+        return answer.finding.verdict.fails
     except (InvalidClaim, *REFUSALS):
         return False
 
@@ -511,6 +531,8 @@ def is_named(answer: WrongAnswer, found: Diagnosis | None) -> bool:
     """Whether a diagnosis names the slip: a mistake of its kind, and the right answer in the same place."""
     if found is None:
         return False
+    if found.instead is not None and is_named(answer, found.instead):
+        return True  # nothing in the claim tells which of two components was meant: both are told
     mistakes = {change.mistake for change in found.changes}
     if answer.slip == TWO:
         return len(found.changes) >= 2 and found.repaired is not None and _is_undone(answer, found.repaired)
@@ -526,9 +548,9 @@ def _is_undone(answer: WrongAnswer, repaired: Reading) -> bool:
         now = repaired.instead.get(key)
         if now is None:
             return False
-        ratio = sp.cancel(now / right) if place[0] == "claim" else sp.S.One
-        if any(isinstance(s, Coordinate | Rate) for s in ratio.free_symbols):
-            return False  # an equation may be multiplied with a constant
+        ratio = sp.cancel(now / right) if place[0] in ("claim", "I") else sp.S.One
+        if any(isinstance(s, Coordinate | Rate | Momentum) for s in ratio.free_symbols):
+            return False  # an equation or a constant of the motion may be multiplied with a constant
         if not vanishes(now - ratio * right, repaired.domain, budget=2.0).holds:
             return False
     return True

@@ -149,5 +149,5 @@ def test_every_repair_told_is_judged_as_a_whole():
         "map": {"Q": ["q**3"], "P": ["p/q**2"]},
     }))  # fmt: skip
     found = diagnosis(finding)
-    assert sentence(found) == "map.P[0] should be 1/3 times what it is"
+    assert sentence(found) == "P should be 1/3 times what it is"
     assert judged_to_hold(found.repaired, Effort(60.0))

@@ -14,7 +14,6 @@ from sympy import Expr, Symbol
 
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis
-from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.expression.symbols.symbol import Coordinate, Rate
 from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.proof.continuity.smooth import PIECED
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.diagnose.diagnosis import WrongAnswer
+    from canon.exercise.diagnose.effort import Effort
     from canon.exercise.question.question import Part
 
 __all__ = ["right_to_an_order"]
@@ -73,7 +73,9 @@ def _order_in(
         return None
     if not all(_is_truncated(_in_variables(part), tuple(limit.values), order) for part in wrong.parts):
         return None
-    proved = all(_vanishes_to(r, epsilon, order, _without(wrong.domain, limit)) for r, _ in scaled)
+    proved = all(
+        _vanishes_to(r, epsilon, order, _without(wrong.domain, limit), wrong.effort) for r, _ in scaled
+    )
     return order if proved else None
 
 
@@ -144,12 +146,15 @@ def _halved(times: int) -> sp.Rational:
     return cast("sp.Rational", sp.Rational(1, 2**times))
 
 
-def _vanishes_to(f: Expr, epsilon: Symbol, order: int, domain: Domain) -> bool:
+def _vanishes_to(f: Expr, epsilon: Symbol, order: int, domain: Domain, effort: Effort) -> bool:
     """Whether the first coefficients of a function analytic at ε = 0 are proved to vanish."""
     for k in range(order):
         coefficient = f.diff(epsilon, k).subs(epsilon, 0)
         if coefficient.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
             return False
-        if coefficient != 0 and not vanishes_off_kinks(coefficient, domain, budget=PROOF_SECONDS).holds:
+        if (
+            coefficient != 0
+            and not vanishes_off_kinks(coefficient, domain, budget=effort.for_a_proof()).holds
+        ):
             return False
     return True

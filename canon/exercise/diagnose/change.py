@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+if TYPE_CHECKING:
+    from sympy import Expr
 
 __all__ = ["Change", "Mistake", "rank"]
 
@@ -19,6 +23,7 @@ class Mistake(enum.Enum):
     TERM_FACTOR = enum.auto()  # the term, what to multiply it with
     TERM_MISSING = enum.auto()  # the term
     CORIOLIS_TERM_MISSING = enum.auto()  # the term
+    TERM_MISSING_IN = enum.auto()  # the bracket, the term
     TERM_SUPERFLUOUS = enum.auto()  # the term
     FACTOR_MISSING = enum.auto()  # where, the factor
     DIVISOR_MISSING = enum.auto()  # where, the divisor
@@ -33,10 +38,12 @@ class Mistake(enum.Enum):
     NUMBER = enum.auto()
     SQUARE = enum.auto()  # what should be squared
     VARIABLE_OF_DERIVATIVE = enum.auto()
+    BRANCH = enum.auto()
     SIGN_OF = enum.auto()  # a symbol or function whose sign is wrong
     SYMBOLS_EXCHANGED = enum.auto()  # where, one, the other
     # how the answer was derived
     DERIVATIVE_NOT_TOTAL = enum.auto()  # the terms that are missing
+    DERIVATIVE_NOT_TOTAL_IN = enum.auto()  # the term whose number is wrong for it, what to multiply it with
     TIME_TERM_MISSING = enum.auto()  # the rate, the term
     TIME_DERIVATIVE_MISSING = enum.auto()
     TIME_DERIVATIVE_SIGN = enum.auto()
@@ -103,9 +110,9 @@ class Change:
 _PLAIN = {
     Mistake.WRONG_SIGN: 0, Mistake.TERM_SIGN: 0,
     Mistake.WRONG_FACTOR: 1, Mistake.TERM_FACTOR: 1, Mistake.TERM_MISSING: 1, Mistake.CORIOLIS_TERM_MISSING: 1,
-    Mistake.FUNCTION: 1,
+    Mistake.FUNCTION: 1, Mistake.TERM_MISSING_IN: 2,
     Mistake.EXPONENT: 1, Mistake.FACTOR_MISSING: 2, Mistake.FUNCTION_MISSING: 2, Mistake.UPSIDE_DOWN: 2,
-    Mistake.SYMBOL: 2, Mistake.ARGUMENT: 2, Mistake.SIGN_OF: 2, Mistake.TERM_SUPERFLUOUS: 2,
+    Mistake.SYMBOL: 2, Mistake.ARGUMENT: 2, Mistake.BRANCH: 2, Mistake.SIGN_OF: 2, Mistake.TERM_SUPERFLUOUS: 2,
 }  # fmt: skip
 _RARE = 3
 _NATURAL = {"1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2", "-1/2", "-2", "6", "1/6", "8", "1/8"}
@@ -127,5 +134,14 @@ def rank(change: Change) -> int:
     ):
         found = 5
     if change.mistake is Mistake.FACTOR_MISSING and getattr(change.items[-1], "is_Symbol", False):
-        found = 1
+        found = 2 if getattr(change.items[0], "is_Add", False) else 1
+    if change.mistake is Mistake.FACTOR_MISSING and _is_fraction(change.items[-1]):
+        found = _RARE
     return found + 2 * change.everywhere + (change.inside is not None)
+
+
+def _is_fraction(factor: object) -> bool:
+    """Whether a factor has symbols above and below the line, which nobody forgets at once."""
+    if not hasattr(factor, "as_numer_denom"):
+        return False
+    return all(part.free_symbols for part in cast("Expr", factor).as_numer_denom())

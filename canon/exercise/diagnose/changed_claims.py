@@ -18,7 +18,7 @@ from canon.mechanics.algebra.substitution import symbols_of
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from sympy import Expr
 
@@ -29,6 +29,7 @@ __all__ = [
     "another_gauge",
     "another_reading",
     "answers_of",
+    "called",
     "only_for",
     "only_where",
     "right_where",
@@ -182,7 +183,7 @@ def _staggered(reading: Reading, answers: Mapping[str, Expr]) -> Iterator[tuple[
         }
         new = Change.of(Mistake.NEW_FOR_OLD, there)
         for key in staggered if len(images) > 1 else ():
-            yield {key: staggered[key]}, new.at(key)
+            yield {key: staggered[key]}, new.at(called(key, answers))
         if staggered:
             yield staggered, new.at(here)
 
@@ -207,6 +208,28 @@ def answers_of(reading: Reading) -> Iterator[tuple[str, Expr]]:
                 yield from ((f"{key}[{i}]", item) for i, item in enumerate(items))
             case _:
                 yield key, reading.expression(key)
+
+
+def called(key: str, keys: Collection[str]) -> str:
+    """Return what a person calls the place of an answer among those of a claim.
+
+    Examples
+    --------
+    >>> called("P[0]", ["Q[0]", "P[0]"]), called("map.P[1]", ["map.P[0]", "map.P[1]"])
+    ('P', 'P2')
+    >>> called("implicit[1]", ["implicit[1]"]), called("solution.p", ["solution.p"])
+    ('equation 2 of the map', 'the solution for p')
+    """
+    if key.startswith("solution."):
+        return f"the solution for {key.removeprefix('solution.')}"
+    outer, _, index = key.partition("[")
+    letter, number = outer.rpartition(".")[2], index.removesuffix("]")
+    if not number.isdigit():
+        return key
+    if outer == "implicit":
+        return f"equation {int(number) + 1} of the map"
+    alone = sum(other.partition("[")[0] == outer for other in keys) == 1
+    return letter if alone else f"{letter}{int(number) + 1}"
 
 
 def _of_brackets(reading: Reading, key: str) -> Iterator[tuple[str, Expr]]:

@@ -9,16 +9,17 @@ import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.derived_part import (
+    acceleration_energy_part,
     generating_part,
+    momentum_parts,
     new_hamiltonian_part,
     second_lagrangian_part,
 )
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis
-from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.diagnose.repairs.repair import is_wrong, repairs
-from canon.exercise.question.question import Part, SameEquations
+from canon.exercise.question.question import Part, Same, SameEquations
 from canon.mechanics.algebra.linear import SingularMatrixError, solve_affine
-from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
+from canon.mechanics.algebra.substitution import exchanged, size, substitute, symbols_of
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
 
@@ -32,10 +33,20 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
-__all__ = ["generating_function", "new_hamiltonian", "on_the_motion", "part_by_part", "second_lagrangian"]
+__all__ = [
+    "acceleration_energy",
+    "generating_function",
+    "new_hamiltonian",
+    "on_the_motion",
+    "part_by_part",
+    "point_momenta",
+    "second_lagrangian",
+]
 
 MOST_TOGETHER = 3
 """Terms that may be missing together."""
+MOST_NODES = 200
+"""Size of a right answer whose terms are looked at."""
 MOST_TRIALS = 4
 """Proved repairs of one component that are tried in the whole claim."""
 
@@ -53,10 +64,24 @@ def _answered(wrong: WrongAnswer) -> Sequence[Part]:
     return (Part("rhs", wrong.parts[0].right, wrong.parts[0].claimed, key="rhs"),)
 
 
+def acceleration_energy(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield what is wrong with the Gibbs–Appell function S."""
+    parts = (acceleration_energy_part(wrong.reading),) if wrong.reading.has("S") else ()
+    if any(is_wrong(part, wrong.domain) for part in parts):
+        yield from _part_by_part(wrong, parts, [()])
+
+
 def new_hamiltonian(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield what is wrong with K, where the map is canonical."""
     for part in new_hamiltonian_part(wrong.reading) if wrong.finding.held else ():
         yield from _part_by_part(wrong.within(0.6), (part,), [()])
+
+
+def point_momenta(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    """Yield what is wrong with the new momenta, where the new coordinates depend on the old ones alone."""
+    if wrong.reading.has("Q") and wrong.reading.has("P"):
+        parts = momentum_parts(wrong.reading)
+        yield from _part_by_part(wrong.within(0.6), parts, [() for _ in parts])
 
 
 def generating_function(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -104,6 +129,10 @@ def _velocities(question: SameEquations) -> list[Symbol]:
 def _hints(wrong: WrongAnswer) -> list[tuple[Expr, ...]]:
     """Return for each claimed equation the terms of the right ones, brought to its scale."""
     question = wrong.finding.question
+    if isinstance(question, Same):
+        return [
+            _terms_of_answer(question) if part.through and part.right != 0 else () for part in wrong.parts
+        ]
     if not isinstance(question, SameEquations):
         return [() for _ in wrong.parts]
     right_equations = _in_the_claims_terms(question)
@@ -128,6 +157,19 @@ def _terms_to_scale(
     return tuple(terms)
 
 
+def _terms_of_answer(question: Same) -> tuple[Expr, ...]:
+    """Return the terms of the right answer in the variables in which it is asked, such as those of H(q, p)."""
+    if question.answer is None or len(question.parts) > 1:
+        return ()
+    try:
+        answer = question.answer()
+    except (ValueError, Undecided):
+        return ()
+    if not isinstance(answer, sp.Expr) or size(answer) > MOST_NODES:
+        return ()
+    return tuple(dict.fromkeys((*sp.Add.make_args(answer), *sp.Add.make_args(sp.expand(answer)))))
+
+
 def _in_the_claims_terms(question: SameEquations) -> tuple[Expr, ...]:
     """Return the right equations as they are shown: those of Routh in momenta, not in ignorable velocities."""
     if not question.through or question.answer is None:
@@ -146,7 +188,8 @@ def _part_by_part(
     wrong = [(part, hint) for part, hint in zip(parts, hints, strict=True) if is_wrong(part, domain)]
     if not wrong:
         if all(
-            part.through and vanishes_off_kinks(part.residual, domain, budget=PROOF_SECONDS).holds
+            part.through
+            and vanishes_off_kinks(part.residual, domain, budget=answer.effort.for_a_proof()).holds
             for part in parts
         ):
             yield Diagnosis.stated(Mistake.EQUATION_MISSING, only_fault=False)

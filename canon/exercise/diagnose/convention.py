@@ -9,7 +9,6 @@ from sympy.core.function import AppliedUndef
 
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, scaled
-from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.diagnose.repairs.repair import common_ratio
 from canon.mechanics.canonical.repair_hint import repair_hint
 from canon.mechanics.canonical.transformation import CanonicalTransformation
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from canon.exercise.question.question import Part
     from canon.exercise.sheet.reading import Reading
     from canon.mechanics.canonical.repair_hint import RepairHint
-    from canon.proof.domain.domain import Domain
 
 __all__ = [
     "factor",
@@ -38,7 +36,7 @@ __all__ = [
 def opposite_sign(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield that all components have the opposite sign, where that is another convention."""
     reading, parts = wrong.reading, wrong.parts
-    if reading.kind.opposite and _proved_factor(parts, wrong.domain) == -1:
+    if reading.kind.opposite and _proved_factor(wrong) == -1:
         opposite = Change.of(Mistake.OPPOSITE_CONVENTION, reading.kind.opposite)
         yield Diagnosis((opposite,), scaled(reading, parts, sp.S.NegativeOne), only_fault=True)
 
@@ -48,7 +46,7 @@ def factor(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     reading, claimed = wrong.reading, wrong.parts[0].claimed
     if not reading.has("factor"):
         return
-    ratio = _proved_factor(wrong.parts, wrong.domain)
+    ratio = _proved_factor(wrong)
     found = wrong.parts[0].right if ratio is None else ratio * claimed
     if not found.has(*reading.symbols("q"), *reading.symbols("p")):
         repaired = reading.with_instead("factor", found)
@@ -57,7 +55,7 @@ def factor(wrong: WrongAnswer) -> Iterator[Diagnosis]:
 
 def valence(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield the valence of a map, or what makes it canonical, but for a valence that is rarely meant."""
-    yield from _valence(wrong.reading, wrong.parts, wrong.domain)
+    yield from _valence(wrong)
     mended = _mended(wrong.reading)
     if mended is not None and not _is_rarely_meant(mended):
         yield Diagnosis.stated(Mistake.MAP_MENDED, mended)
@@ -74,31 +72,34 @@ def _is_rarely_meant(mended: RepairHint) -> bool:
     return mended.valence is not None and not mended.valence.is_Rational
 
 
-def _proved_factor(parts: Sequence[Part], domain: Domain) -> sp.Expr | None:
+def _proved_factor(wrong: WrongAnswer) -> sp.Expr | None:
     """Return the constant c ≠ 0, 1 with c·claimed = right in every component, once that is proved."""
-    ratio = common_ratio(parts, domain)
+    ratio = common_ratio(wrong.parts, wrong.domain)
     if ratio is None or ratio in (0, 1):
         return None
     factor = sp.Rational(ratio.numerator, ratio.denominator)
-    return factor if _proved(parts, factor, domain) else None
+    return factor if _proved(wrong.parts, factor, wrong) else None
 
 
-def _proved(parts: Sequence[Part], factor: sp.Expr, domain: Domain) -> bool:
-    residuals = (factor * part.seen(part.claimed) - part.right for part in parts)
-    return all(r == 0 or vanishes_off_kinks(r, domain, budget=PROOF_SECONDS).holds for r in residuals)
+def _proved(parts: Sequence[Part], factor: sp.Expr, wrong: WrongAnswer) -> bool:
+    return all(_vanishes(factor * part.seen(part.claimed) - part.right, wrong) for part in parts)
+
+
+def _vanishes(f: sp.Expr, wrong: WrongAnswer) -> bool:
+    return f == 0 or vanishes_off_kinks(f, wrong.domain, budget=wrong.effort.for_a_proof()).holds
 
 
 def rescaled(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield that a generating function has a wrong factor."""
-    reading, ratio = wrong.reading, _proved_factor(wrong.parts, wrong.domain)
+    reading, ratio = wrong.reading, _proved_factor(wrong)
     if ratio is not None:
         mistake, items = (Mistake.WRONG_SIGN, ()) if ratio == -1 else (Mistake.WRONG_FACTOR, (ratio,))
         repaired = reading.with_instead("F", ratio * reading.expression("F"))
         yield Diagnosis.of(mistake, *items, repaired=repaired, place="F")
 
 
-def _valence(reading: Reading, parts: Sequence[Part], domain: Domain) -> Iterator[Diagnosis]:
-    factor = _proved_factor(parts, domain)
+def _valence(wrong: WrongAnswer) -> Iterator[Diagnosis]:
+    reading, parts, factor = wrong.reading, wrong.parts, _proved_factor(wrong)
     if factor is None or not parts[0].bracket_of:
         return
     wanted, found = parts[0].right, parts[0].right / factor
@@ -126,24 +127,24 @@ def _mended(reading: Reading) -> RepairHint | None:
 
 def lost_time_derivative(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield that ∂F/∂t is missing in K, or stands there with the wrong sign."""
-    parts, domain = wrong.parts, wrong.domain
+    parts = wrong.parts
     if parts[0].bracket_of:
         return  # the map itself is not canonical
-    if _proved_factor(parts, domain) == -1:
+    if _proved_factor(wrong) == -1:
         yield Diagnosis.stated(Mistake.TIME_DERIVATIVE_SIGN)
         return
-    if _proved([part for part in parts if part.right != 0], sp.S.Zero, domain):
+    if _proved([part for part in parts if part.right != 0], sp.S.Zero, wrong):
         return
     still = (part.seen(part.claimed) for part in parts)
-    if all(f == 0 or vanishes_off_kinks(f, domain, budget=PROOF_SECONDS).holds for f in still):
+    if all(_vanishes(f, wrong) for f in still):
         yield Diagnosis.stated(Mistake.TIME_DERIVATIVE_MISSING)
 
 
 def one_rule(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     """Yield that half of the rules of a generating function hold with the opposite sign."""
-    parts, domain = wrong.parts, wrong.domain
+    parts = wrong.parts
     half = len(parts) // 2
     for right, other in ((parts[:half], parts[half:]), (parts[half:], parts[:half])):
-        if _proved(right, sp.S.One, domain) and _proved(other, sp.S.NegativeOne, domain):
+        if _proved(right, sp.S.One, wrong) and _proved(other, sp.S.NegativeOne, wrong):
             yield Diagnosis.stated(Mistake.RULE_OPPOSITE, tuple(part.name for part in other))
             return

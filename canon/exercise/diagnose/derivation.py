@@ -8,6 +8,7 @@ import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis
+from canon.exercise.diagnose.repairs.repair import is_wrong
 from canon.exercise.question.question import SameEquations
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.mechanics.algebra.substitution import exchanged
@@ -15,9 +16,15 @@ from canon.mechanics.algebra.substitution import exchanged
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from sympy import Expr
+
     from canon.exercise.diagnose.diagnosis import WrongAnswer
+    from canon.exercise.sheet.reading import Reading
 
 __all__ = ["multipliers", "total_derivative"]
+
+MOST_OPERATIONS = 80
+"""Operations of the terms that are told at most."""
 
 
 def multipliers(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -47,24 +54,43 @@ def total_derivative(wrong: WrongAnswer) -> Iterator[Diagnosis]:
         return
     if not (reading.has("L") and len(question.written) <= len(reading.symbols("q"))):
         return
-    L, q, trial = reading.expression("L"), reading.symbols("q"), reading
-    changes: list[Change] = []
+    trial, changes = reading, list[Change]()
     for i, claimed in enumerate(question.written):
-        for x in q:
-            p = L.diff(velocity(x))
-            above, below = claimed.diff(acceleration(x)), p.diff(velocity(x))
-            lost = sp.Add(*(p.diff(y) * velocity(y) for y in q), p.diff(reading.time))
-            if above == 0 or below == 0 or lost == 0 or sp.count_ops(lost) > 80:
-                continue
-            lost = sp.expand(sp.cancel(above / below) * lost)
-            there = {term.as_coeff_Mul()[1] for term in sp.Add.make_args(sp.expand(claimed))}
-            terms = list(sp.Add.make_args(lost))
-            if (
-                len(terms) > 1 or terms[0].as_coeff_Mul()[1] in there
-            ):  # one term alone is named as what is missing
-                trial = trial.with_instead(f"claim[{i}]", claimed + lost)
-                place = f"equation {i + 1}"
-                changes.append(Change(Mistake.DERIVATIVE_NOT_TOTAL, tuple(terms), place))
-            break
+        key = f"claim[{i}]"
+        lost = _lost_of(claimed, reading)
+        if lost == 0 or any(part.key == key and not is_wrong(part, wrong.domain) for part in wrong.parts):
+            continue
+        change = _at_fixed_coordinates(claimed, lost)
+        if change is not None:
+            trial = trial.with_instead(key, claimed + lost)
+            changes.append(change.at(f"equation {i + 1}"))
     if changes:
         yield Diagnosis(tuple(changes), trial)
+
+
+def _lost_of(claimed: Expr, reading: Reading) -> Expr:
+    """Return Σ ∂²L/∂q̇∂q q̇ + ∂²L/∂q̇∂t of the coordinate whose equation this is, in the claim's scale; else 0."""
+    L, q = reading.expression("L"), reading.symbols("q")
+    for x in q:
+        p = L.diff(velocity(x))
+        above, below = claimed.diff(acceleration(x)), p.diff(velocity(x))
+        lost = sp.Add(*(p.diff(y) * velocity(y) for y in q), p.diff(reading.time))
+        if above != 0 and below != 0 and lost != 0 and sp.count_ops(lost) <= MOST_OPERATIONS:
+            return sp.expand(sp.cancel(above / below) * lost)
+    return sp.S.Zero
+
+
+def _at_fixed_coordinates(claimed: Expr, lost: Expr) -> Change | None:
+    """Return which terms are missing; of one that stands there with another number, which number is right."""
+    there: dict[Expr, Expr] = {}
+    for term in sp.Add.make_args(sp.expand(claimed)):
+        number, bare = term.as_coeff_Mul()
+        there[bare] = number
+    terms = sp.Add.make_args(lost)
+    if len(terms) > 1:
+        return Change.of(Mistake.DERIVATIVE_NOT_TOTAL, *terms)
+    number, bare = lost.as_coeff_Mul()
+    if bare not in there:
+        return None  # one term alone is named as what is missing
+    factor = 1 + number / there[bare]
+    return Change.of(Mistake.DERIVATIVE_NOT_TOTAL_IN, there[bare] * bare, factor) if factor != 0 else None

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.exercise.diagnose.change import Mistake
+from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
+from canon.exercise.judges.lagrangian import appell_system
 from canon.exercise.question.question import Part, Same
-from canon.expression.symbols.symbol import time_derivative
+from canon.expression.symbols.symbol import time_derivative, velocity
 from canon.mechanics.algebra.linear import SingularMatrixError, solve_affine
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.substitution import substitute
@@ -34,7 +35,14 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
-__all__ = ["generating_part", "new_hamiltonian_part", "second_lagrangian_part", "time_term"]
+__all__ = [
+    "acceleration_energy_part",
+    "generating_part",
+    "momentum_parts",
+    "new_hamiltonian_part",
+    "second_lagrangian_part",
+    "time_term",
+]
 MOST_OPERATIONS = 60
 
 
@@ -102,6 +110,28 @@ def _linear_inverse(
         return None
 
 
+def momentum_parts(reading: Reading) -> tuple[Part, ...]:
+    """Return the new momenta of a point transformation beside Σ (∂Q/∂q)⁻ᵀ p and what they are at p = 0."""
+    q, p = reading.phase_space("q", "p")
+    Q, P = reading.expressions("Q", like="q"), reading.expressions("P", like="p")
+    if any(f.has(*p) for f in Q) or any(f.diff(a).has(*p) for f in P for a in p):
+        return ()
+    valence, new = reading.expression("valence", sp.S.One), [sp.Dummy(f"P{i}") for i in range(len(p))]
+    equations = [
+        sum((y * f.diff(x) for y, f in zip(new, Q, strict=True)), -valence * z)
+        for x, z in zip(q, p, strict=True)
+    ]
+    try:
+        found = solve_affine(equations, new, reading.domain)
+    except (SingularMatrixError, Undecided):
+        return ()
+    gauge = [substitute(f, dict.fromkeys(p, sp.S.Zero)) for f in P]
+    rights = [found[y] + g for y, g in zip(new, gauge, strict=True)]
+    names = [f"P{i}" for i in range(1, len(p) + 1)] if len(p) > 1 else ["P"]
+    compared = enumerate(zip(names, P, rights, strict=True))
+    return tuple(Part(name, f, r, key=f"P[{i}]") for i, (name, f, r) in compared)
+
+
 def generating_part(finding: Finding) -> Iterator[Part]:
     """Yield F beside a generating function of the map, with the constant that makes them alike at the origin."""
     reading, question = finding.reading, finding.question
@@ -117,6 +147,16 @@ def generating_part(finding: Finding) -> Iterator[Part]:
     variables = [s for key in ("q", "p", "new_q", "new_p") for s in reading.symbols(key)]
     rest = substitute(F - right, dict.fromkeys(variables, sp.S.Zero))
     yield Part("F", F, right if rest.has(sp.nan, sp.zoo, sp.oo) else right + rest, key="F")
+
+
+def acceleration_energy_part(reading: Reading) -> Part:
+    """Return S beside Σ ½ m a² + ½ I α² and what the claimed one holds without accelerations."""
+    appell = appell_system(reading)
+    S, right = appell.kinematics.along(reading.expression("S")), appell.gibbs_function
+    rest = substitute(S - right, dict.fromkeys(appell.u_dot, sp.S.Zero))
+    natural = appell.kinematics.u == tuple(velocity(x) for x in appell.q)
+    through = {} if natural else appell.kinematics.through
+    return Part("S", reading.expression("S"), sp.expand(right + rest), through, key="S")
 
 
 def second_lagrangian_part(reading: Reading) -> Part:
@@ -145,7 +185,12 @@ def time_term(wrong: WrongAnswer) -> Iterator[Diagnosis]:
         if growth.has(t, sp.nan, sp.zoo, sp.oo) or growth == 0 or sp.count_ops(growth) > MOST_OPERATIONS:
             continue
         growth = sp.cancel(growth)
-        repaired = reading.with_instead("I", I - growth * t)
+        if -growth in sp.Add.make_args(I):  # it stands there, without t
+            repaired = reading.with_instead("I", I + growth - growth * t)
+            change = Change.of(Mistake.FACTOR_MISSING, -growth, t, place="I")
+        else:
+            repaired = reading.with_instead("I", I - growth * t)
+            change = Change.of(Mistake.TIME_TERM_MISSING, growth, -growth * t, place="I")
         if judged_to_hold(repaired, wrong.effort):
-            yield Diagnosis.of(Mistake.TIME_TERM_MISSING, growth, -growth * t, repaired=repaired, place="I")
+            yield Diagnosis((change,), repaired)
             return

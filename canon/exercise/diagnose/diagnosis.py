@@ -56,11 +56,14 @@ class Diagnosis:
         The claim repaired; None where the changes state what is so and propose nothing to put in.
     only_fault
         Whether they are to be told only where all other questions of the claim hold.
+    instead
+        What may be wrong in another component in place of this: nothing in the claim tells which of them is meant.
     """
 
     changes: tuple[Change, ...]
     repaired: Reading | None = None
     only_fault: bool = False
+    instead: Diagnosis | None = None
 
     @classmethod
     def of(
@@ -125,7 +128,7 @@ def judged_to_hold(reading: Reading, effort: Effort, held: int = 0, but: int | N
     but
         The number of a question that was answered otherwise.
     """
-    deadline = Deadline.after(effort.for_a_proof())
+    deadline = Deadline.after(effort.work_for_a_proof())
     try:
         asked = (question for i, question in islice(enumerate(questions(reading)), held, None) if i != but)
         return all(

@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.changed_claims import another_reading
 from canon.exercise.diagnose.components import on_the_motion
-from canon.exercise.diagnose.diagnosis import Diagnosis, WrongAnswer, judged_to_hold
+from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis, WrongAnswer, judged_to_hold
 from canon.exercise.diagnose.effort import Effort
+from canon.exercise.judge import InvalidClaim, examined
+from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.equation_systems import AFFINE
 from canon.exercise.question.question import Same, SameEquations
 from canon.exercise.sheet.kind import named_function
+from canon.proof.rungs.ladder import REFUSALS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,13 +40,33 @@ def diagnosis(finding: Finding, seconds: float = OUTER_SECONDS) -> Diagnosis | N
     seconds
         The outer limit; what is looked for is limited by a count of steps.
     """
-    effort = Effort(seconds)
+    return _told(finding, Effort(seconds))
+
+
+def _told(finding: Finding, effort: Effort, said: int = 0) -> Diagnosis | None:
     for found in _diagnoses(finding, effort):
         if _confirmed(found, finding, effort):
             return found
-        if effort.spent:
-            return None
+        both = _with_the_next(found, finding, effort, said) if said < MOST_SENTENCES else None
+        if both is not None or effort.spent:
+            return both
     return None
+
+
+def _with_the_next(found: Diagnosis, finding: Finding, effort: Effort, said: int) -> Diagnosis | None:
+    """Return what is wrong where a claim was repaired in one question and fails in a later one: both mistakes."""
+    if found.repaired is None or effort.spent:
+        return None
+    try:
+        again = examined(found.repaired, Deadline.after(effort.work_for_a_proof()))
+    except (InvalidClaim, *REFUSALS):
+        return None
+    if not again.verdict.fails or again.held <= finding.held or again.question is None:
+        return None
+    rest = _told(again, effort, said + len(found.changes))
+    if rest is None or rest.repaired is None:
+        return None
+    return Diagnosis((*found.changes, *rest.changes), rest.repaired)
 
 
 def _confirmed(found: Diagnosis, finding: Finding, effort: Effort) -> bool:

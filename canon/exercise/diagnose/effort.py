@@ -1,12 +1,13 @@
 """Effort for a diagnosis: counted in steps, so that a claim gets the same diagnosis on any machine at any time.
 
 A step is about one symbol or operation evaluated at the points of a screen. The seconds are an outer limit only, far
-beyond what the steps take on an idle machine; what a proof costs is counted as a fixed number of steps.
+beyond what the steps take, and are those of the processor, so that a busy machine changes nothing; what a proof costs is
+counted as a fixed number of steps.
 """
 
 from __future__ import annotations
 
-import time
+from canon.exercise.question.deadline import Worked
 
 __all__ = ["PROOF_SECONDS", "PROOF_STEPS", "STEPS", "Effort"]
 
@@ -15,7 +16,7 @@ STEPS = 600_000
 PROOF_STEPS = 2_500
 """Steps that a proof or a judgement on a changed claim counts for."""
 PROOF_SECONDS = 3.0
-"""Outer limit of one proof or judgement; most take some milliseconds."""
+"""Outer limit of one proof or judgement, in seconds of the processor; most take some milliseconds."""
 
 
 class Effort:
@@ -24,7 +25,7 @@ class Effort:
     Parameters
     ----------
     seconds
-        The outer limit, from now.
+        The outer limit from now, in seconds of the processor.
     steps
         How many steps.
 
@@ -37,14 +38,14 @@ class Effort:
     """
 
     def __init__(self, seconds: float, steps: int = STEPS) -> None:
-        self.until = time.monotonic() + seconds
+        self.start, self.seconds = Worked.now(), seconds
         self.steps = steps
         self._whole: Effort | None = None
 
     def share(self, part: float) -> Effort:
         """Return a share of what is left; what is spent of it is spent of the whole."""
-        found = Effort(0.0, int(part * self.steps))
-        found.until, found._whole = self.until, self
+        found = Effort(self.seconds, int(part * self.steps))
+        found.start, found._whole = self.start, self
         return found
 
     def spend(self, steps: int) -> bool:
@@ -57,9 +58,13 @@ class Effort:
     @property
     def spent(self) -> bool:
         """Whether nothing is left."""
-        return self.steps < 0 or time.monotonic() > self.until
+        return self.steps < 0 or self.start.since(Worked.now()) > self.seconds
+
+    def work_for_a_proof(self) -> float:
+        """Spend the steps of a proof or judgement; return how many seconds of the processor it may take at most."""
+        self.spend(PROOF_STEPS)
+        return max(0.05, min(PROOF_SECONDS, self.seconds - self.start.since(Worked.now())))
 
     def for_a_proof(self) -> float:
-        """Spend the steps of a proof; return the seconds that it may take at most."""
-        self.spend(PROOF_STEPS)
-        return max(0.05, min(PROOF_SECONDS, self.until - time.monotonic()))
+        """Spend the steps of a proof; return how many seconds on the clock it may take at most."""
+        return self.work_for_a_proof() * self.start.slowness(Worked.now())

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
-from itertools import chain, groupby
+from dataclasses import dataclass, replace
+from itertools import chain, groupby, islice
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake, rank
-from canon.exercise.diagnose.changed_claims import answers_of
+from canon.exercise.diagnose.changed_claims import answers_of, called
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.diagnose.repairs.lost_term import terms_lost
 from canon.exercise.diagnose.repairs.repair import is_wrong
 from canon.exercise.diagnose.repairs.screening import screening
-from canon.exercise.diagnose.repairs.slips import common_slips, plain_variants, slipped, variants
+from canon.exercise.diagnose.repairs.slips import common_slips, plain_variants, variants
+from canon.exercise.diagnose.repairs.symbol_slips import slipped
 from canon.expression.symbols.symbol import Coordinate, velocity
 
 if TYPE_CHECKING:
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 __all__ = ["anywhere", "in_one_of_two"]
 
+MOST_ELSEWHERE = 3
+"""Changes in other components that are judged, where one was found."""
 SHARE = 0.75
 """Of the effort that is left, so that some is left to what is tried afterwards."""
 
@@ -63,14 +66,43 @@ def _one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     answers = dict(answers_of(reading))
     screen = screening(reading, answers)
     for groups in (_plain(wrong, answers), _others(wrong, answers)):
-        for candidate in sorted(_passing(groups, screen, effort), key=lambda candidate: candidate.order):
+        candidates = sorted(_passing(groups, screen, effort), key=lambda candidate: candidate.order)
+        for number, candidate in enumerate(candidates):
             if effort.spent:
                 return
-            trial = reading
-            for key, new in candidate.answers.items():
-                trial = trial.with_instead(key, new)
-            if judged_to_hold(trial, effort, wrong.finding.held if "K" in candidate.answers else 0):
-                yield Diagnosis((candidate.change,), trial)
+            found = _judged(candidate, wrong)
+            if found is not None:
+                yield replace(found, instead=_elsewhere(candidate, candidates[number + 1 :], wrong))
+
+
+def _judged(candidate: _Candidate, wrong: WrongAnswer) -> Diagnosis | None:
+    """Return the diagnosis that a candidate is, where the claim is judged to hold with it."""
+    trial = wrong.reading
+    for key, new in candidate.answers.items():
+        trial = trial.with_instead(key, new)
+    held = wrong.finding.held if "K" in candidate.answers else 0
+    return Diagnosis((candidate.change,), trial) if judged_to_hold(trial, wrong.effort, held) else None
+
+
+def _elsewhere(first: _Candidate, others: Sequence[_Candidate], wrong: WrongAnswer) -> Diagnosis | None:
+    """Return a change as likely in another component of the answer, where one makes the claim right as well."""
+    answered = wrong.reading.kind.answer
+    if wrong.reading.has("pairs") or any(_key(name) not in answered for name in first.answers):
+        return None
+    found = (
+        _judged(other, wrong)
+        for other in others
+        if len(other.answers) == 1 == len(first.answers)
+        and not other.answers.keys() & first.answers.keys()
+        and all(_key(name) in answered for name in other.answers)
+        and rank(other.change) <= rank(first.change) + 1
+    )
+    return next((d for d in islice(found, MOST_ELSEWHERE) if d is not None), None)
+
+
+def _key(name: str) -> str:
+    """Return the key of a claim under which an answer stands: P for P[0], solution for solution.q."""
+    return name.partition("[")[0].partition(".")[0]
 
 
 def _passing(
@@ -115,12 +147,12 @@ def _others(wrong: WrongAnswer, answers: Mapping[str, Expr]) -> list[Iterable[_C
 def _of_components(
     wrong: WrongAnswer, answers: Mapping[str, Expr], changes: Callable[[str], Iterable[tuple[Expr, Change]]]
 ) -> list[Iterable[_Candidate]]:
-    suspects = _suspects(wrong)
+    suspects = _suspects(wrong) or _following(wrong.reading)
 
     def candidates(key: str) -> Iterator[_Candidate]:
         for new, change in changes(key):
             if not _trivial(key, new, wrong.reading):
-                yield _Candidate({key: new}, change.at(key), _suspicion(key, suspects))
+                yield _Candidate({key: new}, change.at(called(key, answers)), _suspicion(key, suspects))
 
     return [candidates(key) for key in sorted(answers, key=lambda key: _suspicion(key, suspects))]
 
@@ -143,6 +175,13 @@ def _suspects(wrong: WrongAnswer) -> list[str]:
         if part.bracket_of and is_wrong(part, wrong.domain):
             counts.update(part.bracket_of)
     return [name for name, _ in counts.most_common()]
+
+
+def _following(reading: Reading) -> list[str]:
+    """Return the momenta of a solution, which follow from its coordinates and are rather wrong than these."""
+    return (
+        [f"solution.{p}" for p in reading.words("p")] if reading.has("solution") and reading.has("p") else []
+    )
 
 
 def _outer(key: str) -> str:

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
 
 __all__ = [
+    "appell_system",
     "dissipative",
     "euler_lagrange",
     "gibbs_appell",
@@ -227,7 +228,7 @@ def _total_derivative_conditions(difference: Expr, q: Sequence[Symbol], t: Symbo
 
 def gibbs_appell(reading: Reading) -> Iterator[Question]:
     """S has the right derivatives by the accelerations, and the equations are Appell's."""
-    appell = _appell_system(reading)
+    appell = appell_system(reading)
     kinematics, domain = appell.kinematics, reading.domain
     if reading.has("S"):
         S = kinematics.along(reading.expression("S"))
@@ -250,7 +251,8 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
         yield more_than_zero(claims, domain)
 
 
-def _appell_system(reading: Reading) -> GibbsAppell:
+def appell_system(reading: Reading) -> GibbsAppell:
+    """Return the bodies of a claim in its quasi-velocities."""
     if reading.has("quasi") and not reading.has("q_dot"):
         reading.fault("q_dot", "missing; say what each velocity is in terms of the quasi-velocities")
     return GibbsAppell(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -55,7 +56,7 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
     deadline
         When its judgement should end.
     """
-    until = deadline.at - (1 - SHARE) * deadline.left
+    until = time.monotonic() + SHARE * deadline.left
     written = dict(_written(reading))
     for key, expression in written.items():
         if lack := lack_of_value(expression, reading.domain, until):

@@ -1,25 +1,81 @@
-"""Deadlines: points in time that a judgement should not pass."""
+"""Deadlines: how long a judgement may take, in time of the processor, so that a busy machine changes no verdict.
+
+Proofs are given seconds on the clock. Where other programs take turns on the processor, a second of work takes more of
+them, and a proof is given as many more.
+"""
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
 
-__all__ = ["Deadline"]
+from canon.proof.worker.budget import seconds_in_worker
+
+__all__ = ["PATIENCE", "Deadline", "Worked"]
+
+PATIENCE = 5.0
+"""Seconds on the clock for one of the processor at most."""
+LEAST = 0.05
+"""Seconds after which work and clock are compared; before, they differ by chance."""
+
+
+@dataclass(frozen=True)
+class Worked:
+    """A moment on both clocks: that of the processor, for the process and its worker of proofs, and that on the wall.
+
+    Examples
+    --------
+    >>> Worked(10.0, 100.0).slowness(Worked(11.0, 103.0)), Worked(10.0, 100.0).slowness(Worked(11.0, 190.0))
+    (3.0, 5.0)
+    >>> Worked(10.0, 100.0).slowness(Worked(10.0, 100.04)), Worked(10.0, 100.0).since(Worked(10.5, 100.5))
+    (1.0, 0.5)
+    """
+
+    processor: float
+    wall: float
+
+    @classmethod
+    def now(cls) -> Worked:
+        """Return this moment."""
+        return cls(time.process_time() + seconds_in_worker(), time.monotonic())
+
+    def slowness(self, now: Worked) -> float:
+        """Return how many seconds on the clock one of work took from then to now."""
+        wall, work = now.wall - self.wall, now.processor - self.processor
+        return 1.0 if wall < LEAST else min(PATIENCE, max(1.0, wall / max(work, wall / PATIENCE)))
+
+    def since(self, now: Worked) -> float:
+        """Return the seconds of work from then to now, at least the share of the clock that is always counted."""
+        return max(now.processor - self.processor, (now.wall - self.wall) / PATIENCE)
 
 
 @dataclass(frozen=True)
 class Deadline:
-    """A point in time that a judgement should not pass."""
+    """The end of the seconds of work that a judgement has.
 
-    at: float
+    Parameters
+    ----------
+    start
+        When it began.
+    seconds
+        How long it may work, in seconds of the processor.
+
+    Examples
+    --------
+    >>> Deadline(Worked.now(), 10.0).left > 9.9, Deadline(Worked(0.0, 0.0), 0.0).left
+    (True, 0.05)
+    """
+
+    start: Worked
+    seconds: float
 
     @classmethod
     def after(cls, seconds: float) -> Deadline:
-        """Return the deadline so many seconds from now."""
-        return cls(time.monotonic() + seconds)
+        """Return the deadline so many seconds of work from now."""
+        return cls(Worked.now(), seconds)
 
     @property
     def left(self) -> float:
-        """Seconds that are left, at least a few hundredths, so that every question is at least looked at."""
-        return max(0.05, self.at - time.monotonic())
+        """Seconds on the clock that are left, at least a few hundredths, so that every question is looked at."""
+        now = Worked.now()
+        return max(LEAST, (self.seconds - self.start.since(now)) * self.start.slowness(now))

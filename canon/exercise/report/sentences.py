@@ -68,6 +68,7 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.TERM_FACTOR: lambda term, factor: f"the term {shown(term)} should be {times(factor)} that",
         Mistake.TERM_MISSING: "the term {} is missing",
         Mistake.CORIOLIS_TERM_MISSING: "the Coriolis term {} is missing",
+        Mistake.TERM_MISSING_IN: "in {} the term {} is missing",
         Mistake.TERM_SUPERFLUOUS: "the term {} does not belong",
         Mistake.FACTOR_MISSING: "the term {} lacks the factor {}",
         Mistake.DIVISOR_MISSING: "the term {} should be divided by {}",
@@ -81,12 +82,21 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.NUMBER: "{} should be {}",
         Mistake.SQUARE: "{} should be squared",
         Mistake.VARIABLE_OF_DERIVATIVE: "{} should be {}",
+        Mistake.BRANCH: "{} is another branch of the inverse function: it should be {}",
         Mistake.SIGN_OF: "the sign of {} is wrong",
         Mistake.SYMBOLS_EXCHANGED: lambda node, a, b: (
             f"{f'in {shown(node)} the symbols ' if node is not None else ''}{a} and {b} should be exchanged"
         ),
         Mistake.DERIVATIVE_NOT_TOTAL: lambda *terms: (
             f"d/dt ∂L/∂q̇ is a total derivative: the terms {_listed(terms)} are missing"
+        ),
+        Mistake.DERIVATIVE_NOT_TOTAL_IN: lambda term, factor: (
+            (
+                f"the sign of {shown(term)} is wrong"
+                if factor == -1
+                else f"the term {shown(term)} should be {times(factor)} that"
+            )
+            + ", as it is where d/dt ∂L/∂q̇ is taken at fixed coordinates"
         ),
         Mistake.TIME_DERIVATIVE_MISSING: "K is H in the new variables; ∂F/∂t is missing: K = H + ∂F/∂t",
         Mistake.TIME_DERIVATIVE_SIGN: "the sign of ∂F/∂t in K is wrong: K = H + ∂F/∂t",
@@ -145,7 +155,8 @@ def sentence(found: Diagnosis) -> str:
             continue
         said.append(_of_a_place(change))
         places.append(change.place)
-    return "; ".join(said)
+    told = "; ".join(said)
+    return told if found.instead is None else f"{told}; or {sentence(found.instead)}"
 
 
 def _of_a_place(change: Change) -> str:

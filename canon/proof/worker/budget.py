@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from canon.proof.domain.domain import Domain
     from canon.proof.rungs.ladder import Attempt
 
-__all__ = ["prove_in_worker"]
+__all__ = ["prove_in_worker", "seconds_in_worker"]
 
 GRACE = 0.15
 """Seconds that the worker may take beyond its own deadline before it is killed."""
@@ -44,6 +44,11 @@ def prove_in_worker(exprs: Sequence[Expr], domain: Domain, seconds: float) -> li
     return _worker(os.getpid()).ask(exprs, domain, seconds)
 
 
+def seconds_in_worker() -> float:
+    """Return for how many seconds the worker of this process has kept a processor busy, or was waited for."""
+    return _worker(os.getpid()).worked
+
+
 @cache
 def _worker(pid: int) -> _Worker:  # noqa: ARG001
     """Return the worker of this process; a forked child gets one of its own."""
@@ -58,6 +63,7 @@ class _Worker:
     def __init__(self) -> None:
         self._child: Child | None = None
         self._lock = threading.Lock()
+        self.worked = 0.0
 
     def ask(self, exprs: Sequence[Expr], domain: Domain, seconds: float) -> list[Attempt] | str:
         """Send one request and wait for the reply, at most as long as it may take."""
@@ -79,7 +85,19 @@ class _Worker:
             self._lock.release()
 
     def _asked(self, exprs: Sequence[Expr], domain: Domain, deadline: float) -> list[Attempt] | str:
-        child = self._running(deadline)
+        child, asked = self._running(deadline), time.monotonic()
+        before = child.processor_seconds
+        try:
+            return self._answer(child, exprs, domain, deadline)
+        finally:
+            after = child.processor_seconds
+            unknown = before is None or after is None
+            self.worked += time.monotonic() - asked if unknown else after - before
+
+    def _answer(
+        self, child: Child, exprs: Sequence[Expr], domain: Domain, deadline: float
+    ) -> list[Attempt] | str:
+        """Send a request to the process, and return its reply."""
         left = max(0.0, deadline - time.monotonic() - 2 * GRACE)
         request = (tuple(exprs), type(domain)(domain.conditions, dict(domain.box)), left)
         child.send(lambda: pickle.dumps(request, protocol=pickle.HIGHEST_PROTOCOL), left)

@@ -32,6 +32,7 @@ MOST_SYMBOLS = 14
 MOST_FACTORS = 9
 MOST_EXPONENT = 4
 MOST_FORGOTTEN = 3
+MOST_SUMS = 2
 _NO_VALUE = (Undefined, NotDecided, Unmodelled, ZeroDivisionError)
 
 
@@ -69,6 +70,14 @@ class Monomials:
         except _NO_VALUE:
             return
         yield from (factor for factor in self._explaining(shares) if _forgettable(factor, self._part))
+
+    def of_bracket(self, before: Expr) -> Iterator[Expr]:
+        """Yield the monomials that the residual is beside what stands before a bracket."""
+        try:
+            inside = {s: r / value(before, {}, self._memos[s]) for s, r in self._residuals.items()}
+        except _NO_VALUE:
+            return
+        yield from (term for term in self._explaining(inside) if not _divides_by_motion(term))
 
     @cached_property
     def _memos(self) -> dict[Symbol | None, dict[sp.Basic, acb]]:
@@ -110,7 +119,14 @@ class Monomials:
         factors = sorted(
             [*part.through, *functions], key=lambda f: (not part.claimed.has(f), not f.is_Symbol, str(f))
         )[:MOST_FACTORS]
-        return [sp.S.One, *factors, *(a * b for i, a in enumerate(factors) for b in factors[i:])]
+        products = (a * b for i, a in enumerate(factors) for b in factors[i:])
+        return [sp.S.One, *factors, *products, *(a * b for a in self._sums for b in (sp.S.One, *factors))]
+
+    @cached_property
+    def _sums(self) -> list[Expr]:
+        """The shortest sums of symbols in the answer, such as m1 + m2."""
+        found: list[Expr] = [f for f in self._part.claimed.atoms(sp.Add) if all(a.is_Symbol for a in f.args)]
+        return sorted(found, key=str)[:MOST_SUMS]
 
     def _explaining(self, values: Mapping[Symbol | None, acb]) -> Iterator[Expr]:
         if not values:

@@ -7,21 +7,21 @@ one factor less.
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
-from canon.exercise.diagnose.repairs.slips import slipped
+from canon.exercise.diagnose.repairs.symbol_slips import slipped
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.sympy_trees import shown
-from canon.expression.symbols.symbol import velocity
+from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, velocity
 from canon.mechanics.algebra.substitution import size
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 __all__ = ["terms_lost"]
 
 MOST_TERMS = 400
+MOST_ALIKE = 12
+"""Terms whose factors are compared."""
 MOST_NODES = 60
 """Size of an expression whose terms are looked at, and of a term that is proposed: longer ones are no help."""
 _COEFFICIENTS = tuple(map(sp.Rational, ("1", "-1", "1/2", "-1/2", "2", "-2", "1/3", "-1/3")))
@@ -64,6 +66,8 @@ def _vocabulary(reading: Reading, answers: Mapping[str, Expr]) -> list[Expr]:
     """Return terms without their numbers, those that stand in the claim before those like them."""
     found: dict[Expr, None] = {}
     plain = [t for f in _expressions(reading, answers) for t in _terms(f)]
+    for term in _in_the_answers_scale(plain, answers):
+        found.setdefault(term.as_coeff_Mul()[1])
     for make in (_itself, _renamed, _with_a_twin, _with_a_factor_less):
         for term in plain:
             for new in make(term, reading):
@@ -100,6 +104,19 @@ def _terms(f: Expr) -> list[Expr]:
     if size(f) > MOST_NODES:
         return [t for t in sp.Add.make_args(f) if size(t) < MOST_NODES]
     return [*sp.Add.make_args(f), *sp.Add.make_args(sp.expand(f))]
+
+
+def _in_the_answers_scale(plain: Sequence[Expr], answers: Mapping[str, Expr]) -> Iterator[Expr]:
+    """Yield terms of the claim with the factor that an answer has beside it: l θ̇²/2 for m l² θ̇²/2 beside g cos θ."""
+    own = [t for f in answers.values() for t in sp.Add.make_args(f)]
+    for term, other in product(own[:MOST_ALIKE], plain[:MOST_ALIKE]):
+        ratio = term / other
+        if not ratio.is_Number and ratio.is_commutative and not _moves(ratio):
+            yield from (ratio * t for t in plain[:MOST_ALIKE] if size(t) < MOST_NODES)
+
+
+def _moves(f: Expr) -> bool:
+    return bool(f.atoms(Coordinate, Rate, Momentum, sp.Function))
 
 
 def _itself(term: Expr, _: Reading) -> Iterator[Expr]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain, combinations, islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import acb
@@ -22,7 +22,7 @@ from sympy.core.function import AppliedUndef
 from canon.exercise.diagnose.change import Change, Mistake, rank
 from canon.exercise.diagnose.repairs.lost_factor import Monomials
 from canon.exercise.diagnose.repairs.slips import of_one_coefficient, variants
-from canon.expression.symbols.symbol import Rate
+from canon.expression.symbols.symbol import Momentum, Rate
 from canon.mechanics.algebra.substitution import size, symbols_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.kinks import vanishes_off_kinks
@@ -40,6 +40,7 @@ POINTS = 3
 PRECISION = 128
 MOST_VARIANTS = 3_000
 MOST_TERMS = 6
+MOST_NODES = 200
 NODES_A_STEP = 3
 """Nodes of an answer for a step of a candidate, most of which were evaluated for others before."""
 
@@ -56,6 +57,14 @@ class Repair:
     def rank(self) -> int:
         """Rank among repairs that are right too; the likeliest has the lowest."""
         return rank(self.change) + (0 if self.besides is None else 3 + rank(self.besides))
+
+    @property
+    def length(self) -> int:
+        """Of a term that is missing: one in momenta is told where several would do, else the shortest."""
+        if self.change.mistake not in (Mistake.TERM_MISSING, Mistake.CORIOLIS_TERM_MISSING):
+            return 0
+        term = cast("Expr", self.change.items[0])
+        return 0 if term.atoms(Momentum) else size(term)
 
     @property
     def changes(self) -> tuple[Change, ...]:
@@ -100,7 +109,7 @@ def repairs(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = 
                 and not _says_only_zeros(part, candidate.right, screen)
             ):
                 passing.append(candidate)
-        for candidate in sorted(passing, key=lambda candidate: candidate.rank):
+        for candidate in sorted(passing, key=lambda candidate: (candidate.rank, candidate.length)):
             if _is_right(part, candidate.right, domain, effort):
                 yield candidate
         if effort.spent:
@@ -134,7 +143,7 @@ def _families(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Ite
         _of_all(part, screen),
         _terms_rescaled(part, screen),
         _terms_missing(part, screen, hints),
-        _symbol_restored(part),
+        _symbol_restored(part, screen),
         _monomials(part, screen),
         _slips(part),
     )
@@ -167,18 +176,26 @@ def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[Repair]:
             yield Repair(slip.right + term, _missing(term, part), slip.change)
 
 
-def _symbol_restored(part: Part) -> Iterator[Repair]:
-    """A symbol that some terms have and others lack, such as a mass taken to be one in these."""
+def _symbol_restored(part: Part, screen: Screen) -> Iterator[Repair]:
+    """A symbol that some terms have and others lack, such as a mass taken to be one in these, or an acceleration."""
+    symbols = symbols_of(part.claimed, part.right, *part.through.values())
+    lost = [s for s in part.determined if isinstance(s, Rate) and not part.claimed.has(s)]
     for terms in (sp.Add.make_args(part.claimed), sp.Add.make_args(sp.expand(part.claimed))):
-        for symbol in symbols_of(part.claimed, part.right, *part.through.values()):
-            without = [term for term in terms if not term.has(symbol)]
-            if isinstance(symbol, Rate) or not 1 < len(without) <= MOST_TERMS:
+        for symbol in (*lost, *(s for s in symbols if not isinstance(s, Rate))):
+            without = [term for term in terms if not term.has(symbol) and not _is_still(term, part, screen)]
+            if not 1 < len(without) <= MOST_TERMS:
                 continue
+            factors = (symbol, 1 / symbol, symbol**2, 1 / symbol**2) if symbol not in lost else (symbol,)
             for some in (without, *(combinations(without, 2) if len(without) > 2 else ())):
                 group = sp.Add(*some)
-                for factor in (symbol, 1 / symbol, symbol**2, 1 / symbol**2):
+                for factor in factors:
                     right = sp.Add(*terms) - group + factor * group
                     yield Repair(right, Change.of(Mistake.FACTOR_MISSING, group, factor, place=part.name))
+
+
+def _is_still(term: Expr, part: Part, screen: Screen) -> bool:
+    """Whether a term holds an acceleration that is zero on the motion, so that no factor of it can be seen."""
+    return term.has(*part.determined) and screen.vanish(term)
 
 
 def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -219,11 +236,21 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
         missing = list(found.of_residual())
         terms = sorted(sp.Add.make_args(claimed), key=lambda term: term.has(*part.determined))
         factors = [(t, list(found.of_share(t))) for t in terms] if len(terms) <= MOST_TERMS else []
+        brackets = [(t, s, list(found.of_bracket(t / s))) for t in terms for s in _brackets(t)]
     for term in missing:
         yield Repair(claimed - term, _missing(-term, part))
+    for term, bracket, lost in brackets:
+        for inner in lost:
+            change = Change.of(Mistake.TERM_MISSING_IN, bracket, -inner, place=name)
+            yield Repair(claimed - term + term / bracket * (bracket - inner), change)
     for term, products in factors:
         for factor in products:
             yield Repair(claimed - term + factor * term, lacking(term, factor).at(name))
+
+
+def _brackets(term: Expr) -> list[Expr]:
+    """Return the sums that a term is multiplied with."""
+    return [f for f in sp.Mul.make_args(term) if f.is_Add and f != term]
 
 
 def _missing(term: Expr, part: Part) -> Change:
@@ -265,7 +292,9 @@ def _says_something(part: Part, right: Expr) -> bool:
 
 
 def _says_only_zeros(part: Part, right: Expr, screen: Screen) -> bool:
-    """Whether every term of a repaired equation vanishes by itself on the motion, as no equation of motion does."""
+    """Whether a repaired equation is 0 = 0, or every term of it vanishes by itself on the motion."""
+    if part.right == 0 and (right == 0 or (size(right) < MOST_NODES and sp.expand(right) == 0)):
+        return True
     terms = sp.Add.make_args(right)
     return part.right == 0 and bool(part.through) and len(terms) > 1 and all(map(screen.vanish, terms))
 

@@ -10,6 +10,14 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.diagnose.change import Change, Mistake
+from canon.exercise.diagnose.repairs.symbol_slips import (
+    by_another,
+    exchanged_symbol,
+    in_one_argument,
+    in_one_factor,
+    slipped,
+    swapped,
+)
 from canon.expression.symbols.symbol import Coordinate
 from canon.mechanics.algebra.substitution import exchanged, symbols_of
 from canon.proof.trees.sympy_types import arguments
@@ -17,7 +25,7 @@ from canon.proof.trees.sympy_types import arguments
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-__all__ = ["common_slips", "of_one_coefficient", "plain_variants", "slipped", "variants"]
+__all__ = ["common_slips", "of_one_coefficient", "plain_variants", "variants"]
 
 _FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
 _FAMILIES = (
@@ -26,8 +34,10 @@ _FAMILIES = (
 )  # fmt: skip
 _TWINS = {f: tuple(g for g in family if g is not f) for family in _FAMILIES for f in family}
 MOST_FUNCTIONS = 6
-MOST_SWAPPED = 6
 MOST_ALIKE = 6
+MOST_TERMS = 6
+MOST_IN_FRONT = 5
+"""Factors of a term, some of which stood before a bracket."""
 _SHIFTS = (sp.S.One, sp.S.NegativeOne)
 _CONSTANTS = (sp.pi, -sp.pi, sp.pi / 2, -sp.pi / 2)
 
@@ -57,7 +67,13 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     """
 
     def another_symbol(node: Expr) -> Iterator[tuple[Expr, Change]]:
-        return _exchanged(node, symbols)
+        return exchanged_symbol(node, symbols)
+
+    def another_factor(node: Expr) -> Iterator[tuple[Expr, Change]]:
+        return in_one_factor(node, symbols)
+
+    def another_argument(node: Expr) -> Iterator[tuple[Expr, Change]]:
+        return in_one_argument(node, symbols)
 
     def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, symbols)
@@ -69,21 +85,25 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
 
     yield from plain_variants(expression)
     rest = (
-        _by_another,
+        by_another,
         _superfluous,
         _upside_down,
         _unwrapped,
         another_symbol,
         multiplied,
         _dropped,
-        _swapped,
+        swapped,
         _shifted,
+        another_factor,
+        another_argument,
+        _other_branch,
+        _out_of_a_bracket,
     )
     for edits in (*rest, multiplied_by_functions):
         yield from _one_place(expression, edits)
-    if not expression.is_Add:
-        for symbol in symbols:
-            yield expression * symbol, _of(Mistake.FACTOR_MISSING, expression, symbol)
+    for symbol in symbols:
+        yield expression * symbol, _of(Mistake.FACTOR_MISSING, expression, symbol)
+        if not expression.is_Add:
             yield expression / symbol, _of(Mistake.DIVISOR_MISSING, expression, symbol)
     yield from _everywhere(expression, symbols)
 
@@ -104,6 +124,7 @@ def common_slips(
     functions = sorted({f for e in expressions for f in e.atoms(sp.Function)}, key=str)
     for f in functions:
         yield {f: -f}, _everywhere_of(Mistake.SIGN_OF, f)
+        yield {f: f**2}, _everywhere_of(Mistake.SQUARE, f)
         for twin in _twins(f):
             yield {f: twin(*arguments(f))}, _everywhere_of(Mistake.FUNCTION, f, twin(*arguments(f)))
     for a, b in combinations(own, 2) if len(expressions) > 1 else ():
@@ -114,21 +135,6 @@ def common_slips(
     for symbol in own:
         for factor in (*_FACTORS[:2], *(power for s in symbols if s != symbol for power in (s, 1 / s))):
             yield {symbol: factor * symbol}, _everywhere_of(Mistake.SYMBOL, symbol, factor * symbol)
-
-
-def slipped(expression: Expr, slip: Mapping[Expr, Expr]) -> Expr | None:
-    """Return an expression with a slip put in, None where it would stand behind a d/d….
-
-    Examples
-    --------
-    >>> x, f = sp.Symbol("x"), sp.Function("f")
-    >>> slipped(x + x**2, {x: -x}), slipped(f(x).diff(x), {x: -x})
-    (x**2 - x, None)
-    """
-    try:
-        return exchanged(expression, dict(slip))
-    except (TypeError, ValueError):  # such as a derivative by −x, or a comparison with i
-        return None
 
 
 def _twins(f: Expr) -> tuple[Callable[..., Expr], ...]:
@@ -230,12 +236,38 @@ def _exponents(node: Expr) -> Iterator[tuple[Expr, Change]]:
     base, exponent = node.as_base_exp()
     if exponent.is_Rational:
         for other in dict.fromkeys((2 * exponent, exponent / 2, exponent + 1, exponent - 1, -exponent)):
-            if other != 0:
+            if other != 0 and not (base.is_Function and abs(exponent) == 1 == abs(other)):
                 yield base**other, _of(Mistake.EXPONENT, node, base**other)
     if exponent == 2:
         yield base * sp.Abs(base), _of(Mistake.FUNCTION, node, base * sp.Abs(base))
     if node.is_Symbol and not node.is_positive:
         yield sp.Abs(node), _of(Mistake.FUNCTION, node, sp.Abs(node))
+
+
+def _other_branch(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """Another angle with the same sine, cosine or tangent."""
+    if isinstance(node, sp.asin):
+        others: tuple[Expr, ...] = (sp.pi - node,)
+    elif isinstance(node, sp.acos):
+        others = (-node, 2 * sp.pi - node)
+    elif isinstance(node, sp.atan | sp.acot):
+        others = (node + sp.pi, node - sp.pi)
+    else:
+        return
+    yield from ((other, _of(Mistake.BRANCH, node, other)) for other in others)
+
+
+def _out_of_a_bracket(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """A term that lacks what another one is multiplied with: a(b + c) written as ab + c."""
+    terms = arguments(node) if node.is_Add and len(arguments(node)) <= MOST_TERMS else ()
+    for other, term in permutations(terms, 2):
+        factors = sp.Mul.make_args(other)
+        if not 2 <= len(factors) <= MOST_IN_FRONT:
+            continue
+        for count in range(2, len(factors) + 1):
+            for some in combinations(factors, count):
+                product = sp.Mul(*some)
+                yield node - term + term * product, _of(Mistake.FACTOR_MISSING, term, product)
 
 
 def _superfluous(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -249,45 +281,6 @@ def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
         for factor in arguments(node):
             if not factor.is_Number:
                 yield node / factor, _of(Mistake.FACTOR_SUPERFLUOUS, factor, node)
-
-
-def _exchanged(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
-    """One symbol for another in one function, or as one factor."""
-    if node.is_Function:
-        for changed in _with_another_symbol(node, symbols):
-            yield changed, _of(Mistake.SYMBOL, node, changed)
-    if not (node.is_Mul or node.is_Add):
-        return
-    for place in (a for a in arguments(node) if a.is_Function or a.is_Pow or a.is_Symbol):
-        for changed in _with_another_symbol(place, symbols):
-            whole = node.func(*(changed if a == place else a for a in arguments(node)))
-            yield whole, _of(Mistake.SYMBOL, place, changed)
-
-
-def _with_another_symbol(f: Expr, symbols: Sequence[Symbol]) -> Iterator[Expr]:
-    for old, new in product(symbols_of(f), symbols):
-        changed = slipped(f, {old: new}) if new != old else None
-        if changed is not None:
-            yield changed
-
-
-def _by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    """The derivative by another argument of the function."""
-    if isinstance(node, sp.Derivative) and len(node.variables) == 1:
-        f = arguments(node)[0]
-        for other in symbols_of(*(a for a in arguments(f) if a.is_Symbol)):
-            if other != node.variables[0]:
-                right = sp.Derivative(f, other)
-                yield right, _of(Mistake.VARIABLE_OF_DERIVATIVE, node, right)
-
-
-def _swapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    """Two symbols exchanged in one sum."""
-    if node.is_Add:
-        for a, b in combinations(symbols_of(node)[:MOST_SWAPPED], 2):
-            new = slipped(node, {a: b, b: a})
-            if new is not None and new != node:
-                yield new, _of(Mistake.SYMBOLS_EXCHANGED, node, a, b)
 
 
 def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:

@@ -1,0 +1,96 @@
+"""Slips with symbols: one symbol for another in a function or factor, two exchanged, a derivative by another one."""
+
+from __future__ import annotations
+
+from itertools import combinations, product
+from typing import TYPE_CHECKING
+
+import sympy as sp
+from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
+
+from canon.exercise.diagnose.change import Change, Mistake
+from canon.mechanics.algebra.substitution import exchanged, symbols_of
+from canon.proof.trees.sympy_types import arguments
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+__all__ = ["by_another", "exchanged_symbol", "in_one_argument", "in_one_factor", "slipped", "swapped"]
+
+MOST_SWAPPED = 6
+_of = Change.of
+
+
+def slipped(expression: Expr, slip: Mapping[Expr, Expr]) -> Expr | None:
+    """Return an expression with a slip put in, None where it would stand behind a d/d….
+
+    Examples
+    --------
+    >>> x, f = sp.Symbol("x"), sp.Function("f")
+    >>> slipped(x + x**2, {x: -x}), slipped(f(x).diff(x), {x: -x})
+    (x**2 - x, None)
+    """
+    try:
+        return exchanged(expression, dict(slip))
+    except (TypeError, ValueError):  # such as a derivative by −x, or a comparison with i
+        return None
+
+
+def exchanged_symbol(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """One symbol for another in one function, or as one factor."""
+    if node.is_Function:
+        for changed in _with_another_symbol(node, symbols):
+            yield changed, _of(Mistake.SYMBOL, node, changed)
+    if not (node.is_Mul or node.is_Add):
+        return
+    for place in (a for a in arguments(node) if a.is_Function or a.is_Pow or a.is_Symbol):
+        for changed in _with_another_symbol(place, symbols):
+            whole = node.func(*(changed if a == place else a for a in arguments(node)))
+            yield whole, _of(Mistake.SYMBOL, place, changed)
+
+
+def _with_another_symbol(f: Expr, symbols: Sequence[Symbol]) -> Iterator[Expr]:
+    for old, new in product(symbols_of(f), symbols):
+        changed = slipped(f, {old: new}) if new != old else None
+        if changed is not None:
+            yield changed
+
+
+def in_one_factor(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """One symbol for another in one factor of a power: x² for x ẋ."""
+    base, exponent = node.as_base_exp()
+    if base.is_Symbol and exponent.is_Integer and exponent > 1:
+        for new in symbols:
+            if new != base:
+                right = node / base * new
+                yield right, _of(Mistake.SYMBOL, node, right)
+
+
+def in_one_argument(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """One symbol for another as one argument of a function of several."""
+    places = arguments(node) if isinstance(node, AppliedUndef) and len(node.args) > 1 else ()
+    for i, place in enumerate(places):
+        for new in symbols if place.is_Symbol else ():
+            if new != place:
+                right = node.func(*places[:i], new, *places[i + 1 :])
+                yield right, _of(Mistake.SYMBOL, node, right)
+
+
+def by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """The derivative by another argument of the function."""
+    if isinstance(node, sp.Derivative) and len(node.variables) == 1:
+        f = arguments(node)[0]
+        for other in symbols_of(*(a for a in arguments(f) if a.is_Symbol)):
+            if other != node.variables[0]:
+                right = sp.Derivative(f, other)
+                yield right, _of(Mistake.VARIABLE_OF_DERIVATIVE, node, right)
+
+
+def swapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    """Two symbols exchanged in one sum."""
+    if node.is_Add:
+        for a, b in combinations(symbols_of(node)[:MOST_SWAPPED], 2):
+            new = slipped(node, {a: b, b: a})
+            if new is not None and new != node:
+                yield new, _of(Mistake.SYMBOLS_EXCHANGED, node, a, b)
