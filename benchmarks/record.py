@@ -25,6 +25,7 @@ BENCHMARKS = {
     "operations": "Operations of a pendulum's equations, by four designs",
     "minimal": "Only what is asked for",
     "classroom": "A class of two hundred",
+    "feedback": "Wrong answers whose slip is known",
     "kernels": "Compiled loops, beside a C program",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",

@@ -211,23 +211,17 @@ def answers_of(reading: Reading) -> Iterator[tuple[str, Expr]]:
 
 
 def called(key: str, keys: Collection[str]) -> str:
-    """Return what a person calls the place of an answer among those of a claim.
+    """Return the place of an answer among those of a claim, the new variables as a person numbers them.
 
     Examples
     --------
     >>> called("P[0]", ["Q[0]", "P[0]"]), called("map.P[1]", ["map.P[0]", "map.P[1]"])
     ('P', 'P2')
-    >>> called("implicit[1]", ["implicit[1]"]), called("solution.p", ["solution.p"])
-    ('equation 2 of the map', 'the solution for p')
     """
-    if key.startswith("solution."):
-        return f"the solution for {key.removeprefix('solution.')}"
     outer, _, index = key.partition("[")
     letter, number = outer.rpartition(".")[2], index.removesuffix("]")
-    if not number.isdigit():
+    if not number.isdigit() or outer == "implicit":
         return key
-    if outer == "implicit":
-        return f"equation {int(number) + 1} of the map"
     alone = sum(other.partition("[")[0] == outer for other in keys) == 1
     return letter if alone else f"{letter}{int(number) + 1}"
 

@@ -1,8 +1,8 @@
 """Effort for a diagnosis: counted in steps, so that a claim gets the same diagnosis on any machine at any time.
 
 A step is about one symbol or operation evaluated at the points of a screen. The seconds are an outer limit only, far
-beyond what the steps take, and are those of the processor, so that a busy machine changes nothing; what a proof costs is
-counted as a fixed number of steps.
+beyond what the steps take, and are those of the processor, so that a busy machine changes nothing; what a proof costs
+is counted as a fixed number of steps.
 """
 
 from __future__ import annotations

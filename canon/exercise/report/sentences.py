@@ -159,19 +159,34 @@ def sentence(found: Diagnosis) -> str:
     return told if found.instead is None else f"{told}; or {sentence(found.instead)}"
 
 
+def _in_words(place: str) -> str:
+    """Return what a person calls the place of an answer.
+
+    Examples
+    --------
+    >>> _in_words("implicit[1]"), _in_words("solution.p"), _in_words("P2")
+    ('equation 2 of the map', 'the solution for p', 'P2')
+    """
+    if place.startswith("solution."):
+        return f"the solution for {place.removeprefix('solution.')}"
+    if place.startswith("implicit["):
+        return f"equation {int(place[9:-1]) + 1} of the map"
+    return place
+
+
 def _of_a_place(change: Change) -> str:
     if change.mistake in OF_A_COMPONENT:
         return _said(change)
-    return f"in {change.place} {_said(change)}" if change.place else _said(change)
+    return f"in {_in_words(change.place)} {_said(change)}" if change.place else _said(change)
 
 
 def _said(change: Change) -> str:
     pattern = OF_A_COMPONENT.get(change.mistake) or SENTENCES[change.mistake]
     if callable(pattern):
         said = pattern(*change.items)
-        said = said.replace("{place}", change.place)
+        said = said.replace("{place}", _in_words(change.place))
     else:
-        said = pattern.format(*map(shown, change.items), place=change.place)
+        said = pattern.format(*map(shown, change.items), place=_in_words(change.place))
     if change.inside is not None:
         return f"in {shown(change.inside)} {said}, everywhere"
     return f"{said} everywhere" if change.everywhere else said

@@ -91,8 +91,10 @@ class _Worker:
             return self._answer(child, exprs, domain, deadline)
         finally:
             after = child.processor_seconds
-            unknown = before is None or after is None
-            self.worked += time.monotonic() - asked if unknown else after - before
+            if before is None or after is None:
+                self.worked += time.monotonic() - asked
+            else:
+                self.worked += after - before
 
     def _answer(
         self, child: Child, exprs: Sequence[Expr], domain: Domain, deadline: float
