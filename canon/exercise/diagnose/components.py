@@ -187,7 +187,7 @@ def _part_by_part(
     domain = answer.domain
     wrong = [(part, hint) for part, hint in zip(parts, hints, strict=True) if is_wrong(part, domain)]
     if not wrong:
-        if all(
+        if parts and all(
             part.through
             and vanishes_off_kinks(part.residual, domain, budget=answer.effort.for_a_proof()).holds
             for part in parts

@@ -293,10 +293,13 @@ def _says_something(part: Part, right: Expr) -> bool:
 
 def _says_only_zeros(part: Part, right: Expr, screen: Screen) -> bool:
     """Whether a repaired equation is 0 = 0, or every term of it vanishes by itself on the motion."""
-    if part.right == 0 and (right == 0 or (size(right) < MOST_NODES and sp.expand(right) == 0)):
+    if part.right != 0:
+        return False
+    new = (s for s in part.determined if right.is_Mul and right.has(s) and not part.claimed.has(s))
+    if right == 0 or (size(right) < MOST_NODES and sp.expand(right) == 0) or any(map(screen.vanish, new)):
         return True
     terms = sp.Add.make_args(right)
-    return part.right == 0 and bool(part.through) and len(terms) > 1 and all(map(screen.vanish, terms))
+    return bool(part.through) and len(terms) > 1 and all(map(screen.vanish, terms))
 
 
 def _as_sums(expression: Expr) -> Iterator[Sequence[Expr]]:
