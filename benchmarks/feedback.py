@@ -105,6 +105,8 @@ def table(found: Sequence[dict[str, Any]]) -> Iterator[str]:
             for counts, name in rows:
                 counts.setdefault(name, Counter())[answer["outcome"]] += 1
             slowest = max(slowest, answer["seconds"])
+    asked = sum(len(line["answers"]) for line in found)
+    yield f"{asked} wrong answers to {len(found)} questions, each judged to be wrong\n"
     yield f"{'half':<32}{'':>6}  {head}"
     yield from (row(half, halves[half]) for half in HALVES if half in halves)
     for title, counted in (("slip", slips), ("kind of claim", kinds)):

@@ -21,7 +21,8 @@ _OF_K = ("convention.lost_time_derivative", *_FIRST, "components.new_hamiltonian
 _AT_LAST = ("asymptotic.right_to_an_order", "changed_claims.right_where")
 _OF_MAPS = (
     "convention.valence", *_FIRST, "changed_claims.only_where", "changed_claims.staggered_step",
-    "one_change.anywhere", "components.point_momenta", "changed_claims.only_for", "convention.variable_valence", *_AT_LAST,
+    "one_change.anywhere", "components.point_momenta", "changed_claims.only_for", "convention.variable_valence",
+    *_AT_LAST,
 )  # fmt: skip
 _PHASE = {"q": _N, "p": _N}
 _NEW = {"new_q": _N, "new_p": _N}

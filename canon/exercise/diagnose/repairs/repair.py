@@ -61,10 +61,9 @@ class Repair:
     @property
     def length(self) -> int:
         """Of a term that is missing: one in momenta is told where several would do, else the shortest."""
-        if self.change.mistake not in (Mistake.TERM_MISSING, Mistake.CORIOLIS_TERM_MISSING):
-            return 0
-        term = cast("Expr", self.change.items[0])
-        return 0 if term.atoms(Momentum) else size(term)
+        missing = self.change.mistake in (Mistake.TERM_MISSING, Mistake.CORIOLIS_TERM_MISSING)
+        term = cast("Expr", self.change.items[0]) if missing else sp.S.Zero
+        return size(term) if missing and not term.atoms(Momentum) else 0
 
     @property
     def changes(self) -> tuple[Change, ...]:
@@ -177,7 +176,7 @@ def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[Repair]:
 
 
 def _symbol_restored(part: Part, screen: Screen) -> Iterator[Repair]:
-    """A symbol that some terms have and others lack, such as a mass taken to be one in these, or an acceleration."""
+    """A symbol that some terms have and others lack, such as a mass taken to be one, or an acceleration."""
     symbols = symbols_of(part.claimed, part.right, *part.through.values())
     lost = [s for s in part.determined if isinstance(s, Rate) and not part.claimed.has(s)]
     for terms in (sp.Add.make_args(part.claimed), sp.Add.make_args(sp.expand(part.claimed))):
@@ -185,7 +184,7 @@ def _symbol_restored(part: Part, screen: Screen) -> Iterator[Repair]:
             without = [term for term in terms if not term.has(symbol) and not _is_still(term, part, screen)]
             if not 1 < len(without) <= MOST_TERMS:
                 continue
-            factors = (symbol, 1 / symbol, symbol**2, 1 / symbol**2) if symbol not in lost else (symbol,)
+            factors = (symbol,) if symbol in lost else (symbol, 1 / symbol, symbol**2, 1 / symbol**2)
             for some in (without, *(combinations(without, 2) if len(without) > 2 else ())):
                 group = sp.Add(*some)
                 for factor in factors:
@@ -236,7 +235,9 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
         missing = list(found.of_residual())
         terms = sorted(sp.Add.make_args(claimed), key=lambda term: term.has(*part.determined))
         factors = [(t, list(found.of_share(t))) for t in terms] if len(terms) <= MOST_TERMS else []
-        brackets = [(t, s, list(found.of_bracket(t / s))) for t in terms for s in _brackets(t)]
+        brackets = [
+            (t, s, list(found.of_bracket(t / s))) for t in terms for s in sp.Mul.make_args(t) if s.is_Add
+        ]
     for term in missing:
         yield Repair(claimed - term, _missing(-term, part))
     for term, bracket, lost in brackets:
@@ -246,11 +247,6 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
     for term, products in factors:
         for factor in products:
             yield Repair(claimed - term + factor * term, lacking(term, factor).at(name))
-
-
-def _brackets(term: Expr) -> list[Expr]:
-    """Return the sums that a term is multiplied with."""
-    return [f for f in sp.Mul.make_args(term) if f.is_Add and f != term]
 
 
 def _missing(term: Expr, part: Part) -> Change:
