@@ -218,7 +218,7 @@ def heyoka_equations(
 def _variables(system: HamiltonEquations) -> dict[Symbol, Any]:
     import heyoka as hy
 
-    names = [f"{letter}{i}" for letter in "qp" for i in range(len(system.q))]
+    names = [f"{letter}{i}" for letter, half in (("q", system.q), ("p", system.p)) for i in range(len(half))]
     return dict(zip((*system.q, *system.p), map(hy.expression, names), strict=True))
 
 

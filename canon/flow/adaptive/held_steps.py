@@ -72,7 +72,7 @@ class LocalisedTerms:
 
     def largest(self, states: Sequence[Any], times: Sequence[Any]) -> Array:
         """Return the largest size of each exponent at some states; inf where one has no value."""
-        y = np.array(states).astype(np.float64).T * float(self.unit)
+        y = np.array(states).astype(np.float64).T[: len(self.system.inputs) - 1] * float(self.unit)
         point = dict(zip(self.system.inputs, (*y, np.array(times).astype(np.float64)), strict=True))
         with np.errstate(all="ignore"):
             found = self.system.graph.evaluate(self.exponents, point)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,10 +14,14 @@ import sympy as sp
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted
+from canon.flow.adaptive.held_steps import HeldSteps, LocalisedTerms
+from canon.flow.adaptive.taylor_events import TaylorEvents
+from canon.flow.adaptive.taylor_orbit import TaylorOrbit
 from canon.flow.geometry.certified_derivatives import Residual, RoundedValue, definite_node, values_at
+from canon.flow.run.event import Event, PreparedEvent
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.heyoka_bridge import heyoka_expressions
-from canon.kernel.program.hamilton_equations import exact_number, exact_numbers
+from canon.kernel.program.hamilton_equations import HamiltonEquations, exact_number, exact_numbers
 from canon.mechanics.hamilton.vector_field import VectorField
 
 if TYPE_CHECKING:
@@ -44,9 +49,6 @@ COMPACT_FROM = 60
 """Equations with more operations are compiled in heyoka's compact mode."""
 
 
-_MET = -1
-"""heyoka's outcome where the first of its terminal events stopped the motion."""
-
 _TURN_HIGH, _TURN_LOW = 6.28125, 1.9353071795864769e-03
 """2π in two parts, the first with so few digits that a multiple of it is exact."""
 
@@ -72,6 +74,25 @@ class VectorFieldSystem:
             )
         known = {self.graph.symbol(s): self.graph.number(self.numbers[s.name]) for s in others}
         return self.graph.substitute([general], known)[0]
+
+    @cached_property
+    def equations(self) -> HamiltonEquations:
+        """The same equations as the engines take them; all variables stand in their first half."""
+        return HamiltonEquations(
+            graph=self.graph,
+            q=self.x,
+            p=(),
+            t=self.t,
+            parameters=self.numbers,
+            hamiltonian=self.graph.zero,
+            velocity=self.rates,
+            force=(),
+            separable=False,
+            quadratic_kinetic=False,
+            autonomous=self.t not in self.graph.all_symbols(self.rates),
+            canonical=False,
+            spare=len(self.x),
+        )
 
     def half(self) -> int:
         """Return n of the 2n variables (q, p)."""
@@ -104,7 +125,7 @@ class VectorFieldSystem:
                 slopes = graph.gradient(rate, self.x)
                 rates.append(graph.add([graph.mul([a, b]) for a, b in zip(slopes, d, strict=True)]))
         symbols = (*self.x, *dummies)
-        variables = {s: hy.expression(f"x{i}") for i, s in enumerate(symbols)}
+        variables = {s: hy.expression(f"q{i}") for i, s in enumerate(symbols)}
         made = heyoka_expressions(graph, rates, {**variables, self.t: hy.time})
         return list(zip(variables.values(), made, strict=True))
 
@@ -185,28 +206,23 @@ def sampled(
     NonFiniteStateError
         The motion can't be continued over the whole span.
     """
-    import heyoka as hy
-
     large = len(field.graph.reachable(field.rates)) * (1 + variations) > COMPACT_FROM
-    integrator = hy.taylor_adaptive(equations, y0, time=float(times[0]), compact_mode=large)
-    first = np.array(integrator.state)  # of heyoka's own variational equations too, whose start y0 leaves out
+    orbit = _orbit(field, equations, y0, (float(times[0]), float(times[-1])), compact=large)
+    first = np.array(
+        orbit.integrator.state
+    )  # of heyoka's variational equations too, whose start y0 leaves out
     turning, turns, steps = np.array(angles, dtype=np.intp), np.zeros(len(first)), 0
     rows, whole = [first[np.newaxis]], [turns[np.newaxis].copy()]
     slices = len(times) - 1 if turning.size else 1
     for part in np.array_split(np.arange(1, len(times)), slices):
-        outcome, _, _, taken, _, found = integrator.propagate_grid(times[part[0] - 1 : part[-1] + 1])
-        if outcome != hy.taylor_outcome.time_limit or not np.isfinite(found).all():
-            raise NonFiniteStateError(
-                f"the motion can't be continued after t = {integrator.time:.9g} ({outcome}): a collision or the "
-                "edge of the equations' domain; stop earlier",
-                float(integrator.time),
-                np.array(integrator.state[: len(field.x)]),
-            )
-        steps += int(taken)
-        rows.append(np.array(found[1:]))
+        made = orbit.advance(times[part[0] - 1 : part[-1] + 1], dense=False)
+        if made.outcome is not None:
+            raise orbit.lost(made.outcome, field.equations.rows)
+        steps += made.steps
+        rows.append(made.rows)
         whole.append(np.repeat(turns[np.newaxis], len(part), axis=0))
         if turning.size:
-            state = integrator.state
+            state = orbit.integrator.state
             back = np.round(state[turning] / (2.0 * np.pi))
             state[turning] = (state[turning] - back * _TURN_HIGH) - back * _TURN_LOW
             turns[turning] += back
@@ -222,19 +238,47 @@ def at_first_zero(field: VectorFieldSystem, node: int, y0: Array, until: float) 
     NonFiniteStateError
         It does not vanish before the last time, or the motion ends before.
     """
+    end = PreparedEvent(Event(field.graph.to_sympy(node), action="stop"), node, field.graph.zero, None)
+    orbit = _orbit(field, field.heyoka_pairs(), y0, (0.0, until), compact=True, events=[end])
+    made = orbit.advance(np.array([0.0, until]), dense=False)
+    time, state = float(orbit.integrator.time), np.array(orbit.integrator.state)
+    if not made.stopped or not np.isfinite(state).all():
+        raise NonFiniteStateError(
+            f"it does not vanish before t = {time:.9g} ({made.outcome or 'the last time'}); follow the motion longer",
+            time,
+            state,
+        )
+    return time, state, made.steps
+
+
+def _orbit(
+    field: VectorFieldSystem,
+    equations: Any,
+    y0: Array,
+    t_span: tuple[float, float],
+    *,
+    compact: bool,
+    events: Sequence[PreparedEvent] = (),
+) -> TaylorOrbit:
+    """Return an orbit of heyoka's equations of a field, or of its variations too, at the start of its way."""
     import heyoka as hy
 
-    pairs = field.heyoka_pairs()
-    variables = {s: pair[0] for s, pair in zip(field.x, pairs, strict=True)} | {field.t: hy.time}
-    crossing = heyoka_expressions(field.graph, [node], variables)[0]
-    integrator = hy.taylor_adaptive(pairs, y0, t_events=[hy.t_event(crossing)], compact_mode=True)
-    outcome, _, _, steps, _, _ = integrator.propagate_until(until)
-    time, state = float(integrator.time), np.array(integrator.state)
-    if int(outcome) != _MET or not np.isfinite(state).all():
-        raise NonFiniteStateError(
-            f"it does not vanish before t = {time:.9g} ({outcome}); follow the motion longer", time, state
-        )
-    return time, state, int(steps)
+    start, end = t_span
+    forward = 1 if end > start else -1
+    met = TaylorEvents(field.equations, events, "double", float, forward=forward)
+    terms = LocalisedTerms.of(field.equations, float, None, Fraction(1), forward)
+
+    def integrator(stops: Mapping[str, Sequence[Any]]) -> Any:
+        return hy.taylor_adaptive(equations, y0, time=start, compact_mode=compact, **stops)
+
+    own = met.heyoka_events()
+    return TaylorOrbit(
+        integrator(terms.beside(own) if own else own),
+        met,
+        integrator({}) if own else None,
+        end - start,
+        HeldSteps(terms, lambda: integrator(terms.beside({})), waits=not own),
+    )
 
 
 def step_error(states: Array, steps: int) -> Array:
