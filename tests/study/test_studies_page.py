@@ -54,4 +54,4 @@ def test_its_commands_are_canons(command):
         command = command.replace(variable, value)
     _, *words = shlex.split(command)
     arguments = cli._parser(words).parse_args(words)
-    assert arguments.action in ("run", "resume", "status", "report", "export")
+    assert arguments.action in ("run", "resume", "status", "mend", "report", "export")

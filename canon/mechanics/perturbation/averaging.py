@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import comb, factorial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -127,9 +127,9 @@ class Averaged:
                 if any(k) and not (_divisor(k, frequencies) == 0 if module is None else k in module):
                     why = f"the coefficient of {self.small}**{n} still has the fast term of k = {k}"
                     return Verdict(Status.FAILS, question, "exact", term, feedback=why)
-        image = self.to_new(self.source.H)
+        left = cast("Expr", sp.expand(self.to_new(self.source.H) - self.K))
         each = (
-            vanishes(sp.expand(image - self.K).coeff(self.small, n), budget=budget / (self.order + 1)).about(
+            vanishes(cast("Expr", left.coeff(self.small, n)), budget=budget / (self.order + 1)).about(
                 f"the coefficient of {self.small}**{n} is that of K"
             )
             for n in range(self.order + 1)
