@@ -26,15 +26,15 @@ from canon.flow.method.method import Splitting, Stepped, TimeTransformed
 from canon.flow.method.setting import Setting
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.scene import find
-from canon.study.choose.candidate import candidate_methods
-from canon.study.choose.choose import Choice, choose
-from canon.study.choose.pilot_run import Pilot, natural_step, pilot
-from canon.study.choose.step_search import widest_step
+from canon.study.method_choice.candidate import candidate_methods
+from canon.study.method_choice.choose import Choice, choose
+from canon.study.method_choice.pilot_run import Pilot, natural_step, pilot
+from canon.study.method_choice.step_search import widest_step
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from canon.study.choose.choice_question import Question
+    from canon.study.method_choice.choice_question import Question
 
 STORED = Path(__file__).parent / "results" / "choose.txt"
 

@@ -22,8 +22,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from canon.study.drift.drift import Drift, Growth, drift
-from canon.study.drift.growth import slope_of, walk_of
+from canon.study.energy_drift.drift import Drift, Growth, drift
+from canon.study.energy_drift.growth import slope_of, walk_of
 from tests.study import series
 from tests.study.test_noise import draws
 
@@ -129,7 +129,7 @@ def print_orbits(number: int) -> None:
     from canon import RK4, Splitting, Taylor
     from canon.scene import find
     from canon.scene.systems.henon_heiles import on_the_section
-    from canon.study.drift.drift_study import drift_study
+    from canon.study.energy_drift.drift_study import drift_study
 
     scene = find("henon-heiles")
     random = np.random.default_rng(22)

@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING, Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from canon.exercise.claim_verdict import examined
 from canon.exercise.diagnose.diagnosis_search import diagnosis
-from canon.exercise.judge import examined
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.report.sentences import sentence
 from tests.exercise.slips_of_students import half_of, is_named, of_a_question, questions

@@ -1,9 +1,9 @@
 import sympy as sp
 
-from .exercise.check import check as check
+from .exercise.claim_verdict import judge as judge
 from .exercise.expect import expect as expect
-from .exercise.judge import judge as judge
 from .exercise.sheet.sheet import read_sheet as read_sheet
+from .exercise.sheet_check import check as check
 from .expression.symbols.symbol import coordinates as coordinates
 from .expression.symbols.symbol import parameters as parameters
 from .expression.symbols.symbol import time_derivative as time_derivative
@@ -17,7 +17,7 @@ from .flow.method.method import Splitting as Splitting
 from .flow.method.method import TimeTransformed as TimeTransformed
 from .flow.method.solvable_splitting import SABA as SABA
 from .flow.method.solvable_splitting import WisdomHolman as WisdomHolman
-from .flow.propagate import propagate as propagate
+from .flow.propagation import propagate as propagate
 from .flow.run.event import Event as Event
 from .flow.run.observables_along import AccuracyWarning as AccuracyWarning
 from .mechanics.canonical.find_generating_function import generating_function as generating_function
@@ -57,10 +57,10 @@ from .study.cases.result import results_of as results_of
 from .study.cases.run_study import run_study as run_study
 from .study.cases.study import Study as Study
 from .study.cases.study import read_study as read_study
-from .study.choose.choose import choose as choose
-from .study.choose.work_precision import work_precision as work_precision
-from .study.drift.drift import drift as drift
-from .study.drift.drift_study import drift_study as drift_study
+from .study.energy_drift.drift import drift as drift
+from .study.energy_drift.drift_study import drift_study as drift_study
+from .study.method_choice.choose import choose as choose
+from .study.method_choice.work_precision import work_precision as work_precision
 from .version import __version__ as __version__
 
 time: sp.Symbol

@@ -7,7 +7,7 @@ import pytest
 from canon import RK4, Splitting
 from canon.cli import main
 from canon.scene import find
-from canon.study.drift.drift_study import drift_study
+from canon.study.energy_drift.drift_study import drift_study
 
 
 def drift(*arguments):

@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from canon import RK4, Splitting, Taylor, propagate
 from canon.plot import COLOURS, PlotError, plot_block_means, plot_energy_error, plot_phase_portrait
 from canon.scene import find
-from canon.study.drift.drift import drift
-from canon.study.drift.drift_study import drift_study
+from canon.study.energy_drift.drift import drift
+from canon.study.energy_drift.drift_study import drift_study
 
 
 @pytest.fixture(scope="module")

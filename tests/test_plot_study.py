@@ -31,10 +31,10 @@ from canon.study.cases.result import State, results_of
 from canon.study.cases.run_study import run_study
 from canon.study.cases.store import Store
 from canon.study.cases.study import Study
-from canon.study.choose.choose import choose
-from canon.study.choose.resonance import resonant_steps
-from canon.study.choose.work_precision import WorkPrecision, WorkRow, work_precision
-from canon.study.drift.drift_study import drift_study
+from canon.study.energy_drift.drift_study import drift_study
+from canon.study.method_choice.choose import choose
+from canon.study.method_choice.resonance import resonant_steps
+from canon.study.method_choice.work_precision import WorkPrecision, WorkRow, work_precision
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 from canon import progress
 from canon.cli import main
 from canon.flow.method.method import Splitting
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.progress import ProgressBar, reporting
 from tests.flow.systems import PENDULUM
 

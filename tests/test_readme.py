@@ -13,7 +13,7 @@ import pytest
 
 import canon
 from canon.cli import COMMANDS, main
-from canon.exercise.check import check
+from canon.exercise.sheet_check import check
 
 HERE = Path(__file__).parents[1]
 README = (HERE / "README.md").read_text(encoding="utf-8")

@@ -16,7 +16,7 @@ import mpmath as mp
 import pytest
 import sympy as sp
 
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import Claim, read_sheet
 
 ROOT = Path(__file__).parents[1]

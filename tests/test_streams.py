@@ -14,7 +14,7 @@ import pytest
 
 from canon.cli import main
 from canon.exercise import Sheet, SheetError, read_sheet
-from canon.exercise.check import check
+from canon.exercise.sheet_check import check
 from canon.given_file import UnreadableFile, bytes_of
 from canon.study.cases.store import Store
 

@@ -147,7 +147,7 @@ def _judged(
     chosen: Sequence[tuple[Sheet, list[Claim]]], claims: list[Claim], arguments: argparse.Namespace
 ) -> list[Judgement]:
     """Judge the claims of each sheet in turn, and show each judgement when it is there."""
-    from canon.exercise.check import judged
+    from canon.exercise.sheet_check import judged
 
     judgements: list[Judgement] = []
     coming = judged(claims, arguments.jobs)

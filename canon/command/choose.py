@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     import argparse
 
     from canon.scene.scene import Scene
-    from canon.study.choose.candidate import Candidate
-    from canon.study.choose.choose import Choice
+    from canon.study.method_choice.candidate import Candidate
+    from canon.study.method_choice.choose import Choice
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _choice(scene: Scene, arguments: argparse.Namespace) -> Choice:
     from canon.progress import ProgressBar
-    from canon.study.choose.choose import choose
+    from canon.study.method_choice.choose import choose
 
     span = arguments.span if arguments.span is not None else arguments.periods * scene.period
     with ProgressBar() as progress:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import argparse
 
     from canon.scene.scene import Scene
-    from canon.study.drift.drift_study import DriftRow, DriftStudy
+    from canon.study.energy_drift.drift_study import DriftRow, DriftStudy
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run", "save_figure"]
 
@@ -81,7 +81,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the study, print its table or lines, return the exit status."""
     from canon.scene import SceneError
-    from canon.study.drift.drift_study import StudyError
+    from canon.study.energy_drift.drift_study import StudyError
 
     if arguments.scene == "list":
         list_scenes()
@@ -94,7 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         _print_lines(study)
     else:
-        from canon.study.drift.drift_table import drift_table
+        from canon.study.energy_drift.drift_table import drift_table
 
         print(drift_table(study))
     if arguments.plot and not save_figure(study, arguments.plot):
@@ -119,7 +119,7 @@ def save_figure(study: DriftStudy, file: str) -> bool:
 
 def _study(scene: Scene, arguments: argparse.Namespace) -> DriftStudy:
     from canon.progress import ProgressBar
-    from canon.study.drift.drift_study import drift_study
+    from canon.study.energy_drift.drift_study import drift_study
 
     with ProgressBar() as progress:
         return drift_study(

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import argparse
 
     from canon.exercise.report.judgement import Judgement
-    from canon.study.drift.drift_study import DriftStudy
+    from canon.study.energy_drift.drift_study import DriftStudy
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -74,7 +74,7 @@ def _study() -> DriftStudy:
     from canon.flow.method.method import RK4, Splitting, Taylor
     from canon.progress import ProgressBar
     from canon.scene import find
-    from canon.study.drift.drift_study import drift_study
+    from canon.study.energy_drift.drift_study import drift_study
 
     scene = find("henon-heiles")
     print("2. Does its simulation stay right, and what does that cost?\n", flush=True)
@@ -85,8 +85,8 @@ def _study() -> DriftStudy:
 
 
 def _show_study(study: DriftStudy) -> None:
-    from canon.study.drift.drift import Growth
-    from canon.study.drift.drift_table import drift_table
+    from canon.study.energy_drift.drift import Growth
+    from canon.study.energy_drift.drift_table import drift_table
 
     print(drift_table(study))
     print()

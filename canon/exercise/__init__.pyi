@@ -1,3 +1,4 @@
+from .claim_verdict import judge as judge
 from .judge_pool import JudgePool as JudgePool
 from .report.judgement import Judgement as Judgement
 from .report.report import Report as Report
@@ -8,3 +9,4 @@ from .sheet.sheet import Sheet as Sheet
 from .sheet.sheet import SheetError as SheetError
 from .sheet.sheet import bundled_sheet as bundled_sheet
 from .sheet.sheet import read_sheet as read_sheet
+from .sheet_check import check as check

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.exercise.claim_verdict import InvalidClaim, examine
 from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS
 from canon.exercise.diagnose.right_answer import corrected
-from canon.exercise.judge import InvalidClaim, examine
 from canon.exercise.question.deadline import Worked
 from canon.exercise.report.derivation_steps import steps
 from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid
@@ -20,7 +20,7 @@ from canon.proof.rungs.ladder import REFUSALS, refusal
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from canon.exercise.judge import Finding
+    from canon.exercise.claim_verdict import Finding
     from canon.exercise.sheet.sheet import Claim
     from canon.proof.domain.verdict import Verdict
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from canon.exercise.judging_process import Worker
 from canon.exercise.report.report import Report
-from canon.exercise.sheet.sheet import Claim, Sheet, claim_from, read_sheet
+from canon.exercise.sheet.sheet import Claim, Sheet, bundled_sheet, claim_from, read_sheet
 from canon.expression.symbols.input_in_words import given_kind
 
 if TYPE_CHECKING:
@@ -25,13 +25,6 @@ __all__ = ["JudgePool"]
 
 CLAIMS_A_PROCESS = 1_000
 """Claims after which a process is replaced, so that what libraries keep in memory does not grow for ever."""
-
-WARMING = Claim(
-    "warm",
-    "euler-lagrange",
-    {"q": ["x"], "L": "x_dot**2/2 - cos(x)", "claim": ["x_ddot - sin(x) = 0"], "parameters": {"x": "real"}},
-)
-"""A claim that brings what most claims need into the memory of a process."""
 
 _OWN_KEYS = frozenset(("id", "title", "source", "expect"))
 """Keys that say nothing about mechanics."""
@@ -100,7 +93,7 @@ class JudgePool:
             self._put_back(worker)
 
     def check(self, sheet: str | Path | Sheet | Mapping[str, Any]) -> Report:
-        """Return the report on a sheet, as :func:`canon.exercise.check.check` does."""
+        """Return the report on a sheet, as :func:`canon.exercise.sheet_check.check` does."""
         read = sheet if isinstance(sheet, Sheet) else read_sheet(sheet)
         return Report(read.title or read.file, tuple(self.judged(read.claims)), read.claims)
 
@@ -126,7 +119,7 @@ class JudgePool:
 
     def _warmed(self, worker: Worker) -> None:
         try:
-            worker.judge(WARMING)
+            worker.judge(bundled_sheet().claims[0])  # it brings what most claims need into memory
         finally:
             self._put_back(worker)
 

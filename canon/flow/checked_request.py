@@ -60,7 +60,7 @@ def task_of(request: Request) -> Task:
     Raises
     ------
     TypeError, KeyError, ValueError
-        As :func:`canon.flow.propagate.propagate` documents them.
+        As :func:`canon.flow.propagation.propagate` documents them.
     """
     hamiltonian: HamiltonianSystem = request.system
     fixed, varying = parted_by_orbit(request.parameters or {})

@@ -41,7 +41,7 @@ _ELSEWHERE = {
 
 
 def refuse_unknown(unknown: Mapping[str, object]) -> None:
-    """Refuse arguments that :func:`canon.flow.propagate.propagate` does not have, saying what is given instead.
+    """Refuse arguments that :func:`canon.flow.propagation.propagate` does not have, saying what is given instead.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def refuse_unknown(unknown: Mapping[str, object]) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """The arguments of :func:`canon.flow.propagate.propagate`, which documents them, as one value; nothing is checked.
+    """The arguments of :func:`canon.propagate`, which documents them, as one value; nothing is checked.
 
     Examples
     --------

@@ -51,7 +51,7 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
     Raises
     ------
     TypeError, KeyError, ValueError
-        As :func:`canon.flow.propagate.propagate` documents them.
+        As :func:`canon.flow.propagation.propagate` documents them.
     """
     scene = is_scene(request.system)
     if scene:

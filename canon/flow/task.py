@@ -43,7 +43,7 @@ class Task:
     names, nodes
         The observables; H, then they, on the system's graph.
     cadence, events, dense
-        As :func:`canon.flow.propagate.propagate` takes them.
+        As :func:`canon.flow.propagation.propagate` takes them.
     fictitious
         Of a time-transformed method: what the motion in the fictitious time needs.
     max_step

@@ -330,7 +330,7 @@ class Trajectory:
             When to keep the state on the new part; as densely as before where not given. A time-transformed motion
             that keeps states evenly in steps does so anew, about so many in all.
         progress
-            As :func:`canon.flow.propagate.propagate` takes it.
+            As :func:`canon.flow.propagation.propagate` takes it.
 
         Raises
         ------

@@ -10,7 +10,7 @@ import numpy as np
 
 from canon.plot.phase import several
 from canon.plot.style import COLOURS, GREY, LINES, label_ends, logarithmic, new_axes, tidy
-from canon.study.drift.envelope import envelope_of
+from canon.study.energy_drift.envelope import envelope_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.trajectory import Trajectory
     from canon.study.cases.result import Result
-    from canon.study.drift.drift import Drift
-    from canon.study.drift.drift_study import DriftRow, DriftStudy
+    from canon.study.energy_drift.drift import Drift
+    from canon.study.energy_drift.drift_study import DriftRow, DriftStudy
 
 __all__ = ["draw_guides", "plot_block_means", "plot_energy_error", "plot_errors"]
 
@@ -106,7 +106,7 @@ def plot_block_means(
     Parameters
     ----------
     found
-        What :func:`canon.study.drift.drift.drift` returned, or a finished case of a study.
+        What :func:`canon.study.energy_drift.drift.drift` returned, or a finished case of a study.
     ax
         Where to draw; a new figure if left out.
     label
@@ -142,7 +142,7 @@ def plot_block_means(
 
 def _means(found: Drift | Result) -> tuple[Array, Array, float, float, str]:
     """Return the windows' times and means, the drift with its standard error, and the verdict in words."""
-    from canon.study.drift.drift import Drift
+    from canon.study.energy_drift.drift import Drift
 
     if isinstance(found, Drift):
         verdict = f"{found.verdict.value}: {found.reason}"
@@ -190,7 +190,7 @@ def _line(name: str, t: Array, error: Array) -> list[_Line]:
 
 def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]) -> _Lines:
     from canon.study.cases.result import Result
-    from canon.study.drift.drift_study import DriftStudy
+    from canon.study.energy_drift.drift_study import DriftStudy
 
     if isinstance(of, DriftStudy):
         return _lines_of_drifts(of)
@@ -240,7 +240,7 @@ def _time(unit: str) -> str:
 
 
 def _name(row: DriftRow) -> str:
-    from canon.study.drift.drift import Growth
+    from canon.study.energy_drift.drift import Growth
 
     found = row.drift
     if found is None:

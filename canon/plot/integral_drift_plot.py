@@ -11,7 +11,7 @@ from canon.plot.style import COLOURS, new_axes, tidy
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from canon.study.drift.integral_drift import IntegralDrift
+    from canon.study.energy_drift.integral_drift import IntegralDrift
 
 __all__ = ["plot_integral_drift"]
 

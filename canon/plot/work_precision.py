@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.plot.style import COLOURS, GREY, LINES, MARKERS, logarithmic, new_axes, tidy
-from canon.study.choose.resonance import resonant_steps
+from canon.study.method_choice.resonance import resonant_steps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from canon.study.cases.result import Result
-    from canon.study.choose.choose import Choice
-    from canon.study.choose.work_precision import WorkPrecision, WorkRow
-    from canon.study.drift.drift_study import DriftRow
+    from canon.study.energy_drift.drift_study import DriftRow
+    from canon.study.method_choice.choose import Choice
+    from canon.study.method_choice.work_precision import WorkPrecision, WorkRow
 
 __all__ = ["plot_drift_by_step", "plot_work_precision"]
 
@@ -46,7 +46,7 @@ def plot_work_precision(
     Parameters
     ----------
     found
-        What :func:`canon.study.choose.work_precision.work_precision` returned.
+        What :func:`canon.study.method_choice.work_precision.work_precision` returned.
     ax
         Where to draw; a new figure if left out.
     cost
@@ -54,7 +54,7 @@ def plot_work_precision(
     error
         ``"position"`` at the end, or the largest in ``"energy"``.
     chosen
-        What :func:`canon.study.choose.choose.choose` chose for this motion, drawn as a star with the accuracy wanted;
+        What :func:`canon.choose` chose for this motion, drawn as a star with the accuracy wanted;
         its cost is taken for as long a run as the others are.
 
     Raises
@@ -129,7 +129,7 @@ def plot_drift_by_step(
     >>> plot_drift_by_step(found).get_xlabel()
     'step (units of time)'
     """
-    from canon.study.choose.work_precision import WorkPrecision
+    from canon.study.method_choice.work_precision import WorkPrecision
 
     if what not in ("bound", "slope") or (what == "slope" and isinstance(of, WorkPrecision)):
         raise ValueError(f"what={what!r}: there are bound and, of drift studies, slope")
@@ -169,7 +169,7 @@ class _Point:
 
 
 def _points(of: WorkPrecision | Sequence[DriftRow] | Sequence[Result], what: str) -> list[_Point]:
-    from canon.study.choose.work_precision import WorkPrecision
+    from canon.study.method_choice.work_precision import WorkPrecision
 
     if isinstance(of, WorkPrecision):
         family = _families(of.rows)
@@ -180,7 +180,7 @@ def _points(of: WorkPrecision | Sequence[DriftRow] | Sequence[Result], what: str
 
 
 def _point_of_drift(of: DriftRow | Result, what: str) -> _Point | None:
-    from canon.study.drift.drift_study import DriftRow
+    from canon.study.energy_drift.drift_study import DriftRow
 
     if isinstance(of, DriftRow):
         drift = of.drift

@@ -126,8 +126,8 @@ def judged_row(claim: dict[str, Any], section: str, judgement: Any) -> str:
 
 def at_leisure(claim: Any, judgement: Any) -> Any:
     """Return a judgement whose feedback and right answer were not cut off, as they can be on a busy machine."""
+    from canon.exercise.claim_verdict import examine
     from canon.exercise.diagnose.right_answer import corrected
-    from canon.exercise.judge import examine
     from canon.exercise.report.sentences import feedback
 
     if judgement.status != "fails" or (judgement.feedback and judgement.corrected):
@@ -139,8 +139,8 @@ def at_leisure(claim: Any, judgement: Any) -> Any:
 
 def page() -> str:
     """Return the page."""
-    from canon.exercise.check import check
     from canon.exercise.sheet.sheet import read_sheet
+    from canon.exercise.sheet_check import check
 
     entries = tomllib.loads((ROOT / "docs" / "seeds" / "entries.toml").read_text("utf-8"))["entry"]
     claims: dict[str, list[dict[str, Any]]] = {}

@@ -21,9 +21,9 @@ from typing import Any
 
 import sympy as sp
 
+from canon.exercise.claim_verdict import Finding, InvalidClaim, examine
 from canon.exercise.diagnose.change import Mistake as M  # noqa: N817
 from canon.exercise.diagnose.diagnosis import Diagnosis  # noqa: TC001
-from canon.exercise.judge import Finding, InvalidClaim, examine
 from canon.exercise.sheet.reading import Reading
 from canon.exercise.sheet.sheet import Claim, claim_from
 from canon.exercise.sheet.sympy_trees import shown

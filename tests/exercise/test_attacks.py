@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 from canon import coordinates, parameters
-from canon.exercise.check import check, judged
 from canon.exercise.judging_process import MEMORY, Worker
 from canon.exercise.sheet.sheet import Claim, SheetError, claim_from, sheet_from
+from canon.exercise.sheet_check import check, judged
 from canon.expression.mathml import formula
 from canon.expression.parse import LanguageError, parse_condition, parse_equation
 from canon.expression.text.scope import Scope

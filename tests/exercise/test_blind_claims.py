@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from canon.exercise.check import judged
 from canon.exercise.sheet.sheet import read_sheet
+from canon.exercise.sheet_check import judged
 
 SHEETS = sorted((Path(__file__).parents[1] / "data").glob("blind_claims/*/*.*"))
 UNDECIDED = {"H3-EQ-70", "X-EQ-20", "X-EQ-45", "X-EQ-47", "X-EQ-51"}

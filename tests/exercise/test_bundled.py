@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from canon.exercise.check import check
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import bundled_sheet
+from canon.exercise.sheet_check import check
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "sheets" / "tour.toml"
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.sheet import Claim, sheet_from
 from tests.exercise.right_answers import EMPTY, RIGHT, Right, with_kappa

@@ -7,7 +7,7 @@ import sympy as sp
 from sympy import cos, sin
 
 from canon import Lagrangian, coordinates, parameters
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.reduction.contact import multiplier_along

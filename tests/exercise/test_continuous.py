@@ -2,7 +2,7 @@
 
 import pytest
 
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import Claim
 
 OSCILLATOR = {"q": "q", "p": "p", "H": "p**2/2 + q**2/2"}

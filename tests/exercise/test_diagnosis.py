@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from canon.exercise.claim_verdict import examine
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import judged_to_hold
 from canon.exercise.diagnose.diagnosis_search import diagnosis
 from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.explained_judgement import judgements
-from canon.exercise.judge import examine
 from canon.exercise.report import sentences
 from canon.exercise.sheet.sheet import Claim, read_sheet
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.sheet.sheet import Claim
 
 

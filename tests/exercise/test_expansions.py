@@ -4,7 +4,7 @@ import mpmath
 import pytest
 import sympy as sp
 
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.question.series_expansion import coefficient
 from canon.exercise.sheet.sheet import Claim
 

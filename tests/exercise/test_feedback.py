@@ -7,11 +7,11 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from canon.exercise.claim_verdict import examine
 from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.repairs.repair import repair
 from canon.exercise.diagnose.repairs.slips import variants
 from canon.exercise.diagnose.right_answer import corrected
-from canon.exercise.judge import examine
 from canon.exercise.question.question import Part
 from canon.exercise.report.sentences import feedback
 from canon.exercise.sheet.sheet import Claim, bundled_sheet, read_sheet

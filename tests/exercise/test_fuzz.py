@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.explained_judgement import judgements
-from canon.exercise.judge import InvalidClaim, judge
 from canon.exercise.judging_process import Worker
 from canon.exercise.sheet.sheet import SheetError, read_sheet, sheet_from
 from canon.expression.parse import LanguageError, Scope, parse_expression

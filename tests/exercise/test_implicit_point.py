@@ -6,7 +6,7 @@ import mpmath
 import pytest
 import sympy as sp
 
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.question.implicit_point import PRECISION, enclosed
 from canon.exercise.sheet.sheet import Claim
 from canon.proof.domain.balls import precision

@@ -3,7 +3,7 @@
 import pytest
 
 from canon import Lagrangian, coordinates, parameters
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import Claim
 from canon.expression.parse import Scope, parse_expression
 

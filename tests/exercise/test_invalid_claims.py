@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from canon.exercise.judge import examine
+from canon.exercise.claim_verdict import examine
 from canon.exercise.sheet.reading import InvalidClaim
 from canon.exercise.sheet.sheet import read_sheet
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import canon.exercise
-from canon.exercise import judge as judging
+from canon.exercise import claim_verdict as judging
 from canon.exercise.diagnose import rereadings
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import Proof

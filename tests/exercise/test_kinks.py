@@ -4,8 +4,8 @@ import pytest
 import sympy as sp
 
 from canon import Hamiltonian, Lagrangian, coordinates, vanishes
+from canon.exercise.claim_verdict import JUDGES, examine, judge
 from canon.exercise.diagnose.right_answer import corrected
-from canon.exercise.judge import JUDGES, examine, judge
 from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.hamilton.symmetry import have_same_equations

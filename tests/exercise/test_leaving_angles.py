@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.algebra.solve_for_symbol import real_solutions
 from canon.proof.domain.domain import Domain

@@ -2,7 +2,7 @@
 
 import pytest
 
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import Claim
 
 VORTEX = "(x*y_dot - y*x_dot)/2 - k*(x**2 + y**2)/2"

@@ -5,12 +5,12 @@ import random
 import pytest
 import sympy as sp
 
-from canon.exercise.check import judged
-from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.parameter_system import covers, families
 from canon.exercise.sheet.kinds import KINDS, kind_of
 from canon.exercise.sheet.sheet import Claim, claim_from
+from canon.exercise.sheet_check import judged
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
 

@@ -9,7 +9,7 @@ import sympy as sp
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.judges.positive_real import is_positive_real_at
 from canon.exercise.sheet.sheet import Claim
 

@@ -8,11 +8,11 @@ from xml.etree.ElementTree import fromstring
 import pytest
 
 from canon import is_constant_of_motion
-from canon.exercise.check import check
 from canon.exercise.explained_judgement import judgements
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.sheet import Claim, Sheet, claim_from, sheet_from
+from canon.exercise.sheet_check import check
 
 PAGE = (Path(__file__).parents[2] / "docs" / "sheets.md").read_text("utf-8")
 NOTHING = "this says nothing about the motion: "

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.sheet.sheet import SheetError, read_sheet, sheet_from
 
 GOOD = {"id": "a", "kind": "equality-only", "lhs": "2 + 2", "rhs": "4"}

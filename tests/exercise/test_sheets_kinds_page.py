@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from canon.exercise.check import judged
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.sheet import Claim, sheet_from
+from canon.exercise.sheet_check import judged
 
 PAGE = (Path(__file__).parents[2] / "docs" / "sheets_kinds.md").read_text("utf-8")
 

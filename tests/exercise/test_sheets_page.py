@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import canon
-from canon.exercise.check import check
 from canon.exercise.report.judgement import Judgement
 from canon.exercise.sheet.kind import COMMON
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.sheet import Sheet, sheet_from
+from canon.exercise.sheet_check import check
 
 PAGE = (Path(__file__).parents[2] / "docs" / "sheets.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)

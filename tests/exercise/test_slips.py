@@ -11,11 +11,11 @@ from os import cpu_count
 
 import pytest
 
+from canon.exercise.claim_verdict import examine
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import judged_to_hold
 from canon.exercise.diagnose.diagnosis_search import diagnosis
 from canon.exercise.diagnose.effort import Effort
-from canon.exercise.judge import examine
 from canon.exercise.judging_process import Worker
 from canon.exercise.report.sentences import feedback
 from canon.exercise.sheet.sheet import Claim, claim_from

@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.sheet.sheet import Claim
 
 

@@ -3,7 +3,7 @@
 import mpmath as mp
 import pytest
 
-from canon.exercise.judge import InvalidClaim, judge
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.sheet.sheet import Claim
 
 

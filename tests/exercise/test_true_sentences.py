@@ -2,8 +2,8 @@
 
 import pytest
 
+from canon.exercise.claim_verdict import examine
 from canon.exercise.diagnose.right_answer import corrected
-from canon.exercise.judge import examine
 from canon.exercise.report.sentences import feedback
 from canon.exercise.sheet.reading import InvalidClaim
 from canon.exercise.sheet.sheet import Claim, claim_from

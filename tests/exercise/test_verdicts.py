@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from canon.exercise.judge import judge
+from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.sheet import read_sheet
 

@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
-from canon.exercise.check import judged
 from canon.exercise.sheet.sheet import sheet_from
+from canon.exercise.sheet_check import judged
 
 PAGE = (Path(__file__).parents[2] / "docs" / "explanation" / "what_counts_as_an_answer.md").read_text("utf-8")
 SAID = re.findall(r"^# (holds|fails)(?:: (.*))?\n\[\[claim\]\]\nid = \"(.*)\"", PAGE, re.MULTILINE)

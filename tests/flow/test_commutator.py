@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.kernel.schemes.perturbed_schemes import saba, with_commutator
 from tests.flow.systems import HENON_HEILES, HENON_HEILES_START, KEPLER, System, kepler_start
 from tests.flow.test_geometry import compiled_jacobian, there_and_back

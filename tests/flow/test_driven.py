@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import DRIVEN, DRIVEN_START
 

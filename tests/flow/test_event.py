@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.run.event import Event
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from tests.flow.systems import (

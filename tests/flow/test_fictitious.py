@@ -10,7 +10,7 @@ import sympy as sp
 from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
 from canon.flow.method.method import Gauss, Splitting, TimeTransformed
-from canon.flow.propagate import Interrupted, propagate
+from canon.flow.propagation import Interrupted, propagate
 from canon.flow.run.event import Event
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.transformed.extended_hamiltonian import extended, extended_system

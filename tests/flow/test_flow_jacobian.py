@@ -8,7 +8,7 @@ import sympy as sp
 from canon import Hamiltonian, Lagrangian
 from canon.flow.geometry.flow_jacobian import flow_jacobian, reversal_error, symplecticity_defect
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (

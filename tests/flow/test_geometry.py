@@ -7,7 +7,7 @@ import sympy as sp
 
 from canon.expression.graph.number_systems import multiprecision
 from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.program.hamilton_equations import equations
 from canon.kernel.program.program import interpret

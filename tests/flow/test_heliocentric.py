@@ -6,7 +6,7 @@ import sympy as sp
 
 from canon.flow.method.method import Splitting, Taylor
 from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.kernel.solvable.kepler_terms import UnsolvableError
 from tests.flow.systems import KEPLER, System, kepler_start
 from tests.flow.test_geometry import compiled_jacobian, there_and_back

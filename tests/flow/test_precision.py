@@ -7,7 +7,7 @@ import sympy as sp
 
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.method.number_formats import ADAPTIVE, FIXED, unit_round_off
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (

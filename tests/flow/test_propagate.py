@@ -7,7 +7,7 @@ import sympy as sp
 from canon import Hamiltonian
 from canon.expression.symbols.symbol import coordinates, parameters
 from canon.flow.method.method import DOP853, RK4, Splitting, Taylor
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.observables_along import _many_digits, _wide_values
 from canon.flow.run.samples import Samples

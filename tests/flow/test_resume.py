@@ -5,7 +5,7 @@ import pytest
 
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting
 from canon.flow.method.number_formats import unit_round_off
-from canon.flow.propagate import Interrupted, propagate
+from canon.flow.propagation import Interrupted, propagate
 from canon.flow.run.event import Event
 from tests.flow.systems import (
     DOUBLE_PENDULUM,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from canon.flow.method.method import DOP853, Gauss, Splitting, Taylor
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from tests.flow.systems import HENON_HEILES, HENON_HEILES_START
 
 SPAN = (0, 20)

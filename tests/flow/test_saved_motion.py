@@ -22,7 +22,7 @@ from canon import (
     propagate,
 )
 from canon.flow import record_file
-from canon.flow.propagate import Interrupted
+from canon.flow.propagation import Interrupted
 from canon.flow.record_file import record_in
 from canon.flow.run.event import Event
 

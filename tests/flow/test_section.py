@@ -6,7 +6,7 @@ import sympy as sp
 
 from canon.flow.geometry.flow_jacobian import flow_jacobian, reversal_error
 from canon.flow.method.method import Gauss, Splitting, TimeTransformed
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from tests.flow.systems import DRIVEN, DRIVEN_START, KEPLER, System, kepler_start
 

@@ -7,7 +7,7 @@ import sympy as sp
 from canon.expression.symbols.symbol import coordinates
 from canon.flow.method.method import RK4, Splitting, Taylor
 from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.kernel.solvable.kepler_terms import UnsolvableError
 from tests.flow.systems import (
     DRIVEN,

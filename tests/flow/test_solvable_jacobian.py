@@ -10,7 +10,7 @@ from canon.flow.geometry.solvable_jacobian import _step
 from canon.flow.integrate import integrate
 from canon.flow.method.method import Splitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.request import Request
 from canon.kernel.solvable.solvable_parts import named_part, solvable_part
 from tests.flow.systems import HENON_HEILES, HENON_HEILES_START, KEPLER, System, kepler_start

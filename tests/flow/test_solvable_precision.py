@@ -10,7 +10,7 @@ import sympy as sp
 from canon.flow.method.method import Taylor
 from canon.flow.method.number_formats import FIXED, unit_round_off
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.kernel.solvable.planet_coordinates import heliocentric_coordinates, jacobi_coordinates
 from tests.flow.systems import HENON_HEILES, KEPLER, System, kepler_start
 from tests.flow.test_solvable import planets

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from tests.flow.systems import KEPLER, PENDULUM, kepler_start
 
 x, y, px, py = *KEPLER.q, *KEPLER.p

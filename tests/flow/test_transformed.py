@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from canon.flow.method.method import RK4, Gauss, Splitting, Taylor, TimeTransformed
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.transformed.extended_hamiltonian import extended
 from tests.flow.systems import DOUBLE_PENDULUM, HENON_HEILES, KEPLER, PENDULUM, System, kepler_start
 from tests.flow.test_geometry import compiled_jacobian, kepler_orbit

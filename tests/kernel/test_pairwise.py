@@ -15,7 +15,7 @@ from canon.expression.symbols.symbol import time as t
 from canon.flow.fixed_step.compiled_loop import compiled_loop
 from canon.flow.method.method import Splitting
 from canon.flow.method.number_formats import FIXED
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.kernel.loops import splitting
 from canon.kernel.program.hamilton_equations import HamiltonEquations, equations
 from canon.kernel.program.pairwise import PairForces, pair_forces

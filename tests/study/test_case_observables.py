@@ -14,7 +14,7 @@ from canon.study.cases.checkpointed_run import Checkpoint, advance
 from canon.study.cases.export import dataset_of, rows_of, write_netcdf
 from canon.study.cases.result import results_of
 from canon.study.cases.store import Store
-from canon.study.drift.drift_study import drift_study
+from canon.study.energy_drift.drift_study import drift_study
 from canon.study.errors import StudyError
 from canon.study.motion.hamiltonian_text import Formula
 

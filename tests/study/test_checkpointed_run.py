@@ -12,7 +12,7 @@ from canon.flow.method.method import TimeTransformed
 from canon.flow.method.solvable_splitting import WisdomHolman
 from canon.study.cases.case import Case, part_count
 from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance, started
-from canon.study.drift.drift import Growth, drift
+from canon.study.energy_drift.drift import Growth, drift
 from canon.study.motion.hamiltonian_text import Formula
 
 KEPLER = Case("kepler", Splitting("kahan-li-8"), span=20.0, step=0.02, start="e=0.6", samples=400, parts=7)

@@ -13,12 +13,12 @@ from canon.flow.method.method import TimeTransformed
 from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import WisdomHolman
 from canon.scene import find
-from canon.study.choose.candidate import candidate_methods
-from canon.study.choose.choice_question import Question
-from canon.study.choose.error_law import expected_error
-from canon.study.choose.pilot_run import Pilot, pilot
-from canon.study.choose.tolerance_search import tolerance_at
 from canon.study.errors import StudyError
+from canon.study.method_choice.candidate import candidate_methods
+from canon.study.method_choice.choice_question import Question
+from canon.study.method_choice.error_law import expected_error
+from canon.study.method_choice.pilot_run import Pilot, pilot
+from canon.study.method_choice.tolerance_search import tolerance_at
 from tests.study import series
 
 FEW = (Splitting("verlet"), Splitting("kahan-li-8"), Taylor())

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from canon import DOP853, RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon.flow.method.method import TimeTransformed
 from canon.scene import find
-from canon.study.drift.drift import Growth
-from canon.study.drift.drift_study import StudyError, drift_study
-from canon.study.drift.drift_table import drift_table, with_error
+from canon.study.energy_drift.drift import Growth
+from canon.study.energy_drift.drift_study import StudyError, drift_study
+from canon.study.energy_drift.drift_table import drift_table, with_error
 
 METHODS = (Splitting("kahan-li-8"), Splitting("verlet"), RK4(), Taylor())
 

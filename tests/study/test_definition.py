@@ -8,7 +8,7 @@ from canon import RK4, Hamiltonian, Splitting, Taylor, coordinates, parameters
 from canon.scene import find
 from canon.study.cases.case import Case
 from canon.study.cases.study import Study, read_study
-from canon.study.drift.drift_study import StudyError
+from canon.study.energy_drift.drift_study import StudyError
 from canon.study.motion.hamiltonian_text import Formula
 
 

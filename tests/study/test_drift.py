@@ -7,7 +7,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from canon.study.drift.drift import Growth, drift
+from canon.study.energy_drift.drift import Growth, drift
 from tests.study import series
 
 TIMES = series.TIMES

@@ -8,8 +8,8 @@ import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinates, drift, propagate, time
 from canon.flow.method.method import DOP853
-from canon.study.drift.drift import Growth
-from canon.study.drift.error_series import error_series
+from canon.study.energy_drift.drift import Growth
+from canon.study.energy_drift.error_series import error_series
 
 PENDULUM = {"span": 2000.0, "y0": [1.0, 0.0]}
 KEPLER = {"span": 400.0, "y0": [0.4, 0.0, 0.0, 2.0]}

@@ -9,8 +9,8 @@ import sympy as sp
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon.expression.symbols.symbol import time
 from canon.scene import find
-from canon.study.drift.drift import Growth
-from canon.study.drift.drift_study import drift_study
+from canon.study.energy_drift.drift import Growth
+from canon.study.energy_drift.drift_study import drift_study
 from canon.study.errors import StudyError
 from canon.study.motion.extended_phase_space import driven
 

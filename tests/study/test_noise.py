@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from canon.study.drift.block_means import PLACES, WIDTH, block_means, bump, window_starts
-from canon.study.drift.growth import power_of_time, power_of_wandering, return_of, slope_of, walk_of
-from canon.study.drift.noise_models import returning_covariance, scatter_covariance, walk_covariance
+from canon.study.energy_drift.block_means import PLACES, WIDTH, block_means, bump, window_starts
+from canon.study.energy_drift.growth import power_of_time, power_of_wandering, return_of, slope_of, walk_of
+from canon.study.energy_drift.noise_models import returning_covariance, scatter_covariance, walk_covariance
 
 WINDOWS = 32
 Array = NDArray[np.float64]

@@ -8,9 +8,9 @@ import sympy as sp
 
 from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon.scene import find
-from canon.study.drift.drift import Growth
-from canon.study.drift.drift_study import drift_study
-from canon.study.drift.drift_table import drift_table
+from canon.study.energy_drift.drift import Growth
+from canon.study.energy_drift.drift_study import drift_study
+from canon.study.energy_drift.drift_table import drift_table
 from canon.study.errors import StudyError
 from canon.study.motion.observables import observables_of, tangent_of
 
@@ -116,7 +116,7 @@ def test_long_runs_are_followed_inside_the_loop(monkeypatch):
     """The verdict and the slope are those of samples; the bound misses nothing between them."""
     scene, method = find("henon-heiles"), RK4()
     sampled = drift_study(scene, methods=[method], periods=1000.0).rows[0].drift
-    monkeypatch.setattr("canon.study.drift.drift_study.MOST_SAMPLES", 8192)
+    monkeypatch.setattr("canon.study.energy_drift.drift_study.MOST_SAMPLES", 8192)
     followed = drift_study(scene, methods=[method], periods=1000.0).rows[0].drift
     assert followed.verdict is sampled.verdict is Growth.SECULAR
     assert followed.slope == pytest.approx(sampled.slope, rel=1e-3)

@@ -9,11 +9,11 @@ import pytest
 
 from canon import DOP853, RK4, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon.flow.method.method import TimeTransformed
-from canon.flow.propagate import propagated
+from canon.flow.propagation import propagated
 from canon.plot import plot_work_precision
 from canon.scene import find
-from canon.study.choose.work_precision import WorkRow, _marked, work_precision
-from canon.study.drift.drift_study import StudyError
+from canon.study.energy_drift.drift_study import StudyError
+from canon.study.method_choice.work_precision import WorkRow, _marked, work_precision
 
 
 @pytest.fixture(scope="module")

@@ -23,7 +23,7 @@ from canon.study.cases.export import rows_of
 from canon.study.cases.run_study import resume, run_study, status_of
 from canon.study.cases.store import Store
 from canon.study.cases.study import Study
-from canon.study.drift.drift_study import StudyError
+from canon.study.energy_drift.drift_study import StudyError
 from canon.study.motion.hamiltonian_text import Formula
 
 QUARTIC = Formula("quartic", "p**2/2 + k*q**4/4", ("q",), ("p",), (("k", 2.0),), (("there", (1.0, 0.0)),))

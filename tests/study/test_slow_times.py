@@ -11,12 +11,12 @@ import pytest
 
 from canon import RK4, Gauss, Splitting, Taylor, choose, drift
 from canon.flow.run.observables_along import AccuracyWarning
-from canon.study.choose import choose as choosing
-from canon.study.choose import confirm, slow_times
-from canon.study.choose.choice_question import Question
-from canon.study.choose.pilot_run import natural_step, pilot
-from canon.study.choose.slow_times import Outlook, with_outlook
 from canon.study.errors import StudyError
+from canon.study.method_choice import choose as choosing
+from canon.study.method_choice import confirm, slow_times
+from canon.study.method_choice.choice_question import Question
+from canon.study.method_choice.pilot_run import natural_step, pilot
+from canon.study.method_choice.slow_times import Outlook, with_outlook
 from tests.study.slow_systems import SYSTEMS, SlowSystem
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 
 from canon import RK4, Lagrangian, Taylor, choose, coordinates, drift, time, work_precision
-from canon.study.drift.drift import Growth
-from canon.study.drift.drift_study import drift_study
+from canon.study.energy_drift.drift import Growth
+from canon.study.energy_drift.drift_study import drift_study
 from canon.study.errors import StudyError
 
 

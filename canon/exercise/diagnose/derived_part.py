@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
+    from canon.exercise.claim_verdict import Finding
     from canon.exercise.diagnose.diagnosis import WrongAnswer
-    from canon.exercise.judge import Finding
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 

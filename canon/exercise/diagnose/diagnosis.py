@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from canon.exercise.claim_verdict import questions
 from canon.exercise.diagnose.change import Change
-from canon.exercise.judge import questions
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, decide
 from canon.proof.domain.verdict import Undecided
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
+    from canon.exercise.claim_verdict import Finding
     from canon.exercise.diagnose.change import Mistake
     from canon.exercise.diagnose.effort import Effort
-    from canon.exercise.judge import Finding
     from canon.exercise.question.question import Part
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain

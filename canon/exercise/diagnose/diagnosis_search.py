@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from canon.exercise.claim_verdict import InvalidClaim, examined
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.changed_claims import another_reading
 from canon.exercise.diagnose.components import on_the_motion
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis, WrongAnswer, judged_to_hold
 from canon.exercise.diagnose.effort import Effort
-from canon.exercise.judge import InvalidClaim, examined
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.equation_systems import AFFINE
 from canon.exercise.question.question import Same, SameEquations
@@ -22,7 +22,7 @@ from canon.proof.rungs.ladder import REFUSALS
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from canon.exercise.judge import Finding
+    from canon.exercise.claim_verdict import Finding
 
 __all__ = ["OUTER_SECONDS", "diagnosis"]
 

@@ -13,7 +13,7 @@ from canon.proof.domain.verdict import Undecided
 if TYPE_CHECKING:
     from sympy import Expr
 
-    from canon.exercise.judge import Finding
+    from canon.exercise.claim_verdict import Finding
 
 __all__ = ["corrected"]
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from sympy import Basic, Symbol
 
-    from canon.exercise.judge import Finding
+    from canon.exercise.claim_verdict import Finding
     from canon.exercise.question.question import Part, Question
     from canon.exercise.sheet.reading import Reading
 
@@ -38,12 +38,12 @@ def steps(finding: Finding) -> tuple[Step, ...]:
     Parameters
     ----------
     finding
-        A claim with its verdict, as :func:`canon.exercise.judge.examine` gives it.
+        A claim with its verdict, as :func:`canon.exercise.claim_verdict.examine` gives it.
 
     Examples
     --------
     >>> from canon.exercise import Claim
-    >>> from canon.exercise.judge import examine
+    >>> from canon.exercise.claim_verdict import examine
     >>> claim = {"q": ["x"], "p": ["p"], "pairs": [{"f": "x**2", "g": "p", "value": "2*x"}]}
     >>> for text, formula in steps(examine(Claim("a", "poisson-bracket", claim))):
     ...     print(text, formula)

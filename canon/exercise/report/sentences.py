@@ -12,9 +12,9 @@ from canon.exercise.sheet.sympy_trees import shown as written
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
+    from canon.exercise.claim_verdict import Finding
     from canon.exercise.diagnose.change import Change
     from canon.exercise.diagnose.diagnosis import Diagnosis
-    from canon.exercise.judge import Finding
 
 __all__ = ["SENTENCES", "feedback", "sentence", "times"]
 

@@ -12,7 +12,7 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.geometry.jacobian_in_stretches import jacobian_in_stretches
 from canon.flow.geometry.solvable_jacobian import solvable_jacobian
 from canon.flow.geometry.transformed_jacobian import transformed_jacobian
-from canon.flow.propagate import propagated
+from canon.flow.propagation import propagated
 from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import Plan, fixed_plan

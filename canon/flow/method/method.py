@@ -274,7 +274,7 @@ class TimeTransformed:
 
     Examples
     --------
-    >>> from canon.flow.propagate import propagate
+    >>> from canon.flow.propagation import propagate
     >>> from canon.scene import find
     >>> kepler = find("kepler")
     >>> near = kepler.start("e=0.9")

@@ -13,7 +13,7 @@ __all__ = ["Setting"]
 
 @dataclass(frozen=True)
 class Setting:
-    """A method with its step or tolerance and its precision, as :func:`canon.flow.propagate.propagate` takes them.
+    """A method with its step or tolerance and its precision, as :func:`canon.flow.propagation.propagate` takes them.
 
     Parameters
     ----------

@@ -177,7 +177,7 @@ class WisdomHolman(SolvableSplitting):
 
     Examples
     --------
-    >>> from canon.flow.propagate import propagate
+    >>> from canon.flow.propagation import propagate
     >>> from canon.scene import find
     >>> planets = find("outer-solar-system")
     >>> start = planets.start("1994")

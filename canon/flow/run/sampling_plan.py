@@ -72,7 +72,7 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
     t_span
         First and last time.
     samples, times
-        As :func:`canon.flow.propagate.propagate` takes them: 1000 samples where neither is given.
+        As :func:`canon.flow.propagation.propagate` takes them: 1000 samples where neither is given.
 
     Raises
     ------

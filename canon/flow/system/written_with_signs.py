@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from canon.expression.graph.pieces import without_pieces
+from canon.expression.graph.piecewise_form import without_pieces
 from canon.mechanics.hamilton.vector_field import VectorField
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.lagrangian import Lagrangian

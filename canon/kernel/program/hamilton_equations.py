@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from canon.expression.graph.graph import Graph
-from canon.expression.graph.pieces import without_pieces
+from canon.expression.graph.piecewise_form import without_pieces
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.program import Program, exact_value, program
 from canon.kernel.program.shared_products import with_shared_products

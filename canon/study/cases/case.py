@@ -67,7 +67,7 @@ class Case:
     parameters
         Values that replace the system's own.
     step, tolerance, precision
-        As :func:`canon.flow.propagate.propagate` takes them.
+        As :func:`canon.flow.propagation.propagate` takes them.
     parts
         Parts the run is made of, None for the usual number (:func:`part_count`). Each begins anew from the exact
         state the last one ended with, be the run interrupted there or not.

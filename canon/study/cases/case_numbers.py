@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.study.drift.drift import judged_series
-from canon.study.drift.envelope import envelope_of
+from canon.study.energy_drift.drift import judged_series
+from canon.study.energy_drift.envelope import envelope_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from canon.array import Array
-    from canon.study.drift.drift import Drift
+    from canon.study.energy_drift.drift import Drift
     from canon.study.motion.observables import Observable
 
 __all__ = ["judged_energy", "judged_observable"]

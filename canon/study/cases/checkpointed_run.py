@@ -23,7 +23,7 @@ from canon.flow.run.sampling_plan import steps_over
 from canon.study.cases.case import part_count
 from canon.study.cases.case_numbers import judged_energy, judged_observable
 from canon.study.cases.case_observables import followed
-from canon.study.drift.sample_times import is_resolved, scattered
+from canon.study.energy_drift.sample_times import is_resolved, scattered
 from canon.study.motion.extended_phase_space import driven
 from canon.study.motion.observables import expressions_of
 from canon.study.motion.quiet_run import run_quietly
@@ -81,7 +81,7 @@ class Checkpoint:
     changes
         The samples of what is followed beside the energy, by name.
     even
-        Whether the samples stand at equal distances (:mod:`canon.study.drift.sample_times`).
+        Whether the samples stand at equal distances (:mod:`canon.study.energy_drift.sample_times`).
     """
 
     part: int

@@ -54,7 +54,7 @@ def rows_of(store: Store) -> list[dict[str, Any]]:
     """Return one flat row a case, pending and failed ones included; None where there is no number.
 
     Columns are the inputs (a column ``parameter NAME`` each changed parameter), the numbers of
-    :class:`canon.study.drift.drift.Drift`, the cost, ``final`` (the last state), ``failure``, and all inputs with the
+    :class:`canon.study.Drift`, the cost, ``final`` (the last state), ``failure``, and all inputs with the
     versions as JSON in ``inputs``.
 
     Examples

@@ -39,7 +39,7 @@ class Result:
     state
         Whether it finished, failed, or is pending.
     numbers
-        The outcome by name, empty unless it finished; :class:`canon.study.drift.drift.Drift` has the meanings.
+        The outcome by name, empty unless it finished; :class:`canon.study.energy_drift.drift.Drift` has the meanings.
     failure
         Why it failed, else empty.
     seconds

@@ -16,8 +16,8 @@ from canon.given_file import bytes_of, tables_of
 from canon.scene import Scene, find
 from canon.study.cases.case import Case, key_of
 from canon.study.cases.case_observables import followed, observables_from
-from canon.study.drift.drift import FEWEST
-from canon.study.drift.sample_times import FEWEST_USUAL, usual_samples
+from canon.study.energy_drift.drift import FEWEST
+from canon.study.energy_drift.sample_times import FEWEST_USUAL, usual_samples
 from canon.study.errors import StudyError
 from canon.study.motion.hamiltonian_text import Formula, formula_from, formula_of
 

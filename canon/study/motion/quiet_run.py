@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.propagate import propagated
+from canon.flow.propagation import propagated
 from canon.flow.run.observables_along import AccuracyWarning
 
 if TYPE_CHECKING:

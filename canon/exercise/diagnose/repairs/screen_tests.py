@@ -13,8 +13,8 @@ import sympy as sp
 from flint import acb
 from sympy import Expr, Symbol
 
+from canon.exercise.claim_verdict import questions
 from canon.exercise.diagnose.repairs.point_derivatives import small
-from canon.exercise.judge import questions
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.question.question import Same

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
-from canon.study.drift.block_means import PLACES, WIDTH, bump, window_starts
+from canon.study.energy_drift.block_means import PLACES, WIDTH, bump, window_starts
 
 if TYPE_CHECKING:
     from collections.abc import Callable

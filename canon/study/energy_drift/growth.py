@@ -18,8 +18,8 @@ import numpy as np
 from scipy.optimize import root_scalar
 from scipy.special import stdtr
 
-from canon.study.drift.block_means import PLACES, WIDTH, bump, window_starts
-from canon.study.drift.noise_models import (
+from canon.study.energy_drift.block_means import PLACES, WIDTH, bump, window_starts
+from canon.study.energy_drift.noise_models import (
     Fit,
     NoiseFamily,
     fit,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.setting import Setting
-from canon.study.choose.candidate import (
+from canon.study.method_choice.candidate import (
     HOPELESS,
     MARGIN,
     PILOTS,
@@ -18,12 +18,12 @@ from canon.study.choose.candidate import (
     nothing,
     tried_with,
 )
-from canon.study.choose.error_law import order_of
-from canon.study.choose.tolerance_search import searched_tolerance
+from canon.study.method_choice.error_law import order_of
+from canon.study.method_choice.tolerance_search import searched_tolerance
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
-    from canon.study.choose.choice_question import Question
+    from canon.study.method_choice.choice_question import Question
 
 __all__ = ["LONGEST_PILOT", "searched", "widest_step"]
 

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import nnls
 
-from canon.study.drift.drift import FEWEST, Growth, drift
+from canon.study.energy_drift.drift import FEWEST, Growth, drift
 
 if TYPE_CHECKING:
-    from canon.study.choose.pilot_run import Pilot
+    from canon.study.method_choice.pilot_run import Pilot
 
 __all__ = ["expected_error", "order_of"]
 

@@ -13,18 +13,18 @@ from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
-from canon.flow.propagate import is_separable
+from canon.flow.propagation import is_separable
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system_request import is_hamiltonian
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
-from canon.study.choose.error_law import expected_error, order_of
-from canon.study.choose.pilot_run import Pilot, pilot, seconds_per_time
+from canon.study.method_choice.error_law import expected_error, order_of
+from canon.study.method_choice.pilot_run import Pilot, pilot, seconds_per_time
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.kernel.program.hamilton_equations import HamiltonEquations
-    from canon.study.choose.choice_question import Question
+    from canon.study.method_choice.choice_question import Question
 
 __all__ = [
     "HOPELESS",
@@ -62,7 +62,7 @@ class Candidate:
     Parameters
     ----------
     method, step, tolerance, precision
-        As :func:`canon.flow.propagate.propagate` takes them; a step or tolerance is None where the method
+        As :func:`canon.flow.propagation.propagate` takes them; a step or tolerance is None where the method
         has the other.
     predicted_error
         Largest error expected over the span.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from canon.display import preformatted
 
 if TYPE_CHECKING:
-    from canon.study.drift.block_means import Blocks
+    from canon.study.energy_drift.block_means import Blocks
 
 __all__ = ["Drift", "Growth"]
 

@@ -18,12 +18,12 @@ from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.setting import Setting
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system_request import is_hamiltonian
-from canon.study.choose.pilot_run import unit_of
-from canon.study.drift.growth import slope_of
+from canon.study.energy_drift.growth import slope_of
+from canon.study.method_choice.pilot_run import unit_of
 
 if TYPE_CHECKING:
     from canon.array import Array
-    from canon.study.choose.choice_question import Question
+    from canon.study.method_choice.choice_question import Question
 
 __all__ = ["Outlook", "with_outlook"]
 

@@ -15,10 +15,10 @@ from canon.flow.method.method_text import method_of
 from canon.flow.method.setting import Setting
 from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.study.choose.choice_table import duration_in_words
-from canon.study.choose.resonance import resonant_steps
-from canon.study.drift.drift_table import aligned
+from canon.study.energy_drift.drift_table import aligned
 from canon.study.errors import StudyError
+from canon.study.method_choice.choice_table import duration_in_words
+from canon.study.method_choice.resonance import resonant_steps
 from canon.study.motion.quiet_run import run_quietly
 from canon.study.motion.studied_motion import Subject, subject_of
 

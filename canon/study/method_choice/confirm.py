@@ -7,14 +7,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from canon.flow.method.setting import Setting
-from canon.study.choose.candidate import MARGIN, Candidate, candidate_of, tried_with
-from canon.study.choose.error_law import order_of
-from canon.study.choose.pilot_run import pilot_share
-from canon.study.choose.step_search import LONGEST_PILOT
-from canon.study.choose.tolerance_search import ADAPTIVE_MARGIN, last_rung, tolerance_at
+from canon.study.method_choice.candidate import MARGIN, Candidate, candidate_of, tried_with
+from canon.study.method_choice.error_law import order_of
+from canon.study.method_choice.pilot_run import pilot_share
+from canon.study.method_choice.step_search import LONGEST_PILOT
+from canon.study.method_choice.tolerance_search import ADAPTIVE_MARGIN, last_rung, tolerance_at
 
 if TYPE_CHECKING:
-    from canon.study.choose.choice_question import Question
+    from canon.study.method_choice.choice_question import Question
 
 __all__ = ["confirmed", "double_instead"]
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from canon.flow.method.number_formats import unit_round_off
 from canon.flow.trajectory import Trajectory
-from canon.study.drift.block_means import WIDTH, Blocks, block_means
-from canon.study.drift.drift_verdict import Drift, Growth
-from canon.study.drift.error_series import ENERGY, ErrorSeries, error_series
-from canon.study.drift.growth import (
+from canon.study.energy_drift.block_means import WIDTH, Blocks, block_means
+from canon.study.energy_drift.drift_verdict import Drift, Growth
+from canon.study.energy_drift.error_series import ENERGY, ErrorSeries, error_series
+from canon.study.energy_drift.growth import (
     Exponent,
     RandomWalk,
     Slope,
@@ -128,7 +128,7 @@ def drift(
     Parameters
     ----------
     t
-        A motion that :func:`canon.flow.propagate.propagate` returned; or times, strictly increasing, shape (times,),
+        A motion that :func:`canon.flow.propagation.propagate` returned; or times, strictly increasing, shape (times,),
         evenly spread (jitter welcome: samples in step with an oscillation see it as a slow one).
     error
         Error with its sign, such as (E(t) − E₀)/abs(E₀), shape (times,); a motion brings its own.

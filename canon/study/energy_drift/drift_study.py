@@ -15,12 +15,12 @@ from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.method.method_text import method_of
 from canon.flow.method.setting import Setting
-from canon.flow.propagate import is_separable
+from canon.flow.propagation import is_separable
 from canon.flow.system_request import is_hamiltonian
-from canon.study.drift.drift import FEWEST
-from canon.study.drift.drift_rows import DriftRow, Run, drift_row, drift_rows
-from canon.study.drift.drift_table import drift_table
-from canon.study.drift.sample_times import GOLDEN, SAMPLES_PER_PERIOD, usual_samples
+from canon.study.energy_drift.drift import FEWEST
+from canon.study.energy_drift.drift_rows import DriftRow, Run, drift_row, drift_rows
+from canon.study.energy_drift.drift_table import drift_table
+from canon.study.energy_drift.sample_times import GOLDEN, SAMPLES_PER_PERIOD, usual_samples
 from canon.study.errors import StudyError
 from canon.study.motion.extended_phase_space import driven
 from canon.study.motion.observables import ENERGY, observables_of
@@ -121,7 +121,7 @@ def drift_study(
     Parameters
     ----------
     system
-        A scene, a Hamiltonian, or another system that :func:`canon.flow.propagate.propagate` takes: its energy is then
+        A scene, a Hamiltonian, or another system that :func:`canon.propagate` takes: its energy is then
         that less the work of the forces. Where it depends on the time, "energy" is the energy less the work done from
         outside, H − ∫ ∂H/∂t dt (:mod:`canon.study.motion.extended_phase_space`).
     y0
@@ -139,7 +139,7 @@ def drift_study(
     period
         Period of the motion; the scene's if left out.
     precision
-        Arithmetic, as :func:`canon.flow.propagate.propagate` takes it; of those meant for fixed steps, adaptive
+        Arithmetic, as :func:`canon.propagate` takes it; of those meant for fixed steps, adaptive
         methods take none and run in doubles.
     parameters
         Values of parameters by symbol or name; a scene has its own, which these replace.

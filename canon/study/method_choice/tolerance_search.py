@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from canon.flow.method.setting import Setting
-from canon.study.choose.candidate import (
+from canon.study.method_choice.candidate import (
     HOPELESS,
     PILOTS,
     Candidate,
@@ -16,11 +16,11 @@ from canon.study.choose.candidate import (
     nothing,
     tried_with,
 )
-from canon.study.choose.pilot_run import pilot_share
+from canon.study.method_choice.pilot_run import pilot_share
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
-    from canon.study.choose.choice_question import Question
+    from canon.study.method_choice.choice_question import Question
 
 __all__ = ["ADAPTIVE_MARGIN", "last_rung", "searched_tolerance", "tolerance_at"]
 

@@ -14,8 +14,8 @@ from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, SCIPY
 from canon.flow.method.setting import Setting
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system_request import is_hamiltonian
-from canon.study.choose.choice_question import PLACES, Question
 from canon.study.errors import StudyError
+from canon.study.method_choice.choice_question import PLACES, Question
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Protocol
 
-from canon.study.drift.drift_table import aligned
+from canon.study.energy_drift.drift_table import aligned
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.study.choose.candidate import Candidate
+    from canon.study.method_choice.candidate import Candidate
 
 __all__ = ["answer", "choice_table", "duration_in_words"]
 
@@ -20,7 +20,7 @@ MEANINGLESS = 0.1
 
 
 class ChosenAmong(Protocol):
-    """What a table needs of a choice, such as :class:`canon.study.choose.choose.Choice`."""
+    """What a table needs of a choice, such as :class:`canon.study.method_choice.choose.Choice`."""
 
     @property
     def title(self) -> str:

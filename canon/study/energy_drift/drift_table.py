@@ -7,14 +7,14 @@ from collections import Counter
 from typing import TYPE_CHECKING, Protocol
 
 from canon.flow.method.engine import HEYOKA
-from canon.study.drift.drift import Growth
+from canon.study.energy_drift.drift import Growth
 from canon.study.motion.observables import ENERGY
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.study.drift.drift import Drift
-    from canon.study.drift.drift_rows import DriftRow
+    from canon.study.energy_drift.drift import Drift
+    from canon.study.energy_drift.drift_rows import DriftRow
 
 __all__ = ["aligned", "drift_table", "error_name"]
 
@@ -38,7 +38,7 @@ MEANING = {
 
 
 class StudiedRows(Protocol):
-    """What a table needs of a drift study, such as :class:`canon.study.drift.drift_study.DriftStudy`."""
+    """What a table needs of a drift study, such as :class:`canon.study.energy_drift.drift_study.DriftStudy`."""
 
     @property
     def title(self) -> str:
@@ -81,7 +81,7 @@ def drift_table(study: StudiedRows) -> str:
     --------
     >>> from canon import RK4, Splitting
     >>> from canon.scene import find
-    >>> from canon.study.drift.drift_study import drift_study
+    >>> from canon.study.energy_drift.drift_study import drift_study
     >>> study = drift_study(find("henon-heiles"), methods=[Splitting("verlet"), RK4()], periods=200)
     >>> print(drift_table(study).splitlines()[0])
     Hénon–Heiles: a star in the meridian plane of a galaxy; energy 1/12, on an invariant curve

@@ -65,7 +65,7 @@ def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None
     Parameters
     ----------
     motion
-        A motion that :func:`canon.flow.propagate.propagate` returned.
+        A motion that :func:`canon.flow.propagation.propagate` returned.
     observable
         ``"energy"``, or one of the observables that the motion was asked to follow.
     orbit

@@ -46,7 +46,8 @@ class Question:
     unit
         What errors are relative to, where y0 is not the start; else the quantity's size there.
     elsewhere
-        Times and states that the motion reaches later, at which pilots run too (:mod:`canon.study.choose.slow_times`).
+        Times and states that the motion reaches later, at which pilots run too
+        (:mod:`canon.study.method_choice.slow_times`).
     """
 
     hamiltonian: HamiltonianSystem

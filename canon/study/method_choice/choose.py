@@ -12,18 +12,18 @@ import numpy as np
 from canon.display import preformatted
 from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.method_text import method_of
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 from canon.flow.run.observables_along import AccuracyWarning
 from canon.flow.system_request import is_hamiltonian
 from canon.scene.scene import Scene, near
-from canon.study.choose.candidate import Candidate, candidate_methods
-from canon.study.choose.choice_question import Question
-from canon.study.choose.choice_table import answer, choice_table
-from canon.study.choose.confirm import confirmed, double_instead
-from canon.study.choose.pilot_run import error_seen, natural_step
-from canon.study.choose.slow_times import Outlook, with_outlook
-from canon.study.choose.step_search import searched
 from canon.study.errors import StudyError
+from canon.study.method_choice.candidate import Candidate, candidate_methods
+from canon.study.method_choice.choice_question import Question
+from canon.study.method_choice.choice_table import answer, choice_table
+from canon.study.method_choice.confirm import confirmed, double_instead
+from canon.study.method_choice.pilot_run import error_seen, natural_step
+from canon.study.method_choice.slow_times import Outlook, with_outlook
+from canon.study.method_choice.step_search import searched
 from canon.study.motion.extended_phase_space import driven
 from canon.study.motion.studied_motion import motion_hamiltonian
 
@@ -65,7 +65,7 @@ class Choice:
     question
         The same in the form that pilot runs take.
     outlook
-        What was seen of the motion ahead of the pilots (:mod:`canon.study.choose.slow_times`).
+        What was seen of the motion ahead of the pilots (:mod:`canon.study.method_choice.slow_times`).
     """
 
     title: str
@@ -198,7 +198,7 @@ def choose(
     Parameters
     ----------
     system
-        A scene, a Hamiltonian, or another system that :func:`canon.flow.propagate.propagate` takes, such as a
+        A scene, a Hamiltonian, or another system that :func:`canon.flow.propagation.propagate` takes, such as a
         Lagrangian with forces or constraints: its energy is then that less the work of the forces.
     span
         Duration, in units of time.

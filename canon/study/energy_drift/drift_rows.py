@@ -10,7 +10,7 @@ import numpy as np
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.setting import Setting
 from canon.flow.request import Request
-from canon.study.drift.drift import Growth, judged_series
+from canon.study.energy_drift.drift import Growth, judged_series
 from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, expressions_of, tangent_of
 from canon.study.motion.quiet_run import run_quietly
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
-    from canon.study.drift.drift import Drift
+    from canon.study.energy_drift.drift import Drift
 
 __all__ = ["DriftRow", "Run", "drift_row", "drift_rows"]
 
@@ -142,7 +142,7 @@ def drift_row(
 ) -> DriftRow:
     """Run one method and judge its energy error; a run that fails is a row with the reason.
 
-    The parameters are those of :func:`drift_study` and :func:`canon.flow.propagate.propagate`.
+    The parameters are those of :func:`drift_study` and :func:`canon.flow.propagation.propagate`.
     """
     run = Run(hamiltonian, y0, span, Setting(method, step, tolerance, precision), samples, parameters)
     return drift_rows(run, (Observable(ENERGY),), progress)[0]

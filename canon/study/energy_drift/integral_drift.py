@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.method.adaptive_methods import Taylor
-from canon.flow.propagate import propagate
+from canon.flow.propagation import propagate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
