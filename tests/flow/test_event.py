@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from canon.expression.symbols.symbol import time
 from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
 from canon.flow.propagation import propagate
 from canon.flow.run.event import Event
@@ -23,6 +24,7 @@ px, py = x.momentum, y.momentum
 FALL = System(px**2 / 2 + x, (x,), (px,))
 """x(t) = x0 + p0 t − t²/2, which every method of order 2 follows exactly."""
 
+OSCILLATOR = System((px**2 + x**2) / 2, (x,), (px,))
 DRAG = System(sp.sqrt(1 + px**2) + x, (x,), (px,))
 VERLET, KL8 = Splitting("verlet"), Splitting("kahan-li-8")
 EVERY = [(VERLET, {"step": 0.01}), (Gauss(3), {"step": 0.01}), (RK4(), {"step": 0.01}), (Taylor(), {})]
@@ -264,3 +266,28 @@ def test_a_bounce_asks_for_a_quadratic_kinetic_energy():
 def test_words_that_are_no_direction_or_action(direction, action):
     with pytest.raises(ValueError, match=r"direction=|action="):
         Event(x, direction, action)
+
+
+@pytest.mark.parametrize("turns", [20, -20, 40, 80, 160])
+@pytest.mark.parametrize("direction", [0, 1])
+def test_a_zero_where_a_slice_ends_is_met_once(turns, direction):
+    """Slices end at multiples of π, where sin t is zero but for the rounding of t, on one side or the other."""
+    asked = Event(sp.sin(time), direction=direction)
+    motion = propagate(OSCILLATOR, (0, turns * np.pi), [1.0, 0.0], events=[asked])
+    met = np.array([round(crossing.t / np.pi) for crossing in motion.events])
+    within = met[np.abs(met) < abs(turns)]  # at the end itself rounding decides
+    every = np.sign(turns) * np.arange(1, abs(turns))
+    rises = {
+        n: (n % 2 == 0) == (turns > 0) for n in range(-abs(turns), abs(turns) + 1)
+    }  # in the order of passing
+    assert list(within) == [n for n in every if direction == 0 or rises[n]]
+    assert all(crossing.rising == rises[n] for crossing, n in zip(motion.events, met, strict=True))
+
+
+def test_a_zero_where_a_motion_is_resumed_is_met_once():
+    motion = propagate(OSCILLATOR, (0, 3 * np.pi), [1.0, 0.0], events=[Event(sp.sin(time))])
+    for turns in range(4, 12):
+        motion = motion.resume(turns * np.pi)
+    met = [round(crossing.t / np.pi) for crossing in motion.events]
+    assert met[:10] == list(range(1, 11))
+    assert met[10:] in ([], [11])

@@ -27,6 +27,9 @@ _ONE = Fraction(1)
 _ROUNDING = 2.0**-9
 """What part of the motion on leaving a zero rounding may make up."""
 
+_SAME_TIME = 2.0**-44
+"""Times this near to one another, as a part of the time and a slice's length, are those of one zero."""
+
 
 class TaylorEvents:
     """Events of one orbit as heyoka's, and the crossings it tells of.
@@ -167,6 +170,36 @@ class TaylorEvents:
                 float(t),
                 y,
             )
+
+    def settle(self, t: Any, state: Any, span: Any, met: int, earlier: Sequence[Crossing]) -> None:
+        """Count the zeros on which a slice begins once each.
+
+        A step that ends on a zero has it in neither or in both of the slices that meet there, as rounding will.
+
+        Parameters
+        ----------
+        t, state, span
+            Where the slice began, and its length.
+        met
+            How many crossings were known before it.
+        earlier
+            Crossings of the run that this one goes on from.
+        """
+        begun, near = float(t), (abs(float(t)) + abs(float(span))) * _SAME_TIME
+        parts = self._parts(state)
+        for event in self.recorded:
+            rate = self._value(event, begun, *parts, rate=True)
+            if not abs(self._value(event, begun, *parts)) < abs(rate) * near:
+                continue
+            rising = rate * self.forward > 0
+            known = [c for c in (*earlier, *self.crossings) if abs(c.t - begun) <= 2 * near]
+            same = [c for c in known if c.event is event.event and c.rising == rising]
+            self.crossings[met:] = [
+                c for c in self.crossings[met:] if not any(c is other for other in same[1:])
+            ]
+            if not known and event.event.counts(rising):
+                self._record(event, begun, state, 1 if rate > 0 else -1, None)
+                self.crossings[met:] = [self.crossings[-1], *self.crossings[met:-1]]
 
     def _value(self, event: PreparedEvent, t: float, high: Array, low: Array, *, rate: bool = False) -> float:
         node = event.rate if rate else event.value

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.flow.method.method import Taylor
-    from canon.flow.run.event import PreparedEvent
+    from canon.flow.run.event import Crossing, PreparedEvent
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
@@ -90,7 +90,13 @@ def taylor_motion(
         for orbit, beyond in zip(orbits, so_far.beyond, strict=True):
             orbit.go_on_from(beyond)
     compiled = time.perf_counter() - compiling
-    run = _TaylorRun(orbits, taylor_events, [_stacked(states, number)], [orbit.beyond for orbit in orbits])
+    run = _TaylorRun(
+        orbits,
+        taylor_events,
+        [_stacked(states, number)],
+        [orbit.beyond for orbit in orbits],
+        () if so_far is None else so_far.crossings,
+    )
     run.follow(grid, plan, first, progress, system.rows, dense=dense)
     found = np.concatenate(run.rows).transpose(1, 0, 2)
     y = found.astype(np.float64)
@@ -130,6 +136,7 @@ class _TaylorRun:
     taylor_events: TaylorEvents
     rows: list[Any]
     beyond: list[tuple[Any, Any]]
+    earlier: tuple[Crossing, ...] = ()
     steps: int = 0
     seconds: float = 0.0
     stopped: bool = False
@@ -150,6 +157,7 @@ class _TaylorRun:
             try:
                 for begin, end in plan.slices(first):
                     part = grid[begin - first : end - first + 1]
+                    state = self.orbits[0].beyond[0]
                     made = list(
                         each_in_turn(lambda orbit, part=part: orbit.advance(part, dense=dense), self.orbits)
                     )
@@ -157,6 +165,8 @@ class _TaylorRun:
                         if each.outcome is not None:
                             raise orbit.lost(each.outcome, rows)
                     self._add(made)
+                    if begin > 0 and isinstance(self.orbits[0], TaylorOrbit):
+                        self.taylor_events.settle(part[0], state, part[-1] - part[0], met, self.earlier)
                     met = len(self.taylor_events.crossings)
                     if self.stopped:
                         return
