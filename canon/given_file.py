@@ -94,7 +94,7 @@ def tables_of(text: str, number: Callable[[str], Any] = float) -> dict[str, Any]
 
     Examples
     --------
-    >>> tables_of("[a]\\nb = 1")
+    >>> tables_of("[a]\nb = 1")
     {'a': {'b': 1}}
     """
     if long := _LONG_DOTTED_KEY.search(text):

@@ -11,7 +11,7 @@ from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.scene import names
 
 SHELLS = ("bash", "zsh", "fish", "tcsh", "powershell")
-ACTIONS = ("run", "resume", "status", "export", "report", "merge")
+ACTIONS = ("run", "resume", "status", "export", "report", "mend", "merge")
 PLACES = [(), *((name,) for name in COMMANDS), *(("study", action) for action in ACTIONS)]
 
 

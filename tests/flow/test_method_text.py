@@ -175,8 +175,8 @@ def test_classes_that_need_arguments_are_told_to_have_them():
     for wrong in (7, 0.1, [RK4()], object, int):
         with pytest.raises(TypeError, match="is no method: give one by name"):
             propagate(PENDULUM, **MOTION, method=wrong, step=0.1)
-    with pytest.raises(ValueError, match="no method is called 'RK45'; did you mean rk4"):
-        propagate(PENDULUM, **MOTION, method="RK45")
+    with pytest.raises(ValueError, match="no method is called 'RK44'; did you mean rk4"):
+        propagate(PENDULUM, **MOTION, method="RK44")
 
 
 def test_studies_and_jacobians_take_names():
