@@ -32,7 +32,7 @@ class IntegralDrift:
     radii
         The distances of the starts from the equilibrium.
     drifts
-        The largest |I(t) − I(0)| along each orbit.
+        The largest ``|I(t) − I(0)|`` along each orbit.
     expected
         The power of the radius that theory says, the degree at which {I, H} begins.
     slope
