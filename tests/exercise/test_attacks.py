@@ -4,7 +4,6 @@ import ast
 import json
 import os
 import random
-import resource
 import subprocess
 import sys
 import time
@@ -293,6 +292,8 @@ def processor_seconds():
     """Return what all descendants of this process have used, ended ones too; the clock where not on Linux."""
     if not sys.platform.startswith("linux"):
         return time.monotonic()
+    import resource  # POSIX only
+
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     found = {}
     for path in Path("/proc").glob("[0-9]*/stat"):

@@ -216,7 +216,10 @@ class Kinks:
             down, up = above.rate(down), below.rate(up)
             if down != up:
                 return down, up
-        raise NotImplementedError(f"both sides of {self.system.graph.to_sympy(zero)} = 0 lead on alike")
+        raise ValueError(
+            f"the motion stays on {self.system.graph.to_sympy(zero)} = 0, and {_DERIVATIVES} derivatives do not tell "
+            "to which side it leaves; stop it there with an Event(…, action='stop')"
+        )
 
     def folded(self, signs: Signs, nodes: Sequence[int]) -> list[int]:
         """Return nodes with the signs of a regime put in."""
