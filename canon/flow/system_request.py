@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from canon.flow.request import Request
     from canon.flow.run.event import Event
     from canon.flow.system.first_order_motion import FirstOrderMotion, MovingSystem
+    from canon.flow.system.recognised_system import RecognisedSystem
     from canon.flow.task import Task
 
 __all__ = ["any_task", "is_hamiltonian"]
@@ -67,6 +68,15 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
     return task_of(request), None
 
 
+def _unneeded_but_given(
+    system: RecognisedSystem, functions: Sequence[Expr], given: Mapping[Any, Any]
+) -> set[Symbol]:
+    """Return the parameters that are given and stand in functions along the motion, or in no equation at all."""
+    named = {str(key) for key in given}
+    in_functions = {s for f in functions for s in f.free_symbols if str(s) in named and isinstance(s, Symbol)}
+    return in_functions | {s for s in system.unneeded if s.name in named}
+
+
 def _system_task(request: Request, *, of_scene: bool) -> tuple[Task, MovingSystem]:
     """Return the task of a system without a Hamiltonian; a scene may have parameters that do not matter."""
     y0: Any = request.y0
@@ -75,20 +85,17 @@ def _system_task(request: Request, *, of_scene: bool) -> tuple[Task, MovingSyste
     variables = (*found.state, found.t)
     observed = {name: _plain(f, variables) for name, f in functions_by_name(request.observables).items()}
     met = tuple(_plain_event(event, variables) for event in request.events)
-    named = {str(key) for key in given}
     functions = [*observed.values(), *(event.function for event in met)]
-    others = {s for f in functions for s in f.free_symbols if str(s) in named and isinstance(s, Symbol)}
-    others |= {s for s in found.unneeded if s.name in named}
+    others = _unneeded_but_given(found, functions, given)
+    by_name = {s.name: s for s in (*found.parameters, *others)}
     if of_scene:
-        kept = {s.name for s in (*found.parameters, *others)}
-        given = {key: value for key, value in given.items() if str(key) in kept}
+        given = {key: value for key, value in given.items() if str(key) in by_name}
     check_parameters(given, found.parameters, variables, others=others - {*variables})
     fixed, varying = parted_by_orbit(given)
     states = _exact(state_in_order(y0, found.state))
     orbits = _orbits(states, varying, np.shape(y0))
     single = states[0].ndim == 1 and not varying
     start: dict[Symbol, Any] = {found.t: float(ends[0]), SPAN: abs(float(ends[1] - ends[0])) or 1.0}
-    by_name = {s.name: s for s in (*found.parameters, *others)}
     start |= {by_name[str(key)]: float(exact_number(value, str(key))) for key, value in fixed.items()}
     start |= {by_name[name]: values.astype(np.float64) for name, values in varying.items()}
     start |= dict(zip(found.state, states[0].reshape(len(found.state), -1), strict=True))

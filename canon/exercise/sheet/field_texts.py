@@ -49,27 +49,34 @@ def of_matrix(text: str) -> list[str]:
     (['y', '-x'], [])
     """
     if found := _LATEX_MATRIX.fullmatch(text):
-        if "\\begin" in found["inside"]:
-            return []
-        begin, end = found.span("inside")
-        cuts = [*re.finditer(r"\\\\|&", found["inside"])]
-        if cuts and not found["inside"][cuts[-1].end() :].strip():
-            end = begin + cuts.pop().start()
-        if len({cut.group() for cut in cuts}) != 1 or len(cuts) >= MOST_ENTRIES:
-            return []
-        starts = [begin, *(begin + cut.end() for cut in cuts)]
-        ends = [*(begin + cut.start() for cut in cuts), end]
-        return [" " * (a - 1) + "$" + text[a:b] for a, b in zip(starts, ends, strict=True)]
+        return _of_latex_matrix(text, *found.span("inside"))
     if found := _PLAIN_MATRIX.fullmatch(text):
-        begin, end = found.span("inside")
-        rows = components_of(" " * (begin - 1) + "[" + text[begin:end] + ", 0]")[:-1]
-        nested = [components_of(row) or [row] for row in rows]
-        if len(rows) == 1:
-            return nested[0] if len(nested[0]) > 1 else []
-        if any(len(row) > 1 for row in nested):
-            return []
-        return [re.sub(r"^(\s*)\[(.*)\]\s*$", r"\1 \2", row) for row in rows]
+        return _of_plain_matrix(text, *found.span("inside"))
     return []
+
+
+def _of_latex_matrix(text: str, begin: int, end: int) -> list[str]:
+    inside = text[begin:end]
+    if "\\begin" in inside:
+        return []
+    cuts = [*re.finditer(r"\\\\|&", inside)]
+    if cuts and not inside[cuts[-1].end() :].strip():
+        end = begin + cuts.pop().start()
+    if len({cut.group() for cut in cuts}) != 1 or len(cuts) >= MOST_ENTRIES:
+        return []
+    starts = [begin, *(begin + cut.end() for cut in cuts)]
+    ends = [*(begin + cut.start() for cut in cuts), end]
+    return [" " * (a - 1) + "$" + text[a:b] for a, b in zip(starts, ends, strict=True)]
+
+
+def _of_plain_matrix(text: str, begin: int, end: int) -> list[str]:
+    rows = components_of(" " * (begin - 1) + "[" + text[begin:end] + ", 0]")[:-1]
+    nested = [components_of(row) or [row] for row in rows]
+    if len(rows) == 1:
+        return nested[0] if len(nested[0]) > 1 else []
+    if any(len(row) > 1 for row in nested):
+        return []
+    return [re.sub(r"^(\s*)\[(.*)\]\s*$", r"\1 \2", row) for row in rows]
 
 
 def components_of(text: str) -> list[str]:

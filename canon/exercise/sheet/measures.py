@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -42,7 +43,11 @@ _MOST = 80
 """Characters of a unit."""
 _LONGEST = 2_000
 """Characters of an answer in which a unit is looked for."""
-_FACTOR = re.compile(r"(?P<name>[A-Za-zµμΩ]+|°|%|1)(?:(?:\^|\*\*)?(?P<power>[({]?[-−]?[0-9]{1,2}[)}]?))?")
+_SYMBOL = re.compile(
+    r"(?P<name>[A-Za-zµμΩ]+|°|%|1)(?:(?:\^|\*\*)?(?P<power>[({]?[-−]?[0-9]{1,2}[)}]?)|(?P<raised>⁻?[¹²³⁴⁵⁶]{1,3}))?"
+    r"|(?P<sign>.)",
+    re.DOTALL,
+)
 _SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _LATEX = re.compile(
     r"\\(?:mathrm|text|textrm|rm|si|unit|operatorname|,|;|:|!| )|\\(?=%)|[{}$~]|\\[lr]?(?:brack)?(?![A-Za-z])"
@@ -82,39 +87,53 @@ def measure_of(unit: str) -> Measure | None:
     """
     if len(unit) > _MOST:
         return None
+    named = _named_powers(_without_latex(unit))
+    if named is None:
+        return None
+    factor, powers = sp.S.One, [0] * len(_BASE)
+    for name, power in named:
+        one = _one(name)
+        if one is None:
+            return None
+        factor *= one[0] ** power
+        powers = [p + power * own for p, own in zip_longest(powers, one[1], fillvalue=0)]
+    return Measure(factor, tuple(powers))
+
+
+def _without_latex(unit: str) -> str:
     plain = unit.replace(r"\cdot", "*").replace(r"\circ", "°").replace(r"\degree", "°").replace("^°", "°")
     plain = re.sub(r"\\mu(?![A-Za-z])", "µ", plain).replace(r"\Omega", "Ω")
-    plain = re.sub(r"\s*\^\s*", "^", _LATEX.sub(" ", plain)).strip(" []")
-    below, at, depth, open_ = False, 0, 0, False
-    factor, powers = sp.S.One, [0] * len(_BASE)
-    while at < len(plain):
-        sign = plain[at]
-        found = _FACTOR.match(plain, at)
-        small = re.match(r"[⁻¹²³⁴⁵⁶]{1,3}", plain[found.end() :]) if found else None
-        if found is not None and (open_ or plain[at - 1 : at].isalnum()):  # J/kg K is J/(kg K), or J K/kg
-            return None
-        if found is not None:
-            power = int((found["power"] or "1").strip("(){}").replace("−", "-"))
-            if small and not found["power"]:
-                power = int(small.group().translate(_SMALL))
-            one = _one(found["name"])
-            if one is None:
+    return re.sub(r"\s*\^\s*", "^", _LATEX.sub(" ", plain)).strip(" []")
+
+
+def _named_powers(unit: str) -> list[tuple[str, int]] | None:
+    """Return the symbols in a product of units, each with its power; None where it is no product.
+
+    Nothing may follow a symbol below a stroke: J/kg K is J/(kg K), or J K/kg.
+    """
+    found = list[tuple[str, int]]()
+    depth, below, complete = 0, False, False
+    for symbol in _SYMBOL.finditer(unit):
+        sign = symbol["sign"]
+        if sign is None:
+            if complete or unit[symbol.start() - 1 : symbol.start()].isalnum():
                 return None
-            sense = -power if below else power
-            factor *= one[0] ** sense
-            powers = [p + sense * (one[1][i] if i < len(one[1]) else 0) for i, p in enumerate(powers)]
-            at = found.end() + (small.end() if small and not found["power"] else 0)
-            below, open_ = below and depth > 0, below and depth == 0
-            continue
-        if sign in "()":
+            found.append((symbol["name"], _power(symbol, below=below)))
+            below, complete = below and depth > 0, below and depth == 0
+        elif sign in "()":
             depth += 1 if sign == "(" else -1
             below = below and depth > 0
         elif sign == "/":
-            below, open_ = True, False
+            below, complete = True, False
         elif sign not in "*·⋅ ":
             return None
-        at += 1
-    return Measure(factor, tuple(powers)) if plain and depth == 0 else None
+    return found if unit and depth == 0 else None
+
+
+def _power(symbol: re.Match[str], *, below: bool) -> int:
+    written = (symbol["raised"] or symbol["power"] or "1").translate(_SMALL)
+    power = int(written.strip("(){}").replace("−", "-"))
+    return -power if below else power
 
 
 def _one(name: str) -> tuple[Expr, tuple[int, ...]] | None:

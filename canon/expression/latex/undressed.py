@@ -153,6 +153,18 @@ def _blanks(match: re.Match[str]) -> str:
 
 def _without_delimiters(text: str) -> str:
     r"""Return a text without ``$``, ``\[ \]``, ``\( \)``; a mark stands in the gap between two formulas."""
+    bare = _DELIMITER.sub(_blanks, text)
+    for (_, left), (right, _) in pairwise(_formulas(text)):
+        if _EQUALS_FIRST.match(bare, right) or _EQUALS_LAST.search(bare[max(0, left - 20) : left]):
+            continue  # one equation in several pairs of dollars
+        if _GAP.fullmatch(text, left, right) and (right > left or text[left - 2 : left] in ("$$", "\\]")):
+            mark = left if right > left else left - 1
+            bare = bare[:mark] + PART + " " * (right - mark - 1) + bare[right:]
+    return bare
+
+
+def _formulas(text: str) -> list[tuple[int, int]]:
+    """Return where each formula begins and ends, its delimiters included."""
     zones: list[tuple[int, int]] = []
     opened: re.Match[str] | None = None
     for match in _DELIMITER.finditer(text):
@@ -172,14 +184,7 @@ def _without_delimiters(text: str) -> str:
             raise LanguageError(
                 text, match.start() + 1, reason, f"close it with {_CLOSING[opened.group()]} before"
             )
-    bare = _DELIMITER.sub(_blanks, text)
-    for (_, left), (right, _) in pairwise(zones):
-        if _EQUALS_FIRST.match(bare, right) or _EQUALS_LAST.search(bare[max(0, left - 20) : left]):
-            continue  # one equation in several pairs of dollars
-        if _GAP.fullmatch(text, left, right) and (right > left or text[left - 2 : left] in ("$$", "\\]")):
-            mark = left if right > left else left - 1
-            bare = bare[:mark] + PART + " " * (right - mark - 1) + bare[right:]
-    return bare
+    return zones
 
 
 def _without_displays(text: str, bare: str) -> str:

@@ -101,13 +101,17 @@ class KinkedOrbit:
             if self._meet(own):
                 rows.append(self.state.copy())
                 return Slice(self._rows(rows), steps, seconds, None, stopped=True)
-            if self.put_off:  # states at that very instant have the momenta after it
-                reach = self._now() + _AT_ONCE * (grid[-1] - grid[0])
-                kept = [t for t in grid[1 : len(rows) + 1] if abs(t - self._now()) > abs(reach - self._now())]
-                passed = [t for t in left if (t - self._now()) * self.regimes.taylor_events.forward <= 0]
-                rows[len(kept) :] = [self.state.copy() for _ in range(len(rows) - len(kept) + len(passed))]
-                left, self.put_off = left[len(passed) :], False
+            if self.put_off:
+                left, self.put_off = self._put_off(rows, grid, left), False
         return Slice(self._rows(rows), steps, seconds, None, stopped=False)
+
+    def _put_off(self, rows: list[Any], grid: list[Any], left: list[Any]) -> list[Any]:
+        """Give the samples at this very instant the momenta after it, and return the times that are left."""
+        reach = self._now() + _AT_ONCE * (grid[-1] - grid[0])
+        kept = [t for t in grid[1 : len(rows) + 1] if abs(t - self._now()) > abs(reach - self._now())]
+        passed = [t for t in left if (t - self._now()) * self.regimes.taylor_events.forward <= 0]
+        rows[len(kept) :] = [self.state.copy() for _ in range(len(rows) - len(kept) + len(passed))]
+        return left[len(passed) :]
 
     def _within(self, left: list[Any], *, dense: bool) -> tuple[RegimeOrbit, Slice, list[Any]]:
         """Go on in one regime; return its integrator, what was done there, and the states at the times reached."""

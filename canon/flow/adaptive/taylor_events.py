@@ -137,20 +137,20 @@ class TaylorEvents:
         """
         near = part * _ROUNDING
         for event in self.events:
-            known = any(
-                met.event is event.event and abs(met.t - float(t)) <= near for met in self.crossings[-9:]
-            )
-            if known or any(event is other for other in handled):
+            if self._told(event, float(t), near) or any(event is other for other in handled):
                 continue
             old, new = (self._value(event, float(t), *self._parts(state)) for state in (before, after))
-            if old * new < 0 or (new != 0 and abs(old) < abs(new) * _ROUNDING):
-                if not event.event.counts(new > 0):
-                    continue
+            passed = old * new < 0 or (new != 0 and abs(old) < abs(new) * _ROUNDING)
+            if passed and event.event.counts(new > 0):
                 changed = None if event.jump is None else self._changed(event.jump, float(t), before)
                 self.new_state = before if changed is None else changed
                 self._record(event, float(t), before, self.forward if new > 0 else -self.forward, changed)
                 return event
         return None
+
+    def _told(self, event: PreparedEvent, t: float, near: float) -> bool:
+        """Return whether one of the latest crossings is this event's at nearly the same time."""
+        return any(met.event is event.event and abs(met.t - t) <= near for met in self.crossings[-9:])
 
     def check_left(self, event: PreparedEvent, changed: Any, t: Any, after: Any) -> None:
         """Make sure that a motion has left an event's zero to the side to which it was sent.

@@ -120,6 +120,14 @@ class WatchedOrbit:
         """How long compiling took."""
         return sum(each.rate.seconds + each.values.seconds for each in self._watches.values())
 
+    def _step(self, integrator: Any) -> None:
+        before, kept = float(integrator.t), integrator.y.copy()
+        integrator.max_step = self.longest(before, kept)
+        message = integrator.step()
+        self.steps += 1
+        if integrator.status == "failed" or not np.isfinite(integrator.y).all():
+            raise _lost(before, kept[self.system.rows], message)
+
     def go(self, times: Array, states: Array, sample: int, progress: Callable[[float], None]) -> int:
         """Put the states at times from a sample on into their columns; return how many of all were reached."""
         in_a_row, size = 0, None
@@ -128,11 +136,7 @@ class WatchedOrbit:
             met, before, kept = None, self.t, self.y
             while sample < len(times) and met is None:
                 before, kept = float(integrator.t), integrator.y.copy()
-                integrator.max_step = self.longest(before, kept)
-                message = integrator.step()
-                self.steps += 1
-                if integrator.status == "failed" or not np.isfinite(integrator.y).all():
-                    raise _lost(before, kept[self.system.rows], message)
+                self._step(integrator)
                 interpolant = integrator.dense_output()
                 met = self._passed(before, kept, integrator, interpolant)
                 until = integrator.t if met is None else met.t

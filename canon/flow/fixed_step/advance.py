@@ -104,34 +104,17 @@ def advance_orbits(
     """
     buffers = LoopBuffers(loop, high, low, coefficients, watch, memory)
     rows_kept, watched = _Rows(buffers, len(stops)), list[Array]()
-    started, done, slice_steps = time.thread_time(), stops[0], 64
-    clock, safe, checked = time.perf_counter(), (buffers.y.copy(), buffers.e.copy()), done
+    started, slices = time.thread_time(), _Slices(buffers, stops[0], stops[-1], rows, progress)
     try:
         for sample, stop in enumerate(stops):
-            while done < stop:
-                steps = min(slice_steps - (done - checked), stop - done)
-                buffers.advance(done, steps)
-                done += steps
-                if done - checked < slice_steps and done < stops[-1]:
-                    continue
-                if not buffers.finite():
-                    raise buffers.lost(*safe, checked, done - checked, rows)
-                spent, steps = time.perf_counter() - clock, done - checked
-                if steps == slice_steps and spent < _SLICE_SECONDS / 2:
-                    slice_steps *= 2
-                elif spent > _SLICE_SECONDS and slice_steps > 1:
-                    slice_steps //= 2
-                safe, checked = (buffers.y.copy(), buffers.e.copy()), done
-                progress(done / stops[-1])
-                clock = time.perf_counter()
+            slices.go_to(stop)
             if sample and watch is not None:
                 watched.append(buffers.watched())
             rows_kept.keep()
     except (KeyboardInterrupt, Interruption):
         if not rows_kept.count:
             raise
-        if not buffers.finite():
-            raise buffers.lost(*safe, checked, done - checked, rows) from None
+        slices.check_finite()
     kept, beyond = rows_kept.all()
     entries = (buffers.orbits, buffers.watch.start.shape[1], 3) if buffers.watch is not None else ()
     found = AdvancedStates(
@@ -143,6 +126,62 @@ def advance_orbits(
         time.thread_time() - started,
     )
     return found.first(rows_kept.count)
+
+
+class _Slices:
+    """A loop that goes on in slices of about a tenth of a second; at the end of each the state must be finite.
+
+    Parameters
+    ----------
+    buffers
+        The loop and its state.
+    first, last
+        The step numbers at which the motion stands, and at which it ends.
+    rows
+        The components that are coordinates and momenta, for messages.
+    progress
+        Called after each slice with the fraction done.
+    """
+
+    def __init__(
+        self,
+        buffers: LoopBuffers,
+        first: int,
+        last: int,
+        rows: Memory | None,
+        progress: Callable[[float], None],
+    ) -> None:
+        self.buffers, self.rows, self.progress = buffers, rows, progress
+        self.done, self.last, self.steps = first, last, 64
+        self._begin()
+
+    def go_to(self, stop: int) -> None:
+        """Take all steps up to one, and end the slices that are complete."""
+        while self.done < stop:
+            steps = min(self.begun + self.steps, stop) - self.done
+            self.buffers.advance(self.done, steps)
+            self.done += steps
+            if self.done - self.begun == self.steps or self.done == self.last:
+                self._end()
+
+    def check_finite(self) -> None:
+        """Make sure that the state is finite; the error has the last one known to be."""
+        if not self.buffers.finite():
+            raise self.buffers.lost(*self.safe, self.begun, self.done - self.begun, self.rows) from None
+
+    def _begin(self) -> None:
+        self.safe, self.begun = (self.buffers.y.copy(), self.buffers.e.copy()), self.done
+        self.clock = time.perf_counter()
+
+    def _end(self) -> None:
+        self.check_finite()
+        spent = time.perf_counter() - self.clock
+        if self.done - self.begun == self.steps and spent < _SLICE_SECONDS / 2:
+            self.steps *= 2
+        elif spent > _SLICE_SECONDS and self.steps > 1:
+            self.steps //= 2
+        self.progress(self.done / self.last)
+        self._begin()
 
 
 class _Rows:

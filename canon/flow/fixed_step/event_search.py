@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -50,6 +51,22 @@ def compiled_watch(
 
 
 _kept_watch = functools.lru_cache(maxsize=64)(event_function)
+
+
+@dataclass(frozen=True)
+class _RestOfStep:
+    """What is left of step n + 1: the state at its beginning and at its end, were it not for the events.
+
+    Of each event ``latest`` has the place of its latest crossing, or the beginning, with dg/dt there; ``at_end`` has g
+    and dg/dt at the end.
+    """
+
+    n: int
+    begin: Fraction
+    base: LoopState
+    end: LoopState
+    latest: list[tuple[Fraction, float]]
+    at_end: list[tuple[float, float]]
 
 
 class EventLocator:
@@ -119,48 +136,60 @@ class EventLocator:
             The state where the motion goes on, or where it stopped; which part of the step that is, 1 where
             all of it was passed; what the compiled loop is to know, empty where the motion stopped.
         """
-        base, begin, end = before, Fraction(0), after
-        self.segments = [(begin, base)]
-        at_end = self.values_and_rates(end, self.steps.time(n, Fraction(1)))
-        found_at = [(begin, rate) for _, rate in self.values_and_rates(base, self.steps.time(n, begin))]
-        self.sides = [side or _sign(g) for side, (g, _) in zip(self.sides, at_end, strict=True)]
+        self.segments = []
+        rest = self._rest_of_step(n, Fraction(0), before, after)
+        self.sides = [side or _sign(g) for side, (g, _) in zip(self.sides, rest.at_end, strict=True)]
         changed = dict[int, Fraction]()
         for _ in range(_IN_ONE_STEP):
-            places = [self._first(i, n, base, begin, found_at[i], at_end[i]) for i in range(len(self.events))]
-            earliest = min((p, i) for i, p in enumerate(places)) if places else (Fraction(2), 0)
-            place, i = earliest
+            place, i = self._earliest(rest)
             if place > 1:
-                return end, Fraction(1), self.known(at_end)
-            here, t = self.steps.moved(base, n, begin, place), self.steps.time(n, place)
+                return rest.end, Fraction(1), self.known(rest.at_end)
+            here, t = self.steps.moved(rest.base, n, rest.begin, place), self.steps.time(n, place)
             rising, event = self.sides[i] < 0, self.events[i]
             self.sides[i] = -self.sides[i]
-            found_at[i] = (place, self.values_and_rates(here, t)[i][1])
+            rest.latest[i] = (place, self.values_and_rates(here, t)[i][1])
             if not event.event.counts(rising):
                 continue
-            if event.event.action == "stop":
-                self._record(event, t, here, rising, None)
-                return here, place, []
-            if event.jump is None:
-                self._record(event, t, here, rising, None)
+            if event.jump is not None:
+                if changed.get(i, Fraction(-1)) > place - _AT_ONCE:
+                    break
+                changed[i] = place
+                rest = self._changed(rest, i, here, place, rising=rising)
                 continue
-            if changed.get(i, Fraction(-1)) > place - _AT_ONCE:
-                break
-            changed[i] = place
-            base, begin = self._jumped(event, here, t), place
-            self.segments.append((begin, base))
-            self._record(event, t, here, rising, base)
-            end = self.steps.moved(base, n, begin, Fraction(1))
-            looks = self.values_and_rates(base, t)
-            self.sides[i] = _sign(looks[i][1]) or -self.sides[i]
-            found_at = [(begin, rate) for _, rate in looks]
-            at_end = self.values_and_rates(end, self.steps.time(n, Fraction(1)))
-        t, y = float(self.steps.time(n, begin)), base.high[self.system.rows, 0]
+            self._record(event, t, here, rising, None)
+            if event.event.action == "stop":
+                return here, place, []
+        t, y = float(self.steps.time(n, rest.begin)), rest.base.high[self.system.rows, 0]
         again = self.crossings[-1].event if self.crossings else "an event"
         raise NonFiniteStateError(
             f"{again} is met again at once at {time_and_state(t, y)}: events pile up there; stop the motion before",
             t,
             y,
         )
+
+    def _rest_of_step(self, n: int, begin: Fraction, base: LoopState, end: LoopState) -> _RestOfStep:
+        self.segments.append((begin, base))
+        latest = [(begin, rate) for _, rate in self.values_and_rates(base, self.steps.time(n, begin))]
+        at_end = self.values_and_rates(end, self.steps.time(n, Fraction(1)))
+        return _RestOfStep(n, begin, base, end, latest, at_end)
+
+    def _earliest(self, rest: _RestOfStep) -> tuple[Fraction, int]:
+        """Return the place of the next crossing in a step and whose it is; the place 2 where there is none."""
+        places = ((self._first(i, rest), i) for i in range(len(self.events)))
+        return min(places, default=(Fraction(2), 0))
+
+    def _changed(
+        self, rest: _RestOfStep, i: int, here: LoopState, place: Fraction, *, rising: bool
+    ) -> _RestOfStep:
+        """Change the state by an event and return what is left of the step after it."""
+        t = self.steps.time(rest.n, place)
+        base = self._jumped(self.events[i], here, t)
+        self._record(self.events[i], t, here, rising, base)
+        following = self._rest_of_step(
+            rest.n, place, base, self.steps.moved(base, rest.n, place, Fraction(1))
+        )
+        self.sides[i] = _sign(following.latest[i][1]) or -self.sides[i]
+        return following
 
     def _record(
         self, event: PreparedEvent, t: Fraction, here: LoopState, rising: bool, after: LoopState | None
@@ -181,25 +210,14 @@ class EventLocator:
             )
         return LoopState(high, low, here.beyond)
 
-    def _first(
-        self,
-        i: int,
-        n: int,
-        base: LoopState,
-        begin: Fraction,
-        latest: tuple[Fraction, float],
-        at_end: tuple[float, float],
-    ) -> Fraction:
-        """Return the first part of a step at which g crosses zero after its latest crossing, or 2.
-
-        ``latest`` has that place, or where the step begins, and dg/dt there.
-        """
-        side, (place, came), (g, goes) = self.sides[i], latest, at_end
+    def _first(self, i: int, rest: _RestOfStep) -> Fraction:
+        """Return the first part of a step at which g crosses zero after its latest crossing, or 2."""
+        side, (place, came), (g, goes) = self.sides[i], rest.latest[i], rest.at_end[i]
 
         def ahead(part: Fraction) -> tuple[float, float]:
             """Return g and dg/d(part), taken with the side's sign: positive until the crossing."""
-            state = self.steps.moved(base, n, begin, part)
-            value, rate = self.values_and_rates(state, self.steps.time(n, part))[i]
+            state = self.steps.moved(rest.base, rest.n, rest.begin, part)
+            value, rate = self.values_and_rates(state, self.steps.time(rest.n, part))[i]
             return side * value, side * rate * abs(float(self.steps.h))
 
         last = Fraction(1)

@@ -107,16 +107,14 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
 def _settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:
     """Return the signs of all functions that matter, given those of some; the others count as positive."""
     known = set(known)
-    while True:
-        mattering = kinks.mattering(signs)
-        unknown = [k for k in mattering if k not in known]
-        if not unknown:
-            return tuple(sign if k in mattering else 1 for k, sign in enumerate(signs))
+    while unknown := [k for k in kinks.mattering(signs) if k not in known]:
         inner = [k for k in unknown if k not in kinks.nested] or unknown[:1]
         nodes = kinks.folded(signs, [kinks.functions[k] for k in inner])
         for k, value in zip(inner, at.values(kinks.system, nodes), strict=True):
             signs = (*signs[:k], -1 if value < 0 else 1, *signs[k + 1 :])
         known |= set(inner)
+    mattering = kinks.mattering(signs)
+    return tuple(sign if k in mattering else 1 for k, sign in enumerate(signs))
 
 
 def _goes_on(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward: int) -> Signs:

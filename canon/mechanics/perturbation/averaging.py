@@ -124,7 +124,7 @@ class Averaged:
         module = None if self.resonances is None else Module(self.resonances)
         for n, term in enumerate(self.terms):
             for k in fourier_series(term, self.angles):
-                if any(k) and not (_divisor(k, frequencies) == 0 if module is None else k in module):
+                if not _stays(k, _divisor(k, frequencies), module):
                     why = f"the coefficient of {self.small}**{n} still has the fast term of k = {k}"
                     return Verdict(Status.FAILS, question, "exact", term, feedback=why)
         left = cast("Expr", sp.expand(self.to_new(self.source.H) - self.K))
@@ -179,24 +179,13 @@ def average(
     >>> average(H, theta, 2, eps).K
     -17*I**3*epsilon**2/(64*omega) + 3*I**2*epsilon/8 + I*omega
     """
-    given_kind(H, Hamiltonian, "H", "give Hamiltonian(H, q, p)")
-    fast = given_symbols(angles, "angles")
-    if not fast or not {*fast} <= {*H.q}:
-        raise ValueError(f"the angles should be among the coordinates {', '.join(map(str, H.q))}")
-    if order < 1:
-        raise ValueError(f"the order should be a whole number from 1, not {order}")
+    fast = _fast_angles(H, angles, order)
     momentum = dict(zip(H.q, H.p, strict=True))
     actions = tuple(momentum[theta] for theta in fast)
-    slow = [(x, y) for x, y in zip(H.q, H.p, strict=True) if x not in fast]
-    slow_q, slow_p = [x for x, _ in slow], [y for _, y in slow]
+    slow_q = [x for x in H.q if x not in fast]
+    slow_p = [momentum[x] for x in slow_q]
     parts = powers_of(H.H, small, order)
-    others = {*H.q, *H.p} - {*actions}
-    if parts[0].has(*others):
-        found = sorted((s for s in others if parts[0].has(s)), key=str)
-        raise AveragingError(
-            f"H at {small} = 0 depends on {', '.join(map(str, found))}; it may depend on the momenta of the fast "
-            f"angles alone: put {small} before what is slow, or change to action and angle first"
-        )
+    _check_of_actions_alone(parts[0], {*H.q, *H.p} - {*actions}, small)
     frequencies = [parts[0].diff(action) for action in actions]
     named = None if resonances is None else tuple(tuple(int(k) for k in v) for v in resonances)
     module = None if named is None else Module(named)
@@ -213,24 +202,55 @@ def average(
 
     for n in range(1, order + 1):
         known = _diagonal(column, W, n, bracket)
-        kept, w = {}, {}
-        for k, c in known.items():
-            divisor = _divisor(k, frequencies)
-            if not any(k) or (divisor == 0 if module is None else k in module):
-                kept[k] = c
-            elif divisor == 0:
-                raise AveragingError(
-                    f"at order {n} the term of k = {k} has the divisor k·ω = 0 and is not among the resonances; name "
-                    f"it: resonances=[{k}]; the average to order {n - 1} is in `reached` of this error",
-                    result(),
-                )
-            else:
-                divisors[k] = divisor
-                w[k] = c / (sp.I * divisor)
-        W.append(w)
+        removed = _divisors(known, frequencies, module)
+        _check_nonzero(removed, result())
+        divisors |= removed
+        W.append({k: known[k] / (sp.I * divisor) for k, divisor in removed.items()})
+        kept = {k: c for k, c in known.items() if k not in removed}
         terms.append(sp.expand(fourier_expression(kept, fast) / factorial(n)))
-        generators.append(fourier_expression(w, fast))
+        generators.append(fourier_expression(W[-1], fast))
     return result()
+
+
+def _fast_angles(H: Hamiltonian, angles: Sequence[Symbol] | Symbol, order: int) -> tuple[Symbol, ...]:
+    given_kind(H, Hamiltonian, "H", "give Hamiltonian(H, q, p)")
+    fast = given_symbols(angles, "angles")
+    if not fast or not {*fast} <= {*H.q}:
+        raise ValueError(f"the angles should be among the coordinates {', '.join(map(str, H.q))}")
+    if order < 1:
+        raise ValueError(f"the order should be a whole number from 1, not {order}")
+    return fast
+
+
+def _check_of_actions_alone(H0: Expr, others: set[Symbol], small: Symbol) -> None:
+    found = sorted((s for s in others if H0.has(s)), key=str)
+    if found:
+        raise AveragingError(
+            f"H at {small} = 0 depends on {', '.join(map(str, found))}; it may depend on the momenta of the fast "
+            f"angles alone: put {small} before what is slow, or change to action and angle first"
+        )
+
+
+def _divisors(series: Series, frequencies: Sequence[Expr], module: Module | None) -> dict[Harmonic, Expr]:
+    """Return k·ω of the terms that the average is to lose."""
+    found = {k: _divisor(k, frequencies) for k in series}
+    return {k: divisor for k, divisor in found.items() if not _stays(k, divisor, module)}
+
+
+def _check_nonzero(divisors: Mapping[Harmonic, Expr], reached: Averaged) -> None:
+    zero = next((k for k, divisor in divisors.items() if divisor == 0), None)
+    if zero is not None:
+        raise AveragingError(
+            f"at order {reached.order + 1} the term of k = {zero} has the divisor k·ω = 0 and is not among the "
+            f"resonances; name it: resonances=[{zero}]; the average to order {reached.order} is in `reached` of this "
+            "error",
+            reached,
+        )
+
+
+def _stays(k: Harmonic, divisor: Expr, module: Module | None) -> bool:
+    """Tell whether the term of k belongs to the average: it is slow, or resonant."""
+    return not any(k) or (divisor == 0 if module is None else k in module)
 
 
 def _divisor(k: Harmonic, frequencies: Sequence[Expr]) -> Expr:

@@ -288,11 +288,10 @@ def _normalised(
         return NormalForm(H, place, reached, named, diagonal, original, kept, steps, small)
 
     for degree in range(3, order + 1):
-        if comb(degree + size - 1, size - 1) > MOST_TERMS:
-            raise NormalFormError(
-                f"degree {degree} may have {comb(degree + size - 1, size - 1)} terms, more than memory holds; "
-                f"the normal form to degree {degree - 1} is in `reached` of this error",
-                result(degree - 1),
+        terms = comb(degree + size - 1, size - 1)
+        if terms > MOST_TERMS:
+            raise _ended(
+                f"degree {degree} may have {terms} terms, more than memory holds", result(degree - 1)
             )
         if degree not in parts:
             continue
@@ -300,14 +299,20 @@ def _normalised(
         try:
             _, chi = homological_solution(parts[degree], diagonal.eigenvalues, module, values, known, met)
         except ZeroDivisorError as zero:
-            raise NormalFormError(
-                f"at degree {degree} {zero}; the normal form to degree {degree - 1} is in `reached` of this error",
-                result(degree - 1),
-            ) from zero
+            raise _ended(f"at degree {degree} {zero}", result(degree - 1)) from zero
         for k, value in met.items():
-            either_sign = max(k, tuple(-j for j in k))
+            either_sign = _either_sign(k)
             divisors.setdefault(either_sign, SmallDivisor(either_sign, value, degree))
         if chi:
             generators.append((degree, chi))
             parts = transformed(parts, chi, degree, order, diagonal.brackets)
     return result(order)
+
+
+def _ended(why: str, reached: NormalForm) -> NormalFormError:
+    kept = f"the normal form to degree {reached.order} is in `reached` of this error"
+    return NormalFormError(f"{why}; {kept}", reached)
+
+
+def _either_sign(k: tuple[int, ...]) -> tuple[int, ...]:
+    return max(k, tuple(-j for j in k))

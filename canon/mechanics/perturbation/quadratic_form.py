@@ -9,7 +9,7 @@ Rows are never divided by roots, so coefficients stay in the field of the eigenv
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import sympy as sp
 from sympy import Expr
@@ -143,55 +143,52 @@ def diagonal_form(
     size = len(hessian)
     n = size // 2
     flow: list[Row] = [[*hessian[n + j]] for j in range(n)] + [[-h for h in hessian[j]] for j in range(n)]
-    a_rows: list[Row] = []
-    b_rows: list[Row] = []
-    constants: list[PhasePolynomial] = []
-    values: list[PhasePolynomial] = []
-    shown: list[Expr] = []
-    for exponent, times in exponents:
-        re, im = exponent.as_real_imag()
-        value = ring.number(re) + ring.i * ring.number(im)
-        right, left = (_left_null_rows(flow, v, ring) for v in (value, -value))
-        if len(right) < times:
-            raise NoDiagonalFormError(
-                f"the exponent {exponent} occurs {times} times and has {len(right)} directions: the quadratic part "
-                "is not semisimple, and its normal form has a nilpotent part, which is not computed here"
-            )
-        elliptic = not value.re
-        pairs = _elliptic_pairs(right, ring) if elliptic else _dual_pairs(right, left, ring)
-        for a, b, c in pairs:
-            flipped = elliptic and _is_negative(c * ring.i, ring)  # c = −2iκ
-            a_rows.append(b if flipped else a)
-            b_rows.append(a if flipped else b)
-            constants.append(-c if flipped else c)
-            values.append(-value if flipped else value)
-            shown.append(-exponent if flipped else exponent)
-    rows = tuple(_linear(row, ring) for row in (*a_rows, *b_rows))
-    columns = tuple(_coordinate(k, a_rows, b_rows, constants, ring) for k in range(size))
-    return DiagonalForm(rows, columns, Brackets(tuple(constants)), tuple(values), tuple(shown))
+    pairs = [pair for exponent, times in exponents for pair in _pairs_of(exponent, times, flow, ring)]
+    rows = tuple(_linear(row, ring) for row in (*(x.a for x in pairs), *(x.b for x in pairs)))
+    columns = tuple(_coordinate(k, pairs, ring) for k in range(size))
+    brackets = Brackets(tuple(x.c for x in pairs))
+    return DiagonalForm(
+        rows, columns, brackets, tuple(x.eigenvalue for x in pairs), tuple(x.exponent for x in pairs)
+    )
+
+
+class _Pair(NamedTuple):
+    """Rows a, b with {a, b} = c and {a, H₂} = λ a, {b, H₂} = −λ b; the exponent is λ as SymPy's number."""
+
+    a: Row
+    b: Row
+    c: PhasePolynomial
+    eigenvalue: PhasePolynomial
+    exponent: Expr
+
+
+def _pairs_of(exponent: Expr, times: int, flow: Sequence[Row], ring: PolynomialRing) -> list[_Pair]:
+    """Return the pairs of one exponent ±λ, an elliptic one turned so that κ > 0."""
+    re, im = exponent.as_real_imag()
+    value = ring.number(re) + ring.i * ring.number(im)
+    right, left = (_left_null_rows(flow, v, ring) for v in (value, -value))
+    if len(right) < times:
+        raise NoDiagonalFormError(
+            f"the exponent {exponent} occurs {times} times and has {len(right)} directions: the quadratic part "
+            "is not semisimple, and its normal form has a nilpotent part, which is not computed here"
+        )
+    if value.re:
+        return [_Pair(a, b, c, value, exponent) for a, b, c in _dual_pairs(right, left, ring)]
+    return [
+        _Pair(b, a, -c, -value, -exponent)
+        if _is_negative(c * ring.i, ring)  # c = −2iκ
+        else _Pair(a, b, c, value, exponent)
+        for a, b, c in _elliptic_pairs(right, ring)
+    ]
 
 
 def _left_null_rows(flow: Sequence[Row], value: PhasePolynomial, ring: PolynomialRing) -> list[Row]:
     """Return a basis of the rows ℓ with ℓ A = λ ℓ, by elimination in Aᵀ − λ."""
     size = len(flow)
-    matrix = [[flow[j][i] - value if i == j else flow[j][i] for j in range(size)] for i in range(size)]
-    pivots: list[int] = []
-    for column in range(size):
-        top = len(pivots)
-        row = next((r for r in range(top, size) if matrix[r][column]), None)
-        if row is None:
-            continue
-        matrix[top], matrix[row] = matrix[row], matrix[top]
-        scale = matrix[top][column].inverse()
-        matrix[top] = [entry * scale for entry in matrix[top]]
-        for r in range(size):
-            factor = matrix[r][column]
-            if r != top and factor:
-                matrix[r] = [x - factor * y for x, y in zip(matrix[r], matrix[top], strict=True)]
-        pivots.append(column)
-    free = [c for c in range(size) if c not in pivots]
+    transposed = [[flow[j][i] - value if i == j else flow[j][i] for j in range(size)] for i in range(size)]
+    matrix, pivots = _reduced(transposed)
     basis: list[Row] = []
-    for c in free:
+    for c in (c for c in range(size) if c not in pivots):
         row = [ring.zero] * size
         row[c] = ring.one
         for top, pivot in enumerate(pivots):
@@ -212,19 +209,32 @@ def _bar(row: Row) -> Row:
     return [x.conjugate_coefficients() for x in row]
 
 
+def _reduced(matrix: list[Row]) -> tuple[list[Row], list[int]]:
+    """Return the reduced echelon form of a square matrix, and the columns of its pivots."""
+    matrix, pivots = [*matrix], list[int]()
+    for column in range(len(matrix)):
+        top = len(pivots)
+        row = next((r for r in range(top, len(matrix)) if matrix[r][column]), None)
+        if row is None:
+            continue
+        matrix[top], matrix[row] = matrix[row], matrix[top]
+        scale = matrix[top][column].inverse()
+        pivot = matrix[top] = [entry * scale for entry in matrix[top]]
+        matrix = [
+            _less(line, pivot, line[column]) if r != top and line[column] else line
+            for r, line in enumerate(matrix)
+        ]
+        pivots.append(column)
+    return matrix, pivots
+
+
 def _elliptic_pairs(rows: list[Row], ring: PolynomialRing) -> list[tuple[Row, Row, PhasePolynomial]]:
     """Return z, z̄ and {z, z̄}, the rows made orthogonal in the Hermitian form {ℓ, ℓ̄}."""
     rows, pairs = [*rows], []
     while rows:
         j = next((j for j, row in enumerate(rows) if _form(row, _bar(row), ring)), None)
-        if j is None:  # all are isotropic: the sum of two that are not orthogonal is not
-            other = next(k for k in range(1, len(rows)) if _form(rows[0], _bar(rows[k]), ring))
-            pairing = _form(rows[0], _bar(rows[other]), ring)
-            turned = [x * pairing for x in rows[other]]
-            rows[0] = [x + y * ring.i for x, y in zip(rows[0], turned, strict=True)]
-            if not _form(rows[0], _bar(rows[0]), ring):
-                rows[0] = [x + y * (ring.one - ring.i) for x, y in zip(rows[0], turned, strict=True)]
-            j = 0
+        if j is None:
+            j, rows[0] = 0, _not_isotropic(rows, ring)
         z = rows.pop(j)
         bar = _bar(z)
         c = _form(z, bar, ring)
@@ -232,6 +242,18 @@ def _elliptic_pairs(rows: list[Row], ring: PolynomialRing) -> list[tuple[Row, Ro
         pairs.append((z, bar, c))
         rows = [_less(row, z, _form(row, bar, ring) * inverse) for row in rows]
     return pairs
+
+
+def _not_isotropic(rows: list[Row], ring: PolynomialRing) -> Row:
+    """Return a row that is not isotropic, of rows that all are: the sum of two that are not orthogonal."""
+    first = rows[0]
+    other = next(row for row in rows[1:] if _form(first, _bar(row), ring))
+    pairing = _form(first, _bar(other), ring)
+    turned = [x * pairing for x in other]
+    found = [x + y * ring.i for x, y in zip(first, turned, strict=True)]
+    if not _form(found, _bar(found), ring):
+        found = [x + y * (ring.one - ring.i) for x, y in zip(found, turned, strict=True)]
+    return found
 
 
 def _dual_pairs(
@@ -265,14 +287,12 @@ def _linear(row: Row, ring: PolynomialRing) -> PhasePolynomial:
     return ring.sum_of_products([(x, ring.variable(j)) for j, x in enumerate(row)])
 
 
-def _coordinate(
-    k: int, a_rows: list[Row], b_rows: list[Row], constants: list[PhasePolynomial], ring: PolynomialRing
-) -> PhasePolynomial:
+def _coordinate(k: int, pairs: Sequence[_Pair], ring: PolynomialRing) -> PhasePolynomial:
     """Return x_k = Σ ({x_k, b} a − {x_k, a} b)/c."""
-    n = len(a_rows)
+    n = len(pairs)
     unit = [ring.one if j == k else ring.zero for j in range(2 * n)]
     total = ring.zero
-    for j, (a, b, c) in enumerate(zip(a_rows, b_rows, constants, strict=True)):
+    for j, (a, b, c, *_) in enumerate(pairs):
         inverse = c.inverse()
         total = total + ring.variable(j) * _form(unit, b, ring) * inverse
         total = total - ring.variable(n + j) * _form(unit, a, ring) * inverse

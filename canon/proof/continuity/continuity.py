@@ -255,22 +255,21 @@ def _step(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float) ->
     left = deadline - time.monotonic()
     if left <= 0 or not is_locally_constant(f, moving, domain, SHARE * left):
         return None
-    first: tuple[Mapping[Symbol, sp.Rational], acb] | None = None
     cases = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ne)]
     if not domain.is_connected(free_symbols(f)) or not all(map(linear, cases)):
         return None
     gaps = [*(cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases), *_nonzero(f, moving)]
-    for point in domain.points(free_symbols(f), VALUES, deadline=deadline):
-        if first is not None:
-            point |= {s: number for s, number in first[0].items() if s not in moving}
-            if not _in_one_piece(point, first[0], gaps, domain):
-                continue
+    points = domain.points(free_symbols(f), VALUES, deadline=deadline)
+    first = next(((p, ball) for p in points if (ball := _ball(f, p)) is not None), None)
+    if first is None:
+        return None
+    staying = {s: number for s, number in first[0].items() if s not in moving}
+    for point in ({**p, **staying} for p in points):
+        if not _in_one_piece(point, first[0], gaps, domain):
+            continue
+        ball = _ball(f, point)
         with precision(128):
-            ball = _ball(f, point)
-            if ball is None:
-                continue
-            first = first or (point, ball)
-            if not (ball - first[1]).contains(0):
+            if ball is not None and not (ball - first[1]).contains(0):
                 return _between(first, (point, ball))
     return None
 
@@ -286,7 +285,8 @@ def _in_one_piece(
 
 def _ball(f: Expr, point: Mapping[Symbol, sp.Rational]) -> acb | None:
     try:
-        return value(f, point)
+        with precision(128):
+            return value(f, point)
     except (NotDecided, Undefined, Unmodelled):
         return None
 

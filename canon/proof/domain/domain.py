@@ -219,7 +219,7 @@ class Domain:
         ordered = sorted({*symbols, *conditioned}, key=lambda s: s.name)
         facts = {s: said_of(s) for s in ordered}
         chance, steering = random.Random(seed), random.Random(seed)
-        settled = [c for c in self.conditions if not (but_functions and c in self.on_functions)]
+        settled = self._but_functions if but_functions else self.conditions
         found = moved = moves = unsolved = 0
         for attempt in range(40 * count + 200):
             if found + moved == count or time.monotonic() > deadline:
@@ -235,9 +235,10 @@ class Domain:
             elif found == 0 and attempt >= PATIENCE and moves < MOST_MOVES:
                 moves += 1
                 inside = moved_inside(point, settled, steering, deadline)
-                if inside and _belongs(inside, facts, settled):
-                    moved += 1
-                    yield inside
+                if not inside or not _belongs(inside, facts, settled):
+                    continue
+                moved += 1
+                yield inside
 
     def interval(self, symbol: Symbol) -> tuple[Expr, Expr, bool]:
         """Return the bounds of one symbol, and whether both are certainly excluded.
@@ -283,13 +284,16 @@ class Domain:
 
         Conditions on arbitrary functions are left to the caller, who chooses the functions.
         """
-        settled = [c for c in self.conditions if c not in self.on_functions]
-        return _belongs(point, {s: said_of(s) for s in point}, settled)
+        return _belongs(point, {s: said_of(s) for s in point}, self._but_functions)
 
     @cached_property
     def on_functions(self) -> tuple[Boolean, ...]:
         """The conditions on arbitrary functions, which hold or not as the functions are chosen."""
         return tuple(c for c in self.conditions if c.has(AppliedUndef))
+
+    @property
+    def _but_functions(self) -> Sequence[Boolean]:
+        return [c for c in self.conditions if c not in self.on_functions]
 
     def _drawn(
         self,

@@ -306,22 +306,28 @@ def _by_slope(expr: Expr, domain: Domain) -> list[Case] | None:
     staying = under_derivatives(expr, domain)
     equalities = (c for c in domain.conditions if isinstance(c, sp.Eq) and isinstance(c.lhs, sp.Expr))
     for condition in equalities:
-        gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
         others = Domain(tuple(c for c in domain.conditions if c != condition), domain.box)
-        factors = [f for f, _ in polynomial_factors(gap)]
-        if len(factors) > 1 or (factors and sp.expand(gap / factors[0]).free_symbols):
-            vanishing = (_equality(f) for f in factors)
+        vanishing = _factors_that_cut(condition)
+        if vanishing:
             return [settle_equalities(expr, _narrowed(others, c), str(c)) for c in vanishing]
-        cut = next((cut for cut in _linear_in(condition, staying) if _may_vanish(*cut[:2], domain)), None)
-        if cut is not None:
-            _, slope, rest = cut
-            regular = _narrowed(domain, *(sp.Ne(f, 0) for f in _vanishing(slope)))
-            singular = _narrowed(others, _equality(slope), _equality(rest))
-            return [
-                settle_equalities(expr, regular, f"{slope} ≠ 0"),
-                settle_equalities(expr, singular, f"{slope} = 0"),
-            ]
+        for s, slope, rest in _linear_in(condition, staying):
+            if _may_vanish(s, slope, domain):
+                regular = _narrowed(domain, *(sp.Ne(f, 0) for f in _vanishing(slope)))
+                singular = _narrowed(others, _equality(slope), _equality(rest))
+                return [
+                    settle_equalities(expr, regular, f"{slope} ≠ 0"),
+                    settle_equalities(expr, singular, f"{slope} = 0"),
+                ]
     return None
+
+
+def _factors_that_cut(condition: sp.Eq) -> list[Boolean]:
+    """Return for each factor of an equality that it vanishes; nothing where it has one factor, and that once."""
+    gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
+    factors = [f for f, _ in polynomial_factors(gap)]
+    if len(factors) > 1 or (factors and sp.expand(gap / factors[0]).free_symbols):
+        return [_equality(f) for f in factors]
+    return []
 
 
 def _may_vanish(s: Symbol, slope: Expr, domain: Domain) -> bool:

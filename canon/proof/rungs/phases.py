@@ -75,6 +75,12 @@ def arcs_cancel(n: NormalForm, f: Fraction) -> bool:
     return groups is not None and all(_group_vanishes(n, h) for h in groups)
 
 
+def _parted(monomial: Monomial, generators: set[int]) -> tuple[Monomial, Monomial]:
+    """Return the factors of a monomial that are powers of some generators, and the others."""
+    own = tuple(power for power in monomial if power[0] in generators)
+    return own, tuple(power for power in monomial if power[0] not in generators)
+
+
 def _groups(n: NormalForm, p: fmpq_mpoly) -> list[Fraction] | None:
     """Write p = Σ M·h_M, each h_M linear in arcs, logarithms and π with rational coefficients."""
     t = n.tower
@@ -82,14 +88,13 @@ def _groups(n: NormalForm, p: fmpq_mpoly) -> list[Fraction] | None:
     linear: dict[Monomial, dict[Monomial, fmpq]] = {}
     plain: list[tuple[Monomial, fmpq]] = []
     for monomial, coefficient in t.terms(p):
-        special = [(k, e) for k, e in monomial if t.generators[k][0] in (*ARCS, "log")]
-        if sum(e for _, e in special) > 1:
+        phases = [k for k, e in monomial for _ in range(e) if t.generators[k][0] in (*ARCS, "log")]
+        if len(phases) > 1:
             return None
-        if not special:
+        if not phases:
             plain.append((monomial, coefficient))
             continue
-        inner = tuple((k, e) for k, e in monomial if k in (special[0][0], unit))
-        outer = tuple((k, e) for k, e in monomial if k not in (special[0][0], unit))
+        inner, outer = _parted(monomial, {phases[0], unit})
         linear.setdefault(outer, {})[inner] = coefficient
     if not linear or not _distributed(plain, linear, pi):
         return None

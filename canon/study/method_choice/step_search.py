@@ -107,7 +107,7 @@ def searched(
             continue
         if tried.error <= accuracy:
             good = tried
-        elif good is None and bad is not None and _is_floor(bad, tried):
+        elif bad is not None and good is None and _is_floor(bad, tried):
             best = min(bad, tried, key=lambda each: each.error)
             return candidate_of(question, best, accuracy, note="its error falls no further")
         else:
@@ -119,7 +119,7 @@ def searched(
             return by_order(question, tried, accuracy)
         setting = setting.turned(knob)
     if good is None:
-        return by_order(question, bad, accuracy) if bad is not None else nothing(setting, "")
+        return _beyond_the_pilots(question, setting, bad, accuracy)
     if good.knob * LARGER[-1] <= ceiling:
         good = _still_larger(question, good, duration, accuracy, cheapest)
     return _at_best(question, good, accuracy, cheapest)
@@ -128,6 +128,13 @@ def searched(
 def _at_best(question: Question, good: TriedSetting, accuracy: float, cheapest: float) -> Candidate:
     dearer = good.error < LOWEST * accuracy and good.cost > HOPELESS * cheapest
     return candidate_of(question, good, accuracy, note="dearer at any step" if dearer else "")
+
+
+def _beyond_the_pilots(
+    question: Question, setting: Setting, bad: TriedSetting | None, accuracy: float
+) -> Candidate:
+    """Return the step that the order of the last bad one promises; no pilot run has kept the accuracy."""
+    return nothing(setting, "") if bad is None else by_order(question, bad, accuracy)
 
 
 def _is_hopeless(tried: TriedSetting, knob: float, duration: float, cheapest: float) -> bool:

@@ -179,17 +179,23 @@ def _symbol_restored(part: Part, screen: Screen) -> Iterator[Repair]:
     """A symbol that some terms have and others lack, such as a mass taken to be one, or an acceleration."""
     symbols = symbols_of(part.claimed, part.right, *part.through.values())
     lost = [s for s in part.determined if isinstance(s, Rate) and not part.claimed.has(s)]
+    kept = [s for s in symbols if not isinstance(s, Rate)]
     for terms in (sp.Add.make_args(part.claimed), sp.Add.make_args(sp.expand(part.claimed))):
-        for symbol in (*lost, *(s for s in symbols if not isinstance(s, Rate))):
-            without = [term for term in terms if not term.has(symbol) and not _is_still(term, part, screen)]
-            if not 1 < len(without) <= MOST_TERMS:
-                continue
+        for symbol in (*lost, *kept):
             factors = (symbol,) if symbol in lost else (symbol, 1 / symbol, symbol**2, 1 / symbol**2)
-            for some in (without, *(combinations(without, 2) if len(without) > 2 else ())):
-                group = sp.Add(*some)
+            for group in _groups_without(symbol, terms, part, screen):
                 for factor in factors:
                     right = sp.Add(*terms) - group + factor * group
                     yield Repair(right, Change.of(Mistake.FACTOR_MISSING, group, factor, place=part.name))
+
+
+def _groups_without(symbol: Expr, terms: Sequence[Expr], part: Part, screen: Screen) -> Iterator[Expr]:
+    """Yield the sum of all terms that lack a symbol, then those of every two of them."""
+    without = [term for term in terms if not term.has(symbol) and not _is_still(term, part, screen)]
+    if 1 < len(without) <= MOST_TERMS:
+        yield sp.Add(*without)
+    if 2 < len(without) <= MOST_TERMS:
+        yield from (sp.Add(*two) for two in combinations(without, 2))
 
 
 def _is_still(term: Expr, part: Part, screen: Screen) -> bool:
