@@ -152,7 +152,7 @@ def slip(f: sp.Expr, chance: random.Random) -> sp.Expr:
 def mistyped(text: str, chance: random.Random) -> str:
     place = chance.randrange(len(text))
     return chance.choice(
-        (text[:place] + ")" + text[place:], text + "*", text.replace("*", "^", 1), f"{text} + zeta")
+        (text[:place] + ")" + text[place:], text + "*", text.replace("*", "*/", 1), f"{text} + zeta")
     )
 
 

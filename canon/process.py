@@ -27,10 +27,23 @@ from typing import TYPE_CHECKING, BinaryIO, cast
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable
 
-__all__ = ["Child", "Ended", "Late", "end_when_closed", "end_with_parent", "folders", "safe_path", "serve"]
+__all__ = [
+    "JUDGING",
+    "Child",
+    "Ended",
+    "Late",
+    "end_when_closed",
+    "end_with_parent",
+    "folders",
+    "safe_path",
+    "serve",
+]
 
 RESTS_ON = ("sympy", "mpmath", "numpy", "flint", "lark")
 """What proofs and judgements import beside the standard library."""
+
+JUDGING = "canon.exercise.judging_process"
+"""The module of a child that judges claims."""
 
 HOME = Path(__file__).absolute().parents[1]
 """The folder, or the archive, that holds canon."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from canon.command.number_types import seconds, whole_number
 from canon.printable import in_one_line, printable
+from canon.process import JUDGING
 
 if TYPE_CHECKING:
     import argparse
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from canon.exercise.report.judgement import Judgement
     from canon.exercise.report.report import Report
     from canon.exercise.sheet.sheet import Claim, Sheet, SheetError
+    from canon.process import Child
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
@@ -108,6 +110,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Judge the sheets, print each verdict as soon as it is there, return the exit status."""
+    from canon.process import Child
+
+    child = Child(JUDGING, leads=True)  # it imports SymPy while the sheets are read
+    try:
+        return _run(arguments, child)
+    finally:
+        child.kill()
+
+
+def _run(arguments: argparse.Namespace, child: Child) -> int:
     from canon.exercise.report.report import Report
 
     sheets = _sheets(arguments.sheets)
@@ -118,7 +130,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"canon check: no claim is called {', '.join(sorted(unknown))}", file=sys.stderr)
     if unknown or not sheets:
         return 2
-    judgements = _judged(chosen, claims, arguments)
+    judgements = _judged(chosen, claims, arguments, child)
     title = (sheets[0].title or sheets[0].file) if len(sheets) == 1 else ""
     report = Report(title, tuple(judgements), tuple(claims))
     if not arguments.json:
@@ -144,13 +156,16 @@ def _sheets(names: Sequence[str]) -> list[Sheet]:
 
 
 def _judged(
-    chosen: Sequence[tuple[Sheet, list[Claim]]], claims: list[Claim], arguments: argparse.Namespace
+    chosen: Sequence[tuple[Sheet, list[Claim]]],
+    claims: list[Claim],
+    arguments: argparse.Namespace,
+    child: Child,
 ) -> list[Judgement]:
     """Judge the claims of each sheet in turn, and show each judgement when it is there."""
     from canon.exercise.sheet_check import judged
 
     judgements: list[Judgement] = []
-    coming = judged(claims, arguments.jobs)
+    coming = judged(claims, arguments.jobs, child)
     for sheet, some in chosen:
         if not arguments.json and (sheet.title or len(chosen) > 1):
             print(in_one_line(sheet.title or sheet.file))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from canon.exercise.question.answer import links, other_variables
@@ -14,7 +13,6 @@ from canon.exercise.question.deadline import Deadline, Worked
 from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
 from canon.exercise.sheet.key_shapes import faults
 from canon.exercise.sheet.kind import named_function
-from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim, ClaimError
 from canon.expression.symbols.user_input import NotFiniteError, given_kind
@@ -23,14 +21,9 @@ from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator
 
-__all__ = ["JUDGES", "Finding", "InvalidClaim", "examine", "examined", "judge", "questions"]
-
-JUDGES: Mapping[str, Callable[..., Iterator[Question]]] = MappingProxyType(
-    {name: named_function("canon.exercise.judges", kind.judge) for name, kind in KINDS.items()}
-)
-"""What each kind of claim comes down to."""
+__all__ = ["Finding", "InvalidClaim", "examine", "examined", "judge", "questions"]
 
 
 @dataclass(frozen=True)
@@ -67,7 +60,7 @@ def questions(reading: Reading) -> Iterator[Question]:
         Where the claim does not say something that could be judged.
     """
     yield from other_variables(reading)
-    judge_of_kind = JUDGES[reading.claim.kind]
+    judge_of_kind = named_function("canon.exercise.judges", reading.kind.judge)
     inside = {"ask": questions} if reading.kind.about else {}
     for question in judge_of_kind(reading, **inside):
         asked = isinstance(question, Determines)

@@ -8,12 +8,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.claim_verdict import InvalidClaim, examine
-from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS
-from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.question.deadline import Worked
 from canon.exercise.report.derivation_steps import steps
 from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid
-from canon.exercise.report.sentences import feedback
 from canon.expression.symbols.magnitude import written
 from canon.proof.rungs.ladder import REFUSALS, refusal
 
@@ -64,6 +61,10 @@ def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Itera
         left = finding.left_open() if finding.verdict.holds else ()
         yield replace(judgement, warnings=(*judgement.warnings, *left)), True
         return
+    from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS
+    from canon.exercise.diagnose.right_answer import corrected
+    from canon.exercise.report.sentences import feedback
+
     left = min(OUTER_SECONDS, claim.budget - start.since(Worked.now()))
     if left <= 0.1:
         yield judgement, True

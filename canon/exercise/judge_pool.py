@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from canon.exercise.report.judgement import Judgement
+    from canon.process import Child
 
 __all__ = ["JudgePool"]
 
@@ -44,6 +45,8 @@ class JudgePool:
     warm
         Whether the processes judge a small claim as soon as they run, so that the first answer comes as quickly as
         the others.
+    child
+        A judging process that was started before, for the first of the workers.
 
     Examples
     --------
@@ -54,13 +57,20 @@ class JudgePool:
     ('holds', 'fails')
     """
 
-    def __init__(self, workers: int = 2, budget: float | None = None, *, warm: bool = True) -> None:
+    def __init__(
+        self,
+        workers: int = 2,
+        budget: float | None = None,
+        *,
+        warm: bool = True,
+        child: Child | None = None,
+    ) -> None:
         if given_kind(workers, int, "workers") < 1:
             raise ValueError(f"workers should be a number of processes, 1 or more, not {workers!r}")
         if budget is not None and not 0.0 < budget <= 3600.0:
             raise ValueError(f"budget should be a number of seconds up to 3600, not {budget!r}")
         self._budget = budget
-        self._all = tuple(Worker() for _ in range(workers))
+        self._all = (Worker(child), *(Worker() for _ in range(workers - 1)))
         self._idle: queue.SimpleQueue[Worker] = queue.SimpleQueue()
         self._threads = ThreadPoolExecutor(workers)
         self._closed = threading.Event()

@@ -19,7 +19,7 @@ from canon.exercise.question.deadline import PATIENCE
 from canon.exercise.report.judgement import Judgement, invalid
 from canon.exercise.sheet.sheet import Claim
 from canon.frozen_mapping import FrozenMapping
-from canon.process import Child, Ended, Late, serve
+from canon.process import JUDGING, Child, Ended, Late, serve
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,6 +41,11 @@ FEEDBACK = 12.0
 class Worker:
     """A process that judges claims one after the other; a context manager.
 
+    Parameters
+    ----------
+    child
+        A process of :mod:`canon.exercise.judging_process` that was started before; a new one unless given.
+
     Examples
     --------
     >>> with Worker() as worker:
@@ -48,8 +53,8 @@ class Worker:
     'holds'
     """
 
-    def __init__(self) -> None:
-        self._child: Child | None = None
+    def __init__(self, child: Child | None = None) -> None:
+        self._child = child
         self._ready = False
         self.judged = 0
         """Claims that its process was asked."""
@@ -103,11 +108,7 @@ class Worker:
         """Return the process, a new one unless one is running, without waiting until it is ready."""
         if self._child is None or not self._child.usable:
             self.stop()
-            self._child, self._ready, self.judged = (
-                Child("canon.exercise.judging_process", leads=True),
-                False,
-                0,
-            )
+            self._child, self._ready, self.judged = Child(JUDGING, leads=True), False, 0
         return self._child
 
     def _running(self) -> Child:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.report.judgement import Judgement
     from canon.exercise.sheet.sheet import Claim
+    from canon.process import Child
 
 __all__ = ["check", "judged"]
 
@@ -66,7 +67,7 @@ def check(
     return Report(read.title or read.file, tuple(judged(claims, jobs)), claims)
 
 
-def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
+def judged(claims: Sequence[Claim], jobs: int = 1, child: Child | None = None) -> Iterator[Judgement]:
     """Yield the judgement on each claim, in order.
 
     Parameters
@@ -75,6 +76,8 @@ def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
         Claims, such as those of the sheets of a whole class; what is said twice is judged once.
     jobs
         How many processes judge at the same time.
+    child
+        A judging process that was started before, for the first of them.
 
     Examples
     --------
@@ -85,5 +88,5 @@ def judged(claims: Sequence[Claim], jobs: int = 1) -> Iterator[Judgement]:
     """
     if given_kind(jobs, int, "jobs") < 1:
         raise ValueError(f"jobs should be a number of processes, 1 or more, not {jobs!r}")
-    with JudgePool(max(1, min(jobs, len(claims))), warm=False) as pool:
+    with JudgePool(max(1, min(jobs, len(claims))), warm=False, child=child) as pool:
         yield from pool.judged(claims)

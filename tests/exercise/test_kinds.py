@@ -32,7 +32,7 @@ SOURCES = {path.relative_to(ROOM).as_posix(): path.read_text("utf-8") for path i
 def test_what_a_kind_names_exists(name):
     own = KINDS[name]
     arguments = ["reading", "ask"] if own.about else ["reading"]
-    assert list(inspect.signature(judging.JUDGES[name]).parameters) == arguments
+    assert list(inspect.signature(named_function("canon.exercise.judges", own.judge)).parameters) == arguments
     if own.screen:
         assert own.screen in screen_tests.__all__
     assert set(own.rereadings) <= set(rereadings.__all__) - {"read_anew"}
@@ -59,6 +59,20 @@ def test_reading_a_sheet_loads_no_sympy_and_no_judge():
     )
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert told.stdout.strip() == "[]"
+
+
+def test_a_right_answer_loads_no_numpy_no_diagnosis_and_no_judge_that_it_does_not_need():
+    code = (
+        "import sys\n"
+        "from canon.exercise import Claim\n"
+        "from canon.exercise.explained_judgement import judgements\n"
+        "keys = {'lhs': 'sin(x)**2', 'rhs': '1 - cos(x)**2', 'parameters': {'x': 'real'}}\n"
+        "*_, (judgement, _) = judgements(Claim('a', 'equality-only', keys))\n"
+        "loaded = ('numpy', 'canon.exercise.diagnose', 'canon.exercise.judges.canonical')\n"
+        "print(judgement.status, sorted(m for m in sys.modules if m.startswith(loaded)))"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == "holds []"
 
 
 def test_no_other_module_knows_a_kind_by_its_name():
@@ -127,8 +141,6 @@ def with_the_kind_of_the_page(monkeypatch, tmp_path):
         own = Kind(**{**{f: getattr(own, f) for f in Kind.__dataclass_fields__}, **more})
         for holder in (kinds, key_shapes, answer_values, rereadings):
             monkeypatch.setattr(holder, "KINDS", {**KINDS, name: own})
-        found = named_function("canon.exercise.judges", own.judge)
-        monkeypatch.setattr(judging, "JUDGES", {**judging.JUDGES, name: found})
 
     return add
 

@@ -4,8 +4,9 @@ import pytest
 import sympy as sp
 
 from canon import Hamiltonian, Lagrangian, coordinates, vanishes
-from canon.exercise.claim_verdict import JUDGES, examine, judge
+from canon.exercise.claim_verdict import examine, judge
 from canon.exercise.diagnose.right_answer import corrected
+from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.hamilton.symmetry import have_same_equations
@@ -193,7 +194,7 @@ def test_beside_the_kink(kind, keys, key, right, wrong):
 
 
 def test_every_kind_is_tried():
-    assert {c[0] for c in CLAIMS} == set(JUDGES)
+    assert {c[0] for c in CLAIMS} == set(KINDS)
 
 
 def test_a_factor_that_vanishes_on_a_piece_is_no_equation():

@@ -14,7 +14,6 @@ from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING, cast
 
-import numpy as np
 import sympy as sp
 from sympy import Expr, Symbol
 
@@ -198,7 +197,7 @@ def _by_fitting(
         rows += _finite_rows(equations, point)
         if len(rows) >= wanted * len(z):
             break
-    return _rational_fit(np.array(rows)) if len(rows) > len(basis) else None
+    return _rational_fit(rows) if len(rows) > len(basis) else None
 
 
 def _terms(a: Expr) -> list[Expr]:
@@ -248,8 +247,11 @@ def _functions(sources: Sequence[Expr], z: Sequence[Symbol]) -> set[Expr]:
     return found
 
 
-def _rational_fit(table: np.ndarray) -> list[sp.Rational] | None:
+def _rational_fit(rows: Sequence[Sequence[float]]) -> list[sp.Rational] | None:
     """Combine columns to the last one with short rational coefficients, the simplest columns first."""
+    import numpy as np
+
+    table = np.array(rows)
     scale = np.abs(table).max(axis=1, keepdims=True)
     table = table / np.where(scale > 0, scale, 1.0)
     target = table[:, -1]

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, cast, get_args
 
-import numpy as np
 import sympy as sp
 from sympy import Expr, Symbol
 
@@ -27,6 +26,7 @@ from canon.proof.domain.domain import Domain, as_domain
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
 
 __all__ = ["Convention", "Routhian", "routhian"]
@@ -151,6 +151,8 @@ class Routhian:
         ndarray
             Of shape ``(ignorable, times)``.
         """
+        import numpy as np
+
         from canon.expression.graph.graph import Graph
 
         graph = Graph()
