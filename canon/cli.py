@@ -1,4 +1,4 @@
-"""The command line: ``canon check``, ``choose``, ``completion``, ``drift``, ``scene``, ``study``, ``tour``.
+"""The command line: ``canon check``, ``choose``, ``completion``, ``drift``, ``scene``, ``serve``, ``study``, ``tour``.
 
 Every command is a module of :mod:`canon.command` with ``DESCRIPTION``, ``EXAMPLES``, ``add_arguments(parser)``
 and ``run(arguments) -> exit status``; only the one that is asked for is imported.

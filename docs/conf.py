@@ -36,7 +36,7 @@ def homes(package: str) -> dict[str, str]:
 
 
 FRONT_DOOR = homes("canon")
-DOORS = ("mechanics", "flow", "study", "exercise", "expression", "proof")
+DOORS = ("mechanics", "flow", "study", "exercise", "expression", "proof", "serve")
 """Rooms with public names beyond the front door's."""
 ROOM_DOORS = {name: module for room in DOORS for name, module in homes(f"canon.{room}").items()}
 
@@ -92,6 +92,7 @@ SUBJECTS = {
     "study": "Drift, cost and choice",
     "exercise": "Judging answers",
     "plot": "Pictures",
+    "serve": "Over HTTP",
 }
 
 RETURNED = {

@@ -13,7 +13,7 @@ PACKAGE = DOCS.parent / "canon"
 PAGE = DOCS / "architecture.md"
 BEGIN, END = "<!-- rooms: written by docs/rooms.py -->\n", "<!-- end of rooms -->\n"
 ORDER = (
-    "expression", "proof", "mechanics", "kernel", "flow", "scene", "study", "exercise", "plot", "command",
+    "expression", "proof", "mechanics", "kernel", "flow", "scene", "study", "exercise", "plot", "serve", "command",
 )  # fmt: skip
 
 

@@ -37,7 +37,7 @@ def test_the_sheet_of_the_readme_is_judged_as_it_says(tmp_path):
 def test_every_command_of_the_readme_is_understood(capsys):
     """The options exist: with --help behind them, each command ends well."""
     shown = re.findall(r"^\$ canon (.*)$", README, re.MULTILINE)
-    assert len(shown) == 5
+    assert len(shown) == 6
     for line in shown:
         words = shlex.split(line, comments=True)
         assert words[0] in COMMANDS

@@ -6,6 +6,7 @@ COMMANDS = {
     "completion": "print a script that completes commands and scenes on the tab key, in five shells",
     "drift": "run long and measure how the errors of a method grow",
     "scene": "list ready systems; show one's equations, run it, draw it",
+    "serve": "judge claims over HTTP, with a page where people type them",
     "study": "run, resume, export and report studies of many cases, on one machine or many",
     "tour": "judge bundled answers and run a bundled system, in less than half a minute",
 }

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from canon.exercise.report.judgement import Judgement
     from canon.process import Child
 
-__all__ = ["JudgePool"]
+__all__ = ["JudgePool", "said"]
 
 CLAIMS_A_PROCESS = 1_000
 """Claims after which a process is replaced, so that what libraries keep in memory does not grow for ever."""
@@ -89,16 +89,26 @@ class JudgePool:
     ) -> None:
         self.close()
 
+    @property
+    def processes(self) -> tuple[int, ...]:
+        """The numbers by which the system knows the processes that are running."""
+        return tuple(pid for worker in self._all if (pid := worker.pid) is not None)
+
+    @property
+    def started(self) -> int:
+        """How many processes have been started in all: more than run where some were killed or replaced."""
+        return sum(worker.started for worker in self._all)
+
     def judge(self, claim: Claim | Mapping[str, Any]) -> Judgement:
         """Return the judgement on one claim, or on a table of its keys; waits for a process that is idle."""
-        said = claim if isinstance(claim, Claim) else claim_from(dict(claim))
+        read = claim if isinstance(claim, Claim) else claim_from(dict(claim))
         if self._budget is not None:
-            said = replace(said, budget=self._budget)
+            read = replace(read, budget=self._budget)
         worker = self._idle.get()
         try:
             if self._closed.is_set():
                 raise ValueError("the pool is closed: make another one")
-            return worker.judge(said)
+            return worker.judge(read)
         finally:
             self._put_back(worker)
 
@@ -109,11 +119,11 @@ class JudgePool:
 
     def judged(self, claims: Sequence[Claim]) -> Iterator[Judgement]:
         """Yield the judgement on each claim, in order; what is said twice is judged once."""
-        first = {said: claim for claim in reversed(claims) if (said := _said(claim))}
-        running = {said: self._threads.submit(self.judge, claim) for said, claim in reversed(first.items())}
+        first = {said(claim): claim for claim in reversed(claims)}
+        running = {key: self._threads.submit(self.judge, claim) for key, claim in reversed(first.items())}
         try:
             for claim in claims:
-                found = running[_said(claim)].result()
+                found = running[said(claim)].result()
                 title = str(claim.keys.get("title", ""))
                 yield replace(found, id=claim.id, title=title, expect=claim.expect, file=claim.file)
         finally:
@@ -145,9 +155,16 @@ class JudgePool:
         self._idle.put(worker)
 
 
-def _said(claim: Claim) -> str:
-    """Return everything in a claim that matters to its judgement, as text; an ill-formed one is itself only."""
+def said(claim: Claim) -> str:
+    """Return everything in a claim that matters to its judgement, as text; an ill-formed one is itself only.
+
+    Examples
+    --------
+    >>> keys = {"lhs": "1", "rhs": "1"}
+    >>> said(Claim("a", "equality-only", keys)) == said(Claim("b", "equality-only", {**keys, "id": "b"}))
+    True
+    """
     if claim.errors:
         return f"{claim.id}: {claim.errors}"
     keys = {key: value for key, value in claim.keys.items() if key not in _OWN_KEYS}
-    return json.dumps([keys, claim.budget], sort_keys=True, default=str)
+    return json.dumps([claim.kind, keys, claim.budget], sort_keys=True, default=str)

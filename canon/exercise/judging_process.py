@@ -58,6 +58,8 @@ class Worker:
         self._ready = False
         self.judged = 0
         """Claims that its process was asked."""
+        self.started = 0
+        """Processes that it had, one after the other."""
 
     def __enter__(self) -> Worker:
         return self
@@ -66,6 +68,12 @@ class Worker:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.stop()
+
+    @property
+    def pid(self) -> int | None:
+        """The number by which the system knows its process; None where none is running."""
+        child = self._child
+        return child.pid if child is not None and child.usable else None
 
     def judge(self, claim: Claim) -> Judgement:
         """Judge one claim within its budget; never raises for what stands in the claim.
@@ -109,6 +117,7 @@ class Worker:
         if self._child is None or not self._child.usable:
             self.stop()
             self._child, self._ready, self.judged = Child(JUDGING, leads=True), False, 0
+            self.started += 1
         return self._child
 
     def _running(self) -> Child:

@@ -1,0 +1,100 @@
+"""HTTP server: uvicorn around the application, ended by a signal when what is in hand has been answered."""
+
+from __future__ import annotations
+
+import ipaddress
+import signal
+import socket
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import uvicorn
+
+from canon.serve.guarded_responses import LOOPBACK
+from canon.serve.request_log import LOGGER, log_as_json
+from canon.serve.service_limits import Limits
+from canon.serve.web_application import application
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Sequence
+
+__all__ = ["serve"]
+
+BACKLOG = 256
+IDLE = 15
+"""Seconds for which a connection on which nothing is asked stays open."""
+
+
+def serve(
+    host: str = "127.0.0.1",
+    port: int = 8000,
+    limits: Limits | None = None,
+    *,
+    names: Sequence[str] = (),
+    proxy: str = "",
+) -> None:
+    """Answer requests until a signal ends the process.
+
+    Parameters
+    ----------
+    host, port
+        Where to listen: on loopback unless told otherwise; port 0 takes a free one, which the log tells.
+    limits
+        What the service does at most.
+    names
+        Names that it answers to, besides those of loopback where it listens there; any, where it listens elsewhere and
+        none are given.
+    proxy
+        Address of a reverse proxy, whose word on who asks is believed.
+
+    Raises
+    ------
+    OSError
+        Where nothing can listen there.
+    """
+    limits = limits or Limits()
+    listening = _listening(host, port)
+    log_as_json()
+    local = _is_loopback(listening)
+    answers_to = (*LOOPBACK, *names) if local else (*names, *(LOOPBACK if names else ()))
+    config = uvicorn.Config(
+        application(limits, tuple(name.lower() for name in answers_to)),
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        http="h11",
+        ws="none",
+        lifespan="on",
+        limit_concurrency=limits.connections,
+        timeout_keep_alive=IDLE,
+        timeout_graceful_shutdown=int(limits.drain) or 1,
+        h11_max_incomplete_event_size=16_384,
+        proxy_headers=bool(proxy),
+        forwarded_allow_ips=proxy or None,
+    )
+    place = listening.getsockname()
+    with listening, _ended_by_signals():
+        said = {"host": place[0], "port": place[1], "names": answers_to, **vars(limits)}
+        LOGGER.info("listening", extra={"said": said})
+        uvicorn.Server(config).run([listening])
+        LOGGER.info("stopped")
+
+
+def _listening(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    return socket.create_server((host, port), family=family, backlog=BACKLOG)
+
+
+def _is_loopback(listening: socket.socket) -> bool:
+    return ipaddress.ip_address(listening.getsockname()[0]).is_loopback
+
+
+@contextmanager
+def _ended_by_signals() -> Generator[None]:
+    """Let a signal end the server, and not the process: the server repeats it when it has ended."""
+    before = {number: signal.signal(number, lambda *_: None) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
