@@ -58,7 +58,7 @@ class Worker:
         self._ready = False
         self.judged = 0
         """Claims that its process was asked."""
-        self.started = 0
+        self.started = int(child is not None)
         """Processes that it had, one after the other."""
 
     def __enter__(self) -> Worker:
