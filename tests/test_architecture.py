@@ -54,7 +54,18 @@ def test_what_public_functions_return_has_a_page(monkeypatch):
         if inspect.isclass(x) and x.__module__ == m.__name__
     }
     internal = {"Array", "Plan", "Samples", "Task"}
-    rooms = ("expression", "proof", "mechanics", "kernel", "flow", "scene", "study", "exercise", "plot", "serve")
+    rooms = (
+        "expression",
+        "proof",
+        "mechanics",
+        "kernel",
+        "flow",
+        "scene",
+        "study",
+        "exercise",
+        "plot",
+        "serve",
+    )
     doors = {
         name for room in rooms for name in getattr(importlib.import_module(f"canon.{room}"), "__all__", ())
     }
