@@ -43,6 +43,10 @@ def shown(item: object) -> str:
     return text if len(text) <= A_LINE and "Subs(" not in text else "(too long to be shown)"
 
 
+def _is_short(node: object) -> bool:
+    return node is not None and len(written(node)) <= A_LINE
+
+
 def _listed(items: Iterable[object]) -> str:
     return ", ".join(map(shown, items))
 
@@ -85,7 +89,7 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.BRANCH: "{} is another branch of the inverse function: it should be {}",
         Mistake.SIGN_OF: "the sign of {} is wrong",
         Mistake.SYMBOLS_EXCHANGED: lambda node, a, b: (
-            f"{f'in {shown(node)} the symbols ' if node is not None else ''}{a} and {b} should be exchanged"
+            f"{f'in {shown(node)} the symbols ' if _is_short(node) else ''}{a} and {b} should be exchanged"
         ),
         Mistake.DERIVATIVE_NOT_TOTAL: lambda *terms: (
             f"d/dt ∂L/∂q̇ is a total derivative: the terms {_listed(terms)} are missing"

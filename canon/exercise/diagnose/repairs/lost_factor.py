@@ -29,8 +29,11 @@ if TYPE_CHECKING:
 __all__ = ["Monomials"]
 
 MOST_SYMBOLS = 14
-MOST_FACTORS = 9
+MOST_FACTORS = 16
+_TWINS = {sp.sin: sp.cos, sp.cos: sp.sin}
 MOST_EXPONENT = 4
+MOST_ROOT = 3
+"""A factor may hold square and cube roots."""
 MOST_FORGOTTEN = 3
 MOST_SUMS = 2
 _NO_VALUE = (Undefined, NotDecided, Unmodelled, ZeroDivisionError)
@@ -79,6 +82,21 @@ class Monomials:
             return
         yield from (term for term in self._explaining(inside) if not _divides_by_motion(term))
 
+    def of_difference(self, node: Expr, should_be: Mapping[Symbol | None, acb]) -> Iterator[Expr]:
+        """Yield the monomials that a part of the answer lacks, whose right values are known."""
+        now = self.values(node)
+        if None not in should_be or now.keys() != should_be.keys():
+            return
+        missing = {s: v - now[s] for s, v in should_be.items()}
+        yield from (term for term in self._explaining(missing) if not _divides_by_motion(term))
+
+    def values(self, expression: Expr) -> dict[Symbol | None, acb]:
+        """Return the values of an expression at the point, under None, and where each symbol is doubled."""
+        try:
+            return {s: value(expression, {}, memo) for s, memo in self._memos.items()}
+        except _NO_VALUE:
+            return {}
+
     @cached_property
     def _memos(self) -> dict[Symbol | None, dict[sp.Basic, acb]]:
         """The values at the point, under None, and where each symbol is doubled; empty where one has none."""
@@ -115,10 +133,12 @@ class Monomials:
         part = self._part
         whole = sp.Tuple(part.claimed, part.right, *part.through.values())
         found = whole.atoms(AppliedUndef, sp.Derivative, sp.Function) - whole.atoms(*PIECED)
-        functions: list[Expr] = list(found)
-        factors = sorted(
-            [*part.through, *functions], key=lambda f: (not part.claimed.has(f), not f.is_Symbol, str(f))
-        )[:MOST_FACTORS]
+        twins: set[Expr] = {_TWINS[f.func](f.args[0]) for f in found if f.func in _TWINS}
+        functions: list[Expr] = [*sorted(found, key=str), *sorted(twins - found, key=str)]
+        unknown_first = [*reversed([*part.through]), *functions]
+        factors = sorted(unknown_first, key=lambda f: (not part.claimed.has(f), not f.is_Symbol))[
+            :MOST_FACTORS
+        ]
         products = (a * b for i, a in enumerate(factors) for b in factors[i:])
         return [sp.S.One, *factors, *products, *(a * b for a in self._sums for b in (sp.S.One, *factors))]
 
@@ -178,7 +198,7 @@ def _powers(values: Mapping[Symbol | None, acb]) -> Expr | None:
         logarithm = float(ratio.real.log().mid())
         if not abs(logarithm) < MOST_EXPONENT:
             return None
-        exponent = Fraction(logarithm / math.log(2)).limit_denominator(2)
+        exponent = Fraction(logarithm / math.log(2)).limit_denominator(MOST_ROOT)
         exact = acb(2) ** (acb(exponent.numerator) / exponent.denominator)
         if not (ratio - exact).contains(0):
             return None

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import chain, combinations, islice
+from itertools import chain, islice, starmap
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -21,6 +21,7 @@ from sympy.core.function import AppliedUndef
 
 from canon.exercise.diagnose.change import Change, Mistake, rank
 from canon.exercise.diagnose.repairs.lost_factor import Monomials
+from canon.exercise.diagnose.repairs.lost_inside import in_some_terms, symbol_restored, terms_lost_inside
 from canon.exercise.diagnose.repairs.slips import of_one_coefficient, variants
 from canon.expression.symbols.symbol import Momentum, Rate
 from canon.mechanics.algebra.substitution import size, symbols_of
@@ -142,10 +143,11 @@ def _families(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Ite
         _of_all(part, screen),
         _terms_rescaled(part, screen),
         _terms_missing(part, screen, hints),
-        _symbol_restored(part, screen),
+        starmap(Repair, symbol_restored(part, screen)),
         _monomials(part, screen),
         _slips(part),
     )
+    yield _inside(part, screen)
     yield _two_slips(part, hints)
 
 
@@ -173,34 +175,6 @@ def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[Repair]:
     for term in (term for term in hints if not term.is_Add):
         for slip in _slips(part):
             yield Repair(slip.right + term, _missing(term, part), slip.change)
-
-
-def _symbol_restored(part: Part, screen: Screen) -> Iterator[Repair]:
-    """A symbol that some terms have and others lack, such as a mass taken to be one, or an acceleration."""
-    symbols = symbols_of(part.claimed, part.right, *part.through.values())
-    lost = [s for s in part.determined if isinstance(s, Rate) and not part.claimed.has(s)]
-    kept = [s for s in symbols if not isinstance(s, Rate)]
-    for terms in (sp.Add.make_args(part.claimed), sp.Add.make_args(sp.expand(part.claimed))):
-        for symbol in (*lost, *kept):
-            factors = (symbol,) if symbol in lost else (symbol, 1 / symbol, symbol**2, 1 / symbol**2)
-            for group in _groups_without(symbol, terms, part, screen):
-                for factor in factors:
-                    right = sp.Add(*terms) - group + factor * group
-                    yield Repair(right, Change.of(Mistake.FACTOR_MISSING, group, factor, place=part.name))
-
-
-def _groups_without(symbol: Expr, terms: Sequence[Expr], part: Part, screen: Screen) -> Iterator[Expr]:
-    """Yield the sum of all terms that lack a symbol, then those of every two of them."""
-    without = [term for term in terms if not term.has(symbol) and not _is_still(term, part, screen)]
-    if 1 < len(without) <= MOST_TERMS:
-        yield sp.Add(*without)
-    if 2 < len(without) <= MOST_TERMS:
-        yield from (sp.Add(*two) for two in combinations(without, 2))
-
-
-def _is_still(term: Expr, part: Part, screen: Screen) -> bool:
-    """Whether a term holds an acceleration that is zero on the motion, so that no factor of it can be seen."""
-    return term.has(*part.determined) and screen.vanish(term)
 
 
 def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -253,6 +227,14 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
     for term, products in factors:
         for factor in products:
             yield Repair(claimed - term + factor * term, lacking(term, factor).at(name))
+
+
+def _inside(part: Part, screen: Screen) -> Iterator[Repair]:
+    """A term lost in a bracket, a denominator or under a root; a factor that only some terms have."""
+    yield from starmap(Repair, in_some_terms(part, screen))
+    with precision(PRECISION):
+        lost = list(terms_lost_inside(part, Monomials(part, screen.first, screen.memo)))
+    yield from starmap(Repair, lost)
 
 
 def _missing(term: Expr, part: Part) -> Change:
@@ -384,6 +366,18 @@ class Screen:
     def ratio(self, a: Expr, b: Expr) -> Fraction | None:
         """Return the constant a/b if it is a simple rational at every point."""
         return _constant_ratio(self.values(a), self.values(b))
+
+    def quotient(self, right: Expr, rest: Expr, term: Expr) -> Fraction | None:
+        """Return the constant (right − rest)/term if it is a simple rational at every point."""
+        values = [self.values(f) for f in (right, rest, term)]
+        if any(found is None for found in values):
+            return None
+        with precision(PRECISION):
+            pairs = [(a - b, c) for a, b, c in zip(*(found or [] for found in values), strict=True)]
+            known = [(a, c) for a, c in pairs if not (a.contains(0) and c.contains(0))]
+            if len(known) < POINTS - 1:
+                return None
+            return _constant_ratio([a for a, _ in known], [c for _, c in known])
 
     def share_of_residual(self, term: Expr) -> Fraction | None:
         """Return the constant residual/term if it is a simple rational at every point."""

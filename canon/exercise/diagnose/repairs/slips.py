@@ -268,6 +268,17 @@ def _out_of_a_bracket(node: Expr) -> Iterator[tuple[Expr, Change]]:
             for some in combinations(factors, count):
                 product = sp.Mul(*some)
                 yield node - term + term * product, _of(Mistake.FACTOR_MISSING, term, product)
+        yield from _divided_by_a_bracket(node, term, other)
+
+
+def _divided_by_a_bracket(node: Expr, term: Expr, other: Expr) -> Iterator[tuple[Expr, Change]]:
+    """A term that lacks a divisor which another one was reduced by: (a²b² + c)/(2a) written as a b²/2 + c."""
+    number, rest = other.as_coeff_Mul()
+    symbols = [f for f in sp.Mul.make_args(rest) if f.is_Symbol and f.is_positive]
+    for count in range(1, len(symbols) + 1):
+        for some in combinations(symbols, count):
+            factor = number / sp.Mul(*some)
+            yield node - term + term * factor, _of(Mistake.FACTOR_MISSING, term, factor)
 
 
 def _superfluous(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -289,7 +300,7 @@ def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:
         for number in _SHIFTS:
             new = node.func(arguments(node)[0] + number)
             yield new, _of(Mistake.ARGUMENT, node, new)
-            yield node + number, _of(Mistake.NUMBER, node, node + number)
+            yield node + number, _of(Mistake.TERM_MISSING_IN, node, number)
 
 
 def _multiplied(node: Expr, symbols: Sequence[Expr]) -> Iterator[tuple[Expr, Change]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations, product
+from itertools import chain, combinations, islice, product
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -90,7 +90,20 @@ def by_another(node: Expr) -> Iterator[tuple[Expr, Change]]:
 def swapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
     """Two symbols exchanged in one sum."""
     if node.is_Add:
-        for a, b in combinations(symbols_of(node)[:MOST_SWAPPED], 2):
+        symbols = symbols_of(node)
+        few, alike = combinations(symbols[:MOST_SWAPPED], 2), _alike(symbols[MOST_SWAPPED:], symbols)
+        for a, b in chain(few, islice(alike, MOST_SWAPPED)):
             new = slipped(node, {a: b, b: a})
             if new is not None and new != node:
                 yield new, _of(Mistake.SYMBOLS_EXCHANGED, node, a, b)
+
+
+def _alike(symbols: Sequence[Symbol], among: Sequence[Symbol]) -> Iterator[tuple[Symbol, Symbol]]:
+    """Yield pairs of symbols that differ in a figure, as θ1 and θ2, one of them among the first."""
+    for b in symbols:
+        same = (a for a in among if a.name < b.name and _bare(a) == _bare(b))
+        yield from ((a, b) for a in same if type(a) is type(b))
+
+
+def _bare(symbol: Symbol) -> str:
+    return symbol.name.translate(str.maketrans("", "", "0123456789"))
