@@ -58,6 +58,17 @@ def test_interrupted_after_every_part_it_ends_the_same(case):
     assert broken.numbers == whole.numbers
 
 
+def test_a_checkpoint_keeps_what_a_resumed_motion_cannot():
+    """DOP853's next step is nowhere kept: a motion resumed has other bits, a case in parts has not."""
+    case = replace(KEPLER, method=DOP853(), step=None)
+    how = {"method": case.method, "times": np.linspace(0.0, 20.0, 9)}
+    whole = propagate(case.hamiltonian, (0.0, 20.0), case.state, parameters=case.values, **how)
+    how["times"] = how["times"][:5]
+    half = propagate(case.hamiltonian, (0.0, 10.0), case.state, parameters=case.values, **how)
+    assert (half.resume(20.0, samples=4).y != whole.y).any()
+    assert in_legs(case).numbers == advance(case).numbers
+
+
 def test_samples_in_step_with_an_oscillation_do_not_make_it_a_drift():
     """Even samples of this run see an oscillation of a fifth of the run, and a drift of 4.4 standard errors."""
     assert advance(QUARTIC).numbers["verdict"] == "bounded"

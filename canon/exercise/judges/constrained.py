@@ -2,35 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
-from sympy.core.function import AppliedUndef
 
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import equations_missing
 from canon.exercise.question.question import Determines, Part, Question, Same, SameEquations, Tells
-from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.expression.symbols.symbol import acceleration, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import on_manifold
+from canon.mechanics.algebra.jets import jets_of, with_jets
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, solve_affine
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
-from canon.proof.domain.domain import Domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
-
-    from sympy.logic.boolalg import Boolean
 
     from canon.exercise.sheet.reading import Reading
     from canon.mechanics.algebra.constraint_manifold import Branch
     from canon.mechanics.lagrange.lagrangian import Lagrangian
 
-__all__ = ["Bound", "bound_by", "is_one_of", "jets_of", "multiplier_holonomic", "nonholonomic", "with_jets"]
+__all__ = ["bound_by", "is_one_of", "multiplier_holonomic", "nonholonomic"]
 
 MOST_OPERATIONS = 150
 """Size of an answer that is still shown."""
@@ -56,32 +52,10 @@ def nonholonomic(reading: Reading) -> Iterator[Question]:
     yield from _on_every_motion(reading)
 
 
-@dataclass(frozen=True)
-class Bound:
-    """What constraints make of a system.
-
-    Parameters
-    ----------
-    forces
-        Σ λₐ aₐ, one a coordinate.
-    system
-        The equations for accelerations and multipliers: Lagrange's, then the constraints differentiated.
-    manifold
-        What vanishes in allowed positions and velocities.
-    rates
-        The constraints differentiated.
-    """
-
-    forces: tuple[Expr, ...]
-    system: tuple[Expr, ...]
-    manifold: tuple[Expr, ...]
-    rates: tuple[Expr, ...]
-
-
 def bound_by(
     reading: Reading, lagrangian: Lagrangian, constraints: Sequence[Expr], multipliers: Sequence[Symbol]
-) -> Bound:
-    """Return a system under constraints, each f(q, t) or g(q, q̇, t) affine in the velocities, with its multiplier."""
+) -> tuple[ConstrainedLagrangian, list[Symbol]]:
+    """Return a system under constraints f(q, t), or g(q, q̇, t) affine in q̇, and its multipliers in its order."""
     if len(multipliers) != len(constraints):
         reading.fault(
             "multipliers",
@@ -93,20 +67,16 @@ def bound_by(
     pairs = list(zip(constraints, multipliers, strict=True))
     positions, moving = ([pair for pair in pairs if pair[0].has(*v) is some] for some in (False, True))
     bound = ConstrainedLagrangian(lagrangian, [f for f, _ in positions], [g for g, _ in moving])
-    ordered = [x for _, x in (*positions, *moving)]
-    forces = (bound.directions.T * sp.Matrix(ordered)).flat()
-    system = (*bound.equations(ordered)[: len(v)], *bound.differentiated)
-    held = (g if g.has(*v) else time_derivative(g, lagrangian.q, lagrangian.t) for g in constraints)
-    return Bound(tuple(forces), system, (*bound.holonomic, *held), bound.differentiated)
+    return bound, [x for _, x in (*positions, *moving)]
 
 
 def _on_every_motion(reading: Reading) -> Iterator[Question]:
     """Accelerations and multipliers solve  M q̈ + b = Aᵀ λ  and  d(held)/dt = 0;  claims hold on the manifold."""
     q, t, multipliers = reading.symbols("q"), reading.time, reading.symbols("multipliers")
     lagrangian = lagrangian_of(reading)
-    bound = bound_by(reading, lagrangian, reading.equations("constraints"), multipliers)
+    bound, ordered = bound_by(reading, lagrangian, reading.equations("constraints"), multipliers)
     unknowns = (*(acceleration(x) for x in q), *multipliers)
-    system, rates, manifold = bound.system, bound.rates, bound.manifold
+    system, rates, manifold = bound.equations_of_motion(ordered), bound.differentiated, bound.manifold
     claims = reading.equations("claim")
     jets = jets_of((*system, *manifold, *claims), t, reading.domain)
     functions = {symbol: function for function, symbol in jets.items()}
@@ -189,37 +159,3 @@ def _shown(solution: Mapping[Symbol, Expr]) -> tuple[str, ...] | None:
         f"{u} = {sp.cancel(value) if value.is_rational_function() else value}"
         for u, value in solution.items()
     )
-
-
-def with_jets(domain: Domain, jets: Mapping[Expr, Symbol]) -> Domain:
-    """Return a domain with the symbols that stand for functions and derivatives in its conditions."""
-    return Domain(tuple(cast("Boolean", c.xreplace(dict(jets))) for c in domain.conditions), domain.box)
-
-
-def jets_of(expressions: Sequence[Expr], t: Symbol, domain: Domain) -> dict[Expr, Symbol]:
-    """Return a symbol for each arbitrary function and each of its derivatives.
-
-    At one point they are independent of one another, and nothing is differentiated any more. Functions of more than
-    the time are left alone where they occur with different arguments.
-
-    Examples
-    --------
-    >>> from sympy import Function, symbols
-    >>> x, t = symbols("x t", real=True)
-    >>> V = Function("V")(x)
-    >>> jets_of([V + V.diff(x)], t, Domain())
-    {Derivative(V(x), x): Derivative(V(x), x), V(x): V(x)}
-    """
-    everything = (*expressions, *domain.conditions)
-    atoms = set[Expr]().union(*(e.atoms(AppliedUndef, sp.Derivative) for e in everything))
-    places = {atom.expr if isinstance(atom, sp.Derivative) else atom for atom in atoms}
-    named = [str(place.func) for place in places]
-    jets: dict[Expr, Symbol] = {}
-    for atom in sorted(atoms, key=str):
-        function = atom.expr if isinstance(atom, sp.Derivative) else atom
-        plain = all(isinstance(argument, Symbol) for argument in function.args)
-        alone = named.count(str(function.func)) == 1
-        if isinstance(function, AppliedUndef) and (function.args == (t,) or (plain and alone)):
-            positive = {"positive": True} if atom == function and function.is_positive else {}
-            jets[atom] = Symbol(str(atom), real=True, **positive)
-    return jets

@@ -6,31 +6,23 @@ with their values, such as the energy of a start from rest: the motions meant ar
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.judges.constrained import bound_by, is_one_of, jets_of, with_jets
+from canon.exercise.judges.constrained import bound_by, is_one_of
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.implicit_point import refuted_at_a_point
 from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
-from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
-from canon.mechanics.algebra.constraint_manifold import (
-    Branch,
-    EmptyDomainError,
-    check_not_empty,
-    check_whole,
-    inhabited,
-    on_manifold,
-)
-from canon.mechanics.algebra.linear import solve_affine
+from canon.expression.symbols.symbol import velocity
+from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, check_not_empty, on_manifold
 from canon.mechanics.algebra.solve_for_symbol import named
 from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
+from canon.mechanics.reduction.constrained_motion import motions_with_integrals
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 from canon.proof.kinks import vanishes_off_kinks
@@ -40,38 +32,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.sheet.reading import Reading
+    from canon.mechanics.algebra.constraint_manifold import Branch
     from canon.mechanics.lagrange.lagrangian import Lagrangian
+    from canon.mechanics.reduction.constrained_motion import ConstrainedMotion
 
 __all__ = ["leaving_condition", "reaction"]
-
-
-@dataclass(frozen=True)
-class _Motion:
-    """One branch of the constraint manifold, accelerations and multipliers on it, and the forces of constraint.
-
-    ``jets`` are the symbols that stand for arbitrary functions and their derivatives.
-    """
-
-    branch: Branch
-    solution: Mapping[Symbol, Expr]
-    forces: tuple[Expr, ...]
-    jets: Mapping[Expr, Symbol]
-
-    def seen(self, f: Expr) -> Expr:
-        """Return an expression on the motion."""
-        return substitute(exchanged(f, self.jets), {**self.branch.values, **self.solution})
-
-    def part(self, name: str, claimed: Expr, right: Expr, key: str) -> Part:
-        """Return a claimed value beside the right one; what the claim may hold of the motion is put in."""
-        value = exchanged(claimed, self.jets)
-        known = {s: f for s, f in self.solution.items() if value.has(s)}
-        written = {symbol: function for function, symbol in self.jets.items()}
-        return Part(name, value, right, {**self.branch.values, **known}, key, written)
-
-    def of_forces(self, q: Sequence[Symbol], claimed: Sequence[Expr]) -> Iterator[Part]:
-        """Yield the claimed forces of constraint; none where none is claimed."""
-        for i, (x, value, force) in enumerate(zip(q, claimed, self.forces, strict=False)):
-            yield self.part(f"the force of constraint on {x}", value, self.seen(force), f"force[{i}]")
 
 
 def reaction(reading: Reading) -> Iterator[Question]:
@@ -85,20 +50,37 @@ def reaction(reading: Reading) -> Iterator[Question]:
     values = reading.table("values") if reading.has("values") else {}
     claimed = reading.expressions("force", like="q") if reading.has("force") else ()
     for motion in _motions(reading, constraints, multipliers, (*values.values(), *claimed)):
-        parts = (*_of_multipliers(reading, motion, values), *motion.of_forces(q, claimed))
+        parts = (*_of_multipliers(reading, motion, values), *_of_forces(motion, q, claimed))
         yield Same(parts, motion.branch.domain, lambda parts=parts: _answer(parts))
     if not claimed:
         yield Determines(lambda: stay_open([s for s in multipliers if s.name not in values]))
 
 
-def _of_multipliers(reading: Reading, motion: _Motion, values: Mapping[str, Expr]) -> Iterator[Part]:
+def _part(motion: ConstrainedMotion, name: str, claimed: Expr, right: Expr, key: str) -> Part:
+    """Return a claimed value beside the right one; what the claim may hold of the motion is put in."""
+    value = exchanged(claimed, motion.jets)
+    known = {s: f for s, f in motion.solution.items() if value.has(s)}
+    written = {symbol: function for function, symbol in motion.jets.items()}
+    return Part(name, value, right, {**motion.branch.values, **known}, key, written)
+
+
+def _of_forces(motion: ConstrainedMotion, q: Sequence[Symbol], claimed: Sequence[Expr]) -> Iterator[Part]:
+    """Yield the claimed forces of constraint; none where none is claimed."""
+    for i, (x, value) in enumerate(zip(q, claimed, strict=False)):
+        force = motion.along(motion.forces[i])
+        yield _part(motion, f"the force of constraint on {x}", value, force, f"force[{i}]")
+
+
+def _of_multipliers(
+    reading: Reading, motion: ConstrainedMotion, values: Mapping[str, Expr]
+) -> Iterator[Part]:
     names = {s.name: s for s in reading.symbols("multipliers")}
     for name, value in values.items():
         if name not in names:
             reading.fault(f"values.{name}", "is not among the multipliers")
         if value.has(*names.values()):
             reading.fault(f"values.{name}", "should be in coordinates, velocities and time only")
-        yield motion.part(name, value, motion.solution[names[name]], f"values.{name}")
+        yield _part(motion, name, value, motion.solution[names[name]], f"values.{name}")
 
 
 def leaving_condition(reading: Reading) -> Iterator[Question]:
@@ -112,7 +94,7 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
     deadline = Deadline.after(0.8 * reading.claim.budget)
     for motion in _motions(reading, (contact, *others), multipliers, (leaves,)):
         force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
-        claimed = motion.seen(leaves)
+        claimed = motion.along(leaves)
         if claimed == 0 or vanishes_off_kinks(claimed, motion.branch.domain, budget=1.0).holds:
             yield fails(TELLING, "this says nothing about the motion: it holds all along the contact")
             return
@@ -124,9 +106,11 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
 
 def _force_is_the_rest(reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]) -> bool:
     """Whether the claim only says that Σ λ a is d/dt ∂L/∂q̇ − ∂L/∂q − Q, which needs no solution, for any L."""
-    bound = bound_by(reading, _lagrangian(reading), constraints, multipliers)
-    claimed = reading.expressions("force", like="q")
-    return all(is_one_of(f - force, bound.system) for f, force in zip(claimed, bound.forces, strict=True))
+    bound, ordered = bound_by(reading, _lagrangian(reading), constraints, multipliers)
+    claimed, system = reading.expressions("force", like="q"), bound.equations_of_motion(ordered)
+    return all(
+        is_one_of(f - force, system) for f, force in zip(claimed, bound.reactions_of(ordered), strict=True)
+    )
 
 
 def _lagrangian(reading: Reading) -> Lagrangian:
@@ -136,55 +120,24 @@ def _lagrangian(reading: Reading) -> Lagrangian:
 
 def _motions(
     reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol], claims: Sequence[Expr]
-) -> Iterator[_Motion]:
-    q, t = reading.symbols("q"), reading.time
-    v, a = tuple(velocity(x) for x in q), tuple(acceleration(x) for x in q)
-    bound = bound_by(reading, _lagrangian(reading), constraints, multipliers)
+) -> Iterator[ConstrainedMotion]:
+    """Yield the motions that are meant; those that do not keep "integrals" are refused, as no whole motion is meant."""
     integrals = reading.equations("integrals") if reading.has("integrals") else ()
-    rates = [time_derivative(f, q, t) for f in integrals]
-    jets = jets_of((*bound.system, *bound.manifold, *integrals, *rates, *claims), t, reading.domain)
-    held_at, integrals, forces = (
-        tuple(exchanged(f, jets) for f in some) for some in (bound.manifold, integrals, bound.forces)
-    )
-    domain = with_jets(reading.domain, jets)
-    check_whole([*(exchanged(f, jets) for f in constraints), *integrals], v, domain)
-    for branch in inhabited(_with_integrals(on_manifold(held_at, domain, (t,), v), integrals, v, t)):
-        here = [substitute(exchanged(e, jets), branch.values) for e in bound.system]
-        motion = _Motion(branch, solve_affine(here, (*a, *multipliers), branch.domain), forces, jets)
-        _check_constant(reading, rates, motion)
+    bound, ordered = bound_by(reading, _lagrangian(reading), constraints, multipliers)
+    for motion in motions_with_integrals(bound, integrals, ordered, reading.domain, beside=claims):
+        for i, rate in enumerate(motion.rates):
+            part = Part("rate", rate)
+            kept = decide(Same((part,), motion.branch.domain), Deadline.after(reading.claim.budget / 4))
+            if kept.fails:
+                reading.fault(
+                    f"integrals[{i}]", "is not constant along the motion, so no whole motion satisfies it"
+                )
+            if kept.undecided:
+                raise Undecided(
+                    f"whether integrals[{i}] is constant along the motion was not decided; "
+                    "give a larger budget, or narrow the domain"
+                )
         yield motion
-
-
-def _with_integrals(
-    branches: Sequence[Branch], integrals: Sequence[Expr], v: Sequence[Symbol], t: Symbol
-) -> Iterator[Branch]:
-    """Restrict the manifold to given values of first integrals, solved for velocities where that can be done."""
-    for branch in branches:
-        here = [substitute(f, branch.values) for f in integrals]
-        others = [s for s in symbols_of(*here) if s not in v]
-        try:
-            parts = on_manifold(here, branch.domain, (t, *others), v)
-        except Undecided:
-            parts = on_manifold(here, branch.domain, (t,), v)
-        for part in parts:
-            values = {s: substitute(f, part.values) for s, f in branch.values.items()}
-            yield Branch({**values, **part.values}, part.domain)
-
-
-def _check_constant(reading: Reading, rates: Sequence[Expr], motion: _Motion) -> None:
-    """Refuse "integrals" that a motion does not keep: no whole motion would be meant."""
-    for i, rate in enumerate(rates):
-        part = Part("rate", motion.seen(rate))
-        kept = decide(Same((part,), motion.branch.domain), Deadline.after(reading.claim.budget / 4))
-        if kept.fails:
-            reading.fault(
-                f"integrals[{i}]", "is not constant along the motion, so no whole motion satisfies it"
-            )
-        if kept.undecided:
-            raise Undecided(
-                f"whether integrals[{i}] is constant along the motion was not decided; "
-                "give a larger budget, or narrow the domain"
-            )
 
 
 def _answer(parts: Sequence[Part]) -> tuple[str, ...]:

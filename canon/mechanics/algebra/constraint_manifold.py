@@ -16,7 +16,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import velocity
-from canon.mechanics.algebra.solve_for_symbol import Root, real_solutions
+from canon.mechanics.algebra.solve_for_symbol import real_solutions
 from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.proof.analytic import proved_sign
 from canon.proof.definedness.definedness import lack_of_value
@@ -26,11 +26,14 @@ from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.rungs.ladder import is_empty
 from canon.proof.trees.polynomial import polynomial_factors
+from canon.proof.trees.polynomial_roots import is_binomial, polynomial_in, real_roots
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sympy.logic.boolalg import Boolean
+
+    from canon.proof.trees.polynomial_roots import Root
 
 __all__ = [
     "Branch",
@@ -313,40 +316,14 @@ def _solutions(
 
 
 def _of_polynomial_in(c: Expr, symbol: Symbol, wanted: int) -> Iterator[_Solution]:
-    try:
-        poly = sp.Poly(c, symbol)
-    except sp.PolynomialError:
+    poly = polynomial_in(c, symbol)
+    single = poly is not None and bool(symbol.is_positive) and is_binomial(poly)
+    if poly is None or (poly.degree() > 2 and not single):
         return
-    if not any(coefficient.has(symbol) for coefficient in poly.all_coeffs()):
-        solution = _of_polynomial(poly, symbol, wanted)
-        if solution is not None:
-            yield solution
-
-
-def _of_polynomial(poly: sp.Poly, symbol: Symbol, wanted: int) -> _Solution | None:
-    terms = {power: coefficient for (power,), coefficient in poly.terms()}
-    top = poly.degree()
-    lead = terms[top]
-    generic = 0 if lead.is_nonzero or lead.is_positive or lead.is_negative else 2
-    size = int(sp.count_ops(lead))
-    certain = generic == 0
-    if top == 1:
-        rest = terms.get(0, sp.S.Zero)
-        cost = (generic, 10 * wanted + size)
-        return _Solution(symbol, (Root(-rest / lead),), cost, certain, (rest, lead))
-    if set(terms) <= {0, top}:
-        power = -terms.get(0, sp.S.Zero) / lead
-        if symbol.is_positive:
-            root = power ** sp.Rational(1, top)
-            return _Solution(symbol, (Root(root),), (generic + 1, 10 * wanted + size), certain)
-        if top == 2:
-            roots = tuple(Root(sign * sp.sqrt(power), (power,)) for sign in (1, -1))
-            return _Solution(symbol, roots, (generic + 4, 10 * wanted + size), certain)
-    if top == 2:
-        b, c = terms.get(1, sp.S.Zero), terms.get(0, sp.S.Zero)
-        discriminant = b**2 - 4 * lead * c
-        roots = tuple(
-            Root((-b + sign * sp.sqrt(discriminant)) / (2 * lead), (discriminant,)) for sign in (1, -1)
-        )
-        return _Solution(symbol, roots, (generic + 5, 10 * wanted + size), certain)
-    return None
+    lead = cast("Expr", poly.LC())
+    certain = bool(lead.is_nonzero or lead.is_positive or lead.is_negative)
+    linear = poly.degree() == 1
+    kind = 0 if linear else 1 if single else 4 if is_binomial(poly) else 5
+    cost = (kind + (0 if certain else 2), 10 * wanted + int(sp.count_ops(lead)))
+    quotient = (cast("Expr", poly.nth(0)), lead) if linear else None
+    yield _Solution(symbol, tuple(real_roots(poly, positive=single) or ()), cost, certain, quotient)

@@ -12,11 +12,12 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.mechanics.algebra.substitution import exchanged, size
+from canon.proof.trees.polynomial_roots import low_degree_roots
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-__all__ = ["generator_values", "low_degree_roots"]
+__all__ = ["generator_values"]
 
 
 def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, tuple[Expr, ...]]]:
@@ -81,32 +82,6 @@ def _relation(kernel: Expr, name: Symbol, kept: Expr, u: Symbol, names: Mapping[
     if isinstance(kept_exponent, sp.Rational) and kept_base == kernel and kept_exponent.p == 1:
         return name - u**kept_exponent.q
     return None
-
-
-def low_degree_roots(polynomial: Expr, u: Symbol) -> list[tuple[Expr, tuple[Expr, ...]]]:
-    """Return the roots in u of factors of low degree, each with the expressions whose signs tell it."""
-    if not polynomial.is_polynomial(u):
-        return []
-    poly = sp.Poly(polynomial, u)
-    factors = [poly] if poly.degree() <= 2 else [f for f, _ in poly.factor_list()[1]]
-    roots: list[tuple[Expr, tuple[Expr, ...]]] = []
-    for factor in factors:
-        coefficients = factor.all_coeffs()
-        if len(coefficients) == 2:
-            roots.append((-coefficients[1] / coefficients[0], ()))
-        elif len(coefficients) > 2 and all(c == 0 for c in coefficients[1:-1]):
-            root = sp.root(-coefficients[-1] / coefficients[0], len(coefficients) - 1)
-            roots.extend([(cast("Expr", root), (u,)), (cast("Expr", -root), (u,))])
-        elif len(coefficients) == 3:
-            a, b, c = coefficients
-            half = sp.sqrt(sp.factor(b**2 - 4 * a * c))
-            slope = 2 * a * u + b
-            roots.extend([((-b + half) / (2 * a), (slope,)), ((-b - half) / (2 * a), (slope,))])
-        elif len(coefficients) == 5 and all(c == 0 for c in coefficients[1::2]):
-            for square, signs in low_degree_roots(exchanged(factor.as_expr(), {u**4: u**2, u**2: u}), u):
-                told = (u, *(exchanged(sign, {u: u**2}) for sign in signs))
-                roots.extend([(sp.sqrt(square), told), (-sp.sqrt(square), told)])
-    return roots
 
 
 def _kernels(f: Expr, x: Symbol) -> set[Expr]:

@@ -8,7 +8,6 @@ for itself.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -17,6 +16,7 @@ from sympy import Expr, Symbol
 from canon.mechanics.algebra.substitution import exchanged, symbols_of
 from canon.proof.domain.reality import certainly_real
 from canon.proof.trees.polynomial import polynomial_factors
+from canon.proof.trees.polynomial_roots import Root, polynomial_in, real_roots
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
@@ -24,25 +24,13 @@ if TYPE_CHECKING:
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Root", "named", "polynomial_roots", "real_solutions"]
+__all__ = ["named", "real_solutions"]
 
 MOST_LAYERS = 4
 MOST_TURNS = 24
 """Whole turns of a bounded angle that are told apart."""
 SLACK = 1e-9
 """What is left to rounding at the bounds of an angle: a solution too many is taken away by the domain."""
-
-
-@dataclass(frozen=True)
-class Root:
-    """A value, and what must not be negative for it."""
-
-    value: Expr
-    conditions: tuple[Expr, ...] = ()
-
-    def inside(self, conditions: tuple[Expr, ...]) -> Root:
-        """Return the root with conditions that were met before."""
-        return Root(self.value, tuple(dict.fromkeys((*conditions, *self.conditions))))
 
 
 def real_solutions(equation: Expr, symbol: Symbol, domain: Domain) -> list[Root] | None:
@@ -72,39 +60,11 @@ def real_solutions(equation: Expr, symbol: Symbol, domain: Domain) -> list[Root]
     return [told for root in found for told in _turns_told_apart(root, symbol, domain)]
 
 
-def polynomial_roots(equation: Expr, unknown: Expr) -> list[Root] | None:
-    """Return the real roots of a polynomial in one symbol or function; None where they are not written in roots.
-
-    Where the leading coefficient vanishes they are limits of these.
-
-    Examples
-    --------
-    >>> x, a = sp.symbols("x a", real=True)
-    >>> polynomial_roots(x**2 - a, x)
-    [Root(value=sqrt(a), conditions=(4*a,)), Root(value=-sqrt(a), conditions=(4*a,))]
-    """
+def _polynomial_roots(equation: Expr, unknown: Expr) -> list[Root] | None:
+    """Return the real roots of a polynomial in one symbol or function; None where they are not written in roots."""
     x = sp.Dummy("x", real=True)
-    try:
-        poly = sp.Poly(exchanged(equation, {unknown: x}), x)
-    except sp.PolynomialError:
-        return None
-    if any(c.has(x) for c in poly.all_coeffs()) or poly.degree() < 1:
-        return None
-    terms = {power: c for (power,), c in poly.terms()}
-    lead, top = terms[poly.degree()], poly.degree()
-    if top == 1:
-        return [Root(-terms.get(0, sp.S.Zero) / lead)]
-    if top == 2:
-        b, c = terms.get(1, sp.S.Zero), terms.get(0, sp.S.Zero)
-        discriminant = sp.expand(b**2 - 4 * lead * c)
-        return [Root((-b + sign * sp.sqrt(discriminant)) / (2 * lead), (discriminant,)) for sign in (1, -1)]
-    if set(terms) <= {0, top}:
-        power = -terms.get(0, sp.S.Zero) / lead
-        if top % 2:
-            return [Root(sp.real_root(power, top))] if power.is_number else None
-        root = power ** sp.Rational(1, top)
-        return [Root(root, (power,)), Root(-root, (power,))]
-    return None
+    poly = polynomial_in(exchanged(equation, {unknown: x}), x)
+    return None if poly is None else real_roots(poly)
 
 
 def named(value: Expr) -> Expr:
@@ -143,7 +103,7 @@ def _of_factor(factor: Expr, symbol: Symbol, layers: int) -> list[Root] | None:
     if len(kernels) != 1:
         return None
     (kernel,) = kernels
-    roots = polynomial_roots(factor, kernel)
+    roots = _polynomial_roots(factor, kernel)
     if roots is None or kernel == symbol:
         return roots
     found: list[Root] = []
@@ -200,7 +160,7 @@ def _by_half_angle(factor: Expr, kernels: list[Expr], symbol: Symbol, layers: in
     numerator = sp.numer(sp.together(exchanged(factor, values)))
     found: list[Root] = []
     for part, _ in polynomial_factors(numerator):
-        roots = polynomial_roots(part, tangent) if part.has(tangent) else []
+        roots = _polynomial_roots(part, tangent) if part.has(tangent) else []
         if roots is None:
             return None
         for root in roots:

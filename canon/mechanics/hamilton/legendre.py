@@ -8,9 +8,9 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, is_regular, solve
-from canon.mechanics.algebra.single_equation import low_degree_roots
 from canon.mechanics.algebra.substitution import entry, exchanged, size, substitute
 from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.trees.polynomial_roots import low_degree_roots
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -111,6 +111,12 @@ class ConstrainedLagrangian:
         t = self.lagrangian.t
         return (*(f.diff(t) for f in self.holonomic), *(exchanged(g, at_rest) for g in self.nonholonomic))
 
+    @cached_property
+    def manifold(self) -> tuple[Expr, ...]:
+        """What vanishes in every allowed position and velocity: f, df/dt and g."""
+        q, t = self.lagrangian.q, self.lagrangian.t
+        return (*self.holonomic, *(time_derivative(f, q, t) for f in self.holonomic), *self.nonholonomic)
+
     @property
     def rates(self) -> tuple[Expr, ...]:
         """The constraints on the velocities, each A q̇ + a₀ = 0."""
@@ -152,11 +158,21 @@ class ConstrainedLagrangian:
     @cached_property
     def reactions(self) -> tuple[Expr, ...]:
         """The generalized forces of constraint Σ λₐ aₐ, one a coordinate."""
+        return self.reactions_of(self.multipliers)
+
+    def reactions_of(self, multipliers: Sequence[Expr]) -> tuple[Expr, ...]:
+        """Return Σ λₐ aₐ with these multipliers, holonomic constraints first."""
         A = self.directions
         return tuple(
-            sp.Add(*(entry(A, a, i) * factor for a, factor in enumerate(self.multipliers)))
-            for i in range(A.cols)
+            sp.Add(*(entry(A, a, i) * factor for a, factor in enumerate(multipliers))) for i in range(A.cols)
         )
+
+    def equations_of_motion(self, multipliers: Sequence[Symbol]) -> tuple[Expr, ...]:
+        """Return Lagrange's equations with these multipliers, then the constraints differentiated, each = 0.
+
+        They are linear in the accelerations and the multipliers, and determine them.
+        """
+        return (*self.equations(multipliers)[: len(self.lagrangian.q)], *self.differentiated)
 
     def equations(self, multipliers: Sequence[Symbol]) -> tuple[Expr, ...]:
         """Return Lagrange's equations with these symbols as multipliers, then the constraints, each = 0."""

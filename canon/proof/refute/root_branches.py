@@ -12,6 +12,7 @@ from canon.proof.domain.domain import Domain
 from canon.proof.domain.reality import certainly_real
 from canon.proof.refute.refute import Search, look_for_counterexample
 from canon.proof.rungs.cases import eliminations, under_derivatives, without_symbol
+from canon.proof.trees.polynomial_roots import polynomial_in, real_roots
 from canon.proof.trees.replacement import NoValue, replaced
 from canon.proof.trees.sympy_types import by_name
 
@@ -93,19 +94,14 @@ def _one_less(expr: Expr, domain: Domain) -> Iterator[tuple[Symbol, Expr, Domain
 
 def _roots(gap: Expr, s: Symbol, domain: Domain, condition: Boolean) -> Iterator[tuple[Symbol, Expr, Domain]]:
     """Yield the real roots of an equality of degree two in one symbol, where its discriminant is not negative."""
-    try:
-        poly = sp.Poly(gap, s)
-    except sp.PolynomialError:
-        return
-    if poly.degree() != 2 or any(c.has(s) for c in poly.all_coeffs()):
+    poly = polynomial_in(gap, s)
+    if poly is None or poly.degree() != 2:
         return
     a, b, c = poly.all_coeffs()
-    discriminant = sp.expand(b**2 - 4 * a * c)
-    if not (a.is_number and certainly_real(b) and certainly_real(discriminant)):
+    if not (a.is_number and certainly_real(a) and certainly_real(b) and certainly_real(b**2 - 4 * a * c)):
         return
-    for sign in (1, -1):
-        solution = (-b + sign * sp.sqrt(discriminant)) / (2 * a)
-        narrowed = without_symbol(domain, condition, s, solution)
-        real = cast("Boolean", sp.Ge(discriminant, 0))
+    for root in real_roots(poly) or ():
+        narrowed = without_symbol(domain, condition, s, root.value)
+        real = cast("Boolean", sp.Ge(root.conditions[0], 0))
         if narrowed is not None and real != sp.false:
-            yield s, solution, Domain((*narrowed.conditions, real), narrowed.box)
+            yield s, root.value, Domain((*narrowed.conditions, real), narrowed.box)

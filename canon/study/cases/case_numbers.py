@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.study.energy_drift.drift import judged_series
+from canon.study.energy_drift.drift import judged
 from canon.study.energy_drift.envelope import envelope_of
+from canon.study.energy_drift.error_series import series_of_parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,9 +36,9 @@ def judged_energy(t: Array, change: Array, energy: float, steps: int, precision:
         Of the run: what round-off is expected of it.
     """
     relative = energy != 0.0
-    error = change / (abs(energy) if relative else 1.0)
-    found = judged_series(t, error, steps, precision, relative=relative)
-    curve = envelope_of(t, error, CURVE)
+    series = series_of_parts(t, change, abs(energy) if relative else 1.0, steps, precision, relative=relative)
+    found = judged(series)
+    curve = envelope_of(t, series.error, CURVE)
     return {
         **_numbers(found),
         "relative": relative,
@@ -50,8 +51,8 @@ def judged_observable(
     t: Array, change: Sequence[float], of: Observable, steps: int, precision: str
 ) -> dict[str, Any]:
     """Return the same for another observable, without curve and means."""
-    found = judged_series(t, np.array(change) / of.unit, steps, precision, relative=of.relative)
-    return {**_numbers(found), "relative": of.relative}
+    series = series_of_parts(t, np.array(change), of.unit, steps, precision, relative=of.relative)
+    return {**_numbers(judged(series)), "relative": of.relative}
 
 
 def _numbers(found: Drift) -> dict[str, Any]:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
-from canon.flow.method.number_formats import unit_round_off
 from canon.flow.trajectory import Trajectory
 from canon.study.energy_drift.block_means import WIDTH, Blocks, block_means
 from canon.study.energy_drift.drift_verdict import Drift, Growth
-from canon.study.energy_drift.error_series import ENERGY, ErrorSeries, error_series
+from canon.study.energy_drift.error_series import ErrorSeries, error_series
 from canon.study.energy_drift.growth import (
     Exponent,
     RandomWalk,
@@ -23,13 +21,13 @@ from canon.study.energy_drift.growth import (
     slope_of,
     walk_of,
 )
+from canon.study.motion.observables import ENERGY
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from canon.array import Array
 
-__all__ = ["FEWEST", "Drift", "Growth", "drift", "judged_series"]
+__all__ = ["FEWEST", "Drift", "Growth", "drift", "judged"]
 
 WINDOWS = 32
 """Windows from which slopes and walks are found."""
@@ -174,10 +172,7 @@ def drift(
     ('bounded', 'truncation')
     """
     if isinstance(t, Trajectory):
-        series = error_series(t, observable, orbit)
-        times, values = _checked(series.t, series.error)
-        found = _drift(times, values, series.walk, series.resolution, diverged, false_alarm)
-        return _of_motion(found, series)
+        return judged(error_series(t, observable, orbit), diverged, false_alarm)
     if error is None:
         raise ValueError(
             "drift(motion) takes a motion that propagate returned; of a series give times and errors"
@@ -185,20 +180,19 @@ def drift(
     return _drift(*_checked(t, error), roundoff, resolution, diverged, false_alarm)
 
 
-def judged_series(t: Array, error: Array, steps: int, precision: str, *, relative: bool) -> Drift:
-    """Judge an error series whose run's steps and precision tell what rounding would do to it.
+def judged(series: ErrorSeries, diverged: float = 1.0, false_alarm: float = 0.01) -> Drift:
+    """Judge an error series by what is known of its run; of motions, rows of drift studies and stored cases alike.
 
     Parameters
     ----------
-    t, error
+    series
+        The series, with what rounding would do to it.
+    diverged, false_alarm
         As :func:`drift` takes them.
-    steps, precision
-        Of the run.
-    relative
-        Whether the error is relative; what rounding does to another is not known.
     """
-    unit = unit_round_off(precision)
-    return drift(t, error, roundoff=unit * math.sqrt(steps) if relative else None, resolution=unit)
+    times, values = _checked(series.t, series.error)
+    found = _drift(times, values, series.walk, series.resolution, diverged, false_alarm)
+    return _of_motion(found, series) if series.way else found
 
 
 def _drift(
@@ -385,6 +379,8 @@ def _of_motion(found: Drift, series: ErrorSeries) -> Drift:
     Rounding at random walks like √n, rounding always to one side drifts like n; what is beyond both is truncation. A
     drift between the two may be either.
     """
+    if series.walk is None:
+        return replace(found, bound=series.largest, way=series.way)
     cause, reason = "", found.reason
     reach = BEYOND_ROUND_OFF * series.walk
     if found.verdict is Growth.SECULAR and not series.truncated:

@@ -10,7 +10,8 @@ import numpy as np
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.setting import Setting
 from canon.flow.request import Request
-from canon.study.energy_drift.drift import Growth, judged_series
+from canon.study.energy_drift.drift import Growth, judged
+from canon.study.energy_drift.error_series import error_series
 from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, expressions_of, tangent_of
 from canon.study.motion.quiet_run import run_quietly
 
@@ -172,30 +173,17 @@ def drift_rows(
 
 
 def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftRow:
-    if observable.name == ENERGY:
-        relative, unit = found.relative, np.abs(found.energy[0]) if found.relative else 1.0
-        moving = (
-            found.record.moving is not None
-        )  # its energy changes by the work of forces, its balance should not
-        change = found.energy_error * unit if moving or not found.autonomous else found.energy_change
-    else:
-        relative, unit, change = observable.relative, observable.unit, found.changes[observable.name]
-    t, error, largest = found.t, change / unit, np.abs(change / unit).max(axis=0)
-    if found.statistics:
-        seen = found.statistics[observable.name]
-        t, error, largest = (t[1:] + t[:-1]) / 2.0, seen.mean / unit, (seen.largest / unit).max(axis=0)
-    judged = [
-        replace(judged_series(t, series, found.steps, found.precision, relative=relative), bound=float(bound))
-        for series, bound in zip(np.atleast_2d(error.T), np.atleast_1d(largest), strict=True)
-    ]
-    worst = max(range(len(judged)), key=lambda k: (SEVERITY.index(judged[k].verdict), judged[k].bound))
+    orbits = range(found.y.shape[2]) if found.y.ndim == 3 else (None,)
+    errors = [error_series(found, observable, orbit) for orbit in orbits]
+    drifts = [judged(series) for series in errors]
+    worst = max(range(len(drifts)), key=lambda k: (SEVERITY.index(drifts[k].verdict), drifts[k].bound))
     return DriftRow(
         method=found.method,
         step=found.step,
-        t=t,
-        error=np.atleast_2d(error.T)[worst],
-        relative=relative,
-        drift=judged[worst],
+        t=errors[worst].t,
+        error=errors[worst].error,
+        relative=errors[worst].relative,
+        drift=drifts[worst],
         steps=found.steps,
         evaluations=found.evaluations,
         cpu_seconds=seconds,
@@ -203,7 +191,7 @@ def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftR
         precision=found.precision,
         final=found.final if found.final.ndim == 1 else found.final[:, worst],
         observable=observable.name,
-        orbits=tuple(judged) if len(judged) > 1 else (),
+        orbits=tuple(drifts) if len(drifts) > 1 else (),
     )
 
 

@@ -10,14 +10,13 @@ import numpy as np
 
 from canon.expression.graph.number_systems import FLOAT64
 from canon.flow.method.number_formats import unit_round_off
+from canon.study.motion.observables import ENERGY, Observable
 
 if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.trajectory import Trajectory
 
-__all__ = ["ENERGY", "ErrorSeries", "error_series"]
-
-ENERGY = "energy"
+__all__ = ["ErrorSeries", "error_series", "series_of_parts"]
 
 FAR_ABOVE = 1e3
 """A tolerance so many times above the unit of rounding makes truncation the larger error of a step."""
@@ -38,7 +37,8 @@ class ErrorSeries:
         Largest size of the error met, between samples too where it was followed inside the loop.
     walk
         Distance that rounding at random makes it walk in the root mean square: u·√n, with u the unit of rounding and n
-        the number of steps, times the size of the terms in which the quantity is linear, Σ|y ∂I/∂y|.
+        the number of steps, times the size of the terms in which the quantity is linear, Σ|y ∂I/∂y|; None where it is
+        not known, as of a quantity that begins at zero.
     bias
         Distance that rounding always to one side may take it: u·n times the same.
     resolution
@@ -46,20 +46,46 @@ class ErrorSeries:
     truncated
         Whether a tolerance far above the unit of rounding was asked for: what is beyond a walk is then truncation.
     way
-        Method, step or tolerance, and precision, in words.
+        Method, step or tolerance, and precision, in words; empty where the motion itself is not at hand.
+    relative
+        Whether the error is relative to the quantity, or to its terms.
     """
 
     t: Array
     error: Array
     largest: float
-    walk: float
+    walk: float | None
     bias: float
     resolution: float
-    truncated: bool
-    way: str
+    truncated: bool = False
+    way: str = ""
+    relative: bool = True
 
 
-def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None = None) -> ErrorSeries:
+def series_of_parts(
+    t: Array, change: Array, unit: float, steps: int, precision: str, *, relative: bool
+) -> ErrorSeries:
+    """Return the error series of a run whose samples alone were kept, part by part.
+
+    Parameters
+    ----------
+    t, change
+        Times since the start, and changes since then, shape (times,).
+    unit
+        What the changes are divided by.
+    steps, precision
+        Of the run.
+    relative
+        Whether the error is relative; what rounding does to another is not known.
+    """
+    error, u = change / unit, unit_round_off(precision)
+    walk = u * math.sqrt(steps) if relative else None
+    return ErrorSeries(t, error, float(np.abs(error).max()), walk, u * steps, u, relative=relative)
+
+
+def error_series(
+    motion: Trajectory, observable: str | Observable = ENERGY, orbit: int | None = None
+) -> ErrorSeries:
     """Return the error of the energy or an observable along a motion.
 
     Parameters
@@ -67,7 +93,8 @@ def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None
     motion
         A motion that :func:`canon.flow.propagation.propagate` returned.
     observable
-        ``"energy"``, or one of the observables that the motion was asked to follow.
+        ``"energy"``, or one of the observables that the motion was asked to follow; one of a study brings the unit of
+        its error, which is else its size at the start.
     orbit
         Which of many orbits.
 
@@ -88,29 +115,34 @@ def error_series(motion: Trajectory, observable: str = ENERGY, orbit: int | None
     >>> series.way, bool(series.largest > 1e6 * series.walk)
     ('verlet, step 0.1, compensated', True)
     """
-    change, at_start = _followed(motion, observable)
+    name = observable if isinstance(observable, str) else observable.name
+    change, at_start = _followed(motion, name)
     many = motion.y.ndim == 3
     if many and orbit is None:
         raise ValueError(
             f"the motion has {motion.y.shape[2]} orbits: say which one to judge, orbit=0 … {motion.y.shape[2] - 1}"
         )
     chosen = slice(None) if orbit is None or not many else orbit
-    unit = abs(float(np.atleast_1d(at_start)[orbit or 0])) or 1.0
-    if observable == ENERGY and not motion.relative:
+    unit = abs(float(np.atleast_1d(at_start)[orbit or 0]))
+    relative = motion.relative if name == ENERGY else unit != 0.0
+    if isinstance(observable, Observable) and name != ENERGY:
+        unit, relative = observable.unit, observable.relative
+    elif not relative:
         unit = 1.0
     t, error = abs(motion.t - motion.t[0]), change[:, chosen] / unit if many else change / unit
     largest = float(np.abs(error).max())
-    if observable in motion.statistics:
-        seen = motion.statistics[observable]
+    if name in motion.statistics:
+        seen = motion.statistics[name]
         mean, size = (part[:, chosen] if many else part for part in (seen.mean, seen.largest))
         t, error, largest = (t[1:] + t[:-1]) / 2.0, mean / unit, float(size.max()) / unit
     u = unit_round_off(motion.precision)
-    terms = _sizes_of_terms(motion, orbit or 0) / unit if observable == ENERGY else np.zeros(1)
-    walk = u * math.sqrt(motion.steps) * max(1.0, float(np.sqrt(np.mean(terms**2))))
-    bias = u * motion.steps * max(1.0, float(np.mean(terms)))
+    terms = _sizes_of_terms(motion, orbit or 0) / unit if name == ENERGY else np.zeros(1)
+    least = 1.0 if relative else 0.0
+    walk = u * math.sqrt(motion.steps) * max(least, float(np.sqrt(np.mean(terms**2))))
+    bias = u * motion.steps * max(least, float(np.mean(terms)))
     tolerance = motion.method.tolerance
     truncated = tolerance is not None and tolerance > FAR_ABOVE * u
-    return ErrorSeries(t, error, largest, walk, bias, u, truncated, _way(motion))
+    return ErrorSeries(t, error, largest, walk or None, bias, u, truncated, _way(motion), relative)
 
 
 def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
