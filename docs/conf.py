@@ -103,6 +103,8 @@ RETURNED = {
         "expression.graph.sympy_conversion.NotModelledError",
     ),
     "mechanics": (
+        "mechanics.algebra.constraint_manifold.Branch",
+        "mechanics.algebra.constraint_manifold.EmptyDomainError",
         "mechanics.lagrange.dependence.DependentConstraintsError",
         "mechanics.canonical.generating_function.NoGeneratingFunctionError",
         "mechanics.canonical.generating_function.Rule",
