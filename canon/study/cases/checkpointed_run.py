@@ -3,8 +3,8 @@
 Every run of a study is made of parts, each of which begins anew with the exact state (high and low part) that the
 one before ended with. An uninterrupted run goes through the same parts; therefore a resumed one gives the same
 numbers bit for bit, with every method, heyoka's included. Where the clock stops a run is of no consequence.
-:meth:`canon.flow.trajectory.Trajectory.resume` is another promise: it goes on inside the engine, as the run in one would
-have, which DOP853 cannot do.
+:meth:`canon.flow.trajectory.Trajectory.resume` is another promise: it goes on inside the engine, as a run in one
+would have, which DOP853 cannot do.
 """
 
 from __future__ import annotations
