@@ -1,5 +1,8 @@
 from .claim_verdict import judge as judge
 from .judge_pool import JudgePool as JudgePool
+from .marking_policy import Mark as Mark
+from .marking_policy import MarkingPolicy as MarkingPolicy
+from .marking_policy import Outcome as Outcome
 from .report.judgement import Judgement as Judgement
 from .report.report import Report as Report
 from .sheet.reading import InvalidClaim as InvalidClaim

@@ -86,8 +86,9 @@ def test_the_recipe_for_moodle_marks_answers():
     table.seek(0)
     claim = {"kind": "equality-only", "rhs": "x**2 + 2*x + 1", "parameters": {"x": "real"}}
     told = names["marks"](table, "Response 1", claim, "lhs")
-    assert [(who, mark) for who, mark, _ in told] == [("a@b", 1), ("c@d", 0), ("e@f", 0)]
-    assert "column" in told[2][2]
+    assert [(who, mark.points) for who, mark in told] == [("a@b", 1.0), ("c@d", 0.0), ("e@f", None)]
+    assert [mark.asks_again for _, mark in told] == [False, False, True]
+    assert "column" in told[2][1].sentence
 
 
 def test_the_example_in_python():
