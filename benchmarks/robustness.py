@@ -17,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 sys.path.insert(0, str(Path(__file__).parent))
 
 from attacks.bits import flipped_bits
+from attacks.service import served_load
 from attacks.studies import hostile_studies
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 SORTS: dict[str, tuple[Callable[[int, Path], Count], int]] = {
     "bits": (flipped_bits, 1200),
     "studies": (hostile_studies, 2000),
+    "serve": (served_load, 10_000),
 }
 
 

@@ -12,7 +12,16 @@ from canon.cli import main
 
 __all__ = ["BAD", "Count", "command"]
 
-BAD = ("traceback", "other numbers", "code run", "over budget", "left running", "wrong status", "false line")
+BAD = (
+    "traceback",
+    "other numbers",
+    "code run",
+    "over budget",
+    "left running",
+    "wrong status",
+    "false line",
+    "lost",
+)
 """What must not come of an attack."""
 
 
@@ -23,6 +32,8 @@ class Count:
     sort: str
     outcomes: Counter[str] = field(default_factory=Counter)
     first: dict[str, str] = field(default_factory=dict)
+    figures: list[str] = field(default_factory=list)
+    """Lines of what was measured besides."""
 
     def add(self, outcome: str, attack: str) -> None:
         self.outcomes[outcome] += 1
@@ -36,6 +47,7 @@ class Count:
     def __str__(self) -> str:
         told = ", ".join(f"{number} {outcome}" for outcome, number in sorted(self.outcomes.items()))
         lines = [f"{self.sort}: {self.outcomes.total()}: {told}; {self.bad} bad"]
+        lines += [f"  {figure}" for figure in self.figures]
         return "\n".join([*lines, *(f"  {outcome}: {attack}" for outcome, attack in self.first.items())])
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import TracebackType
 
-__all__ = ["Worker"]
+__all__ = ["BROKE_OFF", "Worker"]
 
 MEMORY = 2 * 1024**3
 START = 60.0
@@ -36,6 +36,10 @@ LOOK = 0.1
 """Seconds between looks at how long a process has worked."""
 FEEDBACK = 12.0
 """Seconds after the verdict for which its feedback is waited for, an outer limit: most takes some hundredths."""
+
+
+BROKE_OFF = "the process that judged it broke off (memory, or a fault)"
+"""What is known of a claim whose process ended before its verdict."""
 
 
 class Worker:
@@ -108,7 +112,7 @@ class Worker:
         except Late:
             why = f"its budget of {claim.budget:g} s was spent"
         except Ended:
-            why = "the process that judged it broke off (memory, or a fault)"
+            why = BROKE_OFF
         self.stop()
         return verdict or _open(claim, why, time.monotonic() - start)
 

@@ -10,6 +10,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from canon.exercise.judge_pool import JudgePool
+from canon.exercise.judging_process import BROKE_OFF
 from canon.serve.kept_verdicts import KeptVerdicts
 from canon.serve.refusal import Refusal
 
@@ -97,7 +98,11 @@ class JudgingQueue:
         if (kept := self._kept.verdict(claim)) is not None:
             return kept
         async with self._slots:
-            judging = asyncio.get_running_loop().run_in_executor(self._threads, self._pool.judge, claim)
-            judgement = await judging
+            judgement = await self._judged(claim)
+            if judgement.known == BROKE_OFF:  # by its own fault or by another's: a second time tells
+                judgement = await self._judged(claim)
         self._kept.keep(claim, judgement)
         return judgement
+
+    async def _judged(self, claim: Claim) -> Judgement:
+        return await asyncio.get_running_loop().run_in_executor(self._threads, self._pool.judge, claim)
