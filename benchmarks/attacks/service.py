@@ -195,12 +195,10 @@ class _Load:
             if len(waits) > 20:
                 middle, most = statistics.median(waits), statistics.quantiles(waits, n=20)[-1]
                 told(f"{sort}: {len(waits)}, median {1000 * middle:.0f} ms, 95 % within {1000 * most:.0f} ms")
-        told(
-            f"{seconds:.0f} s, {self.answered / seconds:.1f} claims a second, load of the machine {os.getloadavg()[1]:.1f}"
-        )
-        told(
-            f"processor time of the service: {1000 * worked / self.answered:.1f} ms a claim; {self.again} told to come back"
-        )
+        speed, load = self.answered / seconds, os.getloadavg()[1]
+        told(f"{seconds:.0f} s, {speed:.1f} claims a second, load of the machine {load:.1f}")
+        each = 1000 * worked / self.answered
+        told(f"processor time of the service: {each:.1f} ms a claim; {self.again} told to come back")
         quarter = max(1, len(self.memory) // 4)
         first, last = max(self.memory[:quarter], default=0), max(self.memory[-quarter:], default=0)
         told(f"largest judging process: {first >> 20} MB in the first quarter, {last >> 20} MB in the last")
