@@ -1,4 +1,4 @@
-"""Arrays of double precision, as annotations name them."""
+"""Array type of annotations: NumPy arrays of doubles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each command of ``canon`` reads and prints; nowhere else does canon print."""
+"""Commands of ``canon``: what each reads and prints; nowhere else does canon print."""
 
 COMMANDS = {
     "check": "judge sheets of claims about mechanics: right or wrong, and where",

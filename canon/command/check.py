@@ -6,7 +6,7 @@ import sys
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from canon.command.number_types import seconds, whole_number
+from canon.command.argument_types import seconds, whole_number
 from canon.printable import in_one_line, printable
 from canon.process import JUDGING
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from canon.command.number_types import seconds, whole_number
+from canon.command.argument_types import seconds, whole_number
 
 if TYPE_CHECKING:
     import argparse

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from canon.command.number_types import seconds, whole_number
+from canon.command.argument_types import seconds, whole_number
 from canon.printable import in_one_line, printable
 
 if TYPE_CHECKING:

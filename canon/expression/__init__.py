@@ -1,4 +1,4 @@
-"""SymPy at the border, graphs inside: symbols, the safe expression language, the expression graph."""
+"""Expressions: SymPy at the border, graphs inside, and the safe language in which they are typed."""
 
 from canon.doors import door
 

@@ -122,7 +122,7 @@ from .perturbation.remainder import OptimalOrder as OptimalOrder
 from .perturbation.remainder import optimal_order as optimal_order
 from .perturbation.remainder import remainder_norms as remainder_norms
 from .perturbation.taylor_parts import NotAnalyticError as NotAnalyticError
-from .reduction.constrained_motion import ConstrainedMotion as ConstrainedMotion
+from .reduction.constrained_motion import MotionOnManifold as MotionOnManifold
 from .reduction.constrained_motion import constrained_motions as constrained_motions
 from .reduction.contact import multiplier_along as multiplier_along
 from .reduction.contact import multiplier_in_contact as multiplier_in_contact

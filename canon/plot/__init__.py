@@ -1,4 +1,4 @@
-"""Pictures: Axes in, Axes out.
+"""Figures by matplotlib: functions that take Axes and return Axes.
 
 Every function draws into the Axes it is given, or into a new figure, and returns the Axes. matplotlib is
 loaded when the first picture is asked for.

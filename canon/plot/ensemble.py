@@ -1,4 +1,4 @@
-"""Ensemble pictures: how the error spreads over many orbits."""
+"""Ensemble figures: how the error spreads over many orbits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two systems of equations: have they the same solutions at generic points?"""
+"""Equivalence of two systems of equations: whether they have the same solutions at generic points."""
 
 from __future__ import annotations
 

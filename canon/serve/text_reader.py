@@ -1,4 +1,4 @@
-"""Text reader: how what people type is read, told by a process that can be killed, while they type."""
+"""Text reader: tells people while they type how their text is read, by a process that can be killed."""
 
 from __future__ import annotations
 

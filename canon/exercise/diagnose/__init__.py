@@ -1,4 +1,4 @@
-"""What is wrong with an answer, and what would be right."""
+"""Diagnosis of wrong answers: what is wrong, and what would be right."""
 
 from canon.doors import door
 

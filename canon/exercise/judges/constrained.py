@@ -78,7 +78,7 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
     unknowns = (*(acceleration(x) for x in q), *multipliers)
     system, rates, manifold = bound.equations_of_motion(ordered), bound.differentiated, bound.manifold
     claims = reading.equations("claim")
-    jets = jets_of((*system, *manifold, *claims), t, reading.domain)
+    jets = jets_of((*system, *manifold, *claims), reading.domain, t)
     functions = {symbol: function for function, symbol in jets.items()}
     system, rates, claims, manifold = (
         [exchanged(e, jets) for e in given] for given in (system, rates, claims, manifold)

@@ -109,12 +109,12 @@ def _constraints(reading: Reading) -> ConstraintSystem:
             reading.fault(f"constraints[{i}]", "this constrains no coordinate and no velocity")
     return ConstraintSystem(
         q,
-        t,
         tuple(f for f in equations if not f.has(*v)),
         tuple(g for g in equations if g.has(*v)),
         tuple(inequalities),
         reading.domain,
         clock.monotonic() + 0.8 * reading.claim.budget,
+        t,
     )
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
     from canon.mechanics.algebra.constraint_manifold import Branch
     from canon.mechanics.lagrange.lagrangian import Lagrangian
-    from canon.mechanics.reduction.constrained_motion import ConstrainedMotion
+    from canon.mechanics.reduction.constrained_motion import MotionOnManifold
 
 __all__ = ["leaving_condition", "reaction"]
 
@@ -44,7 +44,7 @@ def reaction(reading: Reading) -> Iterator[Question]:
     q, multipliers = reading.symbols("q"), reading.symbols("multipliers")
     constraints = reading.equations("constraints")
     if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
-        check_not_empty(constraints, q, reading.time, reading.domain)
+        check_not_empty(constraints, q, reading.domain, reading.time)
         yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
         return
     values = reading.table("values") if reading.has("values") else {}
@@ -56,7 +56,7 @@ def reaction(reading: Reading) -> Iterator[Question]:
         yield Determines(lambda: stay_open([s for s in multipliers if s.name not in values]))
 
 
-def _part(motion: ConstrainedMotion, name: str, claimed: Expr, right: Expr, key: str) -> Part:
+def _part(motion: MotionOnManifold, name: str, claimed: Expr, right: Expr, key: str) -> Part:
     """Return a claimed value beside the right one; what the claim may hold of the motion is put in."""
     value = exchanged(claimed, motion.jets)
     known = {s: f for s, f in motion.solution.items() if value.has(s)}
@@ -64,16 +64,14 @@ def _part(motion: ConstrainedMotion, name: str, claimed: Expr, right: Expr, key:
     return Part(name, value, right, {**motion.branch.values, **known}, key, written)
 
 
-def _of_forces(motion: ConstrainedMotion, q: Sequence[Symbol], claimed: Sequence[Expr]) -> Iterator[Part]:
+def _of_forces(motion: MotionOnManifold, q: Sequence[Symbol], claimed: Sequence[Expr]) -> Iterator[Part]:
     """Yield the claimed forces of constraint; none where none is claimed."""
     for i, (x, value) in enumerate(zip(q, claimed, strict=False)):
         force = motion.along(motion.forces[i])
         yield _part(motion, f"the force of constraint on {x}", value, force, f"force[{i}]")
 
 
-def _of_multipliers(
-    reading: Reading, motion: ConstrainedMotion, values: Mapping[str, Expr]
-) -> Iterator[Part]:
+def _of_multipliers(reading: Reading, motion: MotionOnManifold, values: Mapping[str, Expr]) -> Iterator[Part]:
     names = {s.name: s for s in reading.symbols("multipliers")}
     for name, value in values.items():
         if name not in names:
@@ -120,7 +118,7 @@ def _lagrangian(reading: Reading) -> Lagrangian:
 
 def _motions(
     reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol], claims: Sequence[Expr]
-) -> Iterator[ConstrainedMotion]:
+) -> Iterator[MotionOnManifold]:
     """Yield the motions that are meant; those that do not keep "integrals" are refused, as no whole motion is meant."""
     integrals = reading.equations("integrals") if reading.has("integrals") else ()
     bound, ordered = bound_by(reading, _lagrangian(reading), constraints, multipliers)

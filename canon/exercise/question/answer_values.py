@@ -1,4 +1,4 @@
-"""Has an answer a value? What stands in a claim is looked at as it was written, before anything cancels."""
+"""Values of an answer: what stands in a claim is looked at as it was written, before anything cancels."""
 
 from __future__ import annotations
 

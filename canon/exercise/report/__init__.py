@@ -1,4 +1,4 @@
-"""What a person or a program is told of judged claims: table, JSON lines, JUnit XML, page."""
+"""Reports of judged claims for people and programs: table, JSON lines, JUnit XML, page."""
 
 from canon.doors import door
 

@@ -1,4 +1,4 @@
-r"""Quotients with a slash: what ``/`` divides by, ``p^2/2m`` and ``g/l\sin\theta`` among them; what is open is refused.
+r"""Quotients with a slash: what ``/`` divides by, ``p^2/2m`` and ``g/l\sin\theta`` among them; open ones are refused.
 
 A slash divides by one factor. Two habits of print go further, and both are read: a moving quantity over a number and
 parameters, ``p^2/2m``, is p²/(2m); a quotient of two parameters before a function, ``g/l\sin\theta``, ends before the

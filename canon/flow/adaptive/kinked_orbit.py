@@ -1,4 +1,4 @@
-"""Taylor integration of one orbit through kinks: in each regime to the zero that ends it, on in the next one.
+"""Taylor integration of one orbit through kinks: each regime up to the zero that ends it, then the next one.
 
 Every regime has an integrator of its own, compiled when the orbit first comes there.
 """

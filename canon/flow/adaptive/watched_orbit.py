@@ -1,4 +1,4 @@
-"""DOP853 through events and kinks of one orbit: each is located in its step, and met at the end of a step to it."""
+"""DOP853 integration of one orbit through events and kinks: each is located inside a step, and a step ends on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Place in a motion: a time and a state in wide numbers, and what functions are there."""
+"""Time and state at one point of a motion, in wide numbers, and the values of functions there."""
 
 from __future__ import annotations
 

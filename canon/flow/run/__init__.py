@@ -1,4 +1,4 @@
-"""What a run records: sampled times, events, observables, ranges of numbers."""
+"""Records of a run: sampled times, events, observables, ranges of numbers."""
 
 from canon.doors import door
 

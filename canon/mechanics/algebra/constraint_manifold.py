@@ -154,14 +154,14 @@ def inhabited(branches: Iterable[Branch]) -> list[Branch]:
     return found
 
 
-def check_not_empty(constraints: Sequence[Expr], q: Sequence[Symbol], t: Symbol, domain: Domain) -> None:
+def check_not_empty(constraints: Sequence[Expr], q: Sequence[Symbol], domain: Domain, t: Symbol) -> None:
     """Refuse positions of which it is proved that there are none; arbitrary functions may stay unsolved.
 
     Examples
     --------
     >>> from canon import coordinates
     >>> x = coordinates("x")
-    >>> check_not_empty([x, x - 1], [x], sp.Symbol("t", real=True), Domain())
+    >>> check_not_empty([x, x - 1], [x], Domain(), sp.Symbol("t", real=True))
     Traceback (most recent call last):
         ...
     canon.mechanics.algebra.constraint_manifold.EmptyDomainError: no point satisfies the constraints, ...

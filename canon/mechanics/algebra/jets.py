@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["jets_of", "with_jets"]
 
 
-def jets_of(expressions: Sequence[Expr], t: Symbol, domain: Domain) -> dict[Expr, Symbol]:
+def jets_of(expressions: Sequence[Expr], domain: Domain, t: Symbol) -> dict[Expr, Symbol]:
     """Return a symbol for each arbitrary function and each of its derivatives.
 
     At one point they are independent of one another, and nothing is differentiated any more. Functions of more than
@@ -29,7 +29,7 @@ def jets_of(expressions: Sequence[Expr], t: Symbol, domain: Domain) -> dict[Expr
     >>> from sympy import Function, symbols
     >>> x, t = symbols("x t", real=True)
     >>> V = Function("V")(x)
-    >>> jets_of([V + V.diff(x)], t, Domain())
+    >>> jets_of([V + V.diff(x)], Domain(), t)
     {Derivative(V(x), x): Derivative(V(x), x), V(x): V(x)}
     """
     everything = (*expressions, *domain.conditions)

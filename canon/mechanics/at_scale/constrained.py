@@ -21,12 +21,11 @@ from canon.mechanics.lagrange.dependence import DependentConstraintsError
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from numpy.typing import NDArray
     from sympy import Expr, Symbol
 
+    from canon.array import Array
     from canon.mechanics.at_scale.second_order import SecondOrderEquations
 
-    Vector = NDArray[np.float64]
 
 __all__ = ["ConstrainedEquations", "ConstrainedMotion", "constrained", "constrained_motion"]
 
@@ -141,9 +140,9 @@ class ConstrainedMotion:
         (q, q̇, t) → the values f and the rates A q̇ + a₀, which should vanish.
     """
 
-    accelerations: Callable[[Sequence[float], Sequence[float], float], tuple[Vector, Vector]]
-    projected: Callable[[Sequence[float], Sequence[float], float], tuple[Vector, Vector]]
-    residual: Callable[[Sequence[float], Sequence[float], float], tuple[Vector, Vector]]
+    accelerations: Callable[[Sequence[float], Sequence[float], float], tuple[Array, Array]]
+    projected: Callable[[Sequence[float], Sequence[float], float], tuple[Array, Array]]
+    residual: Callable[[Sequence[float], Sequence[float], float], tuple[Array, Array]]
 
 
 def constrained_motion(
@@ -175,9 +174,7 @@ def constrained_motion(
     lower = np.tril_indices(n)
     ends = np.cumsum([lower[0].size, n, k * n, k, k])
 
-    def parts(
-        q: Sequence[float] | Vector, v: Sequence[float] | Vector, t: float
-    ) -> tuple[Vector, list[Vector]]:
+    def parts(q: Sequence[float] | Array, v: Sequence[float] | Array, t: float) -> tuple[Array, list[Array]]:
         M, f, A, curvature, rest, values = np.split(np.array(evaluate((*q, *v, t, *constants))), ends)
         bordered = np.zeros((n + k, n + k))
         bordered[:n, :n][lower] = M
@@ -186,14 +183,14 @@ def constrained_motion(
         bordered[:n, n:] = bordered[n:, :n].T
         return bordered, [f, curvature, A.reshape(k, n) @ np.asarray(v, dtype=np.float64) + rest, values]
 
-    def accelerations(q: Sequence[float], v: Sequence[float], t: float) -> tuple[Vector, Vector]:
+    def accelerations(q: Sequence[float], v: Sequence[float], t: float) -> tuple[Array, Array]:
         bordered, (f, curvature, rate, values) = parts(q, v, t)
         pull = 2 * alpha * rate
         pull[:h] += beta**2 * values
         found = _solved(bordered, np.concatenate([f, -curvature - pull]))
         return found[:n], -found[n:]
 
-    def projected(q: Sequence[float], v: Sequence[float], t: float) -> tuple[Vector, Vector]:
+    def projected(q: Sequence[float], v: Sequence[float], t: float) -> tuple[Array, Array]:
         place, speed = np.asarray(q, dtype=np.float64), np.asarray(v, dtype=np.float64)
         bordered, (_, _, rate, values) = parts(place, speed, t)
         size = np.inf
@@ -209,7 +206,7 @@ def constrained_motion(
         bordered, (_, _, rate, _) = parts(place, speed, t)
         return place, speed + _solved(bordered, np.concatenate([np.zeros(n), -rate]))[:n]
 
-    def residual(q: Sequence[float], v: Sequence[float], t: float) -> tuple[Vector, Vector]:
+    def residual(q: Sequence[float], v: Sequence[float], t: float) -> tuple[Array, Array]:
         _, (_, _, rate, values) = parts(q, v, t)
         return values, rate
 
@@ -250,7 +247,7 @@ _NEAR = 1e-8
 """What Newton's iteration leaves of f at most, in the constraints' own units."""
 
 
-def _solved(matrix: Vector, right: Vector) -> Vector:
+def _solved(matrix: Array, right: Array) -> Array:
     return solved(matrix, right, "the matrix of masses and constraints")
 
 

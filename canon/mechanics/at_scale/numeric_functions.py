@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from sympy import Symbol
 
+    from canon.array import Array
     from canon.mechanics.at_scale.first_order import CanonicalEquations
     from canon.mechanics.at_scale.second_order import SecondOrderEquations
 
-    Vector = NDArray[np.float64]
 
 __all__ = [
     "acceleration_function", "energy_function", "hamilton_function", "mass_condition_function", "solved",
@@ -35,7 +35,7 @@ _SMALLEST = 1e-290
 
 def acceleration_function(
     equations: SecondOrderEquations, parameters: Mapping[Symbol, float]
-) -> Callable[[Sequence[float], Sequence[float], float], Vector]:
+) -> Callable[[Sequence[float], Sequence[float], float], Array]:
     """Return a function (q, q̇, t) → q̈.
 
     Parameters
@@ -68,7 +68,7 @@ def acceleration_function(
     lower = np.tril_indices(n)
     count = lower[0].size
 
-    def accelerations(q: Sequence[float], v: Sequence[float], t: float) -> Vector:
+    def accelerations(q: Sequence[float], v: Sequence[float], t: float) -> Array:
         values = evaluate((*q, *v, t, *constants))
         return _solved(values[:count], lower, n, values[count:])
 
@@ -77,13 +77,13 @@ def acceleration_function(
 
 def hamilton_function(
     equations: CanonicalEquations, parameters: Mapping[Symbol, float]
-) -> Callable[[Sequence[float], Sequence[float], float], tuple[Vector, Vector]]:
+) -> Callable[[Sequence[float], Sequence[float], float], tuple[Array, Array]]:
     """Return a function (q, p, t) → (q̇, ṗ); the parameters are those of :func:`acceleration_function`."""
     velocities, constants = _velocity_function(equations, parameters)
     inputs = (*equations.q, *equations.velocities, equations.t, *equations.parameters)
     forces = python_function(equations.graph, equations.p_dot, inputs)
 
-    def rates(q: Sequence[float], p: Sequence[float], t: float) -> tuple[Vector, Vector]:
+    def rates(q: Sequence[float], p: Sequence[float], t: float) -> tuple[Array, Array]:
         v, _, _ = velocities(q, p, t)
         return v, np.array(forces((*q, *v, t, *constants)))
 
@@ -106,7 +106,7 @@ def energy_function(
 def _velocity_function(
     equations: CanonicalEquations, parameters: Mapping[Symbol, float]
 ) -> tuple[
-    Callable[[Sequence[float], Sequence[float], float], tuple[Vector, Vector, float]], tuple[float, ...]
+    Callable[[Sequence[float], Sequence[float], float], tuple[Array, Array, float]], tuple[float, ...]
 ]:
     """Return a function (q, p, t) → q̇, p − b, V − T₀, and the numbers of the parameters."""
     constants = _numbers(equations.parameters, parameters)
@@ -115,7 +115,7 @@ def _velocity_function(
     lower = np.tril_indices(n)
     count = lower[0].size
 
-    def velocities(q: Sequence[float], p: Sequence[float], t: float) -> tuple[Vector, Vector, float]:
+    def velocities(q: Sequence[float], p: Sequence[float], t: float) -> tuple[Array, Array, float]:
         values = evaluate((*q, t, *constants))
         excess = np.asarray(p, dtype=np.float64) - np.array(values[count : count + n])
         return _solved(values[:count], lower, n, excess), excess, values[-1]
@@ -124,8 +124,8 @@ def _velocity_function(
 
 
 def _solved(
-    values: Sequence[float], lower: tuple[NDArray[np.intp], ...], n: int, right: Sequence[float] | Vector
-) -> Vector:
+    values: Sequence[float], lower: tuple[NDArray[np.intp], ...], n: int, right: Sequence[float] | Array
+) -> Array:
     """Solve with the mass matrix whose lower triangle is given.
 
     Raises
@@ -143,7 +143,7 @@ def _solved(
     return found
 
 
-def _symmetric(values: Sequence[float], lower: tuple[NDArray[np.intp], ...], n: int) -> Vector:
+def _symmetric(values: Sequence[float], lower: tuple[NDArray[np.intp], ...], n: int) -> Array:
     matrix = np.empty((n, n))
     matrix[lower] = values
     matrix.T[lower] = values
@@ -189,7 +189,7 @@ def mass_condition_function(
     return condition
 
 
-def solved(matrix: Vector, right: Sequence[float] | Vector, name: str) -> Vector:
+def solved(matrix: Array, right: Sequence[float] | Array, name: str) -> Array:
     """Solve linear equations, and say so where the matrix is singular or a number is not finite.
 
     Raises
@@ -198,7 +198,7 @@ def solved(matrix: Vector, right: Sequence[float] | Vector, name: str) -> Vector
         With the name of the matrix.
     """
     try:
-        found = cast("Vector", np.linalg.solve(matrix, right))
+        found = cast("Array", np.linalg.solve(matrix, right))
     except np.linalg.LinAlgError as singular:
         raise ArithmeticError(_SINGULAR.format(name=name)) from singular
     if not np.isfinite(found).all():

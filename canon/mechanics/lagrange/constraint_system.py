@@ -44,14 +44,16 @@ class ConstraintSystem:
 
     Parameters
     ----------
-    q, t
-        Coordinates and time.
+    q
+        Coordinates.
     positions, velocities, inequalities
         f(q, t) = 0, g(q, q̇, t) = 0 and h = 0 at the edge of an inequality.
     domain
         Where they are meant.
     until
         When the questions should be answered, on the clock of ``time.monotonic``.
+    t
+        The time.
 
     Examples
     --------
@@ -60,18 +62,18 @@ class ConstraintSystem:
     >>> x, y, theta = q = coordinates("x y theta")
     >>> blade = x.dot * sp.sin(theta) - y.dot * sp.cos(theta)
     >>> t = sp.Symbol("t", real=True)
-    >>> system = ConstraintSystem(q, t, (), (blade,), (), Domain(), clock.monotonic() + 10)
+    >>> system = ConstraintSystem(q, (), (blade,), (), Domain(), clock.monotonic() + 10, t)
     >>> system.integrable.status.name, system.freedom("velocities"), system.freedom("positions")
     ('FAILS', 2, 3)
     """
 
     q: tuple[Symbol, ...]
-    t: Symbol
     positions: tuple[Expr, ...]
     velocities: tuple[Expr, ...]
     inequalities: tuple[Expr, ...]
     domain: Domain
     until: float
+    t: Symbol
 
     @property
     def rates(self) -> tuple[Expr, ...]:
@@ -102,7 +104,7 @@ class ConstraintSystem:
     def integrable(self) -> Verdict:
         """Whether the constraints together restrict positions only: dω(X, Y) = 0 on allowed displacements."""
         if not self.velocities:
-            check_not_empty(self.positions, self.q, self.t, self.domain)
+            check_not_empty(self.positions, self.q, self.domain, self.t)
             return Verdict(Status.HOLDS, "the constraints are integrable", "structure")
         if not self.affine.holds:
             return self._curved
@@ -313,7 +315,7 @@ def positional_freedom(constrained: ConstrainedLagrangian, domain: Domain | None
 def _system_of(constrained: ConstrainedLagrangian, domain: Domain | None) -> ConstraintSystem:
     q, t = constrained.lagrangian.q, constrained.lagrangian.t
     holonomic, nonholonomic = constrained.holonomic, constrained.nonholonomic
-    return ConstraintSystem(q, t, holonomic, nonholonomic, (), as_domain(domain), clock.monotonic() + SECONDS)
+    return ConstraintSystem(q, holonomic, nonholonomic, (), as_domain(domain), clock.monotonic() + SECONDS, t)
 
 
 def _second_form(g: Expr, v: Sequence[Symbol]) -> Iterator[Expr]:

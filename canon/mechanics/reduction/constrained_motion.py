@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-__all__ = ["ConstrainedMotion", "constrained_motions", "motions_with_integrals"]
+__all__ = ["MotionOnManifold", "constrained_motions", "motions_with_integrals"]
 
 
 @dataclass(frozen=True)
-class ConstrainedMotion:
+class MotionOnManifold:
     """Motion on one branch of the constraint manifold, as functions of what stays free on it.
 
     Parameters
@@ -82,7 +82,7 @@ def constrained_motions(
     integrals: Sequence[Expr] | Expr = (),
     domain: Domain | None = None,
     budget: float = 10.0,
-) -> list[ConstrainedMotion]:
+) -> list[MotionOnManifold]:
     """Return the motions that constraints allow, one a branch of their manifold, first integrals put in.
 
     Unlike :attr:`canon.mechanics.lagrange.constraint.ConstrainedLagrangian.multipliers` the results hold on the
@@ -141,7 +141,7 @@ def motions_with_integrals(
     multipliers: Sequence[Symbol],
     domain: Domain,
     beside: Sequence[Expr] = (),
-) -> Iterator[ConstrainedMotion]:
+) -> Iterator[MotionOnManifold]:
     """Yield the motions on each branch of the manifold; that integrals are constant is left to be asked of ``rates``.
 
     Parameters
@@ -159,7 +159,7 @@ def motions_with_integrals(
         constrained.equations_of_motion(multipliers),
         [time_derivative(f, q, t) for f in integrals],
     )
-    jets = jets_of((*system, *constrained.manifold, *integrals, *rates, *beside), t, domain)
+    jets = jets_of((*system, *constrained.manifold, *integrals, *rates, *beside), domain, t)
 
     def plain_in_jets(expressions: Sequence[Expr]) -> tuple[Expr, ...]:
         return tuple(exchanged(f, jets) for f in expressions)
@@ -170,7 +170,7 @@ def motions_with_integrals(
     for branch in inhabited(_with_integrals(on_manifold(manifold, domain, (t,), v), held, v, t)):
         here = [substitute(e, branch.values) for e in plain_in_jets(system)]
         solution = solve_affine(here, (*a, *multipliers), branch.domain)
-        yield ConstrainedMotion(branch, solution, tuple(multipliers), forces, tuple(rates), jets)
+        yield MotionOnManifold(branch, solution, tuple(multipliers), forces, tuple(rates), jets)
 
 
 def _with_integrals(

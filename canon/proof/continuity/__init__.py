@@ -1,1 +1,1 @@
-"""Continuity and differentiability: jumps certified, angles told from steps."""
+"""Continuity and differentiability: jumps are certified, and angles that turn by 2π are told from them."""

@@ -1,4 +1,4 @@
-"""Elementary and special functions in the normal form: angles, arcs, powers, logarithms, gamma functions."""
+"""Normal form of elementary and special functions: angles, arcs, powers, logarithms, gamma functions."""
 
 from canon.doors import door
 

@@ -1,4 +1,4 @@
-"""Sines, cosines and hyperbolic functions in the tower."""
+"""Normal form of sines, cosines and hyperbolic functions: written with few of them, related by s² + c² = 1."""
 
 from __future__ import annotations
 

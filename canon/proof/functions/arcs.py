@@ -1,4 +1,4 @@
-"""Inverse circular and hyperbolic functions in the tower."""
+"""Normal form of inverse circular and hyperbolic functions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Real and imaginary parts, conjugates, arguments and signs of complex expressions in the tower."""
+"""Normal form of real and imaginary parts, conjugates, arguments and signs of complex expressions."""
 
 from __future__ import annotations
 

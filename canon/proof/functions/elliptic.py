@@ -1,4 +1,4 @@
-"""Complete elliptic integrals K(m), E(m) of the parameter m = k² in the tower.
+"""Normal form of the complete elliptic integrals K(m), E(m) of the parameter m = k².
 
 Used for m < 1 proven, where K and E are analytic: the imaginary-modulus transformation for m < 0, Landen's
 transformation between two parameters that both occur, and Legendre's relation between m and 1 − m

@@ -1,4 +1,4 @@
-"""Gamma functions, factorials, binomial coefficients and polygamma functions whose arguments differ by whole numbers.
+"""Normal form of gamma functions, factorials, binomial coefficients and polygammas whose arguments differ by integers.
 
 NIST DLMF 5.5.1–5.5.3, 5.15.5 and 5.12.1: Γ(z + 1) = zΓ(z), Γ(z)Γ(1 − z) = π/sin πz and
 ψ⁽ᵐ⁾(z + 1) = ψ⁽ᵐ⁾(z) + (−1)ᵐm!/zᵐ⁺¹.

@@ -1,4 +1,4 @@
-"""Powers with large whole exponents, which are not multiplied out.
+"""Normal form of powers with large whole exponents, which are not multiplied out.
 
 (x + 1)²⁵⁰(x − 1)²⁵⁰ is told to be (x² − 1)²⁵⁰ by its factors: p^M is a kernel of its own for each factor p, and other
 powers of p are taken as whole powers of it times a small power of p.

@@ -1,4 +1,4 @@
-"""Square roots of square roots: through roots that are there already, of squares, and by conjugates."""
+"""Normal form of square roots of square roots: through roots that are there already, of squares, and by conjugates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Logarithms of algebraic numbers, with the relations between them that come from products of their powers.
+"""Normal form of logarithms of algebraic numbers, with the relations that products of their powers imply.
 
 φ·(φ − 1) = 1 makes log(φ − 1) = −log φ, and 2 − √3 is a power of 2 + √3: their powers with any exponent are then
 powers of one number. Relations are looked for in numerical logarithms and proved by multiplying out.

@@ -1,4 +1,4 @@
-"""Roots, exponentials, logarithms and moduli in the tower."""
+"""Normal form of roots, exponentials, logarithms and moduli."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Signs of trigonometric polynomials with one frequency on the range of their angle."""
+"""Signs of trigonometric polynomials in one angle, proved on the range of the angle."""
 
 from __future__ import annotations
 

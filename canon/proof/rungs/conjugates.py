@@ -1,4 +1,4 @@
-"""Conjugates of nested radicals: a number among a polynomial's roots is zero when too small to be another."""
+"""Conjugates of nested radicals: a root of a known polynomial is zero where it is smaller than all other roots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Periods of integers in angles πn/d and in powers of numbers whose arguments are such."""
+"""Periods of integer symbols: after how many whole numbers angles πn/d and powers of roots of unity come back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The normal form: a tower of function fields over the rationals, with signs and factors."""
+"""Tower of function fields over the rationals: arithmetic of the zero test's normal form, with signs and factors."""
 
 from canon.doors import door
 

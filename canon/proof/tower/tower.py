@@ -1,4 +1,4 @@
-"""A tower of generators: fractions of polynomials with triangular relations.
+"""Tower of generators: fractions of polynomials with triangular relations.
 
 Every generator is a symbol or a kernel (a cosine, a sine, a root …); a relation replaces a power of a
 generator by a polynomial in earlier ones, as s² = 1 − c². A fraction keeps its denominator as a product of

@@ -1,4 +1,4 @@
-"""Proofs in a process that can be killed."""
+"""Worker process for heavy proofs, which can be killed."""
 
 from canon.doors import door
 

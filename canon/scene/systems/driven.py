@@ -1,4 +1,4 @@
-"""Driven and damped: a sprung mass, pendulums, and Duffing's oscillator; their energy follows the work."""
+"""Driven and damped systems: a sprung mass, pendulums and Duffing's oscillator, with the work done on them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lagrange's equations of the first kind: reactions as multipliers, and where a reaction vanishes."""
+"""Systems with Lagrange's equations of the first kind: reactions as multipliers, and where a reaction vanishes."""
 
 from __future__ import annotations
 

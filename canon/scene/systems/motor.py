@@ -1,4 +1,4 @@
-"""Drives: a motor's shaft, a pair of gears, rack and pinion, and the DC motor as an electromechanical system."""
+"""Motors and drives: a motor's shaft, a pair of gears, rack and pinion, and the DC motor with its circuit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Seen from a turning frame: Foucault's pendulum, and a small body near two that circle one another."""
+"""Systems in a turning frame: Foucault's pendulum, and a small body near two that circle one another."""
 
 from __future__ import annotations
 

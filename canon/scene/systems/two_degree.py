@@ -1,4 +1,4 @@
-"""Two degrees of freedom that textbooks solve: one by ignoring a coordinate, one by its integrals."""
+"""Systems of two degrees of freedom that textbooks solve: one by ignoring a coordinate, one by its integrals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study as a table for other programs: CSV, Parquet, and xarray datasets for NetCDF files."""
+"""Export of a study as a table for other programs: CSV, Parquet, and xarray datasets for NetCDF files."""
 
 from __future__ import annotations
 

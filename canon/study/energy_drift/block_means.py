@@ -47,14 +47,14 @@ class Blocks:
         Weighted mean of the error in each window.
     amplitude
         Weighted root-mean-square distance of the error from that mean: the size of the oscillation.
-    duration
+    span
         Duration of one block, the mean distance of the windows.
     """
 
     t: Array
     mean: Array
     amplitude: Array
-    duration: float
+    span: float
 
 
 def bump(s: Array) -> Array:
@@ -106,10 +106,10 @@ def block_means(t: ArrayLike, error: ArrayLike, windows: int = 32) -> Blocks:
     """
     times = np.asarray(t, dtype=np.float64)
     values = np.asarray(error, dtype=np.float64)
-    duration = float(times[-1] - times[0]) / (windows + WIDTH)
-    starts = times[0] + duration * window_starts(windows) / PLACES
+    span = float(times[-1] - times[0]) / (windows + WIDTH)
+    starts = times[0] + span * window_starts(windows) / PLACES
     first = np.searchsorted(times, starts)
-    last = np.searchsorted(times, starts + WIDTH * duration)
+    last = np.searchsorted(times, starts + WIDTH * span)
     samples = last - first
     if samples.min() < max(FEWEST_SAMPLES, 0.25 * samples.mean()):
         raise ValueError(
@@ -118,9 +118,9 @@ def block_means(t: ArrayLike, error: ArrayLike, windows: int = 32) -> Blocks:
         )
     centre, mean, square = np.empty((3, windows))
     for k, (start, i, j) in enumerate(zip(starts, first, last, strict=True)):
-        weight = bump((times[i:j] - start) / (WIDTH * duration))
+        weight = bump((times[i:j] - start) / (WIDTH * span))
         weight /= weight.sum()
         centre[k] = weight @ times[i:j]
         mean[k] = weight @ values[i:j]
         square[k] = weight @ (values[i:j] - mean[k]) ** 2
-    return Blocks(t=centre, mean=mean, amplitude=np.sqrt(square), duration=duration)
+    return Blocks(t=centre, mean=mean, amplitude=np.sqrt(square), span=span)

@@ -227,13 +227,13 @@ def _drift(
         verdict, exponent, reason = _bounded(times, values, blocks)
     return Drift(
         bound=bound,
-        slope=slope.value / blocks.duration,
-        slope_error=slope.error / blocks.duration,
-        amplitude_slope=breath.value / blocks.duration,
-        amplitude_slope_error=breath.error / blocks.duration,
+        slope=slope.value / blocks.span,
+        slope_error=slope.error / blocks.span,
+        amplitude_slope=breath.value / blocks.span,
+        amplitude_slope_error=breath.error / blocks.span,
         exponent=exponent.value,
         exponent_interval=(exponent.low, exponent.high),
-        detection_limit=max(slope.detection_limit / blocks.duration, resolution / span),
+        detection_limit=max(slope.detection_limit / blocks.span, resolution / span),
         verdict=verdict,
         walk=walk.size,
         span=span,
@@ -324,7 +324,7 @@ def _wandering(
     exponent = power_of_wandering(means, beside_scatter=True)
     back = return_of(means)
     if back.evidence > RETURNS and back.memory < LONGEST_MEMORY * means.size:
-        memory = back.memory * blocks.duration * (WINDOWS + WIDTH) / (means.size + WIDTH)
+        memory = back.memory * blocks.span * (WINDOWS + WIDTH) / (means.size + WIDTH)
         return Growth.BOUNDED, exponent, f"the mean wanders, but returns within a time of about {memory:.2g}"
     found = f"the mean wanders by {walk.size:.2g} over the run"
     like_a_walk = exponent.low <= 0.5 <= exponent.high

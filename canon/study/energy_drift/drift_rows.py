@@ -109,16 +109,16 @@ class Run:
 
     def __call__(
         self,
-        duration: float,
+        span: float,
         samples: int,
         observables: Sequence[Observable] = (),
         cadence: int | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Trajectory:
-        """Return a run of that duration."""
+        """Return a run of that span."""
         motion = Request(
             self.hamiltonian,
-            (0.0, duration),
+            (0.0, span),
             self.y0,
             parameters=self.parameters,
             samples=samples,

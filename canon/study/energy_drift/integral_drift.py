@@ -52,7 +52,7 @@ def integral_drift(
     integral: FormalIntegral,
     direction: Sequence[float],
     radii: Sequence[float] = (0.02, 0.03, 0.045, 0.07, 0.1),
-    duration: float = 100.0,
+    span: float = 100.0,
     samples: int = 501,
 ) -> IntegralDrift:
     """Propagate orbits of several sizes with heyoka's Taylor method, and return how a formal integral drifts on them.
@@ -68,7 +68,7 @@ def integral_drift(
         (q, p) of the starts from the equilibrium; each is scaled to the length of a radius.
     radii
         The sizes.
-    duration
+    span
         The time of each run, in the system's own unit.
     samples
         At how many times the integral is read.
@@ -89,12 +89,12 @@ def integral_drift(
     if len(direction) != 2 * len(form.source.q) or not np.isfinite(size) or size == 0.0:
         raise ValueError(f"the direction should be {2 * len(form.source.q)} numbers, not all zero")
     rest = np.array([float(form.equilibrium[z]) for z in (*form.source.q, *form.source.p)])
-    times = np.linspace(0.0, duration, samples)
+    times = np.linspace(0.0, span, samples)
     drifts: list[float] = []
     floors: list[float] = []
     for radius in radii:
         start = rest + np.asarray(direction, dtype=float) * (radius / size)
-        run: Any = propagate(form.source, (0.0, duration), start, method=Taylor(), times=times)
+        run: Any = propagate(form.source, (0.0, span), start, method=Taylor(), times=times)
         values: npt.NDArray[np.float64] = np.asarray(run[integral.expression], dtype=float).ravel()
         drifts.append(float(np.max(np.abs(values - values[0]))))
         floors.append(float(ROUNDING * np.max(np.abs(values))))

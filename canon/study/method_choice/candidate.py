@@ -177,18 +177,18 @@ class TriedSetting:
         return self.pilot.setting.knob
 
 
-def tried_with(question: Question, setting: Setting, duration: float) -> TriedSetting:
-    """Return a setting after a pilot run of that duration."""
-    found = pilot(question, setting, duration)
+def tried_with(question: Question, setting: Setting, span: float) -> TriedSetting:
+    """Return a setting after a pilot run of that span."""
+    found = pilot(question, setting, span)
     if found.lost:
-        return TriedSetting(found, math.inf, question.span / duration * found.steps)
+        return TriedSetting(found, math.inf, question.span / span * found.steps)
     error = expected_error(found, question.span, question.observable)
     if found.span < question.span:
         for since, y0 in question.elsewhere:
-            later = pilot(question.moved(since, y0), setting, min(duration, question.span - since))
+            later = pilot(question.moved(since, y0), setting, min(span, question.span - since))
             error = max(error, expected_error(later, question.span, question.observable))
     try:
-        rate = seconds_per_time(question, found.setting, duration)
+        rate = seconds_per_time(question, found.setting, span)
     except NonFiniteStateError:  # with a step a little smaller, to divide another span
         return TriedSetting(found, math.inf, math.inf)
     return TriedSetting(found, error, rate * question.span)

@@ -36,7 +36,7 @@ class Question:
     Parameters
     ----------
     hamiltonian, y0, values, span
-        The motion: Hamiltonian, state (q, p) of shape (2n,), values of the parameters, duration.
+        The motion: Hamiltonian, state (q, p) of shape (2n,), values of the parameters, span.
     observable
         ``"energy"``, ``"position"``, or the name of an integral.
     integral
@@ -70,15 +70,15 @@ class Question:
     def run(
         self,
         setting: Setting,
-        duration: float,
+        span: float,
         samples: int,
         cadence: int | None = None,
         times: Array | None = None,
     ) -> Trajectory:
-        """Return a run of that duration from the start; its samples are even unless times are named."""
+        """Return a run of that span from the start; its samples are even unless times are named."""
         motion = Request(
             self.hamiltonian,
-            (self.since, self.since + duration),
+            (self.since, self.since + span),
             self.y0,
             parameters=self.values,
             samples=samples if times is None else None,
@@ -88,16 +88,16 @@ class Question:
         )
         return run_quietly(motion.by(setting))
 
-    def positions(self, duration: float, precision: str) -> tuple[Array, Array]:
+    def positions(self, span: float, precision: str) -> tuple[Array, Array]:
         """Return the reference's coordinates at PLACES + 1 even times as sums of doubles, each (n, times).
 
         The reference of runs in doubles has 64 bits, or 113 where the platform has no such numbers; that of
         runs in more digits has 113.
         """
         plain = precision in ("single", "double", "compensated")
-        if (duration, plain) not in self._known:
+        if (span, plain) not in self._known:
             digits = "extended" if plain and EXTENDED.available() else "quad"
             reference = Setting(REFERENCE if plain else FINE_REFERENCE, precision=digits)
-            found = self.run(reference, duration, PLACES)
-            self._known[duration, plain] = found.q, found.carried[: len(found.q)]
-        return self._known[duration, plain]
+            found = self.run(reference, span, PLACES)
+            self._known[span, plain] = found.q, found.carried[: len(found.q)]
+        return self._known[span, plain]

@@ -242,18 +242,18 @@ def choose(
     if not considered:
         raise StudyError("no method to choose from: name at least one")
     natural = natural_step(question)
-    duration = min(span, PILOT_STEPS * natural)
-    question, outlook = with_outlook(question, duration, natural)
+    pilot_span = min(span, PILOT_STEPS * natural)
+    question, outlook = with_outlook(question, pilot_span, natural)
     found: list[Candidate] = []
     for number, method in enumerate(considered):
         cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
         precision = method.engine.usual_precision
-        found.append(searched(question, method, precision, duration, natural, accuracy, cheapest))
+        found.append(searched(question, method, precision, pilot_span, natural, accuracy, cheapest))
         if progress is not None:
             progress(str(method), (number + 1) / (len(considered) + 1))
     if not any(each.keeps for each in found):
-        found.extend(_in_higher_precision(question, considered, duration, natural, accuracy))
-    found, chosen = _settled(question, found, duration, accuracy)
+        found.extend(_in_higher_precision(question, considered, pilot_span, natural, accuracy))
+    found, chosen = _settled(question, found, pilot_span, accuracy)
     if progress is not None:
         progress(str(chosen.method), 1.0)
     ordered = sorted(found, key=lambda each: (not each.keeps, each.predicted_cost))
@@ -265,12 +265,12 @@ def _knob_of(chosen: Candidate) -> str:
 
 
 def _settled(
-    question: Question, found: list[Candidate], duration: float, accuracy: float
+    question: Question, found: list[Candidate], pilot_span: float, accuracy: float
 ) -> tuple[list[Candidate], Candidate]:
     """Look at the cheapest candidate once more, until the cheapest one has been looked at."""
     cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
     rivals = [each for each in found if each.keeps and each.predicted_cost < RIVAL * cheapest]
-    plain = [double_instead(question, each, duration, accuracy) for each in rivals]
+    plain = [double_instead(question, each, pilot_span, accuracy) for each in rivals]
     waiting = [*found, *(each for each in plain if each is not None)]
     looked: list[Candidate] = []
     while able := [each for each in (*waiting, *looked) if each.keeps]:
@@ -278,12 +278,12 @@ def _settled(
         if best in looked:
             return [*waiting, *looked], best
         waiting.remove(best)
-        looked.append(confirmed(question, best, duration, accuracy))
+        looked.append(confirmed(question, best, pilot_span, accuracy))
     return [*waiting, *looked], min((*waiting, *looked), key=lambda each: each.predicted_error)
 
 
 def _in_higher_precision(
-    question: Question, considered: Sequence[Method], duration: float, natural: float, accuracy: float
+    question: Question, considered: Sequence[Method], pilot_span: float, natural: float, accuracy: float
 ) -> list[Candidate]:
     """Return what more digits reach, where the usual ones do not suffice."""
     found: list[Candidate] = []
@@ -294,7 +294,7 @@ def _in_higher_precision(
         if question.observable == "position":  # beyond these no reference is better
             ladder = ladder[:1]
         for precision in ladder:
-            each = searched(question, method, precision, duration / 8.0, natural, accuracy, math.inf)
+            each = searched(question, method, precision, pilot_span / 8.0, natural, accuracy, math.inf)
             found.append(each)
             if each.keeps:
                 break

@@ -45,22 +45,20 @@ CHEAPER = 0.97
 """Share of the cost that plain doubles must save to be worth their round-off: timings are no better."""
 
 
-def double_instead(
-    question: Question, chosen: Candidate, duration: float, accuracy: float
-) -> Candidate | None:
+def double_instead(question: Question, chosen: Candidate, span: float, accuracy: float) -> Candidate | None:
     """Return the candidate in plain doubles where that is expected to keep the accuracy and to cost less."""
     if chosen.precision != "compensated":
         return None
-    tried = tried_with(question, Setting(chosen.method, chosen.step, precision="double"), duration)
+    tried = tried_with(question, Setting(chosen.method, chosen.step, precision="double"), span)
     found = candidate_of(question, tried, accuracy)
     return found if found.keeps and found.predicted_cost < CHEAPER * chosen.predicted_cost else None
 
 
-def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: float) -> Candidate:
+def confirmed(question: Question, chosen: Candidate, span: float, accuracy: float) -> Candidate:
     """Return the candidate after a longer look: at resonance, and at an error that grows late."""
-    if question.span <= duration:
+    if question.span <= span:
         return chosen
-    longer = _longer(question, chosen, duration)
+    longer = _longer(question, chosen, span)
     setting, resonant = chosen.setting, False
     tried = tried_with(question, setting, longer)
     share = 1.0 if setting.step is not None or longer >= question.span else ADAPTIVE_MARGIN
@@ -80,10 +78,10 @@ def confirmed(question: Question, chosen: Candidate, duration: float, accuracy: 
     return replace(candidate_of(question, tried, accuracy), resonant=resonant)
 
 
-def _longer(question: Question, chosen: Candidate, duration: float) -> float:
+def _longer(question: Question, chosen: Candidate, span: float) -> float:
     """Return how long the last look is: the whole span where that is cheap."""
     cheap = POSITION_SECONDS if question.observable == "position" else WHOLE_SECONDS
     if chosen.predicted_cost <= cheap:
         return question.span
-    longer = min(question.span, CONFIRMING * duration * pilot_share(chosen.method))
+    longer = min(question.span, CONFIRMING * span * pilot_share(chosen.method))
     return longer if chosen.step is None else min(longer, LONGEST_PILOT * chosen.step)

@@ -57,7 +57,7 @@ class Pilot:
     setting
         What was run.
     span
-        Its duration.
+        Its span.
     steps, evaluations
         Steps taken, and evaluations of the force (Taylor: of the series).
     t
@@ -96,35 +96,35 @@ def is_seen_inside(method: Method) -> bool:
     return method.engine is FIXED_STEPS and not (method.solvable and method.solvable.corrector)
 
 
-def pilot(question: Question, setting: Setting, duration: float, windows: int = WINDOWS) -> Pilot:
+def pilot(question: Question, setting: Setting, span: float, windows: int = WINDOWS) -> Pilot:
     """Run a setting for a while and keep what its error did; a run that fails is a pilot with the reason."""
     try:
         if question.observable == "position":
-            return _against_reference(question, setting, duration)
+            return _against_reference(question, setting, span)
         if is_seen_inside(setting.method) and is_hamiltonian(question.hamiltonian):
-            return _watched(question, setting, duration, windows)
-        return _sampled(question, setting, duration, windows)
+            return _watched(question, setting, span, windows)
+        return _sampled(question, setting, span, windows)
     except (ArithmeticError, ValueError) as failed:
-        return Pilot(setting, duration, failure=str(failed))
+        return Pilot(setting, span, failure=str(failed))
 
 
-def seconds_per_time(question: Question, setting: Setting, duration: float) -> float:
+def seconds_per_time(question: Question, setting: Setting, span: float) -> float:
     """Return the processor time of the steps per unit of time, the least of a few runs."""
     if setting.method.engine is FICTITIOUS_TIME:
-        return _seconds_with_landing(question, setting, duration)
-    trial = duration / 64.0
+        return _seconds_with_landing(question, setting, span)
+    trial = span / 64.0
     found = question.run(setting, trial, 1)
-    while found.cpu_seconds < TIMED_SECONDS and trial < duration:
-        trial = min(duration, 4.0 * trial)
+    while found.cpu_seconds < TIMED_SECONDS and trial < span:
+        trial = min(span, 4.0 * trial)
         found = question.run(setting, trial, 1)
     again = (question.run(setting, trial, 1).cpu_seconds for _ in range(TIMINGS - 1))
     return min(found.cpu_seconds, *again) / trial
 
 
-def _seconds_with_landing(question: Question, setting: Setting, duration: float) -> float:
+def _seconds_with_landing(question: Question, setting: Setting, span: float) -> float:
     """Return the same for a method in a fictitious time, whose stretches and landing take milliseconds of their own."""
-    steps = question.run(setting, duration, 1).steps
-    longest = min(question.span, duration * TIMED_STEPS / steps)
+    steps = question.run(setting, span, 1).steps
+    longest = min(question.span, span * TIMED_STEPS / steps)
     short, long = (
         min(question.run(setting, trial, 1).cpu_seconds for _ in range(TIMINGS))
         for trial in (longest / 4.0, longest)
@@ -133,18 +133,18 @@ def _seconds_with_landing(question: Question, setting: Setting, duration: float)
     return rate + max(0.0, long - rate * longest) / question.span
 
 
-def _watched(question: Question, setting: Setting, duration: float, windows: int) -> Pilot:
+def _watched(question: Question, setting: Setting, span: float, windows: int) -> Pilot:
     """Follow the error inside the loop: nothing is missed between samples."""
-    steps = math.ceil(duration / setting.knob)
+    steps = math.ceil(span / setting.knob)
     cadence = max(1, steps // WATCHED)
     windows = max(1, min(windows, steps // (2 * cadence)))
-    found = question.run(setting, duration, windows, cadence)
+    found = question.run(setting, span, windows, cadence)
     seen = found.statistics[question.observable]
     unit = unit_of(found, question)
     worst = float(found.statistics["energy"].largest.max())
     return Pilot(
         setting=replace(setting, step=found.step),
-        span=duration,
+        span=span,
         steps=found.steps,
         evaluations=found.evaluations,
         t=(found.t[1:] + found.t[:-1]) / 2.0 - question.since,
@@ -154,20 +154,20 @@ def _watched(question: Question, setting: Setting, duration: float, windows: int
     )
 
 
-def _sampled(question: Question, setting: Setting, duration: float, windows: int) -> Pilot:
+def _sampled(question: Question, setting: Setting, span: float, windows: int) -> Pilot:
     """Follow the error from sample to sample: of stepped methods in windows of many."""
     stepped = setting.method.engine.takes_step
     samples = 2 * WINDOWS
     if stepped:
-        samples = max(windows, min(SEEN * WINDOWS, math.ceil(duration / setting.knob)))
-    found = question.run(setting, duration, samples)
+        samples = max(windows, min(SEEN * WINDOWS, math.ceil(span / setting.knob)))
+    found = question.run(setting, span, samples)
     error = change_of(found, question)[1:] / unit_of(found, question)
     parts = min(windows, error.size) if stepped else error.size
     rows = error[: error.size // parts * parts].reshape(parts, -1)
     times = (found.t[1:] - question.since)[: rows.size].reshape(parts, -1)
     return Pilot(
         setting=setting if setting.step is None else replace(setting, step=found.step),
-        span=duration,
+        span=span,
         steps=found.steps,
         evaluations=found.evaluations,
         t=times.mean(axis=1),
@@ -177,16 +177,16 @@ def _sampled(question: Question, setting: Setting, duration: float, windows: int
     )
 
 
-def _against_reference(question: Question, setting: Setting, duration: float) -> Pilot:
+def _against_reference(question: Question, setting: Setting, span: float) -> Pilot:
     """Compare coordinates with the reference; a step is adjusted to meet its times."""
     times = None
     if setting.method.engine is FICTITIOUS_TIME:  # its samples are even in its own time
-        times = question.since + np.linspace(0.0, duration, PLACES + 1)[1:]
+        times = question.since + np.linspace(0.0, span, PLACES + 1)[1:]
     elif setting.method.engine is FIXED_STEPS:
-        steps = PLACES * max(1, round(duration / setting.knob / PLACES))
-        setting = replace(setting, step=duration / steps)
-    true, rest = question.positions(duration, setting.arithmetic)
-    found = question.run(setting, duration, PLACES, times=times)
+        steps = PLACES * max(1, round(span / setting.knob / PLACES))
+        setting = replace(setting, step=span / steps)
+    true, rest = question.positions(span, setting.arithmetic)
+    found = question.run(setting, span, PLACES, times=times)
     if found.t.size == PLACES:
         true, rest = true[:, 1:], rest[:, 1:]
     off = (found.q - true) + (found.carried[: len(found.q)] - rest)
@@ -194,7 +194,7 @@ def _against_reference(question: Question, setting: Setting, duration: float) ->
     away = np.linalg.norm(off, axis=0)[-PLACES:] / size
     return Pilot(
         setting=setting,
-        span=duration,
+        span=span,
         steps=found.steps,
         evaluations=found.evaluations,
         t=found.t[-PLACES:] - question.since,
@@ -247,19 +247,19 @@ def natural_step(question: Question, report: Callable[[float], None] = lambda _:
     StudyError
         Where the motion can't be followed at all.
     """
-    duration = question.span * 2.0**-20
+    span = question.span * 2.0**-20
     try:
         while True:
-            found = question.run(Setting(Taylor(), precision="double"), duration, 1)
-            if found.steps >= 300 or duration >= question.span:
-                return duration / found.steps
+            found = question.run(Setting(Taylor(), precision="double"), span, 1)
+            if found.steps >= 300 or span >= question.span:
+                return span / found.steps
             factor = 8.0 if found.steps < 30 else 400.0 / found.steps
-            duration = min(question.span, factor * duration)
+            span = min(question.span, factor * span)
             report(0.0)
     except (NonFiniteStateError, ValueError) as failed:
         raise StudyError(f"the motion can't be followed: {failed}") from failed
 
 
 def pilot_share(method: Method) -> float:
-    """Return the part of a pilot's usual duration that suffices: less where every step is taken in Python."""
+    """Return the part of a pilot's usual span that suffices: less where every step is taken in Python."""
     return 1.0 / 16.0 if method.engine is SCIPY else 1.0

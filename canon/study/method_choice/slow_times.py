@@ -86,22 +86,22 @@ class _Part:
     size: Array
 
 
-def with_outlook(question: Question, duration: float, natural: float) -> tuple[Question, Outlook]:
+def with_outlook(question: Question, span: float, natural: float) -> tuple[Question, Outlook]:
     """Return the question with further places for pilots, and what was seen of the motion ahead.
 
     Parameters
     ----------
-    duration
+    span
         Duration of a pilot run: what it sees need not be looked at.
     natural
         Time scale of the motion.
     """
-    if question.span <= duration:
+    if question.span <= span:
         return question, Outlook(question.span)
-    parts, seen = _followed(question, duration, natural)
+    parts, seen = _followed(question, span, natural)
     if not parts:
-        return question, Outlook(duration, unsettled="the motion could not be followed ahead")
-    places = _places(parts, seen / len(parts), duration)
+        return question, Outlook(span, unsettled="the motion could not be followed ahead")
+    places = _places(parts, seen / len(parts), span)
     elsewhere = tuple((place.since, place.y0) for place in places)
     begin = question.run(Setting(Taylor(), precision="double"), natural, 1)
     unsettled = "" if seen >= question.span else _unsettled(parts, seen, question.span)
@@ -110,11 +110,11 @@ def with_outlook(question: Question, duration: float, natural: float) -> tuple[Q
     )
 
 
-def _followed(question: Question, duration: float, natural: float) -> tuple[list[_Part], float]:
+def _followed(question: Question, span: float, natural: float) -> tuple[list[_Part], float]:
     """Return the parts of the motion ahead and how long they last together."""
-    first = question.run(Setting(Taylor(), precision="double"), min(duration, 200.0 * natural), 1)
+    first = question.run(Setting(Taylor(), precision="double"), min(span, 200.0 * natural), 1)
     steps = min(MOST_STEPS, AHEAD_SECONDS / max(first.cpu_seconds / first.steps, 1e-9))
-    seen = min(question.span, max(steps * natural, 4.0 * duration))
+    seen = min(question.span, max(steps * natural, 4.0 * span))
     parts, begin = list[_Part](), question
     for _ in range(PARTS):
         try:
@@ -125,30 +125,30 @@ def _followed(question: Question, duration: float, natural: float) -> tuple[list
     return parts, seen
 
 
-def _part(begin: Question, duration: float) -> tuple[_Part, Question]:
+def _part(begin: Question, span: float) -> tuple[_Part, Question]:
     """Return a part of the motion, and where the next one begins."""
-    found = begin.run(Setting(Taylor(), precision="double"), duration, SEEN)
+    found = begin.run(Setting(Taylor(), precision="double"), span, SEEN)
     size = np.abs(found.y).max(axis=1)
     size = np.maximum(size, SMALLEST_PART * size.max())
-    return _Part(begin, found.steps / duration, size), begin.moved(begin.since + duration, found.final)
+    return _Part(begin, found.steps / span, size), begin.moved(begin.since + span, found.final)
 
 
-def _places(parts: list[_Part], length: float, duration: float) -> list[Question]:
+def _places(parts: list[_Part], length: float, span: float) -> list[Question]:
     """Return where the motion is faster than at the start, and where some coordinate or momentum is larger."""
     first = parts[0]
     fastest = max(parts, key=lambda part: part.pace)
     widest = max(parts, key=lambda part: float((part.size / first.size).max()))
     found: list[Question] = []
     if fastest.pace > FASTER * first.pace:
-        found.append(_fastest_of(fastest.start, length, duration))
+        found.append(_fastest_of(fastest.start, length, span))
     if widest is not fastest and float((widest.size / first.size).max()) > WIDER:
         found.append(widest.start)
     return found
 
 
-def _fastest_of(begin: Question, length: float, duration: float) -> Question:
+def _fastest_of(begin: Question, length: float, span: float) -> Question:
     """Return where within a part that is much longer than a pilot the motion is fastest."""
-    if length < 2.0 * duration:
+    if length < 2.0 * span:
         return begin
     parts: list[_Part] = []
     for _ in range(FINER):

@@ -69,7 +69,7 @@ def searched(
     question: Question,
     method: Method,
     precision: str,
-    duration: float,
+    span: float,
     natural: float,
     accuracy: float,
     cheapest: float,
@@ -78,7 +78,7 @@ def searched(
 
     Parameters
     ----------
-    duration
+    span
         Duration of a pilot run.
     natural
         Time scale of the motion.
@@ -88,16 +88,16 @@ def searched(
         Cost of the best candidate so far: the search ends where a method can't come near it.
     """
     if not method.engine.takes_step:
-        return searched_tolerance(question, method, precision, duration, accuracy, cheapest)
+        return searched_tolerance(question, method, precision, span, accuracy, cheapest)
     # An integral may be kept exactly whatever the step: begin with a large one.
     error = accuracy if question.integral is None else 1.0
-    first = _first_step(method, natural, error, duration)
+    first = _first_step(method, natural, error, span)
     setting = Setting(method, step=first, precision=precision)
     good: TriedSetting | None = None
     bad: TriedSetting | None = None
     ceiling, lost = math.inf, 0
     for _ in range(PILOTS):
-        tried = tried_with(question, setting, duration)
+        tried = tried_with(question, setting, span)
         lost += math.isinf(tried.error)
         if lost == LOST:
             return nothing(setting, "its error grows too fast")
@@ -115,13 +115,13 @@ def searched(
         knob = min(ceiling, _next_knob(tried, good, bad, accuracy))
         if good is not None and _is_enough(good, bad, knob, ceiling, accuracy, cheapest):
             break
-        if good is None and _is_hopeless(tried, knob, duration, cheapest):
+        if good is None and _is_hopeless(tried, knob, span, cheapest):
             return by_order(question, tried, accuracy)
         setting = setting.turned(knob)
     if good is None:
         return _beyond_the_pilots(question, setting, bad, accuracy)
     if good.knob * LARGER[-1] <= ceiling:
-        good = _still_larger(question, good, duration, accuracy, cheapest)
+        good = _still_larger(question, good, span, accuracy, cheapest)
     return _at_best(question, good, accuracy, cheapest)
 
 
@@ -137,9 +137,9 @@ def _beyond_the_pilots(
     return nothing(setting, "") if bad is None else by_order(question, bad, accuracy)
 
 
-def _is_hopeless(tried: TriedSetting, knob: float, duration: float, cheapest: float) -> bool:
+def _is_hopeless(tried: TriedSetting, knob: float, span: float, cheapest: float) -> bool:
     """Tell whether the step that may suffice is too small for a pilot run, or too dear for a choice."""
-    return duration / knob > LONGEST_PILOT or _cost_at(tried, knob) > HOPELESS * cheapest
+    return span / knob > LONGEST_PILOT or _cost_at(tried, knob) > HOPELESS * cheapest
 
 
 def _is_enough(
@@ -170,12 +170,12 @@ def _ceiling(tried: TriedSetting, natural: float) -> float:
 
 
 def _still_larger(
-    question: Question, good: TriedSetting, duration: float, accuracy: float, cheapest: float
+    question: Question, good: TriedSetting, span: float, accuracy: float, cheapest: float
 ) -> TriedSetting:
     """Return a much larger step that keeps the accuracy too, where there is one: errors need not fall evenly."""
     for factor in LARGER:
         if good.cost / factor < cheapest:
-            tried = tried_with(question, good.pilot.setting.turned(good.knob * factor), duration)
+            tried = tried_with(question, good.pilot.setting.turned(good.knob * factor), span)
             if tried.error <= MARGIN * accuracy:
                 return tried
     return good
@@ -186,7 +186,7 @@ def _cost_at(tried: TriedSetting, step: float) -> float:
     return tried.cost * tried.knob / step
 
 
-def _first_step(method: Method, natural: float, accuracy: float, duration: float) -> float:
+def _first_step(method: Method, natural: float, accuracy: float, span: float) -> float:
     """Return where to begin: as many steps in the natural one as an ordinary error constant asks for.
 
     That of a splitting by solvable parts holds the size of the disturbance, so begin with a large step there.
@@ -197,7 +197,7 @@ def _first_step(method: Method, natural: float, accuracy: float, duration: float
         widest, order = widest_step(method, natural), method.order
     if method.engine is FICTITIOUS_TIME:
         widest *= SHORTER
-    return max(duration / LONGEST_PILOT, widest * min(1.0, (1e3 * accuracy) ** (1.0 / order)))
+    return max(span / LONGEST_PILOT, widest * min(1.0, (1e3 * accuracy) ** (1.0 / order)))
 
 
 def widest_step(method: Method, natural: float) -> float:

@@ -32,14 +32,14 @@ ADAPTIVE_MARGIN = 0.25
 
 
 def searched_tolerance(
-    question: Question, method: Method, precision: str, duration: float, accuracy: float, cheapest: float
+    question: Question, method: Method, precision: str, span: float, accuracy: float, cheapest: float
 ) -> Candidate:
     """Return an adaptive method at the largest tolerance of a ladder that is expected to suffice.
 
     The rungs are e² apart, one order of Taylor's method each: in between heyoka's steps are the same.
     """
-    duration *= pilot_share(method)
-    aim = accuracy * ADAPTIVE_MARGIN if question.span > duration else accuracy
+    span *= pilot_share(method)
+    aim = accuracy * ADAPTIVE_MARGIN if question.span > span else accuracy
     last = last_rung(precision)
     good: TriedSetting | None = None
     bad: TriedSetting | None = None
@@ -47,7 +47,7 @@ def searched_tolerance(
     rung = min(last, max(LOOSEST, round(-math.log(aim) / 2.0)))
     for _ in range(PILOTS):
         setting = Setting(method, tolerance=tolerance_at(rung), precision=precision)
-        tried = tried_with(question, setting, duration)
+        tried = tried_with(question, setting, span)
         if tried.error <= aim:
             good, high = tried, rung
         else:

@@ -1,4 +1,4 @@
-"""What a study is about: a system with numbers, its observables."""
+"""Motions that are studied: a system with numbers, and its observables."""
 
 from canon.doors import door
 

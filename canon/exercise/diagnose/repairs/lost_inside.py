@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from flint import acb
     from sympy import Expr, Symbol
 
+    from canon.exercise.diagnose.repairs.component_screen import Screen
     from canon.exercise.diagnose.repairs.lost_factor import Monomials
-    from canon.exercise.diagnose.repairs.repair import Screen
     from canon.exercise.question.question import Part
 
     _Values = Mapping[Symbol | None, acb]

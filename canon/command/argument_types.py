@@ -1,4 +1,4 @@
-"""Numbers on the command line, with the range they are to be in."""
+"""Argument types of the command line: numbers, with the range they are to be in."""
 
 from __future__ import annotations
 
