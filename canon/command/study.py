@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
     from concurrent.futures import Executor
 
+    from canon.study.cases.chunk_damage import DamagedFile
     from canon.study.cases.result import Result
     from canon.study.cases.row_checksum import DamagedRow
     from canon.study.cases.run_study import StudyStatus
@@ -140,12 +141,20 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _status(arguments: argparse.Namespace) -> int:
+    from canon.study.cases.chunk_damage import damaged_chunks
     from canon.study.cases.store import DamagedRows
+    from canon.study.kept.chunk_file import DamagedChunk
 
     store = _existing(arguments.store)
     if damaged := store.damaged():
         _print_damaged(damaged, store)
         raise DamagedRows(store.path, damaged)
+    if chunks := damaged_chunks(store):
+        _print_damaged(chunks, store)
+        raise DamagedChunk(
+            f"{store.path}: what was kept of {len(chunks)} of its cases is damaged; "
+            f"'canon study mend {store.path}' sets it aside, so that they are computed again"
+        )
     return _told(store, arguments.plot)
 
 
@@ -186,6 +195,7 @@ def _merge(arguments: argparse.Namespace) -> int:
 
 def _mend(arguments: argparse.Namespace) -> int:
     from canon.study.cases.mend import mend
+    from canon.study.kept.chunk_file import ChunkFolder
 
     _require_file(arguments.store)
     mended = mend(arguments.store)
@@ -194,10 +204,13 @@ def _mend(arguments: argparse.Namespace) -> int:
         _print_damaged(mended.lost, mended.store)
         if any(row.table == "cases" for row in mended.lost):
             print("  run the study file again to have the cases whose inputs are lost")
+    if mended.chunks:
+        print(f"set aside in {ChunkFolder(arguments.store).path}:")
+        _print_damaged(mended.chunks, mended.store)
     return _told(mended.store, None)
 
 
-def _print_damaged(rows: Sequence[DamagedRow], store: Store) -> None:
+def _print_damaged(rows: Sequence[DamagedRow | DamagedFile], store: Store) -> None:
     """Print which rows are damaged, each by its case in words where the inputs can be read."""
     from canon.study.cases.result import motions_and_settings
 

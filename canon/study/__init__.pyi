@@ -21,6 +21,9 @@ from .energy_drift.drift_study import drift_study as drift_study
 from .energy_drift.integral_drift import IntegralDrift as IntegralDrift
 from .energy_drift.integral_drift import integral_drift as integral_drift
 from .errors import StudyError as StudyError
+from .kept.chunk_file import DamagedChunk as DamagedChunk
+from .kept.kept_arrays import Kept as Kept
+from .kept.kept_motion import KeptMotion as KeptMotion
 from .method_choice.candidate import Candidate as Candidate
 from .method_choice.choose import Choice as Choice
 from .method_choice.choose import choose as choose

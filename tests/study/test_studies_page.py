@@ -30,7 +30,7 @@ def test_the_study_can_be_read(tmp_path):
 def test_the_program_runs_and_the_others_are_python(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     first, *others = blocks("python")
-    assert len(others) == 4
+    assert len(others) == 5
     program = tmp_path / "program.py"
     program.write_text(first)
     runpy.run_path(str(program))

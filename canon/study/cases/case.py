@@ -74,6 +74,8 @@ class Case:
     observables
         What is judged beside the energy: names of constants, and names with formulas
         (:func:`canon.study.cases.case_observables.observables_from`).
+    keep
+        What is kept beside the numbers, by name (:func:`canon.study.kept.keep_choice.keep_from`).
     """
 
     system: str | Formula
@@ -87,6 +89,7 @@ class Case:
     precision: str | None = None
     parts: int | None = None
     observables: tuple[tuple[str, str], ...] = ()
+    keep: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         if not 0.0 < self.span < math.inf:
@@ -125,6 +128,11 @@ class Case:
         )
 
     @property
+    def variables(self) -> tuple[str, ...]:
+        """The names of the variables of the state."""
+        return tuple(s.name for s in (*self.hamiltonian.q, *self.hamiltonian.p))
+
+    @property
     def values(self) -> dict[str, float]:
         """The value of every parameter by name."""
         if isinstance(self.system, Formula):
@@ -150,15 +158,14 @@ class Case:
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold of this case; floats survive exactly."""
         fields = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        fields.pop("observables")
-        observables = {"observables": dict(self.observables)} if self.observables else {}
+        more = {name: dict(found) for name in ("observables", "keep") if (found := fields.pop(name))}
         system = self.system.to_dict() if isinstance(self.system, Formula) else self.system
         return {
             **fields,
             "system": system,
             "method": self.method.written,
             "parameters": dict(self.parameters),
-            **observables,
+            **more,
         }
 
     def to_text(self) -> str:
@@ -176,6 +183,7 @@ class Case:
             parameters=tuple(given.pop("parameters").items()),
             start=tuple(start) if isinstance(start, list) else start,
             observables=tuple(given.pop("observables", {}).items()),
+            keep=tuple(given.pop("keep", {}).items()),
             **given,
         )
 

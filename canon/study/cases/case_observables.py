@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from canon.study.cases.case import Case
 
-__all__ = ["followed", "observables_from"]
+__all__ = ["followed", "observables_from", "read_formula"]
 
 
 def observables_from(written: Any) -> tuple[tuple[str, str], ...]:
@@ -65,14 +65,23 @@ def followed(case: Case) -> tuple[Observable, ...]:
     hamiltonian, y0 = case.hamiltonian, np.array(case.state)
     values: Mapping[Symbol | str, float] = {**case.values}
     named = [name for name, text in case.observables if not text]
-    written = {name: _read(case, name, text) for name, text in case.observables if text}
+    written = {
+        name: read_formula(case, f"the observable {name!r}", text) for name, text in case.observables if text
+    }
     system = hamiltonian if isinstance(case.system, Formula) else find(case.system)
     found = observables_of(system, hamiltonian, named, y0, values) if named else ()
     own = observables_of(system, hamiltonian, written, y0, values) if written else ()
     return (*found, *own)
 
 
-def _read(case: Case, name: str, text: str) -> Expr:
+def read_formula(case: Case, what: str, text: str) -> Expr:
+    """Return a formula in the variables and parameters of a case, as an expression.
+
+    Raises
+    ------
+    StudyError
+        It can't be read; the error begins with what it is.
+    """
     from canon.expression.parse import LanguageError, Scope, parse_expression
     from canon.expression.symbols.symbol import parameters
 
@@ -85,4 +94,4 @@ def _read(case: Case, name: str, text: str) -> Expr:
     try:
         return parse_expression(text, Scope({symbol.name: symbol for symbol in symbols}))
     except LanguageError as error:
-        raise StudyError(f"the observable {name!r}: {error}") from error
+        raise StudyError(f"{what}: {error}") from error

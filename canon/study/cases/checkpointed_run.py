@@ -25,6 +25,7 @@ from canon.flow.run.sampling_plan import steps_over
 from canon.study.cases.case import part_count
 from canon.study.cases.case_numbers import judged_energy, judged_observable
 from canon.study.cases.case_observables import followed
+from canon.study.cases.kept_of_case import kept_on_the_way, section_of
 from canon.study.energy_drift.sample_times import is_resolved, scattered
 from canon.study.motion.extended_phase_space import driven
 from canon.study.motion.observables import expressions_of
@@ -33,6 +34,7 @@ from canon.study.motion.quiet_run import run_quietly
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from canon.flow.run.event import Event
     from canon.flow.trajectory import Trajectory
     from canon.study.cases.case import Case
     from canon.study.motion.extended_phase_space import Driven
@@ -84,6 +86,8 @@ class Checkpoint:
         The samples of what is followed beside the energy, by name.
     even
         Whether the samples stand at equal distances (:mod:`canon.study.energy_drift.sample_times`).
+    kept
+        What is to be kept of the parts done (:func:`canon.study.cases.kept_of_case.kept_on_the_way`).
     """
 
     part: int
@@ -99,6 +103,7 @@ class Checkpoint:
     precision: str = ""
     changes: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
     even: bool = True
+    kept: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
     def to_text(self) -> str:
         """Return the checkpoint as JSON; floats survive exactly."""
@@ -110,13 +115,14 @@ class Checkpoint:
         fields: dict[str, Any] = json.loads(text)
         for name in ("state", "carried", "t", "change"):
             fields[name] = tuple(fields[name])
-        fields["changes"] = {name: tuple(x) for name, x in fields["changes"].items()}
+        for name in ("changes", "kept"):
+            fields[name] = {of: tuple(x) for of, x in fields.get(name, {}).items()}
         return Checkpoint(**fields)
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What is kept of a finished run: its numbers, exactly; not its samples.
+    """What came of a finished run: its numbers, exactly, and the point it ended at with its samples.
 
     Parameters
     ----------
@@ -124,10 +130,13 @@ class Outcome:
         What depends on the case alone, as JSON can hold it.
     seconds
         Processor time.
+    end
+        The run after its last part.
     """
 
     numbers: dict[str, Any]
     seconds: float
+    end: Checkpoint
 
 
 def started(case: Case) -> Checkpoint:
@@ -180,7 +189,7 @@ def advance(case: Case, reached: Checkpoint | None = None, seconds: float = math
             spent = point.seconds
             if point.part < end and time.monotonic() - now >= seconds:
                 return point
-        return Outcome(_numbers(case, point), point.seconds)
+        return Outcome(_numbers(case, point), point.seconds, point)
     except (ArithmeticError, ValueError, RuntimeError) as error:
         raise FailedRun(str(error), spent) from error
 
@@ -211,6 +220,7 @@ def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
         seconds=point.seconds + found.cpu_seconds,
         step=found.step,
         precision=found.precision,
+        kept=kept_on_the_way(case, point.kept, found, _with_time(case)),
     )
 
 
@@ -228,7 +238,7 @@ def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
     along, timed = followed(case), _with_time(case)
     if timed is not None:
         along = tuple(map(timed.observable, along))
-    return _run(case, state, span, step, samples, times, along)
+    return _run(case, state, span, step, samples, times, along, section_of(case, timed))
 
 
 def _run(
@@ -239,6 +249,7 @@ def _run(
     samples: int,
     times: Sequence[float] | None = None,
     along: Sequence[Observable] = (),
+    events: Sequence[Event] = (),
 ) -> Trajectory:
     timed = _with_time(case)
     motion = Request(
@@ -249,6 +260,7 @@ def _run(
         samples=samples if times is None else None,
         times=times,
         observables=expressions_of(along),
+        events=events,
     )
     return run_quietly(motion.by(replace(case.setting, step=step)))
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from canon.study.cases.chunk_damage import DamagedFile, set_chunks_aside
 from canon.study.cases.row_checksum import COLUMNS, DamagedRow, checked, with_checksum
 from canon.study.cases.store import PATIENCE, Store, StoreError
 
@@ -31,11 +32,14 @@ class Mended:
         Where the damaged file is kept; None where nothing was damaged.
     lost
         The damaged rows that could be found: their cases are to be computed again.
+    chunks
+        The files of what was kept that were damaged, gone, or named by no record; they are set aside in a folder.
     """
 
     store: Store
     aside: Path | None
     lost: tuple[DamagedRow, ...]
+    chunks: tuple[DamagedFile, ...] = ()
 
 
 def mend(path: str | Path) -> Mended:
@@ -69,7 +73,7 @@ def mend(path: str | Path) -> Mended:
     """
     file = Path(path)
     if _is_whole(file):
-        return Mended(Store(file), None, ())
+        return Mended(Store(file), None, (), set_chunks_aside(Store(file)))
     rows, lost = _salvaged(file)
     if not any(rows.values()):
         raise StoreError(
@@ -83,7 +87,7 @@ def mend(path: str | Path) -> Mended:
         if (journal := Path(f"{file}{ending}")).exists():
             journal.rename(f"{aside}{ending}")
     beside.rename(file)
-    return Mended(Store(file), aside, lost)
+    return Mended(Store(file), aside, lost, set_chunks_aside(Store(file)))
 
 
 def _is_whole(file: Path) -> bool:

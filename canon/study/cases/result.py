@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from canon.frozen_mapping import FrozenMapping
 from canon.study.cases.case import Case, case_in, part_count
 from canon.study.cases.store import Store
+from canon.study.kept.chunk_file import Chunk, ChunkFolder
+from canon.study.kept.kept_arrays import Kept
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,6 +50,8 @@ class Result:
         Fraction of the run that is done.
     versions
         Versions of canon and the libraries that computed it, or are to.
+    kept
+        What was kept beside the numbers, read when it is asked for.
     """
 
     key: str
@@ -58,6 +62,7 @@ class Result:
     seconds: float | None = None
     done: float = 1.0
     versions: Mapping[str, str] = field(default_factory=lambda: FrozenMapping({}))
+    kept: Kept = field(default_factory=lambda: Kept(ChunkFolder(Path()), None), compare=False)
 
     def __repr__(self) -> str:
         return f"<Result: {self.motion}; {self.setting}: {self.state.value}>"
@@ -110,7 +115,11 @@ def results_of(store: Store | str | Path) -> list[Result]:
             found.append(Result(key, case, State.FAILED, {}, record.failure, record.seconds, versions=by))
         else:
             numbers = json.loads(record.outcome)
-            found.append(Result(key, case, State.FINISHED, numbers, "", record.seconds, versions=by))
+            numbers.pop("kept", None)
+            kept = Kept(ChunkFolder(store.path), Chunk.named_by(key, record.outcome))
+            found.append(
+                Result(key, case, State.FINISHED, numbers, "", record.seconds, versions=by, kept=kept)
+            )
     return found
 
 

@@ -5,18 +5,28 @@ from __future__ import annotations
 import json
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from canon.expression.symbols.user_input import counted
 from canon.study.cases.case import Case, case_in, key_of, part_count, versions
 from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance
+from canon.study.cases.kept_of_case import kept_arrays
 from canon.study.cases.store import Record, Store
 from canon.study.errors import StudyError
+from canon.study.kept.chunk_file import Chunk, ChunkFolder
+from canon.study.kept.keep_choice import chosen_functions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from canon.study.cases.study import Study
+
+    Function = Callable[..., Any]
+    GoOn = Callable[[str, Case, Checkpoint | None, float], "Checkpoint | Finished"]
 
 __all__ = ["StudyStatus", "resume", "run_study", "status_of"]
 
@@ -57,6 +67,7 @@ def run_study(
     progress: Callable[[StudyStatus], None] | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
     in_flight: int | None = None,
+    keep: Mapping[str, Function] | None = None,
 ) -> StudyStatus:
     """Run the cases of a study that are not finished yet, and keep each one as soon as it is.
 
@@ -76,6 +87,10 @@ def run_study(
     in_flight
         How many cases are handed to the executor at a time. They take turns from checkpoint to checkpoint, so give
         little more than it has workers; a pool of this machine tells, for others it is 256 if left out.
+    keep
+        Functions by name, whose results are kept of each case beside what the study says: each gets a
+        :class:`canon.study.KeptMotion` and returns a number, an array, or a mapping of these by name. Workers need
+        to be able to import them; a function whose code has changed is run anew, with its case.
 
     Returns
     -------
@@ -85,15 +100,16 @@ def run_study(
     Raises
     ------
     StudyError
-        Where workers of the executor died; what was finished is kept, run again to go on.
+        Where cases were lost, as workers of the executor died; what was finished is kept, run again to go on.
     StoreError
         Where the file can't be written, or rows of it are damaged.
     """
     kept = store if isinstance(store, Store) else Store(Path(store))
     kept.require_intact()
-    keyed = {key_of(case): case for case in study.cases}
+    more, functions = chosen_functions(keep or {}), keep or {}
+    keyed = {key_of(case): case for case in (replace(each, keep=each.keep + more) for each in study.cases)}
     kept.add_cases({key: case.to_text() for key, case in keyed.items()})
-    _run(keyed, kept, executor, progress, checkpoint_seconds, in_flight)
+    _run(keyed, kept, executor, progress, checkpoint_seconds, in_flight, functions)
     return status_of(kept)
 
 
@@ -103,6 +119,7 @@ def resume(
     progress: Callable[[StudyStatus], None] | None = None,
     checkpoint_seconds: float = CHECKPOINT_SECONDS,
     in_flight: int | None = None,
+    keep: Mapping[str, Function] | None = None,
 ) -> StudyStatus:
     """Run the pending cases of a file; see :func:`run_study`."""
     kept = store if isinstance(store, Store) else Store(Path(store))
@@ -119,7 +136,16 @@ def resume(
                 f"{kept.path} was begun with other versions ({other or 'not known'}); resume with those, "
                 "or run the study again to have all cases with the present ones"
             )
-    _run(written, kept, executor, progress, checkpoint_seconds, in_flight)
+    functions = keep or {}
+    given = {*chosen_functions(functions)}
+    for case in written.values():
+        for name, text in case.keep:
+            if text.startswith("function ") and (name, text) not in given:
+                raise StudyError(
+                    f"{kept.path} keeps the results of a function {name!r} of the motions, which is not given or not "
+                    f"the same: resume from Python, with keep={{{name!r}: the function}}"
+                )
+    _run(written, kept, executor, progress, checkpoint_seconds, in_flight, functions)
     return status_of(kept)
 
 
@@ -128,15 +154,37 @@ def status_of(store: Store) -> StudyStatus:
     return StudyStatus(*store.counts())
 
 
-def continue_case(key: str, case: Case, reached: Checkpoint | None, seconds: float) -> Checkpoint | Record:
+@dataclass(frozen=True)
+class Finished:
+    """A record, and the chunk it names with its content, where something was kept of the case."""
+
+    record: Record
+    chunk: Chunk | None = None
+    content: bytes = b""
+
+
+def continue_case(
+    functions: Mapping[str, Function], key: str, case: Case, reached: Checkpoint | None, seconds: float
+) -> Checkpoint | Finished:
     """Run a case on and return its next checkpoint or its record; this is what workers do."""
     try:
         found = advance(case, reached, seconds)
     except FailedRun as failed:
-        return Record(key, "", str(failed), failed.seconds)
-    if isinstance(found, Outcome):
-        return Record(key, json.dumps(found.numbers), "", found.seconds)
-    return found
+        return Finished(Record(key, "", str(failed), failed.seconds))
+    return _finished(key, case, found, functions) if isinstance(found, Outcome) else found
+
+
+def _finished(key: str, case: Case, found: Outcome, functions: Mapping[str, Function]) -> Finished:
+    if not case.keep:
+        return Finished(Record(key, json.dumps(found.numbers), "", found.seconds))
+    end = found.end
+    try:
+        arrays = kept_arrays(case, end.kept, np.array(end.t), np.array(end.change), functions)
+    except (ArithmeticError, LookupError, ValueError, RuntimeError) as error:
+        return Finished(Record(key, "", f"what is to be kept of it: {error}", found.seconds))
+    chunk, content = Chunk.of(key, arrays)
+    outcome = json.dumps({**found.numbers, "kept": chunk.to_dict()})
+    return Finished(Record(key, outcome, "", found.seconds), chunk, content)
 
 
 def _run(
@@ -146,6 +194,7 @@ def _run(
     progress: Callable[[StudyStatus], None] | None,
     seconds: float,
     in_flight: int | None,
+    functions: Mapping[str, Function],
 ) -> None:
     if in_flight is not None and in_flight < 1:
         raise StudyError(f"in_flight = {in_flight}: hand at least one case to the executor")
@@ -153,13 +202,17 @@ def _run(
         raise StudyError(f"checkpoint_seconds = {seconds}: give a time, 0 or more")
     pending = _not_finished(cases, store)
     done: dict[str, float] = {}
+    go_on = partial(continue_case, functions)
     if executor is None:
-        coming = _here(pending, seconds)
+        coming = _here(pending, seconds, go_on)
     else:
-        coming = _on(executor, pending, seconds, in_flight or _room(executor))
+        coming = _on(executor, pending, seconds, in_flight or _room(executor), go_on)
+    chunks = ChunkFolder(store.path)
     for key, found in coming:
-        if isinstance(found, Record):
-            store.save(found)
+        if isinstance(found, Finished):
+            if found.chunk is not None:
+                chunks.write(found.chunk, found.content)
+            store.save(found.record)
             done.pop(key, None)
         else:
             store.save_checkpoint(key, found.part, found.to_text())
@@ -177,13 +230,13 @@ def _not_finished(cases: Mapping[str, Case], store: Store) -> Iterator[tuple[str
 
 
 def _here(
-    pending: Iterator[tuple[str, Case, Checkpoint | None]], seconds: float
-) -> Iterator[tuple[str, Checkpoint | Record]]:
+    pending: Iterator[tuple[str, Case, Checkpoint | None]], seconds: float, go_on: GoOn
+) -> Iterator[tuple[str, Checkpoint | Finished]]:
     for key, case, reached in pending:
-        found = continue_case(key, case, reached, seconds)
+        found = go_on(key, case, reached, seconds)
         while isinstance(found, Checkpoint):
             yield key, found
-            found = continue_case(key, case, found, seconds)
+            found = go_on(key, case, found, seconds)
         yield key, found
 
 
@@ -198,14 +251,16 @@ def _on(
     pending: Iterator[tuple[str, Case, Checkpoint | None]],
     seconds: float,
     in_flight: int,
-) -> Iterator[tuple[str, Checkpoint | Record]]:
+    go_on: GoOn,
+) -> Iterator[tuple[str, Checkpoint | Finished]]:
     """Yield what comes back, sending cases on from their checkpoints; where workers die, first what others did."""
-    flying: dict[Future[Checkpoint | Record], tuple[str, Case]] = {}
+    flying: dict[Future[Checkpoint | Finished], tuple[str, Case]] = {}
     lost: list[str] = []
+    too_large: list[str] = []
 
     def send(key: str, case: Case, reached: Checkpoint | None) -> None:
         try:
-            flying[executor.submit(continue_case, key, case, reached, seconds)] = key, case
+            flying[executor.submit(go_on, key, case, reached, seconds)] = key, case
         except RuntimeError as error:  # BrokenExecutor among them: it takes no more work
             lost.append(f"{type(error).__name__}: {error}")
 
@@ -220,7 +275,7 @@ def _on(
             for future in done:
                 key, case = flying.pop(future)
                 if (why := _why_lost(future)) is not None:
-                    lost.append(why)
+                    (too_large if _kills_its_workers(future) else lost).append(f"{_called(key, case)}: {why}")
                     continue
                 found = future.result()
                 if isinstance(found, Checkpoint) and not lost:
@@ -234,9 +289,24 @@ def _on(
         raise StudyError(
             f"workers died while they ran cases ({lost[0]}); what was finished is kept, run again to go on"
         )
+    if too_large:
+        raise StudyError(
+            f"{counted(len(too_large), 'case')} took more memory than workers have, or killed them ({too_large[0]}); "
+            "the others are finished and kept: give workers more memory, or keep fewer samples, and run again"
+        )
 
 
-def _why_lost(future: Future[Checkpoint | Record]) -> str | None:
+def _called(key: str, case: Case) -> str:
+    return f"case {key[:12]}, {case.system_name} with {case.method}"
+
+
+def _kills_its_workers(future: Future[Checkpoint | Finished]) -> bool:
+    """Tell whether a case itself is why it brings no result: dask gave it to several workers, and each died."""
+    error = None if future.cancelled() else future.exception()
+    return isinstance(error, MemoryError) or type(error).__name__ == "KilledWorker"
+
+
+def _why_lost(future: Future[Checkpoint | Finished]) -> str | None:
     """Return why a case that was sent to a worker brings no result, None where it brings one."""
     if future.cancelled():
         return "the executor gave a case back"

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from canon.study.cases.row_checksum import COLUMNS, DamagedRow, checked, with_checksum
+from canon.study.kept.chunk_file import Chunk, ChunkFolder
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Sequence
@@ -205,12 +206,16 @@ class Store:
         return bool(self._rows("records", "WHERE key = ?", key))
 
     def add_from(self, other: Store) -> None:
-        """Add the cases, records and checkpoints of another file, in one transaction.
+        """Add the cases, records and checkpoints of another file, in one transaction, and what was kept before it.
 
         What is here already stays, but of two checkpoints of a case the one further along.
         """
         rows = {table: [with_checksum(table, *row) for row in other._rows(table)] for table in COLUMNS}
         self.require_intact()
+        here, there = ChunkFolder(self.path), ChunkFolder(other.path)
+        for key, record in other.records().items():
+            if (chunk := Chunk.named_by(key, record.outcome)) is not None:
+                here.write(chunk, there.content(chunk))
         self.add_rows(rows)
 
     def add_rows(self, rows: dict[str, list[tuple[str | float, ...]]]) -> None:

@@ -16,9 +16,11 @@ from canon.given_file import bytes_of, tables_of
 from canon.scene import Scene, find
 from canon.study.cases.case import Case, key_of
 from canon.study.cases.case_observables import followed, observables_from
+from canon.study.cases.kept_of_case import section_of
 from canon.study.energy_drift.drift import FEWEST
 from canon.study.energy_drift.sample_times import FEWEST_USUAL, usual_samples
 from canon.study.errors import StudyError
+from canon.study.kept.keep_choice import keep_from
 from canon.study.motion.hamiltonian_text import Formula, formula_from, formula_of
 
 if TYPE_CHECKING:
@@ -43,7 +45,7 @@ MAX_BYTES = 2_000_000
 LONGEST_REASON = 1_000
 """Characters of what is told against a study; only a stranger's name or number in it can make it longer."""
 
-LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables")
+LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables", "keep")
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,8 @@ class Study:
             of values (a state is a list in that list; steps are for methods of fixed step, tolerances for
             the others); ``parameters``: a value or a list of values each; ``periods`` or ``span``,
             ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
-            ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these.
+            ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these; ``keep`` says
+            what is kept beside the numbers: ``"motion"``, ``"exponent"``, ``{"section": formula}``, or a list of these.
 
         Raises
         ------
@@ -237,6 +240,7 @@ def _case(
         precision=method.engine.understood(_text("precision", chosen["precision"])),
         parts=_whole("parts", table["parts"]) if "parts" in table else None,
         observables=observables_from(table.get("observables", ())),
+        keep=keep_from(table.get("keep", ())),
     )
     _check(case)
     return case
@@ -271,6 +275,7 @@ def _check(case: Case) -> None:
             raise ValueError(f"{case.system}: a start needs {2 * n} numbers (q, p), not {list(case.start)}")
     key_of(case)  # names of starts are looked up
     followed(case)
+    section_of(case, None)
 
 
 def _number(name: str, value: Any) -> float:

@@ -1,0 +1,106 @@
+"""Choice of what is kept of a case: the motion, a section through it, its exponent, results of functions."""
+
+from __future__ import annotations
+
+import hashlib
+import reprlib
+from types import CodeType, FunctionType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    Function = Callable[..., Any]
+
+__all__ = ["DIRECTIONS", "EXPONENT", "MOTION", "SECTION", "chosen_functions", "keep_from"]
+
+MOTION, EXPONENT, SECTION = "motion", "exponent", "section"
+
+DIRECTIONS = {"both": 0, "rising": 1, "falling": -1}
+"""Ways in which the function of a section may pass through zero."""
+
+Choice = tuple[tuple[str, str], ...]
+"""What is kept by name, with what says more of it: of a section its direction and function, of a function its code."""
+
+
+def keep_from(written: Any) -> Choice:
+    """Return what a study says is to be kept, as names and texts.
+
+    Parameters
+    ----------
+    written
+        ``"motion"``, ``"exponent"``, a table ``{ section = "formula", direction = "rising" }``, or a list of these.
+
+    Raises
+    ------
+    TypeError, ValueError
+        It is none of these, or two sections are asked for.
+
+    Examples
+    --------
+    >>> keep_from(["motion", {"section": "x", "direction": "rising"}])
+    (('motion', ''), ('section', 'rising x'))
+    """
+    found: dict[str, str] = {}
+    for each in written if isinstance(written, list | tuple) else [written]:
+        name, text = (SECTION, _section(each)) if isinstance(each, dict) else (each, "")
+        if name not in (MOTION, EXPONENT) and not text:
+            raise ValueError(f"keep = {reprlib.repr(each)}: {_KNOWN}")
+        if name == SECTION and SECTION in found:
+            raise ValueError("one section is kept of a case: give the others studies of their own")
+        found[name] = text
+    return tuple(found.items())
+
+
+_KNOWN = (
+    'give "motion", "exponent", a table { section = "formula", direction = "rising" }, or a list of these'
+)
+
+
+def _section(table: dict[str, Any]) -> str:
+    given = dict(table)
+    formula, direction = given.pop(SECTION, None), given.pop("direction", "both")
+    if given or not isinstance(formula, str) or not formula.strip():
+        raise ValueError(f"keep = {reprlib.repr(table)}: {_KNOWN}")
+    if direction not in DIRECTIONS:
+        raise ValueError(f"direction = {reprlib.repr(direction)}: give one of {', '.join(DIRECTIONS)}")
+    return f"{direction} {formula}"
+
+
+def chosen_functions(functions: Mapping[str, Function]) -> Choice:
+    """Return the names of functions whose results are kept, each with a digest of its code.
+
+    The digest makes a changed function's results others: a case is run anew. It is over the function's own
+    instructions, names and constants; what it calls or encloses is not looked at.
+
+    Raises
+    ------
+    TypeError, ValueError
+        One of them is no function, or its name is no name.
+
+    Examples
+    --------
+    >>> def spread(motion):
+    ...     return motion.y.std()
+    >>> ((name, text),) = chosen_functions({"spread": spread})
+    >>> name, text.startswith("function ")
+    ('spread', True)
+    """
+    found: list[tuple[str, str]] = []
+    for name, function in functions.items():
+        if not isinstance(function, FunctionType):
+            raise TypeError(
+                f"keep = {{{name!r}: {reprlib.repr(function)}}}: give a function of a kept motion"
+            )
+        if not name.isidentifier() or name in (MOTION, EXPONENT, SECTION):
+            raise ValueError(
+                f"what is kept can't be called {name!r}: give letters and digits, and none of canon's names"
+            )
+        found.append((name, f"function {_digest(function.__code__)}"))
+    return tuple(found)
+
+
+def _digest(code: CodeType) -> str:
+    constants = [_digest(each) if isinstance(each, CodeType) else repr(each) for each in code.co_consts]
+    names = (code.co_names, code.co_varnames, code.co_freevars)
+    return hashlib.sha256(repr((code.co_code, constants, names)).encode()).hexdigest()[:16]
