@@ -11,9 +11,9 @@ import numpy as np
 from canon.flow.adaptive.longest_step import longest_step
 from canon.flow.adaptive.watched_orbit import WatchedOrbit
 from canon.flow.kinked.regimes import kinks_of
+from canon.flow.run.compiled_nodes import compiled_nodes
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.samples import Samples
-from canon.kernel.llvm.loop import field_function
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -131,18 +131,11 @@ def _dop853(
     """Integrate with SciPy's DOP853 on the compiled right-hand side."""
     from scipy import integrate
 
-    field = field_function(system.program(system.rates))
-    x, out = np.empty(len(y0) + 1), np.empty(len(y0))
-
-    def rate(t: float, y: Array) -> Array:
-        x[:-1], x[-1] = y, t
-        field.call(x.ctypes.data, out.ctypes.data)
-        return out.copy()
-
+    rates = compiled_nodes(system, system.rates)
     longest = longest_step(system)
     started, steps, sample = time.thread_time(), 0, 1
     relative, absolute = _tolerances(method)
-    integrator = integrate.DOP853(rate, times[0], y0, times[-1], rtol=relative, atol=absolute)
+    integrator = integrate.DOP853(rates.call, times[0], y0, times[-1], rtol=relative, atol=absolute)
     states = np.empty((len(y0), len(times)))
     states[:, 0] = y0
     direction = np.sign(times[-1] - times[0])
@@ -164,7 +157,7 @@ def _dop853(
     except KeyboardInterrupt:
         times, states = times[:sample], states[:, :sample]
     spent = time.thread_time() - started
-    return Samples(times, states, np.zeros_like(states), steps, integrator.nfev, None, spent, field.seconds)
+    return Samples(times, states, np.zeros_like(states), steps, integrator.nfev, None, spent, rates.seconds)
 
 
 def _lost(t: float, state: Array, reason: object) -> NonFiniteStateError:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.run.compiled_nodes import compiled_nodes
 from canon.flow.run.passed_terms import rate_along
-from canon.kernel.llvm.loop import field_function
 from canon.kernel.program.localised_terms import exponents_of, sights
 
 if TYPE_CHECKING:
@@ -32,13 +32,10 @@ def longest_step(system: HamiltonEquations) -> Callable[[float, Array], float]:
         return lambda _t, _y: math.inf
     speeds = [rate_along(system, node) for node in exponents]
     nodes = (*exponents, *speeds, *(rate_along(system, node) for node in speeds))
-    field, (_, reach, _) = field_function(system.program(nodes)), sights(2.0**-52)
-    x, out = np.empty(len(system.inputs)), np.empty(len(nodes))
+    seen, (_, reach, _) = compiled_nodes(system, nodes), sights(2.0**-52)
 
     def longest(t: float, y: Array) -> float:
-        x[:-1], x[-1] = y, t
-        field.call(x.ctypes.data, out.ctypes.data)
-        value, speed, change = abs(out).reshape(3, -1)
+        value, speed, change = abs(seen.call(t, y)).reshape(3, -1)
         margin = np.maximum(value - reach, reach / 2)
         with np.errstate(all="ignore"):
             times = 2 * margin / (speed + np.sqrt(speed**2 + 2 * margin * change))

@@ -12,9 +12,9 @@ from canon.flow.adaptive.zeros_in_step import Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
 from canon.flow.kinked.regimes import HELD, Regime
+from canon.flow.run.compiled_nodes import CompiledNodes, compiled_nodes
 from canon.flow.run.event import Crossing, Event
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
-from canon.kernel.llvm.loop import field_function
 from canon.kernel.llvm.number_types import DOUBLE, EXTENDED
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from canon.flow.run.event import PreparedEvent
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Rate", "WatchedOrbit", "compiled_rate"]
+__all__ = ["WatchedOrbit"]
 
 _NEWTON = 6
 """Steps of the method to a zero, each nearer to it."""
@@ -38,27 +38,6 @@ _PILE = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class Rate:
-    """Nodes as a compiled function of t and y in doubles."""
-
-    call: Callable[[float, Array], Array]
-    seconds: float
-
-
-def compiled_rate(system: HamiltonEquations, nodes: Sequence[int]) -> Rate:
-    """Return nodes as a compiled function of t and y, and how long compiling took."""
-    code = field_function(system.program(nodes))
-    x, out = np.empty(len(system.inputs)), np.empty(len(nodes))
-
-    def values(t: float, y: Array) -> Array:
-        x[:-1], x[-1] = y, t
-        code.call(x.ctypes.data, out.ctypes.data)
-        return out.copy()
-
-    return Rate(values, code.seconds)
-
-
-@dataclass(frozen=True, eq=False)
 class Watch:
     """A regime's compiled rates, and the functions looked for in it: those of its kinks, then the person's events.
 
@@ -66,8 +45,8 @@ class Watch:
     """
 
     regime: Regime
-    rate: Rate
-    values: Rate
+    rate: CompiledNodes
+    values: CompiledNodes
     kinks: tuple[int, ...]
     events: tuple[PreparedEvent, ...]
 
@@ -302,8 +281,8 @@ class WatchedOrbit:
         smooth = regime.system if not regime.weak else self.system
         return Watch(
             regime,
-            compiled_rate(self.system, smooth.rates),
-            compiled_rate(self.system, [*functions, *rates]),
+            compiled_nodes(self.system, smooth.rates),
+            compiled_nodes(self.system, [*functions, *rates]),
             tuple(k for k, _ in looked),
             folded,
         )
