@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 from canon.exercise.report.page_style import PAGE_STYLE, STYLE
 from canon.exercise.sheet.kind import COMMON, Shape
 from canon.exercise.sheet.kinds import KINDS, kind_of
-from canon.exercise.sheet.reading import InvalidClaim, Reading
+from canon.exercise.sheet.reading import NAME_KEYS, InvalidClaim, Reading
 from canon.expression.mathml import formula
 from canon.expression.parse import Scope
 from canon.expression.symbols.user_input import counted
@@ -28,19 +28,7 @@ __all__ = ["fragment", "page"]
 MAX_SHOWN = 2_000
 """Characters of a text that is no formula; the rest is cut."""
 MAX_ITEMS = 50
-_OWN_KEYS = (
-    *COMMON,
-    "q",
-    "p",
-    "x",
-    "variables",
-    "new_q",
-    "new_p",
-    "cyclic",
-    "momenta",
-    "multipliers",
-    "quasi",
-)
+_OWN_KEYS = (*COMMON, *NAME_KEYS[: NAME_KEYS.index("constants")])
 """Keys whose content is told in the line of names, or not at all."""
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'"
 _VERDICTS = {"holds": "holds", "fails": "fails", "undecided": "undecided", "invalid": "can't be read"}

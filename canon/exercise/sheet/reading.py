@@ -36,12 +36,12 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["InvalidClaim", "Reading"]
+__all__ = ["NAME_KEYS", "InvalidClaim", "Reading"]
 
 _MAKERS: Mapping[str, Callable[..., Symbol]] = FrozenMapping(
     {"q": Coordinate, "p": Momentum, "quasi": Coordinate, "new_p": Momentum, "momenta": Momentum}
 )
-_NAME_KEYS = (
+NAME_KEYS = (
     "q",
     "p",
     "x",
@@ -54,6 +54,7 @@ _NAME_KEYS = (
     "quasi",
     "constants",
 )
+"""Keys that declare names."""
 
 
 _MOVING = ("q", "p", "x", "variables", "new_q", "new_p", "quasi")
@@ -189,7 +190,7 @@ class Reading:
     def _variables(self) -> dict[str, Symbol]:
         """Return the symbols of the names that stand under keys of their own, each declared once."""
         names: dict[str, Symbol] = {}
-        declared = ((key, name) for key in _NAME_KEYS if self.is_names(key) for name in self.words(key))
+        declared = ((key, name) for key in NAME_KEYS if self.is_names(key) for name in self.words(key))
         for key, name in declared:
             if name == self.time.name:
                 self.fault(key, f"{name} is the name of the time; choose another, or say t = 'tau'")

@@ -33,12 +33,12 @@ def hori_generator(form: NormalForm) -> Parts:
     Examples
     --------
     >>> import sympy as sp
+    >>> from canon.mechanics import birkhoff_normal_form, deprit_generator
     >>> from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-    >>> from canon.mechanics.perturbation.birkhoff import birkhoff_normal_form
     >>> q, p = sp.symbols("q p", real=True)
     >>> form = birkhoff_normal_form(Hamiltonian((p**2 + q**2) / 2 + q**3, q, p), 3)
-    >>> form.expression(hori_generator(form))
-    -2*p**3/3 - p*q**2
+    >>> form.expression(hori_generator(form)), hori_generator(form) == deprit_generator(form)
+    (-2*p**3/3 - p*q**2, True)
     """
     return _generator(form, _exponential, lambda _degree: 1)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import cos, sin
 from canon.scene.picture import Picture
 from canon.scene.scene import Parameter, Scene, Solution, Start
 from canon.scene.systems.pendulum import GRAVITY
@@ -23,8 +24,6 @@ Place = tuple["Expr", "Expr", "Expr"]
 
 
 def _on_the_parabola(s: SimpleNamespace, r: Expr | float) -> Place:
-    from sympy import cos, sin
-
     return (r * cos(s.w * s.t), r * sin(s.w * s.t), s.c * r**2)
 
 
@@ -71,15 +70,11 @@ PARABOLA = Scene(
 
 
 def _on_the_hoop(s: SimpleNamespace, angle: Expr | float) -> Place:
-    from sympy import cos, sin
-
     across = s.a * sin(angle)
     return (across * cos(s.w * s.t), across * sin(s.w * s.t), s.a - s.a * cos(angle))
 
 
 def _hoop(s: SimpleNamespace) -> Expr:
-    from sympy import cos, sin
-
     kinetic = s.m * s.a**2 * (s.phi.dot**2 + s.w**2 * sin(s.phi) ** 2) / 2
     return kinetic - s.m * s.g * s.a * (1 - cos(s.phi))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import Add, Integer, sqrt
 from canon.scene.picture import Picture
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
@@ -32,8 +33,6 @@ def _momenta(places: Sequence[Place]) -> list[tuple[Symbol, ...]]:
 
 def _newtonian(places: Sequence[Place], masses: Sequence[Expr], G: Expr) -> Expr:
     """Return H = Σ p²/2m − Σ G mᵢ mⱼ/rᵢⱼ."""
-    from sympy import Add, sqrt
-
     kinetic = [x.momentum**2 / (2 * m) for place, m in zip(places, masses, strict=True) for x in place]
     potential = [
         -G
@@ -47,14 +46,10 @@ def _newtonian(places: Sequence[Place], masses: Sequence[Expr], G: Expr) -> Expr
 
 
 def _total_momentum(places: Sequence[Place], axis: int) -> Expr:
-    from sympy import Add
-
     return Add(*(p[axis] for p in _momenta(places)))
 
 
 def _angular_momentum_z(places: Sequence[Place]) -> Expr:
-    from sympy import Add
-
     both = zip(places, _momenta(places), strict=True)
     return Add(*(place[0] * p[1] - place[1] * p[0] for place, p in both))
 
@@ -64,8 +59,6 @@ def _eight_places(s: SimpleNamespace) -> list[Place]:
 
 
 def _eight_hamiltonian(s: SimpleNamespace) -> Expr:
-    from sympy import Integer
-
     return _newtonian(_eight_places(s), [Integer(1)] * 3, Integer(1))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import Rational, cos, sin
 from canon.scene.parts import Condition
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
@@ -122,8 +123,6 @@ def _dipole(s: SimpleNamespace) -> Expr:
 
 
 def _three_halves() -> Expr:
-    from sympy import Rational
-
     return Rational(3, 2)
 
 
@@ -138,8 +137,6 @@ def _gyration_at_start(value: Mapping[str, float]) -> float:
 
 
 def _dipole_picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     R, origin = s.R, (0.0, 0.0, 0.0)
     place = (s.rho * cos(s.phi), s.rho * sin(s.phi), s.z)
     equator = ring(origin, (R, 0.0, 0.0), (0.0, R, 0.0))

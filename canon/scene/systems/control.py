@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import Integer, cos, sin
 from canon.scene.picture import Picture, wheel
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 from canon.scene.systems.pendulum import GRAVITY, below
@@ -37,14 +38,10 @@ def _wheel_pendulum(s: SimpleNamespace) -> Expr:
 
 
 def _wheel_height(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return -(s.m1 / 2 + s.m2) * s.g * s.l * cos(s.theta)
 
 
 def _wheel_picture(s: SimpleNamespace) -> Picture:
-    from sympy import Integer
-
     end = below(s.l, s.theta)
     rim, spoke = wheel(end, s.l / 4, s.theta + s.psi)
     return Picture(masses=(end,), bars=(((Integer(0), Integer(0)), end), rim, spoke))
@@ -89,8 +86,6 @@ def _energy(s: SimpleNamespace) -> Expr:
 
 
 def _block(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     kinetic = s.m * (s.y.dot**2 + s.y**2 * s.theta.dot**2) / 2
     return kinetic + s.m * s.g * s.y * cos(s.theta) - s.k * (s.y - s.l) ** 2 / 2
 
@@ -102,8 +97,6 @@ def _block_body(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _block_height(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return -s.m * s.g * s.y * cos(s.theta) + s.k * (s.y - s.l) ** 2 / 2
 
 
@@ -160,8 +153,6 @@ def _bounce(value: Mapping[str, float], t: Array) -> Array:
 
 
 def _cart_bodies(s: SimpleNamespace) -> Sequence[Body]:
-    from sympy import Integer, cos, sin
-
     from canon.mechanics.lagrange.body import Particle, PlanarBody
 
     centre = (s.x + s.l / 2 * sin(s.theta), s.l / 2 * cos(s.theta))
@@ -169,8 +160,6 @@ def _cart_bodies(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _cart(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return (
         (s.m0 + s.m1) * s.x.dot**2 / 2
         + s.m1 * s.l * s.x.dot * s.theta.dot * cos(s.theta) / 2
@@ -180,14 +169,10 @@ def _cart(s: SimpleNamespace) -> Expr:
 
 
 def _cart_height(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return s.m1 * s.g * s.l / 2 * cos(s.theta)
 
 
 def _cart_picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     w, h = s.l / 4, s.l / 8
     corners = ((-w, -h), (w, -h), (w, 0), (-w, 0), (-w, -h))
     box = tuple((s.x + a, b) for a, b in corners)

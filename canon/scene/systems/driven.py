@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import cos, exp, sin
 from canon.scene.parts import Condition
 from canon.scene.picture import Picture
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
@@ -40,8 +41,6 @@ def _damped_motion(value: Mapping[str, float], t: Array) -> Array:
 
 
 def _driven_forces(s: SimpleNamespace) -> Sequence[Expr]:
-    from sympy import cos
-
     return [s.F * cos(s.W * s.t) - s.c * s.x.dot]
 
 
@@ -94,14 +93,10 @@ DUFFING = Scene(
 
 
 def _pendulum(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return s.m * s.l**2 * s.theta.dot**2 / 2 + s.m * s.g * s.l * cos(s.theta)
 
 
 def _torque(s: SimpleNamespace) -> Sequence[Expr]:
-    from sympy import cos
-
     return [s.M * cos(s.W * s.t) - s.c * s.theta.dot]
 
 
@@ -142,22 +137,16 @@ def _parametric_body(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _parametric_bob(s: SimpleNamespace) -> tuple[Expr, Expr]:
-    from sympy import cos, sin
-
     return (s.l * sin(s.theta), s.a * cos(s.W * s.t) - s.l * cos(s.theta))
 
 
 def _parametric(s: SimpleNamespace) -> Expr:
-    from sympy import sin
-
     pivot = -s.a * s.W * sin(s.W * s.t)
     square = s.l**2 * s.theta.dot**2 + 2 * s.l * s.theta.dot * pivot * sin(s.theta) + pivot**2
     return s.m * square / 2 - s.m * s.g * _parametric_bob(s)[1]
 
 
 def _parametric_picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos
-
     pivot = (0 * s.a, s.a * cos(s.W * s.t))
     bob = _parametric_bob(s)
     return Picture(masses=(bob,), bars=((pivot, bob),))
@@ -211,8 +200,6 @@ def _pi() -> Expr:
 
 def _growing(s: SimpleNamespace) -> Expr:
     """Return the amplitude squared times its decay, (½ m v² + …) e^(c t/m): constant for a damped oscillator."""
-    from sympy import exp
-
     m, k, c, x, v = s.m, s.k, s.c, s.x, s.x.dot
     return (m * v**2 + c * x * v + k * x**2) * exp(c * s.t / m)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import cos, sin
 from canon.scene.parts import multiplier
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
@@ -74,20 +75,10 @@ PENDULUM = Scene(
 
 
 def _hemisphere(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return s.m * (s.r.dot**2 + s.r**2 * s.theta.dot**2) / 2 - s.m * s.g * s.r * cos(s.theta)
 
 
-def _cosine(angle: Expr) -> Expr:
-    from sympy import cos
-
-    return cos(angle)
-
-
 def _hemisphere_picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     return Picture(
         masses=((s.r * sin(s.theta), s.r * cos(s.theta)),), ground=(ring((0.0, 0.0), (s.a, 0.0), (0.0, s.a)),)
     )
@@ -122,14 +113,14 @@ HEMISPHERE = Scene(
     integrals=(
         Integral(
             "energy m v²/2 + m g r cos θ",
-            lambda s: s.m * (s.r.dot**2 + s.r**2 * s.theta.dot**2) / 2 + s.m * s.g * s.r * _cosine(s.theta),
+            lambda s: s.m * (s.r.dot**2 + s.r**2 * s.theta.dot**2) / 2 + s.m * s.g * s.r * cos(s.theta),
         ),
     ),
     solutions=(
         Solution(
             "it leaves from rest at θ₀ where cos θ = (2/3) cos θ₀",
             "aside",
-            lambda s: _cosine(s.theta),
+            lambda s: cos(s.theta),
             lambda _v, _t: 2.0 / 3.0 * math.cos(_ASIDE),
             event=lambda _s: multiplier(),
             bound=1e-13,
@@ -137,7 +128,7 @@ HEMISPHERE = Scene(
         Solution(
             "it leaves from the top where cos θ = 2/3 + a θ̇₀²/(3 g)",
             "top",
-            lambda s: _cosine(s.theta),
+            lambda s: cos(s.theta),
             _leaving_from_the_top,
             event=lambda _s: multiplier(),
             bound=1e-13,

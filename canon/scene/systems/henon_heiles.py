@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import Rational
 from canon.scene.scene import Scene, Start
 
 if TYPE_CHECKING:
@@ -17,8 +18,6 @@ __all__ = ["SCENES"]
 
 
 def _hamiltonian(s: SimpleNamespace) -> Expr:
-    from sympy import Rational
-
     kinetic = (s.x.momentum**2 + s.y.momentum**2) / 2
     return kinetic + (s.x**2 + s.y**2) / 2 + s.x**2 * s.y - Rational(1, 3) * s.y**3
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import cos, sin
 from canon.scene.parts import multiplier
 from canon.scene.picture import Picture, wheel
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
@@ -36,12 +37,6 @@ def _time(value: Mapping[str, float]) -> float:
     return 2.0 * _SPEED / (value["g"] * math.sin(value["alpha"]))
 
 
-def _sine(angle: Expr) -> Expr:
-    from sympy import sin
-
-    return sin(angle)
-
-
 def _moment(s: SimpleNamespace) -> Expr:
     """Return the moment of inertia; m R² of a hollow cylinder."""
     return s.I if hasattr(s, "I") else s.m * s.R**2
@@ -59,16 +54,14 @@ def _friction(value: Mapping[str, float]) -> float:
 
 def _free(s: SimpleNamespace) -> Expr:
     rolling = s.m * s.s.dot**2 / 2 + _moment(s) * s.theta.dot**2 / 2
-    return rolling - s.m * s.g * s.s * _sine(s.alpha)
+    return rolling - s.m * s.g * s.s * sin(s.alpha)
 
 
 def _bound(s: SimpleNamespace) -> Expr:
-    return (s.m + _moment(s) / s.R**2) * s.s.dot**2 / 2 - s.m * s.g * s.s * _sine(s.alpha)
+    return (s.m + _moment(s) / s.R**2) * s.s.dot**2 / 2 - s.m * s.g * s.s * sin(s.alpha)
 
 
 def _picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     def place(along: Expr | float, above: Expr | float) -> tuple[Expr, Expr]:
         return (
             along * cos(s.alpha) - above * sin(s.alpha),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import sqrt
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
@@ -23,8 +24,6 @@ SUN = 0.01720209895**2 * 365.25**2
 
 
 def _hamiltonian(s: SimpleNamespace) -> Expr:
-    from sympy import sqrt
-
     return (s.x.momentum**2 + s.y.momentum**2) / 2 - s.mu / sqrt(s.x**2 + s.y**2)
 
 
@@ -33,14 +32,10 @@ def _angular_momentum(s: SimpleNamespace) -> Expr:
 
 
 def _runge_lenz_x(s: SimpleNamespace) -> Expr:
-    from sympy import sqrt
-
     return s.y.momentum * _angular_momentum(s) / s.mu - s.x / sqrt(s.x**2 + s.y**2)
 
 
 def _runge_lenz_y(s: SimpleNamespace) -> Expr:
-    from sympy import sqrt
-
     return -s.x.momentum * _angular_momentum(s) / s.mu - s.y / sqrt(s.x**2 + s.y**2)
 
 

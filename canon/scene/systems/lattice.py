@@ -6,6 +6,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, cast
 
+from canon.scene.formula_functions import Add, Integer, cos, exp, sin
 from canon.scene.picture import Picture
 from canon.scene.scene import Integral, Parameter, Scene, SceneError, Start
 
@@ -27,8 +28,6 @@ def _ring(s: SimpleNamespace, masses: int) -> list[tuple[Coordinate, Coordinate]
 
 
 def _springs(s: SimpleNamespace, masses: int) -> Expr:
-    from sympy import Add, exp
-
     return Add(*(a.momentum**2 / 2 + exp(a - b) - 1 for a, b in _ring(s, masses)))
 
 
@@ -97,7 +96,7 @@ def toda(masses: int, starts: tuple[Start, ...], name: str = "") -> Scene:
 
 def _on_a_circle(s: SimpleNamespace, masses: int) -> Picture:
     """Return the ring drawn as one: displacements along the circumference, one radius apart at rest."""
-    from sympy import cos, pi, sin
+    from sympy import pi
 
     angles = [(2 * pi * i + q) / masses for i, (q, _) in enumerate(_ring(s, masses))]
     places = tuple((cos(angle), sin(angle)) for angle in angles)
@@ -130,15 +129,11 @@ _MASSES = 31
 
 def _stretches(s: SimpleNamespace) -> list[Expr]:
     """Return how far each of the springs between the masses and the two walls is stretched."""
-    from sympy import Integer
-
     places = [Integer(0), *(getattr(s, f"q{i}") for i in range(1, _MASSES + 1)), Integer(0)]
     return [right - left for left, right in pairwise(places)]
 
 
 def _fput(s: SimpleNamespace) -> Expr:
-    from sympy import Add
-
     masses = [getattr(s, f"q{i}") for i in range(1, _MASSES + 1)]
     springs = [d**2 / 2 + s.alpha * d**3 / 3 + s.beta * d**4 / 4 for d in _stretches(s)]
     return Add(*(q.momentum**2 / 2 for q in masses), *springs)

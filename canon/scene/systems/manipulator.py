@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import cos
 from canon.scene.picture import Picture
 from canon.scene.scene import Integral, Parameter, Scene, Start
 from canon.scene.systems.pendulum import CHAOS, GRAVITY, below
@@ -29,8 +30,6 @@ def _bodies(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _kinetic(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     both = s.q1.dot + s.q2.dot
     first = (s.m1 * s.c1**2 + s.I1 + s.m2 * s.L1**2) * s.q1.dot**2
     second = (s.m2 * s.c2**2 + s.I2) * both**2
@@ -38,8 +37,6 @@ def _kinetic(s: SimpleNamespace) -> Expr:
 
 
 def _height(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     shoulder = (s.m1 * s.c1 + s.m2 * s.L1) * s.g * cos(s.q1)
     return -shoulder - s.m2 * s.g * s.c2 * cos(s.q1 + s.q2)
 

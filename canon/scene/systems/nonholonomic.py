@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import cos, sin
 from canon.scene.parts import multiplier
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
@@ -23,8 +24,6 @@ __all__ = ["SCENES"]
 
 
 def _sleigh_body(s: SimpleNamespace) -> Sequence[Body]:
-    from sympy import cos, sin
-
     from canon.mechanics.lagrange.body import PlanarBody
 
     centre = (s.x + s.a * cos(s.theta), s.y + s.a * sin(s.theta))
@@ -32,22 +31,16 @@ def _sleigh_body(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _sleigh(s: SimpleNamespace) -> Expr:
-    from sympy import cos, sin
-
     across = s.y.dot * cos(s.theta) - s.x.dot * sin(s.theta)
     square = s.x.dot**2 + s.y.dot**2 + s.a**2 * s.theta.dot**2 + 2 * s.a * s.theta.dot * across
     return s.m * square / 2 + s.I * s.theta.dot**2 / 2
 
 
 def _across(s: SimpleNamespace) -> Sequence[Expr]:
-    from sympy import cos, sin
-
     return [s.y.dot * cos(s.theta) - s.x.dot * sin(s.theta)]
 
 
 def _forwards(s: SimpleNamespace) -> Expr:
-    from sympy import cos, sin
-
     return s.x.dot * cos(s.theta) + s.y.dot * sin(s.theta)
 
 
@@ -64,8 +57,6 @@ def _sleigh_rate(value: Mapping[str, float]) -> float:
 
 
 def _sleigh_picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     along, across = (cos(s.theta), sin(s.theta)), (-sin(s.theta), cos(s.theta))
 
     def place(forwards: Expr, aside: Expr) -> tuple[Expr, Expr]:
@@ -140,8 +131,6 @@ def _cosh(x: Array) -> Array:
 
 
 def _disc_body(s: SimpleNamespace) -> Sequence[Body]:
-    from sympy import sin
-
     from canon.mechanics.lagrange.body import RigidBody, euler_rotation
 
     place = (s.x, s.y, s.R * sin(s.theta))
@@ -150,14 +139,10 @@ def _disc_body(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _spin(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return s.psi.dot + s.phi.dot * cos(s.theta)
 
 
 def _disc(s: SimpleNamespace) -> Expr:
-    from sympy import cos, sin
-
     theta = s.theta
     centre = s.x.dot**2 + s.y.dot**2 + s.R**2 * cos(theta) ** 2 * theta.dot**2
     turning = (theta.dot**2 + s.phi.dot**2 * sin(theta) ** 2) / 8 + _spin(s) ** 2 / 4
@@ -165,15 +150,11 @@ def _disc(s: SimpleNamespace) -> Expr:
 
 
 def _disc_height(s: SimpleNamespace) -> Expr:
-    from sympy import sin
-
     return s.m * s.g * s.R * sin(s.theta)
 
 
 def _rolling(s: SimpleNamespace) -> Sequence[Expr]:
     """Return v − ω × r = 0 at the lowest point of the rim, r from there to the centre."""
-    from sympy import cos, sin
-
     rise = s.theta.dot * sin(s.theta)
     return [
         s.x.dot - s.R * (rise * sin(s.phi) - _spin(s) * cos(s.phi)),
@@ -200,8 +181,6 @@ def _rolled(name: str, about: str, tilt: float, turning: float, spin: float) -> 
 
 
 def _disc_picture(s: SimpleNamespace) -> Picture:
-    from sympy import sin
-
     from canon.mechanics.algebra.substitution import entry
     from canon.mechanics.lagrange.body import euler_rotation
 
@@ -254,8 +233,6 @@ def _unicycle_place(value: Mapping[str, float], t: Array) -> tuple[Array, Array]
 
 
 def _unicycle_picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     along = (cos(s.theta) / 4, sin(s.theta) / 4)
     return Picture(
         masses=((s.x, s.y),), bars=(((s.x - along[0], s.y - along[1]), (s.x + along[0], s.y + along[1])),)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import Integer, Rational, cos, sin, sqrt
 from canon.scene.picture import Picture, Point, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 from canon.scene.systems.kepler import SUN
@@ -86,8 +87,6 @@ def _year(value: Mapping[str, float]) -> float:
 
 
 def _planet(s: SimpleNamespace, place: Sequence[Expr]) -> Sequence[Body]:
-    from sympy import Integer
-
     from canon.mechanics.lagrange.body import Particle
 
     del s
@@ -95,15 +94,11 @@ def _planet(s: SimpleNamespace, place: Sequence[Expr]) -> Sequence[Body]:
 
 
 def _polar_place(s: SimpleNamespace) -> tuple[Expr, Expr]:
-    from sympy import cos, sin
-
     return (s.r * cos(s.phi), s.r * sin(s.phi))
 
 
 def _conic(s: SimpleNamespace) -> Expr:
     """Return r (1 + e cos φ)."""
-    from sympy import Rational, cos
-
     return s.r * (1 + Rational(str(_ECCENTRICITY)) * cos(s.phi))
 
 
@@ -149,21 +144,11 @@ POLAR = Scene(
 )
 
 
-def _cosine(angle: Expr) -> Expr:
-    from sympy import cos
-
-    return cos(angle)
-
-
 def _cylindrical_place(s: SimpleNamespace) -> tuple[Expr, Expr, Expr]:
-    from sympy import cos, sin
-
     return (s.rho * cos(s.phi), s.rho * sin(s.phi), s.z)
 
 
 def _cylindrical_potential(s: SimpleNamespace) -> Expr:
-    from sympy import sqrt
-
     return -s.mu / sqrt(s.rho**2 + s.z**2)
 
 
@@ -217,22 +202,16 @@ def _sine_at(value: Mapping[str, float], t: Array) -> Array:
 
 
 def _spherical_place(s: SimpleNamespace) -> tuple[Expr, Expr, Expr]:
-    from sympy import cos, sin
-
     across = s.r * sin(s.theta)
     return (across * cos(s.phi), across * sin(s.phi), s.r * cos(s.theta))
 
 
 def _spherical(s: SimpleNamespace) -> Expr:
-    from sympy import sin
-
     turning = s.theta.dot**2 + s.phi.dot**2 * sin(s.theta) ** 2
     return (s.r.dot**2 + s.r**2 * turning) / 2 + s.mu / s.r
 
 
 def _square(s: SimpleNamespace) -> Expr:
-    from sympy import sin
-
     return s.theta.momentum**2 + s.phi.momentum**2 / sin(s.theta) ** 2
 
 
@@ -271,7 +250,7 @@ SPHERICAL = Scene(
         Solution(
             "z = sin(tilt) sin n t",
             "tilted",
-            lambda s: s.r * _cosine(s.theta),
+            lambda s: s.r * cos(s.theta),
             lambda v, t: math.sin(_TILT) * _sine_at(v, t),
         ),
     ),
@@ -280,8 +259,6 @@ SPHERICAL = Scene(
 
 
 def _table_place(s: SimpleNamespace) -> tuple[Expr, Expr, Expr]:
-    from sympy import cos, sin
-
     return (s.r * cos(s.theta), s.r * sin(s.theta), 0 * s.l)
 
 

@@ -6,8 +6,10 @@ Angles are counted from the downward vertical; the potential energy is zero at t
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import cos, sin
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
@@ -30,8 +32,6 @@ def _small_swing(value: Mapping[str, float]) -> float:
 
 def below(length: Expr, angle: Expr) -> tuple[Expr, Expr]:
     """Return the point at this distance from the origin and angle from the downward vertical."""
-    from sympy import cos, sin
-
     return (length * sin(angle), -length * cos(angle))
 
 
@@ -57,8 +57,6 @@ def _simple_picture(s: SimpleNamespace) -> Picture:
 
 
 def _simple(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return s.m * s.l**2 * s.theta.dot**2 / 2 + s.m * s.g * s.l * cos(s.theta)
 
 
@@ -97,20 +95,12 @@ SIMPLE = Scene(
 
 
 def _sliding(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     kinetic = s.m * (s.r.dot**2 + s.r**2 * s.theta.dot**2) / 2
     return kinetic + s.m * s.g * s.r * cos(s.theta) - s.k * s.r**2 / 2
 
 
 def _elastic(value: Mapping[str, float]) -> float:
     return 2.0 * math.pi * math.sqrt(value["m"] / value["k"])
-
-
-def _sine(angle: Expr) -> Expr:
-    from sympy import sin
-
-    return sin(angle)
 
 
 def _horizontal_place(value: Mapping[str, float], t: Array) -> Array:
@@ -146,7 +136,7 @@ SLIDING_MASS = Scene(
         Solution(
             "horizontal place: harmonic",
             "swinging",
-            lambda s: s.r * _sine(s.theta),
+            lambda s: s.r * sin(s.theta),
             _horizontal_place,
             bound=1e-11,
         ),
@@ -157,15 +147,11 @@ SLIDING_MASS = Scene(
 
 def _horizontal(s: SimpleNamespace) -> Expr:
     """Return p_x²/2m + k x²/2 with x = r sin θ, p_x = p_r sin θ + p_θ cos θ / r."""
-    from sympy import cos, sin
-
     p_x = s.r.momentum * sin(s.theta) + s.theta.momentum * cos(s.theta) / s.r
     return p_x**2 / (2 * s.m) + s.k * (s.r * sin(s.theta)) ** 2 / 2
 
 
 def _spring(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     kinetic = s.m * (s.r.dot**2 + s.r**2 * s.theta.dot**2) / 2
     return kinetic + s.m * s.g * s.r * cos(s.theta) - s.k * (s.r - s.l) ** 2 / 2
 
@@ -193,15 +179,11 @@ SPRING = Scene(
 
 
 def _spherical(s: SimpleNamespace) -> Expr:
-    from sympy import cos, sin
-
     kinetic = s.m * s.l**2 * (s.theta.dot**2 + s.phi.dot**2 * sin(s.theta) ** 2) / 2
     return kinetic + s.m * s.g * s.l * cos(s.theta)
 
 
 def _spherical_picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     bob = (s.l * sin(s.theta) * cos(s.phi), s.l * sin(s.theta) * sin(s.phi), -s.l * cos(s.theta))
     equator = ring((0.0, 0.0, 0.0), (s.l, 0.0, 0.0), (0.0, s.l, 0.0))
     return Picture(masses=(bob,), bars=(((0.0, 0.0, 0.0), bob),), ground=(equator,))
@@ -242,8 +224,6 @@ SPHERICAL = Scene(
 
 
 def _double(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     a, b = s.theta1, s.theta2
     kinetic = (
         (s.m1 + s.m2) * s.l1**2 * a.dot**2 / 2
@@ -254,8 +234,6 @@ def _double(s: SimpleNamespace) -> Expr:
 
 
 def _rods(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     a, b = s.theta1, s.theta2
     kinetic = (
         (s.m1 / 3 + s.m2) * s.l1**2 * a.dot**2 / 2
@@ -275,25 +253,22 @@ def _upper_swing(value: Mapping[str, float]) -> float:
     return 2.0 * math.pi * math.sqrt(value["l1"] / value["g"])
 
 
-_DOUBLE_PARAMETERS = (
-    Parameter("m1", 1.0, "kg", "upper mass"),
-    Parameter("m2", 0.5, "kg", "lower mass"),
-    Parameter("l1", 1.0, "m", "upper length"),
-    Parameter("l2", 0.8, "m", "lower length"),
-    GRAVITY,
-)
-_DOUBLE_STARTS = (
-    Start("regular", "released at rest at small angles", q=(0.3, 0.4), v=(0.0, 0.0)),
-    Start("chaotic", "released at rest with both arms raised", q=(2.0, 2.5), v=(0.0, 0.0)),
-)
-
 DOUBLE = Scene(
     name="double-pendulum",
     title="Double pendulum: two point masses on massless rods in a plane",
     coordinates="theta1 theta2",
     angles="theta1 theta2",
-    parameters=_DOUBLE_PARAMETERS,
-    starts=_DOUBLE_STARTS,
+    parameters=(
+        Parameter("m1", 1.0, "kg", "upper mass"),
+        Parameter("m2", 0.5, "kg", "lower mass"),
+        Parameter("l1", 1.0, "m", "upper length"),
+        Parameter("l2", 0.8, "m", "lower length"),
+        GRAVITY,
+    ),
+    starts=(
+        Start("regular", "released at rest at small angles", q=(0.3, 0.4), v=(0.0, 0.0)),
+        Start("chaotic", "released at rest with both arms raised", q=(2.0, 2.5), v=(0.0, 0.0)),
+    ),
     time_scale=_upper_swing,
     time_unit="s",
     source="Landau & Lifshitz, Mechanics (3rd ed.), § 5 problem 1",
@@ -303,20 +278,12 @@ DOUBLE = Scene(
     energy_why=CHAOS,
 )
 
-DOUBLE_RODS = Scene(
+DOUBLE_RODS = replace(
+    DOUBLE,
     name="double-pendulum-rods",
     title="Double pendulum of two uniform rods in a plane",
-    coordinates="theta1 theta2",
-    angles="theta1 theta2",
-    parameters=_DOUBLE_PARAMETERS,
-    starts=_DOUBLE_STARTS,
-    time_scale=_upper_swing,
-    time_unit="s",
     source="kinetic energy of each rod by König's theorem, central inertia m l²/12",
     L_of=_rods,
-    picture_of=_double_picture,
-    energy_bound=1e-12,
-    energy_why=CHAOS,
 )
 
 SCENES = (SIMPLE, SLIDING_MASS, SPRING, SPHERICAL, DOUBLE, DOUBLE_RODS)

@@ -6,6 +6,7 @@ import math
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import asin, cos, sin
 from canon.scene.parts import Condition, multiplier
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 from canon.scene.systems.slider_crank import (
@@ -35,8 +36,6 @@ __all__ = ["SCENES"]
 
 
 def _bodies(s: SimpleNamespace) -> Sequence[Body]:
-    from sympy import asin, cos, sin
-
     from canon.mechanics.lagrange.body import Particle, PlanarBody
 
     across, along = rod_sine(s), rod_cosine(s)
@@ -51,15 +50,11 @@ def _bodies(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _crank_picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     pin = (s.r * cos(s.theta), s.r * sin(s.theta))
     return drawn(pin, (pin[0] + (s.a + s.b) * rod_cosine(s), s.e), s)
 
 
 def _given_work(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return s.P * (s.r * cos(s.theta) + (s.a + s.b) * rod_cosine(s)) + s.M * s.theta
 
 
@@ -98,8 +93,6 @@ def _harmonics(s: SimpleNamespace) -> tuple[Expr, Expr]:
 
 
 def _first_order(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     A, B = _harmonics(s)
     return (A - B * cos(2 * s.theta)) * s.theta.dot**2 / 2
 

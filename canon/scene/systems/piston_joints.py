@@ -6,6 +6,7 @@ import math
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import Integer, cos, sin
 from canon.scene.parts import multiplier
 from canon.scene.scene import Scene, Solution, Start
 from canon.scene.systems.slider_crank import (
@@ -36,8 +37,6 @@ __all__ = ["SCENES"]
 
 
 def _bodies(s: SimpleNamespace) -> Sequence[Body]:
-    from sympy import Integer
-
     from canon.mechanics.lagrange.body import Particle, PlanarBody
 
     return [
@@ -48,8 +47,6 @@ def _bodies(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _joints(s: SimpleNamespace) -> Sequence[Expr]:
-    from sympy import cos, sin
-
     length = s.a + s.b
     return [
         s.s - s.r * cos(s.theta) - length * cos(s.phi),
@@ -95,8 +92,6 @@ def _at_the_top() -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def _picture(s: SimpleNamespace) -> Picture:
-    from sympy import cos, sin
-
     return drawn((s.r * cos(s.theta), s.r * sin(s.theta)), (s.s, s.e), s)
 
 

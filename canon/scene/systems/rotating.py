@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import sin, sqrt
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 from canon.scene.systems.pendulum import GRAVITY
@@ -23,8 +24,6 @@ __all__ = ["SCENES"]
 
 
 def _vertical_rotation(s: SimpleNamespace) -> Expr:
-    from sympy import sin
-
     return s.w * sin(s.latitude)
 
 
@@ -92,8 +91,6 @@ FOUCAULT = Scene(
 
 
 def _restricted(s: SimpleNamespace) -> Expr:
-    from sympy import sqrt
-
     x, y, mu = s.x, s.y, s.mu
     r1 = sqrt((x + mu) ** 2 + y**2)
     r2 = sqrt((x - 1 + mu) ** 2 + y**2)
@@ -103,8 +100,6 @@ def _restricted(s: SimpleNamespace) -> Expr:
 
 def _jacobi(s: SimpleNamespace) -> Expr:
     """Return 2 Ω(x, y) − ẋ² − ẏ², Ω = (x² + y²)/2 + (1 − µ)/r₁ + µ/r₂."""
-    from sympy import sqrt
-
     x, y, mu = s.x, s.y, s.mu
     r1 = sqrt((x + mu) ** 2 + y**2)
     r2 = sqrt((x - 1 + mu) ** 2 + y**2)

@@ -11,6 +11,7 @@ import math
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import Integer, cos, sin, sqrt
 from canon.scene.parts import Condition
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Parameter, Solution
@@ -58,22 +59,16 @@ def turn(_value: Mapping[str, float]) -> float:
 
 def rod_sine(s: SimpleNamespace) -> Expr:
     """Return sin φ = (r sin θ − e)/l."""
-    from sympy import sin
-
     return (s.r * sin(s.theta) - s.e) / (s.a + s.b)
 
 
 def rod_cosine(s: SimpleNamespace) -> Expr:
     """Return cos φ, which is positive: the rod is longer than the crank."""
-    from sympy import sqrt
-
     return sqrt(1 - rod_sine(s) ** 2)
 
 
 def ratios(s: SimpleNamespace) -> tuple[Expr, Expr]:
     """Return k_φ = φ̇/θ̇ and k_s = ṡ/θ̇."""
-    from sympy import cos, sin
-
     k_phi = s.r * cos(s.theta) / ((s.a + s.b) * rod_cosine(s))
     return k_phi, -s.r * sin(s.theta) - (s.a + s.b) * rod_sine(s) * k_phi
 
@@ -89,8 +84,6 @@ def inertia(s: SimpleNamespace) -> Expr:
 
 def drawn(pin: tuple[Expr, Expr], piston: tuple[Expr, Expr], s: SimpleNamespace) -> Picture:
     """Return the picture of crank, rod and piston, and of the circle that the pin moves on."""
-    from sympy import Integer
-
     w, h = s.r / 2, s.r * 2 / 5
     corners = ((-w, -h), (w, -h), (w, h), (-w, h), (-w, -h))
     box = tuple((piston[0] + x, piston[1] + y) for x, y in corners)
@@ -138,6 +131,4 @@ def _at(value: Mapping[str, float], angle: float) -> SimpleNamespace:
 
 def _piston(s: SimpleNamespace) -> Expr:
     """Return s = r cos θ + l cos φ."""
-    from sympy import cos
-
     return s.r * cos(s.theta) + (s.a + s.b) * rod_cosine(s)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import cos, sin
 from canon.scene.parts import Condition
 from canon.scene.picture import Picture, ring
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
@@ -42,16 +43,12 @@ def _symmetric_body(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _lagrange(s: SimpleNamespace) -> Expr:
-    from sympy import cos, sin
-
     spin = s.psi.dot + s.phi.dot * cos(s.theta)
     turning = s.A * (s.theta.dot**2 + s.phi.dot**2 * sin(s.theta) ** 2) + s.C * spin**2
     return turning / 2 - s.m * s.g * s.l * cos(s.theta)
 
 
 def _height(s: SimpleNamespace) -> Expr:
-    from sympy import cos
-
     return s.m * s.g * s.l * cos(s.theta)
 
 
@@ -145,7 +142,7 @@ LAGRANGE = Scene(
         Integral("angular momentum about the axis", lambda s: s.psi.momentum),
     ),
     solutions=(
-        Solution("cos θ by Jacobi's sn", "cusps", lambda s: _cosine(s.theta), _nutation, bound=1e-11),
+        Solution("cos θ by Jacobi's sn", "cusps", lambda s: cos(s.theta), _nutation, bound=1e-11),
         Solution(
             "tilt of the regular precession stays", "steady", lambda s: s.theta, lambda _v, _t: _STEADY_TILT
         ),
@@ -160,12 +157,6 @@ LAGRANGE = Scene(
 )
 
 
-def _cosine(angle: Expr) -> Expr:
-    from sympy import cos
-
-    return cos(angle)
-
-
 def _kovalevskaya_body(s: SimpleNamespace) -> Sequence[Body]:
     from canon.mechanics.lagrange.body import RigidBody, euler_rotation
 
@@ -173,23 +164,17 @@ def _kovalevskaya_body(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _kovalevskaya(s: SimpleNamespace) -> Expr:
-    from sympy import cos, sin
-
     spin = s.psi.dot + s.phi.dot * cos(s.theta)
     turning = s.C * (s.theta.dot**2 + s.phi.dot**2 * sin(s.theta) ** 2) + s.C * spin**2 / 2
     return turning - _kovalevskaya_height(s)
 
 
 def _kovalevskaya_height(s: SimpleNamespace) -> Expr:
-    from sympy import sin
-
     return s.m * s.g * s.l * sin(s.theta) * sin(s.psi)
 
 
 def _kovalevskaya_integral(s: SimpleNamespace) -> Expr:
     """Return |(ω₁ + iω₂)² − (m g l/C)(γ₁ + iγ₂)|²."""
-    from sympy import cos, sin
-
     theta, psi, c = s.theta, s.psi, s.m * s.g * s.l / s.C
     precession = (s.phi.momentum - s.psi.momentum * cos(theta)) / (2 * s.C * sin(theta) ** 2)
     nutation = theta.momentum / (2 * s.C)

@@ -6,6 +6,7 @@ import math
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
+from canon.scene.formula_functions import Add, cos
 from canon.scene.picture import Picture
 from canon.scene.scene import Parameter, Scene, Start
 from canon.scene.systems.pendulum import CHAOS, GRAVITY, below
@@ -39,15 +40,11 @@ def _bodies(s: SimpleNamespace) -> Sequence[Body]:
 
 
 def _height(s: SimpleNamespace) -> Expr:
-    from sympy import Add
-
     return Add(*(arm[0] * s.g * place[1] for arm, place in zip(_arms(s), _places(s), strict=True)))
 
 
 def _triple(s: SimpleNamespace) -> Expr:
     """Return L with Mᵢⱼ = lᵢ lⱼ cos(θᵢ − θⱼ) Σ m of what hangs below both."""
-    from sympy import Add, cos
-
     arms = _arms(s)
     below_both = [Add(*(m for m, _, _ in arms[i:])) for i in range(3)]
     kinetic = [

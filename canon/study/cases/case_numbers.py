@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.study.energy_drift.drift import judged
+from canon.study.energy_drift.drift import judged_series
 from canon.study.energy_drift.envelope import envelope_of
 from canon.study.energy_drift.error_series import series_of_parts
 
@@ -37,7 +37,7 @@ def judged_energy(t: Array, change: Array, energy: float, steps: int, precision:
     """
     relative = energy != 0.0
     series = series_of_parts(t, change, abs(energy) if relative else 1.0, steps, precision, relative=relative)
-    found = judged(series)
+    found = judged_series(series)
     curve = envelope_of(t, series.error, CURVE)
     return {
         **_numbers(found),
@@ -52,7 +52,7 @@ def judged_observable(
 ) -> dict[str, Any]:
     """Return the same for another observable, without curve and means."""
     series = series_of_parts(t, np.array(change), of.unit, steps, precision, relative=of.relative)
-    return {**_numbers(judged(series)), "relative": of.relative}
+    return {**_numbers(judged_series(series)), "relative": of.relative}
 
 
 def _numbers(found: Drift) -> dict[str, Any]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
-__all__ = ["FEWEST", "Drift", "Growth", "drift", "judged"]
+__all__ = ["FEWEST", "Drift", "Growth", "drift", "judged_series"]
 
 WINDOWS = 32
 """Windows from which slopes and walks are found."""
@@ -172,7 +172,7 @@ def drift(
     ('bounded', 'truncation')
     """
     if isinstance(t, Trajectory):
-        return judged(error_series(t, observable, orbit), diverged, false_alarm)
+        return judged_series(error_series(t, observable, orbit), diverged, false_alarm)
     if error is None:
         raise ValueError(
             "drift(motion) takes a motion that propagate returned; of a series give times and errors"
@@ -180,7 +180,7 @@ def drift(
     return _drift(*_checked(t, error), roundoff, resolution, diverged, false_alarm)
 
 
-def judged(series: ErrorSeries, diverged: float = 1.0, false_alarm: float = 0.01) -> Drift:
+def judged_series(series: ErrorSeries, diverged: float = 1.0, false_alarm: float = 0.01) -> Drift:
     """Judge an error series by what is known of its run; of motions, rows of drift studies and stored cases alike.
 
     Parameters

@@ -10,7 +10,7 @@ import numpy as np
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.setting import Setting
 from canon.flow.request import Request
-from canon.study.energy_drift.drift import Growth, judged
+from canon.study.energy_drift.drift import Growth, judged_series
 from canon.study.energy_drift.error_series import error_series
 from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, expressions_of, tangent_of
 from canon.study.motion.quiet_run import run_quietly
@@ -175,7 +175,7 @@ def drift_rows(
 def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftRow:
     orbits = range(found.y.shape[2]) if found.y.ndim == 3 else (None,)
     errors = [error_series(found, observable, orbit) for orbit in orbits]
-    drifts = [judged(series) for series in errors]
+    drifts = [judged_series(series) for series in errors]
     worst = max(range(len(drifts)), key=lambda k: (SEVERITY.index(drifts[k].verdict), drifts[k].bound))
     return DriftRow(
         method=found.method,
