@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from canon.study.cases.chunk_damage import DamagedFile
     from canon.study.cases.result import Result
+    from canon.study.cases.result_query import Results
     from canon.study.cases.row_checksum import DamagedRow
     from canon.study.cases.run_study import StudyStatus
     from canon.study.cases.store import Store
@@ -91,6 +92,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for action in (run_, resume, status):
         action.add_argument("--plot", metavar="IMAGE", type=Path, help="draw the study, every case a cell")
     for action in (export, report):
+        action.add_argument("--tag", metavar="WORD", help="only the cases with this tag")
         action.add_argument("output", metavar="OUTPUT", type=Path, help="where to write it")
     merge.add_argument("others", metavar="OTHER", type=Path, nargs="+", help="files to add")
 
@@ -162,26 +164,39 @@ def _export(arguments: argparse.Namespace) -> int:
     from canon.study.cases.export import csv_of, write_netcdf, write_parquet
     from canon.study.errors import StudyError
 
-    kind, store = FORMATS.get(arguments.output.suffix.lower()), _existing(arguments.store)
+    kind, results = FORMATS.get(arguments.output.suffix.lower()), _asked_for(arguments)
     if kind is None:
         known = ", ".join(f"{ending} ({name})" for ending, name in FORMATS.items())
         raise StudyError(f"{arguments.output}: the ending of its name says the format; there are {known}")
     if kind == "CSV":
-        arguments.output.write_text(csv_of(store), encoding="utf-8")
+        arguments.output.write_text(csv_of(results), encoding="utf-8")
     else:
-        {"Parquet": write_parquet, "NetCDF": write_netcdf}[kind](store, arguments.output)
+        {"Parquet": write_parquet, "NetCDF": write_netcdf}[kind](results, arguments.output)
     print(f"{kind}: {arguments.output}")
     return 0
 
 
 def _report(arguments: argparse.Namespace) -> int:
     from canon.plot.study_page import study_report
-    from canon.study.cases.result import results_of
 
-    page = study_report(results_of(_existing(arguments.store)), arguments.store.stem)
+    page = study_report(_asked_for(arguments), arguments.store.stem)
     arguments.output.write_text(page, encoding="utf-8")
     print(f"report: {arguments.output}")
     return 0
+
+
+def _asked_for(arguments: argparse.Namespace) -> Results:
+    """Return the results of a file, of the cases with one tag where that is asked for."""
+    from canon.study.cases.result import results_of
+    from canon.study.errors import StudyError
+
+    results = results_of(_existing(arguments.store))
+    if arguments.tag is None:
+        return results
+    if not (found := results.where(tag=arguments.tag)):
+        known = ", ".join(dict.fromkeys(tag for result in results for tag in result.case.tags))
+        raise StudyError(f"{arguments.store}: no case has the tag {arguments.tag!r}; there are {known or 'none'}")
+    return found
 
 
 def _merge(arguments: argparse.Namespace) -> int:

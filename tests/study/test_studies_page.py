@@ -30,7 +30,7 @@ def test_the_study_can_be_read(tmp_path):
 def test_the_program_runs_and_the_others_are_python(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     first, *others = blocks("python")
-    assert len(others) == 5
+    assert len(others) == 6
     program = tmp_path / "program.py"
     program.write_text(first)
     runpy.run_path(str(program))
@@ -55,3 +55,15 @@ def test_its_commands_are_canons(command):
     _, *words = shlex.split(command)
     arguments = cli._parser(words).parse_args(words)
     assert arguments.action in ("run", "resume", "status", "mend", "report", "export")
+
+
+def test_the_programs_about_what_is_kept_and_asked_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    kept, asked = (text for text in blocks("python") if "kept.sqlite" in text or "asked.sqlite" in text)
+    for name, text in (("kept", kept), ("asked", asked)):
+        Path(f"{name}.py").write_text(text)
+        runpy.run_path(f"{name}.py")
+    verlet, taylor, fine = capsys.readouterr().out.splitlines()
+    assert verlet.startswith("verlet, h = 0.1 31 0.0")
+    assert taylor.startswith("Taylor 31 0.0")
+    assert fine.endswith(" 8")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -76,6 +76,8 @@ class Case:
         (:func:`canon.study.cases.case_observables.observables_from`).
     keep
         What is kept beside the numbers, by name (:func:`canon.study.kept.keep_choice.keep_from`).
+    tags
+        Words it is found by; they are no part of what it is.
     """
 
     system: str | Formula
@@ -90,6 +92,7 @@ class Case:
     parts: int | None = None
     observables: tuple[tuple[str, str], ...] = ()
     keep: tuple[tuple[str, str], ...] = ()
+    tags: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
         if not 0.0 < self.span < math.inf:
@@ -158,6 +161,7 @@ class Case:
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold of this case; floats survive exactly."""
         fields = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        fields.pop("tags")
         more = {name: dict(found) for name in ("observables", "keep") if (found := fields.pop(name))}
         system = self.system.to_dict() if isinstance(self.system, Formula) else self.system
         return {

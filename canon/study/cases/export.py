@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.study.cases.result import results_of
+from canon.study.cases.result_query import Results
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ExportError", "csv_of", "dataset_of", "rows_of", "write_netcdf", "write_parquet"]
 
-TEXTS = ("key", "state", "system", "start", "method", "precision", "verdict", "reason", "failure", "inputs")
+TEXTS = ("key", "state", "system", "start", "method", "precision", "tags", "verdict", "reason", "failure", "inputs")
 """Columns of text."""
 
 
@@ -50,8 +51,8 @@ class ExportError(ImportError):
     """Raised where the library that writes a format is not installed."""
 
 
-def rows_of(store: Store) -> list[dict[str, Any]]:
-    """Return one flat row a case, pending and failed ones included; None where there is no number.
+def rows_of(given: Store | Results) -> list[dict[str, Any]]:
+    """Return one flat row a case of a file or of results, pending and failed ones too; None where there is no number.
 
     Columns are the inputs (a column ``parameter NAME`` each changed parameter), the numbers of
     :class:`canon.study.Drift`, the cost, ``final`` (the last state), ``failure``, and all inputs with the
@@ -68,16 +69,20 @@ def rows_of(store: Store) -> list[dict[str, Any]]:
     ...     [(row["method"], row["steps"], row["verdict"]) for row in rows_of(store)]
     [('RK4', 2000, 'secular'), ('RK4', 1000, 'secular')]
     """
-    return [_row(result) for result in results_of(store)]
+    return [_row(result) for result in _results(given)]
 
 
-def csv_of(store: Store) -> str:
-    """Return all cases of a store as CSV: one line a case, pending and failed ones included.
+def _results(given: Store | Results) -> Results:
+    return given if isinstance(given, Results) else results_of(given)
+
+
+def csv_of(given: Store | Results) -> str:
+    """Return all cases of a file or of results as CSV: one line a case, pending and failed ones included.
 
     Floats are written so that they read back exactly; lists are JSON inside their cell. A text that a spreadsheet
     would take for a formula (``=cmd|…``) has an apostrophe before it.
     """
-    rows = rows_of(store)
+    rows = rows_of(given)
     written = io.StringIO()
     columns = _columns(rows)
     table = csv.writer(written, lineterminator="\n")
@@ -86,8 +91,8 @@ def csv_of(store: Store) -> str:
     return written.getvalue()
 
 
-def write_parquet(store: Store, path: Path) -> None:
-    """Write all cases of a store as a Parquet file, with the types of the columns and lists as lists.
+def write_parquet(given: Store | Results, path: Path) -> None:
+    """Write all cases of a file or of results as a Parquet file, with the types of the columns and lists as lists.
 
     Raises
     ------
@@ -99,7 +104,7 @@ def write_parquet(store: Store, path: Path) -> None:
         import pyarrow.parquet
     except ImportError as missing:
         raise ExportError("Parquet needs pyarrow: pip install canon-mechanics[export]") from missing
-    rows = rows_of(store)
+    rows = rows_of(given)
     table = pyarrow.table(
         {
             name: pyarrow.array([row.get(name) for row in rows], _arrow_type(name, pyarrow))
@@ -109,7 +114,7 @@ def write_parquet(store: Store, path: Path) -> None:
     pyarrow.parquet.write_table(table, path)
 
 
-def dataset_of(store: Store) -> xarray.Dataset:
+def dataset_of(given: Store | Results) -> xarray.Dataset:
     """Return a study as an xarray dataset along ``case``, block means along ``block``, curves along ``point``.
 
     Missing numbers are NaN, as NetCDF has it; ``state`` and ``failure`` say why they are missing.
@@ -123,7 +128,7 @@ def dataset_of(store: Store) -> xarray.Dataset:
         import xarray
     except ImportError as missing:
         raise ExportError("NetCDF needs xarray: pip install canon-mechanics[export]") from missing
-    rows, results = rows_of(store), results_of(store)
+    rows, results = rows_of(given), _results(given)
     variables: dict[str, Any] = {
         _plain(name): ("case", _values(name, [row.get(name) for row in rows]))
         for name in _columns(rows)
@@ -143,9 +148,9 @@ def _values(column: str, values: Sequence[Any]) -> list[str] | list[float]:
     return [math.nan if v is None else float(v) for v in values]
 
 
-def write_netcdf(store: Store, path: Path) -> None:
+def write_netcdf(given: Store | Results, path: Path) -> None:
     """Write a study as a NetCDF file of version 3, which every reader knows; see :func:`dataset_of`."""
-    dataset_of(store).to_netcdf(path, engine="scipy")
+    dataset_of(given).to_netcdf(path, engine="scipy")
 
 
 def _row(result: Result) -> dict[str, Any]:
@@ -167,6 +172,7 @@ def _row(result: Result) -> dict[str, Any]:
         "precision": case.precision or "",
         "span": case.span,
         "samples": case.samples,
+        "tags": "; ".join(case.tags),
         **numbers,
         "exponent_low": low,
         "exponent_high": high,

@@ -105,11 +105,12 @@ def _salvaged(file: Path) -> tuple[dict[str, Rows], tuple[DamagedRow, ...]]:
         if isinstance(row, DamagedRow):
             damaged[row] = None
         else:
-            found[table][row[0]] = row
-    for table in ("records", "checkpoints"):
-        for key in [key for key in found[table] if key not in found["cases"]]:
-            del found[table][key]
-            damaged[DamagedRow(table, key)] = None
+            found[table][" ".join(row) if table == "tags" else row[0]] = row
+    for table in ("records", "checkpoints", "tags"):
+        for name, (key, *_) in list(found[table].items()):
+            if key not in found["cases"]:
+                del found[table][name]
+                damaged[DamagedRow(table, key)] = None
     for key in found["records"]:
         found["checkpoints"].pop(key, None)
     return found, tuple(damaged)

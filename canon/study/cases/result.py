@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from canon.frozen_mapping import FrozenMapping
 from canon.study.cases.case import Case, case_in, part_count
+from canon.study.cases.result_query import Results
 from canon.study.cases.store import Store
 from canon.study.kept.chunk_file import Chunk, ChunkFolder
 from canon.study.kept.kept_arrays import Kept
@@ -84,7 +85,7 @@ class Result:
         return ", ".join(part for part in (str(case.method), step, tolerance, case.precision) if part)
 
 
-def results_of(store: Store | str | Path) -> list[Result]:
+def results_of(store: Store | str | Path) -> Results:
     """Return every case of a file and what became of it, in the order they were added.
 
     Raises
@@ -103,10 +104,10 @@ def results_of(store: Store | str | Path) -> list[Result]:
     [('finished', 'verlet, h = 0.1', 'bounded')]
     """
     store = store if isinstance(store, Store) else Store(Path(store))
-    records, parts = store.records(), store.parts_done()
+    records, parts, tags = store.records(), store.parts_done(), store.tags()
     found: list[Result] = []
     for key, inputs in store.cases().items():
-        case, record = case_in(inputs), records.get(key)
+        case, record = replace(case_in(inputs), tags=tags.get(key, ())), records.get(key)
         by = FrozenMapping(json.loads(inputs).get("versions", {}))
         if record is None:
             done = parts.get(key, 0) / part_count(case)
@@ -120,7 +121,7 @@ def results_of(store: Store | str | Path) -> list[Result]:
             found.append(
                 Result(key, case, State.FINISHED, numbers, "", record.seconds, versions=by, kept=kept)
             )
-    return found
+    return Results(tuple(found))
 
 
 def motions_and_settings(store: Store) -> dict[str, str]:

@@ -16,10 +16,11 @@ COLUMNS = {
     "cases": ("key", "inputs"),
     "records": ("key", "failure", "outcome", "seconds", "finished"),
     "checkpoints": ("key", "part", "point"),
+    "tags": ("key", "tag"),
 }
 """What the checksum of each table's rows is over; it stands in a column after these."""
 
-CALLED = {"cases": "the inputs", "records": "the record", "checkpoints": "the checkpoint"}
+CALLED = {"cases": "the inputs", "records": "the record", "checkpoints": "the checkpoint", "tags": "a tag"}
 
 DIGITS = 32
 """Hexadecimal digits of SHA-256 that are kept: two rows with one checksum are not met by chance."""
@@ -32,7 +33,7 @@ class DamagedRow:
     Parameters
     ----------
     table
-        ``cases``, ``records`` or ``checkpoints``.
+        ``cases``, ``records``, ``checkpoints`` or ``tags``.
     key
         Key of the case as it can be read; it may be what is damaged.
     """

@@ -109,6 +109,7 @@ def run_study(
     more, functions = chosen_functions(keep or {}), keep or {}
     keyed = {key_of(case): case for case in (replace(each, keep=each.keep + more) for each in study.cases)}
     kept.add_cases({key: case.to_text() for key, case in keyed.items()})
+    kept.add_tags({key: case.tags for key, case in keyed.items()})
     _run(keyed, kept, executor, progress, checkpoint_seconds, in_flight, functions)
     return status_of(kept)
 

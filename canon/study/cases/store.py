@@ -23,14 +23,14 @@ from canon.study.cases.row_checksum import COLUMNS, DamagedRow, checked, with_ch
 from canon.study.kept.chunk_file import Chunk, ChunkFolder
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Sequence
+    from collections.abc import Generator, Iterable, Mapping, Sequence
 
 __all__ = ["DamagedRows", "Record", "Store", "StoreError"]
 
 APPLICATION = 0x63616E6F
 """Marks the file as one of canon's ("cano")."""
 
-VERSION = 3
+VERSION = 4
 """Version of the tables below."""
 
 PATIENCE = 60.0
@@ -59,9 +59,20 @@ CREATE TABLE checkpoints (
     point TEXT NOT NULL,
     checksum TEXT NOT NULL
 ) STRICT;
+CREATE TABLE tags (
+    key TEXT NOT NULL REFERENCES cases (key),
+    tag TEXT NOT NULL,
+    checksum TEXT NOT NULL,
+    PRIMARY KEY (key, tag)
+) STRICT;
 """
 
+WITHOUT_TAGS = 3
+"""Version of files that have all tables but the last, which they are given when they are opened."""
+
 ADD_CASE = "INSERT OR IGNORE INTO cases VALUES (?, ?, ?)"
+
+ADD_TAG = "INSERT OR IGNORE INTO tags VALUES (?, ?, ?)"
 
 ADD_RECORD = "INSERT OR IGNORE INTO records VALUES (?, ?, ?, ?, ?, ?)"
 
@@ -149,6 +160,19 @@ class Store:
         with self._writing() as connection:
             connection.executemany(ADD_CASE, [with_checksum("cases", *each) for each in inputs.items()])
 
+    def add_tags(self, tags: Mapping[str, Iterable[str]]) -> None:
+        """Add words to cases by key; those a case has already stay."""
+        rows = (with_checksum("tags", key, tag) for key, words in tags.items() for tag in words)
+        with self._writing() as connection:
+            connection.executemany(ADD_TAG, rows)
+
+    def tags(self) -> dict[str, tuple[str, ...]]:
+        """Return by key the words of each case that has any, in the order they were added."""
+        found: dict[str, tuple[str, ...]] = {}
+        for key, tag in self._rows("tags"):
+            found[key] = (*found.get(key, ()), tag)
+        return found
+
     def cases(self) -> dict[str, str]:
         """Return the inputs of all cases by key, in the order they were added."""
         return dict(self._rows("cases"))
@@ -225,6 +249,7 @@ class Store:
             connection.executemany(ADD_RECORD, rows["records"])
             connection.execute("DELETE FROM checkpoints WHERE key IN (SELECT key FROM records)")
             connection.executemany(FURTHER, rows["checkpoints"])
+            connection.executemany(ADD_TAG, rows.get("tags", []))
 
     def records(self) -> dict[str, Record]:
         """Return the records of finished cases by key."""
@@ -302,13 +327,14 @@ class Store:
 
     def _check(self, connection: sqlite3.Connection) -> None:
         """Make the tables in an empty file; refuse a file of another kind, version, or in pieces."""
-        if _pragma(connection, "application_id") != APPLICATION:
-            connection.execute("BEGIN IMMEDIATE")
-            try:
-                self._make(connection)
-            finally:
-                if connection.in_transaction:
-                    connection.execute("ROLLBACK")
+        for is_due, make in ((_is_new, self._make), (_is_without_tags, _add_tags_table)):
+            if is_due(connection):
+                connection.execute("BEGIN IMMEDIATE")
+                try:
+                    make(connection)
+                finally:
+                    if connection.in_transaction:
+                        connection.execute("ROLLBACK")
         if _pragma(connection, "user_version") != VERSION:
             raise StoreError(
                 f"{self.path} was written by another version of canon: use that one, or another file"
@@ -322,7 +348,7 @@ class Store:
 
     def _make(self, connection: sqlite3.Connection) -> None:
         """Make the tables; another process may have done so since we looked."""
-        if _pragma(connection, "application_id") == APPLICATION:
+        if not _is_new(connection):
             return
         if connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
             raise StoreError(f"{self.path} is a database of another program; give another file")
@@ -349,6 +375,22 @@ class Store:
 
     def _remedy(self) -> str:
         return f"'canon study mend {self.path}' keeps what can be read, or restore a copy"
+
+
+def _is_new(connection: sqlite3.Connection) -> bool:
+    return _pragma(connection, "application_id") != APPLICATION
+
+
+def _is_without_tags(connection: sqlite3.Connection) -> bool:
+    return _pragma(connection, "user_version") == WITHOUT_TAGS
+
+
+def _add_tags_table(connection: sqlite3.Connection) -> None:
+    """Make the table that older files lack; another process may have done so since we looked."""
+    if _is_without_tags(connection):
+        connection.execute(_statements()[-1])
+        connection.execute(f"PRAGMA user_version = {VERSION}")
+        connection.execute("COMMIT")
 
 
 def _statements() -> list[str]:

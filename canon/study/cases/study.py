@@ -17,6 +17,7 @@ from canon.scene import Scene, find
 from canon.study.cases.case import Case, key_of
 from canon.study.cases.case_observables import followed, observables_from
 from canon.study.cases.kept_of_case import section_of
+from canon.study.cases.tags import tags_from, unite
 from canon.study.energy_drift.drift import FEWEST
 from canon.study.energy_drift.sample_times import FEWEST_USUAL, usual_samples
 from canon.study.errors import StudyError
@@ -45,7 +46,7 @@ MAX_BYTES = 2_000_000
 LONGEST_REASON = 1_000
 """Characters of what is told against a study; only a stranger's name or number in it can make it longer."""
 
-LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables", "keep")
+LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables", "keep", "tags")
 
 
 @dataclass(frozen=True)
@@ -85,14 +86,17 @@ class Study:
             the others); ``parameters``: a value or a list of values each; ``periods`` or ``span``,
             ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
             ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these; ``keep`` says
-            what is kept beside the numbers: ``"motion"``, ``"exponent"``, ``{"section": formula}``, or a list of these.
+            what is kept beside the numbers: ``"motion"``, ``"exponent"``, ``{"section": formula}``, or a list of these; ``tags``
+            are words that results are found by.
 
         Raises
         ------
         StudyError
             Where a key is unknown or missing, or a system, start or parameter does not exist.
         """
-        return Study(tuple(dict.fromkeys(_cases(axes, "the study", {}))))
+        found: dict[Case, Case] = {}
+        unite(found, _cases(axes, "the study", {}))
+        return Study(tuple(found.values()))
 
     def share(self, number: int, of: int) -> Study:
         """Return the cases number, number + of, number + 2 of, … (counted from 1): one job's share of several.
@@ -133,12 +137,12 @@ def read_study(path: str | Path) -> Study:
         own = {name: formula_from(name, table) for name, table in systems.items()}
     except StudyError as error:
         raise StudyError(f"{file}, {error}") from error
-    found: dict[Case, None] = {}
+    found: dict[Case, Case] = {}
     for n, table in enumerate(tables, 1):
-        found |= dict.fromkeys(_cases(table, f"{file}, study {n}", own))
+        unite(found, _cases(table, f"{file}, study {n}", own))
         if len(found) > MOST_CASES:
             raise StudyError(f"{file}: {_TOO_MANY}")
-    return Study(tuple(found))
+    return Study(tuple(found.values()))
 
 
 def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> Iterator[Case]:
@@ -241,6 +245,7 @@ def _case(
         parts=_whole("parts", table["parts"]) if "parts" in table else None,
         observables=observables_from(table.get("observables", ())),
         keep=keep_from(table.get("keep", ())),
+        tags=tags_from(table.get("tags", ())),
     )
     _check(case)
     return case
