@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from canon.study.cases.chunk_damage import DamagedFile
-    from canon.study.cases.result import Result
-    from canon.study.cases.result_query import Results
+    from canon.study.cases.result import Result, Results
     from canon.study.cases.row_checksum import DamagedRow
     from canon.study.cases.run_study import StudyStatus
     from canon.study.cases.store import Store
@@ -195,7 +194,9 @@ def _asked_for(arguments: argparse.Namespace) -> Results:
         return results
     if not (found := results.where(tag=arguments.tag)):
         known = ", ".join(dict.fromkeys(tag for result in results for tag in result.case.tags))
-        raise StudyError(f"{arguments.store}: no case has the tag {arguments.tag!r}; there are {known or 'none'}")
+        raise StudyError(
+            f"{arguments.store}: no case has the tag {arguments.tag!r}; there are {known or 'none'}"
+        )
     return found
 
 

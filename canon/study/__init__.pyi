@@ -3,9 +3,9 @@ from .cases.export import ExportError as ExportError
 from .cases.mend import Mended as Mended
 from .cases.mend import mend as mend
 from .cases.result import Result as Result
+from .cases.result import Results as Results
 from .cases.result import State as State
 from .cases.result import results_of as results_of
-from .cases.result_query import Results as Results
 from .cases.run_study import run_study as run_study
 from .cases.run_study import status_of as status_of
 from .cases.store import DamagedRows as DamagedRows

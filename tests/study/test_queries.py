@@ -14,8 +14,7 @@ from canon import RK4, Splitting, Study, Taylor, read_study, results_of, run_stu
 from canon.cli import main
 from canon.study import StudyError, mend
 from canon.study.cases.case import Case, key_of
-from canon.study.cases.result import Result, State
-from canon.study.cases.result_query import Results
+from canon.study.cases.result import Result, Results, State
 from canon.study.cases.store import DamagedRows, Store
 
 STUDY = Study.of(
@@ -69,7 +68,11 @@ def test_results_are_found(path, wanted, count):
 
 def test_what_is_found_is_what_a_loop_finds(path):
     results = results_of(path)
-    by_loop = [r.key for r in results if r.state is State.FINISHED and r.numbers["bound"] > 1e-6 and r.case.step == 0.1]
+    by_loop = [
+        r.key
+        for r in results
+        if r.state is State.FINISHED and r.numbers["bound"] > 1e-6 and r.case.step == 0.1
+    ]
     assert [r.key for r in results.where(step=0.1, bound=lambda bound: bound > 1e-6)] == by_loop
     assert by_loop
 
@@ -90,11 +93,15 @@ def test_results_are_a_sequence(path):
 
 
 def test_tags_are_no_part_of_a_case(path):
-    plain, tagged = (Study.of(system="kepler", method="rk4", step=0.1, span=5.0, tags=tags) for tags in ([], ["a"]))
+    plain, tagged = (
+        Study.of(system="kepler", method="rk4", step=0.1, span=5.0, tags=tags) for tags in ([], ["a"])
+    )
     assert plain == tagged
     assert key_of(plain.cases[0]) == key_of(tagged.cases[0])
     before = Store(path).records()
-    run_study(Study.of(system="henon-heiles", method="rk4", step=0.1, span=30.0, samples=256, tags="again"), path)
+    run_study(
+        Study.of(system="henon-heiles", method="rk4", step=0.1, span=30.0, samples=256, tags="again"), path
+    )
     assert Store(path).records() == before
     (found,) = results_of(path).where(tag="again")
     assert found.case.tags == ("all", "first", "again")

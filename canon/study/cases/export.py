@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.study.cases.result import results_of
-from canon.study.cases.result_query import Results
+from canon.study.cases.result import Results, results_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +25,19 @@ if TYPE_CHECKING:
 
 __all__ = ["ExportError", "csv_of", "dataset_of", "rows_of", "write_netcdf", "write_parquet"]
 
-TEXTS = ("key", "state", "system", "start", "method", "precision", "tags", "verdict", "reason", "failure", "inputs")
+TEXTS = (
+    "key",
+    "state",
+    "system",
+    "start",
+    "method",
+    "precision",
+    "tags",
+    "verdict",
+    "reason",
+    "failure",
+    "inputs",
+)
 """Columns of text."""
 
 

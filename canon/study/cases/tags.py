@@ -33,7 +33,9 @@ def tags_from(written: Any) -> tuple[str, ...]:
     words = written if isinstance(written, list | tuple) else [written]
     for word in words:
         if not (isinstance(word, str) and word.strip() and word.isprintable() and len(word) <= LONGEST):
-            raise ValueError(f"tags = {reprlib.repr(word)}: a tag is a text of 1 to {LONGEST} printable letters")
+            raise ValueError(
+                f"tags = {reprlib.repr(word)}: a tag is a text of 1 to {LONGEST} printable letters"
+            )
     return tuple(dict.fromkeys(words))
 
 
