@@ -357,7 +357,7 @@ class Trajectory:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a run; what was done up to the last sample is kept.
+    """Raised by Ctrl-C during a run; what was done up to the last sample is kept.
 
     Parameters
     ----------

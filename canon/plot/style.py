@@ -34,7 +34,7 @@ GREY = "#767676"
 
 
 class PlotError(ImportError):
-    """The plotting library is not installed."""
+    """Raised where the plotting library is not installed."""
 
 
 def new_axes(ax: Axes | None) -> Axes:

@@ -21,7 +21,7 @@ __all__ = ["Condition", "Integral", "Parameter", "SceneError", "Solution", "Star
 
 
 class SceneError(ValueError):
-    """A scene, parameter or start that does not exist, or a value that makes no sense."""
+    """Raised for a scene, parameter or start that does not exist, or a value that makes no sense."""
 
 
 @dataclass(frozen=True)

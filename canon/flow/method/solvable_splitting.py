@@ -205,7 +205,7 @@ class WisdomHolman(SolvableSplitting):
 
 @dataclass(frozen=True, init=False, repr=False)
 class SABA(SolvableSplitting):
-    """Laskar and Robutel's method SABA_n, or one of Blanes and others that kills ε² τ² too.
+    """Laskar and Robutel's splitting SABA_n of H = A + εB, or a method by Blanes and others without the error ε² τ².
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ class SABA(SolvableSplitting):
 
 @dataclass(frozen=True, init=False, repr=False)
 class SBAB(SolvableSplitting):
-    """Laskar and Robutel's method SBAB_n: n kicks in a step, the first and last half ones of two steps.
+    """Laskar and Robutel's splitting SBAB_n of H = A + εB, whose steps begin and end with a kick by εB.
 
     Parameters
     ----------

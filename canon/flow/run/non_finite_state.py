@@ -11,7 +11,7 @@ __all__ = ["NonFiniteStateError", "time_and_state"]
 
 
 class NonFiniteStateError(ArithmeticError):
-    """The motion left the finite numbers: a collision, a domain left, or a step too large.
+    """Raised where a motion leaves the finite numbers: a collision, the edge of a domain, or a step too large.
 
     Parameters
     ----------

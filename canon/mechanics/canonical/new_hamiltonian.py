@@ -57,7 +57,7 @@ def rate_form(transformation: CanonicalTransformation) -> tuple[Expr, ...]:
 def new_hamiltonian(
     transformation: CanonicalTransformation, H: Expr | Hamiltonian, valence: Expr = sp.S.One
 ) -> Expr | None:
-    """Return K in the old variables, up to a function of t; None where R was not found in closed form.
+    """Return the new Hamiltonian K of a canonical map in the old variables, up to a function of t; None if not found.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ __all__ = ["LegendreError", "eliminate_velocities", "legendre_residual"]
 
 
 class LegendreError(ValueError):
-    """Legendre's transformation does not exist, or not in closed form.
+    """Raised where Legendre's transformation does not exist, or not in closed form.
 
     Parameters
     ----------

@@ -256,7 +256,7 @@ class ConstraintSystem:
 
 
 def is_integrable(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> Verdict:
-    """Tell whether the constraints of a system are holonomic together, those on velocities in disguise.
+    """Tell whether constraints on velocities can be integrated, all together, to constraints on positions.
 
     They are looked at where they hold, branch by branch: ẋ = z ẏ is integrable on z = 0, though not off it.
 

@@ -32,7 +32,7 @@ __all__ = ["Averaged", "AveragingError", "adiabatic_invariant", "average"]
 
 
 class AveragingError(ValueError):
-    """An average ends before the order that was asked for.
+    """Raised where averaging ends before the order that was asked for.
 
     Parameters
     ----------

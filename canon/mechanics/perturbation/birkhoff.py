@@ -42,7 +42,7 @@ MOST_TERMS = 3_000_000
 
 
 class NormalFormError(ValueError):
-    """A normal form ends before the order that was asked for.
+    """Raised where a normal form ends before the order that was asked for.
 
     Parameters
     ----------

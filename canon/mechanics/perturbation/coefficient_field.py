@@ -21,7 +21,7 @@ LARGEST_DEGREE = 8
 
 
 class NoExactFieldError(ValueError):
-    """The constants lie in no field that exact polynomials are computed over."""
+    """Raised where constants lie in no field that exact polynomials are computed over."""
 
 
 def ring_over(constants: Iterable[Expr], size: int) -> PolynomialRing:

@@ -17,7 +17,7 @@ Series = dict[Harmonic, Expr]
 
 
 class NoFourierSeriesError(ValueError):
-    """A function is no trigonometric polynomial in the angles."""
+    """Raised for a function that is no trigonometric polynomial in the angles."""
 
 
 def fourier_series(f: Expr, angles: Sequence[Symbol]) -> Series:

@@ -27,7 +27,7 @@ Row = list["PhasePolynomial"]
 
 
 class NoDiagonalFormError(ValueError):
-    """The quadratic part of a Hamiltonian cannot be made diagonal."""
+    """Raised where the quadratic part of a Hamiltonian cannot be made diagonal."""
 
 
 @dataclass(frozen=True)

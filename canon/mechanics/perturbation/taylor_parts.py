@@ -21,7 +21,7 @@ Parts = dict[int, "PhasePolynomial"]
 
 
 class NotAnalyticError(ValueError):
-    """A function has no Taylor series at the point."""
+    """Raised for a function that has no Taylor series at the point."""
 
 
 KINKS = (

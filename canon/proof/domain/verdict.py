@@ -212,7 +212,7 @@ def _short(residual: sp.Basic | sp.MatrixBase) -> str:
 
 
 def all_hold(verdicts: Iterable[Verdict], question: str = "") -> Verdict:
-    """Return one verdict for a claim that needs all of these.
+    """Return one verdict on a claim that holds where all the verdicts given do.
 
     FAILS as soon as one fails (later ones are not asked for when ``verdicts`` is lazy); otherwise
     UNDECIDED if one is; HOLDS only if every one holds. What any of them assumed is kept.

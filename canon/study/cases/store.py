@@ -85,11 +85,11 @@ WHERE excluded.part > part
 
 
 class StoreError(OSError):
-    """The file can't be read or written as a store; its data stay as they are."""
+    """Raised for a file that can't be read or written as a store of results; its data stay as they are."""
 
 
 class DamagedRows(StoreError):
-    """Rows of the file are not what was written; ``rows`` has them."""
+    """Raised where rows of a results file are not what was written; ``rows`` has them."""
 
     def __init__(self, path: Path, rows: Sequence[DamagedRow]) -> None:
         self.rows = tuple(rows)

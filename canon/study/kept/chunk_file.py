@@ -31,7 +31,7 @@ ASIDE = "aside"
 
 
 class DamagedChunk(OSError):
-    """What was kept of a case is not there, or not what was written."""
+    """Raised where what was kept of a case is not in the file, or not what was written."""
 
 
 @dataclass(frozen=True)
