@@ -205,7 +205,7 @@ class WisdomHolman(SolvableSplitting):
 
 @dataclass(frozen=True, init=False, repr=False)
 class SABA(SolvableSplitting):
-    """Laskar and Robutel's splitting SABA_n of H = A + εB, or a method by Blanes and others without the error ε² τ².
+    """Laskar and Robutel's splitting SABA_n of H = H₀ + ε H₁, or a method by Blanes and others without the error ε² τ².
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ class SABA(SolvableSplitting):
 
 @dataclass(frozen=True, init=False, repr=False)
 class SBAB(SolvableSplitting):
-    """Laskar and Robutel's splitting SBAB_n of H = A + εB, whose steps begin and end with a kick by εB.
+    """Laskar and Robutel's splitting SBAB_n of H = H₀ + ε H₁, whose steps begin and end with a kick by H₁.
 
     Parameters
     ----------
