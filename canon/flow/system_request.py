@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from canon.flow.system.recognised_system import RecognisedSystem
     from canon.flow.task import Task
 
-__all__ = ["any_task", "is_hamiltonian"]
+__all__ = ["any_task", "is_hamiltonian", "needs_hamiltonian"]
 
 
 def is_hamiltonian(system: Any) -> bool:
@@ -209,9 +209,13 @@ _FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss")
 """Families of methods that need no Hamiltonian."""
 
 
+def needs_hamiltonian(method: Method) -> bool:
+    """Tell whether a method is made for Hamiltonians and applies to nothing else."""
+    return method.family not in _FOR_ANY_SYSTEM
+
+
 def _check_method(method: Method, moving: MovingSystem) -> None:
-    """Refuse methods that are made for Hamiltonians."""
-    if method.family not in _FOR_ANY_SYSTEM:
+    if needs_hamiltonian(method):
         raise ValueError(
             f"{method} is made for a Hamiltonian and does not apply to a {moving.kind}; "
             "Taylor, DOP853, RK4 and Gauss do"

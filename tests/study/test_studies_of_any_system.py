@@ -2,14 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import heyoka as hy
 import numpy as np
 import pytest
 import sympy as sp
+from sympy.physics import mechanics as me
 
-from canon import RK4, Lagrangian, Taylor, choose, coordinates, drift, time, work_precision
+from canon import (
+    RK4,
+    ConstrainedLagrangian,
+    GibbsAppell,
+    Lagrangian,
+    Study,
+    Taylor,
+    VectorField,
+    choose,
+    coordinates,
+    drift,
+    parameters,
+    propagate,
+    results_of,
+    routhian,
+    run_study,
+    time,
+    work_precision,
+)
+from canon.mechanics.lagrange.body import Particle
+from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler, weights
+from canon.study.cases.case import key_of, part_count
+from canon.study.cases.checkpointed_run import Checkpoint, advance
 from canon.study.energy_drift.drift import Growth
 from canon.study.energy_drift.drift_study import drift_study
 from canon.study.errors import StudyError
+from canon.study.motion.system_text import system_in, system_text
 
 
 def damped_and_driven() -> Lagrangian:
@@ -67,3 +94,166 @@ def test_drift_takes_a_damped_motion():
     motion = choose(damped_and_driven(), 2000.0, [1.0, 0.0], accuracy=1e-6, methods=[RK4()]).run()
     assert drift(motion).cause == "truncation"
     assert drift(motion).bound == pytest.approx(np.abs(motion.energy_error).max())
+
+
+# every sort of system ----------------------------------------------------------------------------------
+
+
+def _systems():
+    x, y, theta, phi, r = coordinates("x y theta phi r")
+    m, l, g, k, c = parameters("m l g k c", positive=True)
+    S, a, b = sp.Symbol("S", real=True), *sp.symbols("a b", real=True)
+    u, v = hy.make_vars("u", "v")
+    bob = Particle(m, (l * sp.sin(theta), -l * sp.cos(theta)))
+    weight = [*weights([bob], (0, -g)), Load(0, (-S * sp.sin(theta), S * sp.cos(theta)))]
+    q, (Q, U) = me.dynamicsymbols("q"), me.dynamicsymbols("Q U")
+    frame, point = me.ReferenceFrame("N"), me.Point("O")
+    point.set_vel(frame, 0)
+    arm = frame.orientnew("A", "Axis", [Q, frame.z])
+    arm.set_ang_vel(frame, U * frame.z)
+    end = point.locatenew("P", -arm.y)
+    end.v2pt_theory(point, frame, arm)
+    kane = me.KanesMethod(frame, q_ind=[Q], u_ind=[U], kd_eqs=[Q.diff() - U])
+    kane.kanes_equations([me.Particle("bob", end, m)], [(end, -m * g * frame.y)])
+    hung = {"m": 1.0, "l": 1.0, "g": 9.8}
+    ring = ConstrainedLagrangian(Lagrangian((x.dot**2 + y.dot**2) / 2 - g * y, [x, y]), [x**2 + y**2 - 1])
+    blade = GibbsAppell([bob], [theta], -m * g * l * sp.cos(theta), forces=[-c * theta.dot])
+    return {
+        "damped and driven": (damped_and_driven(), [1.0, 0.0], {}, ""),
+        "on a ring": (ring, [0.6, -0.8, 0.8, 0.6], {"g": 9.8}, ""),
+        "Gibbs and Appell": (blade, [0.5, 0.0], {**hung, "c": 0.02}, ""),
+        "Newton and Euler": (NewtonEuler([bob], [theta], weight, [S]), [0.5, 0.0], hung, ""),
+        "Routh": (
+            routhian(Lagrangian(m * (r.dot**2 + r**2 * phi.dot**2) / 2 + k / r, [r, phi])),
+            [1.0, 0.3, 0.1, 1.2],
+            {"m": 1.0, "k": 1.0},
+            "",
+        ),
+        "a field": (VectorField([b, -sp.sin(a)], [a, b]), [0.5, 0.0], {}, "b**2/2 - cos(a)"),
+        "heyoka's list": ([(u, v), (v, -hy.sin(u))], [0.5, 0.0], {}, "v**2/2 - cos(u)"),
+        "SymPy's Lagrange": (
+            me.LagrangesMethod(m * q.diff() ** 2 / 2 + m * g * sp.cos(q), [q]),
+            [0.5, 0.0],
+            {"m": 1.0, "g": 9.8},
+            "",
+        ),
+        "SymPy's Kane": (kane, [0.5, 0.0], {"m": 1.0, "g": 9.8}, "U**2/2 - g*cos(Q)"),
+    }
+
+
+SYSTEMS = _systems()
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_study_takes_every_sort_of_system(name, tmp_path):
+    """The bound of RK4 falls by its order (that of an energy by up to two more); what is read back from the file is the same system."""
+    system, start, values, kept = SYSTEMS[name]
+    study = Study.of(
+        system=system,
+        start=[start],
+        parameters=values,
+        method="RK4",
+        step=[0.04, 0.02],
+        span=20.0,
+        samples=500,
+        observables={"kept": kept} if kept else (),
+    )
+    assert run_study(study, tmp_path / "any.sqlite").failed == 0
+    results = results_of(tmp_path / "any.sqlite")
+    coarse, fine = (result.numbers["bound"] for result in results)
+    assert 2.0**3 < coarse / fine < 2.0**7
+    for result, case in zip(results, study.cases, strict=True):
+        assert result.case == case
+        assert key_of(result.case) == key_of(case)
+
+
+def test_the_numbers_of_a_study_are_those_of_the_motion(tmp_path):
+    """Part by part, the balance of energy against the work of the forces; resumed with the same bits."""
+    study = Study.of(
+        system=damped_and_driven(),
+        start=[[1.0, 0.0]],
+        method="RK4",
+        step=0.05,
+        span=200.0,
+        samples=512,
+        parts=4,
+    )
+    (case,) = study.cases
+    whole = advance(case).numbers
+    point = None
+    for _ in range(3):
+        point = Checkpoint.from_text(advance(case, point, seconds=0.0).to_text())
+    assert advance(case, point).numbers == whole
+    motion = propagate(damped_and_driven(), (0, 200), [1, 0], method="RK4", step=0.05, samples=512)
+    assert whole["bound"] == pytest.approx(np.abs(motion.energy_error).max(), rel=1e-3)
+    assert np.abs(motion.energy_change).max() > 1e3 * whole["bound"]  # the energy itself is not kept
+
+
+def test_motions_with_constraints_are_one_part_and_stay_on_them(tmp_path):
+    system, start, values, _ = SYSTEMS["on a ring"]
+    options = {"start": [start], "parameters": values, "step": 0.02, "span": 50.0, "parts": 5}
+    (case,) = Study.of(system=system, method="RK4", **options).cases
+    assert part_count(case) == 1
+    assert advance(case).numbers["bound"] < 1e-3
+    (scene,) = Study.of(system="rolling-disc", method="taylor", span=2.0).cases
+    assert advance(scene).numbers["bound"] < 1e-13
+
+
+def test_what_a_study_cannot_take_is_told():
+    field, start, _, _ = SYSTEMS["a field"]
+    rest = {"start": [start], "step": 0.1, "span": 10.0}
+    with pytest.raises(StudyError, match="no energy is known of VectorField: name what should stay constant"):
+        Study.of(system=field, method="rk4", **rest)
+    with pytest.raises(StudyError, match="verlet is made for Hamiltonians, which Lagrangian is not; Taylor"):
+        Study.of(system=damped_and_driven(), method="verlet", **rest)
+    with pytest.raises(StudyError, match="the system holds c, g, l, m: give each a value"):
+        Study.of(system=SYSTEMS["Gibbs and Appell"][0], method="rk4", **rest)
+    with pytest.raises(StudyError, match=r"needs 2 finite numbers \(x, x_dot\), not \[1.0\]"):
+        Study.of(system=damped_and_driven(), method="rk4", step=0.1, span=10.0, start=[[1.0]])
+
+
+def test_files_hold_data_and_no_code():
+    text = system_text(damped_and_driven(), "damped")
+    assert system_in(text) == damped_and_driven()
+    forged = replace(text, written=text.written.replace('"Lagrangian"', '"Popen"'))
+    with pytest.raises(StudyError, match="damped: its equations are not such as canon writes"):
+        system_in(forged)
+
+
+# systems without energy ---------------------------------------------------------------------------------
+
+
+def test_a_field_is_judged_by_its_positions_or_by_what_it_keeps():
+    field, start, _, _ = SYSTEMS["a field"]
+    a, b = field.x
+    with pytest.raises(
+        StudyError, match='no energy is known of a vector field: ask for observable="position"'
+    ):
+        choose(field, 100.0, start, accuracy=1e-7)
+    by_position = choose(field, 100.0, start, accuracy=1e-7, observable="position", methods=["taylor"])
+    assert by_position.reached
+    by_energy = choose(
+        field, 100.0, start, accuracy=1e-7, observable="E", integral=b**2 / 2 - sp.cos(a), methods=[RK4()]
+    )
+    motion = by_energy.run()
+    assert by_energy.reached
+    assert np.abs(motion["E"] / motion["E"][0] - 1).max() <= 1e-7
+    with pytest.raises(StudyError, match="no energy is known of this system: name what should stay constant"):
+        drift_study(field, start, span=100.0, step=0.05)
+    kept = drift_study(field, start, span=100.0, step=0.05, observables={"E": b**2 / 2 - sp.cos(a)})
+    assert [row.drift.bound < 1e-6 for row in kept.rows] == [True, True]
+    diagram = work_precision(field, 10.0, start, methods=[RK4()], steps=[0.1], repetitions=1)
+    assert "–" in str(diagram).splitlines()[5]
+
+
+def test_methods_for_hamiltonians_are_refused_of_others():
+    with pytest.raises(StudyError, match="verlet: made for Hamiltonians, which Lagrangian is not; Taylor"):
+        choose(damped_and_driven(), 100.0, [1.0, 0.0], accuracy=1e-7, methods=["verlet"])
+
+
+def test_starts_by_name_and_scenes_by_name():
+    by_name = choose(damped_and_driven(), 50.0, {"x": 1, "x_dot": 0}, accuracy=1e-7, methods=["taylor"])
+    assert by_name.question.y0.tolist() == [1.0, 0.0]
+    found = drift_study("rolling-disc", span=2.0, step=0.01, methods=["taylor"])
+    assert found.rows[0].drift.bound < 1e-13
+    assert choose("kepler", 50.0, accuracy=1e-7, methods=["taylor"]).reached

@@ -16,13 +16,14 @@ from canon.flow.method.setting import Setting
 from canon.scene import find
 from canon.study.errors import StudyError
 from canon.study.motion.hamiltonian_text import Formula, hamiltonian_of
+from canon.study.motion.studied_motion import subject_of, variables_of
+from canon.study.motion.system_text import SystemText, system_in
 from canon.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from canon.flow.method.method import Method
-    from canon.flow.run.hamiltonian_system import HamiltonianSystem
 
 __all__ = ["Case", "case_in", "key_of", "part_count", "versions"]
 
@@ -55,7 +56,7 @@ class Case:
     Parameters
     ----------
     system
-        Name of a scene, or a Hamiltonian as text.
+        Name of a scene, or a Hamiltonian or another system as text.
     method
         The method.
     span
@@ -63,7 +64,7 @@ class Case:
     samples
         Samples the energy error is judged by.
     start
-        Name of a start of the system, or a state (q, p); the system's first start where None.
+        Name of a start of the system, or a state, (q, p) of a Hamiltonian; the system's first start where None.
     parameters
         Values that replace the system's own.
     step, tolerance, precision
@@ -80,7 +81,7 @@ class Case:
         Words it is found by; they are no part of what it is.
     """
 
-    system: str | Formula
+    system: str | Formula | SystemText
     method: Method
     span: float
     samples: int = 4096
@@ -121,40 +122,50 @@ class Case:
     @property
     def system_name(self) -> str:
         """What the system is called."""
-        return self.system.name if isinstance(self.system, Formula) else self.system
+        return self.system if isinstance(self.system, str) else self.system.name
 
     @property
-    def hamiltonian(self) -> HamiltonianSystem:
-        """The Hamiltonian, made once in a process."""
-        return (
-            hamiltonian_of(self.system) if isinstance(self.system, Formula) else find(self.system).hamiltonian
-        )
+    def hamiltonian(self) -> Any:
+        """What moves, made once in a process: the Hamiltonian, or another system where none says all."""
+        if isinstance(self.system, Formula):
+            return hamiltonian_of(self.system)
+        if isinstance(self.system, SystemText):
+            return system_in(self.system)
+        scene = find(self.system)
+        return scene.hamiltonian if scene.is_free else scene
 
     @property
     def variables(self) -> tuple[str, ...]:
         """The names of the variables of the state."""
-        return tuple(s.name for s in (*self.hamiltonian.q, *self.hamiltonian.p))
+        return tuple(s.name for s in variables_of(self.hamiltonian)[0])
+
+    @property
+    def is_constrained(self) -> bool:
+        """Whether constraints act on the system."""
+        if isinstance(self.system, str):
+            return find(self.system).is_constrained
+        return isinstance(self.system, SystemText) and self.system.is_constrained
 
     @property
     def values(self) -> dict[str, float]:
         """The value of every parameter by name."""
-        if isinstance(self.system, Formula):
+        if not isinstance(self.system, str):
             return {**dict(self.system.parameters), **dict(self.parameters)}
         return find(self.system).with_parameters(**dict(self.parameters)).values
 
     @property
     def period(self) -> float | None:
         """The period of a typical motion, None where none is known."""
-        if isinstance(self.system, Formula):
+        if not isinstance(self.system, str):
             return self.system.period
         return find(self.system).with_parameters(**dict(self.parameters)).period
 
     @property
     def state(self) -> tuple[float, ...]:
-        """The state (q, p) at the start, of length 2n."""
+        """The state at the start."""
         if isinstance(self.start, tuple):
             return self.start
-        if isinstance(self.system, Formula):
+        if not isinstance(self.system, str):
             return _start_of(self.system, self.start)
         return _scene_state(self.system, self.start, self.parameters)
 
@@ -163,7 +174,7 @@ class Case:
         fields = {name: getattr(self, name) for name in self.__dataclass_fields__}
         fields.pop("tags")
         more = {name: dict(found) for name in ("observables", "keep") if (found := fields.pop(name))}
-        system = self.system.to_dict() if isinstance(self.system, Formula) else self.system
+        system = self.system if isinstance(self.system, str) else self.system.to_dict()
         return {
             **fields,
             "system": system,
@@ -182,7 +193,7 @@ class Case:
         given: dict[str, Any] = {name: value for name, value in fields.items() if name != "versions"}
         start, system = given.pop("start"), given.pop("system")
         return Case(
-            system=system if isinstance(system, str) else Formula.from_dict(system),
+            system=_system_from(system),
             method=method_from(given.pop("method")),
             parameters=tuple(given.pop("parameters").items()),
             start=tuple(start) if isinstance(start, list) else start,
@@ -236,7 +247,8 @@ def part_count(case: Case) -> int:
     """Return the number of parts a case is run in; it follows from the case alone.
 
     A part has at most a million steps of fixed size, or 128 samples of an adaptive method unless that made over 128
-    parts, each of which costs some milliseconds to begin. A time-transformed method's run is one part.
+    parts, each of which costs some milliseconds to begin. A time-transformed method's run is one part, and
+    so is that of a system with constraints.
 
     Examples
     --------
@@ -246,6 +258,8 @@ def part_count(case: Case) -> int:
     """
     if case.method.engine is FICTITIOUS_TIME:
         return 1  # the size of its steps follows from the state at the start of the whole run
+    if case.is_constrained:
+        return 1  # what a method has drifted off the constraints is no start on them
     if case.parts is not None:
         return case.parts
     if case.method.engine.takes_step and case.step is not None:
@@ -253,7 +267,13 @@ def part_count(case: Case) -> int:
     return min(MOST_PARTS, max(1, case.samples // SAMPLES_A_PART))
 
 
-def _start_of(system: Formula, name: str | None) -> tuple[float, ...]:
+def _system_from(written: Any) -> str | Formula | SystemText:
+    if isinstance(written, str):
+        return written
+    return SystemText.from_dict(written) if "written" in written else Formula.from_dict(written)
+
+
+def _start_of(system: Formula | SystemText, name: str | None) -> tuple[float, ...]:
     """Return the state of that name, or the first one."""
     for known, state in system.starts:
         if name in (None, known):
@@ -261,7 +281,7 @@ def _start_of(system: Formula, name: str | None) -> tuple[float, ...]:
     named = ", ".join(known for known, _ in system.starts)
     what = "a start; it has none" if name is None else f"no start {name!r}; there are: {named or 'none'}"
     raise ValueError(
-        f"{system.name} {'needs' if name is None else 'has'} {what}; a state (q, p) in numbers will do as well"
+        f"{system.name} {'needs' if name is None else 'has'} {what}; a state in numbers will do as well"
     )
 
 
@@ -269,4 +289,4 @@ def _start_of(system: Formula, name: str | None) -> tuple[float, ...]:
 def _scene_state(
     scene: str, start: str | None, parameters: tuple[tuple[str, float], ...]
 ) -> tuple[float, ...]:
-    return tuple(find(scene).with_parameters(**dict(parameters)).state(start).tolist())
+    return tuple(subject_of(find(scene), start, dict(parameters)).state.tolist())

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.system.recognised_system import recognised
 from canon.scene import find
 from canon.study.errors import StudyError
 from canon.study.motion.hamiltonian_text import Formula, require_labels
 from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, observables_of
+from canon.study.motion.studied_motion import variables_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -68,7 +70,7 @@ def followed(case: Case) -> tuple[Observable, ...]:
     written = {
         name: read_formula(case, f"the observable {name!r}", text) for name, text in case.observables if text
     }
-    system = hamiltonian if isinstance(case.system, Formula) else find(case.system)
+    system = find(case.system) if isinstance(case.system, str) else hamiltonian
     found = observables_of(system, hamiltonian, named, y0, values) if named else ()
     own = observables_of(system, hamiltonian, written, y0, values) if written else ()
     return (*found, *own)
@@ -86,11 +88,13 @@ def read_formula(case: Case, what: str, text: str) -> Expr:
     from canon.expression.symbols.symbol import parameters
 
     constants: tuple[Symbol, ...]
-    if isinstance(case.system, Formula):
+    if isinstance(case.system, str):
+        constants = tuple(find(case.system).values_by_symbol())
+    elif isinstance(case.system, Formula):
         constants = tuple(parameters(constant) for constant, _ in case.system.parameters)
     else:
-        constants = tuple(find(case.system).values_by_symbol())
-    symbols = (*case.hamiltonian.q, *case.hamiltonian.p, *constants)
+        constants = recognised(case.hamiltonian).parameters
+    symbols = (*variables_of(case.hamiltonian)[0], *constants)
     try:
         return parse_expression(text, Scope({symbol.name: symbol for symbol in symbols}))
     except LanguageError as error:

@@ -22,6 +22,7 @@ import numpy as np
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
 from canon.flow.request import Request
 from canon.flow.run.sampling_plan import steps_over
+from canon.flow.system_request import is_hamiltonian
 from canon.study.cases.case import part_count
 from canon.study.cases.case_numbers import judged_energy, judged_observable
 from canon.study.cases.case_observables import followed
@@ -34,6 +35,7 @@ from canon.study.motion.quiet_run import run_quietly
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from canon.array import Array
     from canon.flow.run.event import Event
     from canon.flow.trajectory import Trajectory
     from canon.study.cases.case import Case
@@ -75,9 +77,9 @@ class Checkpoint:
         The state is state + carried, each of length 2n; with time and work where H depends on the
         time (:mod:`canon.study.motion.extended_phase_space`).
     energy
-        H at the start of the run.
+        H at the start of the run, or the unit of what takes its place where no energy is known.
     t, change
-        The samples so far: times, and H − H(start), less the work done from outside.
+        The samples so far: times, and H − H(start), less the work done by forces and from outside.
     steps, evaluations, seconds
         Cost so far; the processor time is that of the steps and of keeping samples.
     step, precision
@@ -150,6 +152,8 @@ def started(case: Case) -> Checkpoint:
 def _with_time(case: Case) -> Driven | None:
     """Return the motion with its time as a coordinate where H depends on the time, None where it does not."""
     hamiltonian = case.hamiltonian
+    if not is_hamiltonian(hamiltonian):
+        return None  # the work of forces and of what depends on time is integrated along
     return driven(hamiltonian) if hamiltonian.t in hamiltonian.H.free_symbols else None
 
 
@@ -201,7 +205,7 @@ def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
     found = _part(case, point, end)
     before = point.change[-1] if point.change else 0.0
     first = 0 if point.part == 0 else 1  # the first sample of a part is the last one of the part before
-    change = tuple((before + found.energy_change).tolist())
+    change = tuple((before + _conserved(case, found)).tolist())
     changes = {
         name: (*(done := point.changes.get(name, ())), *((done[-1] if done else 0.0) + new[first:]).tolist())
         for name, new in found.changes.items()
@@ -211,7 +215,7 @@ def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
         part=point.part + 1,
         state=tuple(found.y[:, -1].tolist()),
         carried=tuple(found.carried[:, -1].tolist()),
-        energy=float(found.energy[0]) if point.part == 0 else point.energy,
+        energy=_size(case, found) if point.part == 0 else point.energy,
         t=point.t + tuple(found.t[first:].tolist()),
         change=point.change + change[first:],
         changes=changes,
@@ -222,6 +226,16 @@ def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
         precision=found.precision,
         kept=kept_on_the_way(case, point.kept, found, _with_time(case)),
     )
+
+
+def _conserved(case: Case, found: Trajectory) -> Array:
+    """Return the change of the energy less the work done; where no energy is known, of the first observable."""
+    return found.changes[followed(case)[0].name] if found.energies is None else found.energy_defect
+
+
+def _size(case: Case, found: Trajectory) -> float:
+    """Return the energy at the start, or the unit of what takes its place."""
+    return followed(case)[0].unit if found.energies is None else float(found.energy[0])
 
 
 def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
@@ -280,7 +294,7 @@ def _evenly(case: Case) -> bool:
         return True
     seen = min(INTERVALS, case.samples)
     found = _run(case, started(case).state, (Fraction(0), Fraction(seen * interval)), step, seen * every)
-    return is_resolved(found.energy_change, every)
+    return is_resolved(found.y[0] if found.energies is None else found.energy_change, every)
 
 
 def _between(span: tuple[Fraction, Fraction], samples: int, seed: int) -> list[float]:

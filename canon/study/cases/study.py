@@ -12,6 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.user_input import counted
 from canon.flow.method.method_text import method_from, method_of
+from canon.flow.system.listed_equations import is_heyoka_system
+from canon.flow.system.recognised_system import recognised
+from canon.flow.system_request import is_hamiltonian, needs_hamiltonian
 from canon.given_file import bytes_of, tables_of
 from canon.scene import Scene, find
 from canon.study.cases.case import Case, key_of
@@ -23,9 +26,10 @@ from canon.study.energy_drift.sample_times import FEWEST_USUAL, usual_samples
 from canon.study.errors import StudyError
 from canon.study.kept.keep_choice import keep_from
 from canon.study.motion.hamiltonian_text import Formula, formula_from, formula_of
+from canon.study.motion.system_text import SystemText, system_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 
 __all__ = ["Study", "read_study"]
@@ -80,14 +84,17 @@ class Study:
         Parameters
         ----------
         **axes
-            ``system`` (a scene or its name, a :class:`canon.study.motion.hamiltonian_text.Formula`, a Hamiltonian),
+            ``system`` (a scene or its name, a Hamiltonian, or whatever else :func:`canon.propagate` takes; with a name
+            and starts a :class:`canon.study.motion.hamiltonian_text.Formula` or
+            :class:`canon.study.motion.system_text.SystemText`),
             ``start``, ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
             of values (a state is a list in that list; steps are for methods of fixed step, tolerances for
             the others); ``parameters``: a value or a list of values each; ``periods`` or ``span``,
             ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
             ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these; ``keep`` says
             what is kept beside the numbers: ``"motion"``, ``"exponent"``, ``{"section": formula}``, or a list of these;
-            ``tags`` are words that results are found by.
+            ``tags`` are words that results are found by. Where forces do work, the energy less that is judged; of
+            systems without a known energy, such as vector fields, the first observable takes its place.
 
         Raises
         ------
@@ -145,7 +152,7 @@ def read_study(path: str | Path) -> Study:
     return Study(tuple(found.values()))
 
 
-def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> Iterator[Case]:
+def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula | SystemText]) -> Iterator[Case]:
     unknown = sorted(set(table) - {*AXES, *LENGTHS})
     if unknown:
         raise StudyError(
@@ -167,6 +174,8 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula]) -> 
         )
     try:
         axes = [_listed(table.get(name)) for name in AXES]
+        if is_heyoka_system(table["system"]):  # itself a list
+            axes[0] = [table["system"]]
         if math.prod(map(len, (*axes, *map(_listed, parameters.values())))) > MOST_CASES:
             raise ValueError(_TOO_MANY)
         systems = [_system(each, own, parameters) for each in axes[0]]
@@ -181,9 +190,11 @@ def _shortened(text: str) -> str:
     return text if len(text) <= LONGEST_REASON else f"{text[:LONGEST_REASON]}…"
 
 
-def _system(given: Any, own: Mapping[str, Formula], parameters: Mapping[str, Any]) -> str | Formula:
-    """Return a scene's name or a formula, whatever a system is given as; a Hamiltonian's parameters get values."""
-    if isinstance(given, Formula):
+def _system(
+    given: Any, own: Mapping[str, Formula | SystemText], parameters: Mapping[str, Any]
+) -> str | Formula | SystemText:
+    """Return a scene's name or a text, whatever a system is given as; its parameters get values."""
+    if isinstance(given, Formula | SystemText):
         return given
     if isinstance(given, str):
         return own[given] if given in own else find(given).name
@@ -194,13 +205,28 @@ def _system(given: Any, own: Mapping[str, Formula], parameters: Mapping[str, Any
                 f"give changed values of {given.name} as parameters, not inside the scene: {changed}"
             )
         return given.name
-    if not hasattr(given, "H"):
-        raise TypeError(
-            f"system = {reprlib.repr(given)}: give the name of a scene or of a [system.NAME] table, or a Hamiltonian"
-        )
-    used = {str(symbol) for symbol in given.H.free_symbols}
+    used = {str(symbol) for symbol in _symbols(given)}
     first = {name: _number(name, _listed(value)[0]) for name, value in parameters.items() if name in used}
-    return formula_of(given, parameters=first)
+    if is_hamiltonian(given):
+        return formula_of(given, parameters=first)
+    if missing := sorted(used - {*first}):
+        raise ValueError(
+            f"the system holds {', '.join(missing)}: give each a value, parameters={{name: value}}"
+        )
+    return system_text(given, parameters=first)
+
+
+def _symbols(given: Any) -> Iterable[Any]:
+    """Return the symbols of a system that need a number, its variables perhaps among them."""
+    if is_hamiltonian(given):
+        return given.H.free_symbols
+    try:
+        return recognised(given).parameters
+    except TypeError:
+        raise TypeError(
+            f"system = {reprlib.repr(given)}: give the name of a scene or of a [system.NAME] table, a Hamiltonian, or "
+            "another system that propagate takes"
+        ) from None
 
 
 def _settings(parameters: Any) -> list[tuple[tuple[str, float], ...]]:
@@ -211,7 +237,7 @@ def _settings(parameters: Any) -> list[tuple[tuple[str, float], ...]]:
 
 
 def _case(
-    system: str | Formula,
+    system: str | Formula | SystemText,
     parameters: tuple[tuple[str, float], ...],
     chosen: Mapping[str, Any],
     table: Mapping[str, Any],
@@ -251,8 +277,8 @@ def _case(
     return case
 
 
-def _period(system: str | Formula, parameters: tuple[tuple[str, float], ...]) -> float | None:
-    if isinstance(system, Formula):
+def _period(system: str | Formula | SystemText, parameters: tuple[tuple[str, float], ...]) -> float | None:
+    if not isinstance(system, str):
         missing = [name for name, _ in parameters if name not in dict(system.parameters)]
         if missing:
             raise ValueError(f"{system.name} has no parameter {missing[0]!r}")
@@ -272,12 +298,22 @@ def _check(case: Case) -> None:
     """Raise ValueError where a case makes no sense, before anything is run."""
     if case.samples < FEWEST:
         raise ValueError(f"{case.samples} samples are too few to judge growth: keep at least {FEWEST}")
-    if isinstance(case.system, Formula):
+    if not isinstance(case.system, str):
         case.system.check(case.state, "a start")
-    elif isinstance(case.start, tuple):
-        n = len(find(case.system).q)
-        if len(case.start) != 2 * n:
-            raise ValueError(f"{case.system}: a start needs {2 * n} numbers (q, p), not {list(case.start)}")
+    elif isinstance(case.start, tuple) and len(case.start) != len(case.variables):
+        variables = ", ".join(case.variables)
+        raise ValueError(
+            f"{case.system}: a start needs {len(case.variables)} numbers ({variables}), not {list(case.start)}"
+        )
+    if not is_hamiltonian(case.hamiltonian) and needs_hamiltonian(case.method):
+        raise ValueError(
+            f"{case.method} is made for Hamiltonians, which {case.system_name} is not; "
+            "Taylor, DOP853, RK4 and Gauss apply"
+        )
+    if isinstance(case.system, SystemText) and not case.system.has_energy and not case.observables:
+        raise ValueError(
+            f"no energy is known of {case.system_name}: name what should stay constant, observables={{name: formula}}"
+        )
     key_of(case)  # names of starts are looked up
     followed(case)
     section_of(case, None)

@@ -12,6 +12,7 @@ from canon.flow.method.setting import Setting
 from canon.flow.request import Request
 from canon.study.energy_drift.drift import Growth, judged_series
 from canon.study.energy_drift.error_series import error_series
+from canon.study.errors import StudyError
 from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, expressions_of, tangent_of
 from canon.study.motion.quiet_run import run_quietly
 
@@ -173,6 +174,10 @@ def drift_rows(
 
 
 def _judged(found: Trajectory, observable: Observable, seconds: float) -> DriftRow:
+    if observable.name == ENERGY and found.energies is None:
+        raise StudyError(
+            "no energy is known of this system: name what should stay constant, observables={name: function}"
+        )
     orbits = range(found.y.shape[2]) if found.y.ndim == 3 else (None,)
     errors = [error_series(found, observable, orbit) for orbit in orbits]
     drifts = [judged_series(series) for series in errors]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.system.recognised_system import MovableSystem
     from canon.scene.scene import Scene
     from canon.study.motion.extended_phase_space import Driven
 
@@ -98,8 +99,8 @@ class DriftStudy:
 
 
 def drift_study(
-    system: Scene | HamiltonianSystem,
-    y0: ArrayLike | str | None = None,
+    system: Scene | MovableSystem,
+    y0: ArrayLike | Mapping[Any, Any] | str | None = None,
     *,
     methods: Sequence[MethodGiven] | None = None,
     step: float | None = None,
@@ -121,12 +122,13 @@ def drift_study(
     Parameters
     ----------
     system
-        A scene, a Hamiltonian, or another system that :func:`canon.propagate` takes: its energy is then
-        that less the work of the forces. Where it depends on the time, "energy" is the energy less the work done from
-        outside, H − ∫ ∂H/∂t dt (:mod:`canon.study.motion.extended_phase_space`).
+        A Hamiltonian, a scene or its name, or any other system that :func:`canon.propagate` takes: its energy is then
+        that less the work of the forces; of a vector field, which has none, give ``observables``. Where a Hamiltonian
+        depends on the time, "energy" is the energy less the work done from outside, H − ∫ ∂H/∂t dt
+        (:mod:`canon.study.motion.extended_phase_space`).
     y0
-        Initial state (q, p), shape (2n,), or for a scene the name of a start; a scene's default start if
-        left out.
+        Initial state, shape (2n,), or a number for each variable, or for a scene the name of a start; a scene's default
+        start if left out.
     methods
         The methods, as values or by name. If left out: Kahan & Li's of order 8 and Verlet's where H = T(p) + V(q),
         else Gauss's of order 8 and 2; RK4; heyoka's Taylor method.

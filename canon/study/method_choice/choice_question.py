@@ -36,7 +36,7 @@ class Question:
     Parameters
     ----------
     hamiltonian, y0, values, span
-        The motion: Hamiltonian, state (q, p) of shape (2n,), values of the parameters, span.
+        The motion: Hamiltonian or other system, state of shape (2n,), values of the parameters, span.
     observable
         ``"energy"``, ``"position"``, or the name of an integral.
     integral

@@ -5,27 +5,25 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from canon.display import preformatted
 from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.method_text import method_of
 from canon.flow.propagation import propagate
 from canon.flow.run.observables_along import AccuracyWarning
-from canon.flow.system_request import is_hamiltonian
+from canon.flow.system_request import is_hamiltonian, needs_hamiltonian
 from canon.scene.scene import Scene, near
 from canon.study.errors import StudyError
 from canon.study.method_choice.candidate import Candidate, candidate_methods
 from canon.study.method_choice.choice_question import Question
 from canon.study.method_choice.choice_table import answer, choice_table
 from canon.study.method_choice.confirm import confirmed, double_instead
-from canon.study.method_choice.pilot_run import error_seen, natural_step
+from canon.study.method_choice.pilot_run import error_seen, natural_step, require_energy
 from canon.study.method_choice.slow_times import Outlook, with_outlook
 from canon.study.method_choice.step_search import searched
 from canon.study.motion.extended_phase_space import driven
-from canon.study.motion.studied_motion import motion_hamiltonian
+from canon.study.motion.studied_motion import Subject, subject_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -33,10 +31,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from sympy import Expr, Symbol
 
-    from canon.array import Array
     from canon.flow.method.method import Method
     from canon.flow.method.method_text import MethodGiven
-    from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.system.recognised_system import MovableSystem
     from canon.flow.trajectory import Trajectory
 
 __all__ = ["Candidate", "Choice", "choose"]
@@ -176,9 +173,9 @@ class Choice:
 
 
 def choose(
-    system: Scene | HamiltonianSystem,
+    system: Scene | MovableSystem,
     span: float,
-    y0: ArrayLike | str | None = None,
+    y0: ArrayLike | Mapping[Any, Any] | str | None = None,
     *,
     accuracy: float,
     observable: str = "energy",
@@ -198,12 +195,14 @@ def choose(
     Parameters
     ----------
     system
-        A scene, a Hamiltonian, or another system that :func:`canon.flow.propagation.propagate` takes, such as a
-        Lagrangian with forces or constraints: its energy is then that less the work of the forces.
+        Whatever :func:`canon.flow.propagation.propagate` takes: a Hamiltonian, a scene or its name, a Lagrangian with
+        forces and constraints, whose energy is then that less the work of the forces; a vector field and SymPy's
+        ``KanesMethod``, of which no energy is known, with ``observable="position"`` or an ``integral``.
     span
         Duration, in units of time.
     y0
-        The starting state (q, p); of a scene also the name of a start, its default one where not given.
+        The starting state, or a number for each variable; of a scene also the name of a start, its default one where
+        not given.
     accuracy
         Largest error allowed at any time, relative to the value at the start (absolute where that is zero).
     observable
@@ -237,11 +236,18 @@ def choose(
         raise StudyError(
             f"an accuracy of {accuracy} makes no sense: give a number between 0 and 0.1, such as 1e-8"
         )
-    question, title = _question(system, y0, span, observable, integral, parameters)
+    subject = subject_of(system, y0, parameters)
+    question = _question(subject, span, observable, integral)
     considered = tuple(map(method_of, methods)) if methods is not None else candidate_methods(question)
     if not considered:
         raise StudyError("no method to choose from: name at least one")
+    if not is_hamiltonian(question.hamiltonian) and all(map(needs_hamiltonian, considered)):
+        raise StudyError(
+            f"{', '.join(map(str, considered))}: made for Hamiltonians, which {subject.title} is not; "
+            "Taylor, DOP853, RK4 and Gauss apply"
+        )
     natural = natural_step(question)
+    require_energy(question)
     pilot_span = min(span, PILOT_STEPS * natural)
     question, outlook = with_outlook(question, pilot_span, natural)
     found: list[Candidate] = []
@@ -257,6 +263,7 @@ def choose(
     if progress is not None:
         progress(str(chosen.method), 1.0)
     ordered = sorted(found, key=lambda each: (not each.keeps, each.predicted_cost))
+    title = subject.system.title if isinstance(subject.system, Scene) else subject.title
     return Choice(title, span, accuracy, observable, chosen, tuple(ordered), question, outlook)
 
 
@@ -301,49 +308,21 @@ def _in_higher_precision(
     return found
 
 
-def _question(
-    system: Scene | HamiltonianSystem,
-    y0: ArrayLike | str | None,
-    span: float,
-    observable: str,
-    integral: Expr | None,
-    parameters: Mapping[Symbol | str, float] | None,
-) -> tuple[Question, str]:
-    given = {str(name): value for name, value in (parameters or {}).items()}
-    if not isinstance(system, Scene):
-        if y0 is None or isinstance(y0, str):
-            raise StudyError(
-                "a system that is no scene has no starts of its own: give the initial state as numbers"
-            )
-        if integral is None and observable not in ("energy", "position"):
-            raise StudyError(f"observable={observable!r}: give the function of (q, p) as integral=")
-        state = np.asarray(y0, dtype=np.float64)
-        return _of_constant(system, state, {**given}, span, observable, integral), type(system).__name__
-    scene = system.with_parameters(**given)
+def _question(subject: Subject, span: float, observable: str, integral: Expr | None) -> Question:
+    """Return the question; of the energy where H depends on t with the time as a coordinate, so that it is constant."""
+    scene = subject.system
     if integral is None and observable not in ("energy", "position"):
+        if not isinstance(scene, Scene):
+            raise StudyError(f"observable={observable!r}: give the function of the state as integral=")
         constants = scene.constants()
         if observable not in constants:
             raise StudyError(
                 f"{scene.name} has no constant {observable!r}{near(observable, ('energy', 'position', *constants))}"
             )
         integral = constants[observable]
-    state = scene.state(y0) if y0 is None or isinstance(y0, str) else np.asarray(y0, dtype=np.float64)
-    hamiltonian = motion_hamiltonian(scene)
-    return _of_constant(hamiltonian, state, {**scene.values}, span, observable, integral), scene.title
-
-
-def _of_constant(
-    hamiltonian: HamiltonianSystem,
-    state: Array,
-    values: dict[Symbol | str, float],
-    span: float,
-    observable: str,
-    integral: Expr | None,
-) -> Question:
-    """Return the question; of the energy where H depends on t with the time as a coordinate, so that it is constant."""
-    if not is_hamiltonian(hamiltonian):
-        return Question(hamiltonian, state, values, span, observable, integral)
-    if observable == "energy" and hamiltonian.t in hamiltonian.H.free_symbols:
-        timed = driven(hamiltonian)
-        return Question(timed.hamiltonian, timed.state(state), values, span, observable, integral)
-    return Question(hamiltonian, state, values, span, observable, integral)
+    if observable == "energy" and subject.depends_on_time:
+        timed = driven(subject.hamiltonian)
+        return Question(
+            timed.hamiltonian, timed.state(subject.state), subject.values, span, observable, integral
+        )
+    return Question(subject.hamiltonian, subject.state, subject.values, span, observable, integral)

@@ -24,7 +24,16 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.trajectory import Trajectory
 
-__all__ = ["Pilot", "error_seen", "natural_step", "pilot", "pilot_share", "seconds_per_time", "unit_of"]
+__all__ = [
+    "Pilot",
+    "error_seen",
+    "natural_step",
+    "pilot",
+    "pilot_share",
+    "require_energy",
+    "seconds_per_time",
+    "unit_of",
+]
 
 WINDOWS = 512
 """Windows a pilot run is looked at in."""
@@ -205,8 +214,8 @@ def _against_reference(question: Question, setting: Setting, span: float) -> Pil
 
 
 def _energy(found: Trajectory, largest: float | None = None) -> float:
-    """Return the largest energy error, relative where the energy is not zero; 0 where H depends on time."""
-    if not found.autonomous:
+    """Return the largest energy error, relative where it is not zero; 0 where H depends on time or is unknown."""
+    if found.energies is None or not found.autonomous:
         return 0.0
     if found.record.moving is not None:
         return float(np.abs(found.energy_error).max())
@@ -258,6 +267,28 @@ def natural_step(question: Question, report: Callable[[float], None] = lambda _:
             report(0.0)
     except (NonFiniteStateError, ValueError) as failed:
         raise StudyError(f"the motion can't be followed: {failed}") from failed
+
+
+def require_energy(question: Question) -> None:
+    """Refuse to follow the energy of a system that has none.
+
+    Raises
+    ------
+    StudyError
+        Such as of a vector field.
+    """
+    if (
+        question.observable != "energy"
+        or question.integral is not None
+        or is_hamiltonian(question.hamiltonian)
+    ):
+        return
+    record = question.run(Setting(Taylor(), precision="double"), question.span * 2.0**-20, 1).record
+    if record.moving is not None and record.moving.energy is None:
+        raise StudyError(
+            f'no energy is known of a {record.moving.kind}: ask for observable="position", or give what should stay '
+            "constant, observable=name and integral=function"
+        )
 
 
 def pilot_share(method: Method) -> float:

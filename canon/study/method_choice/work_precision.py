@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from canon.flow.method.method import Method
     from canon.flow.method.method_text import MethodGiven
-    from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.system.recognised_system import MovableSystem
     from canon.flow.trajectory import Trajectory
     from canon.scene.scene import Scene
 
@@ -58,7 +58,8 @@ class WorkRow:
     evaluations
         Evaluations of the force (Taylor: of the series).
     energy_error
-        Largest abs(E(t) − E(0))/abs(E(0)).
+        Largest abs(E(t) − E(0))/abs(E(0)), or of what is left of E less the work of forces; NaN where no energy is
+        known, as of a vector field.
     position_error
         Distance of the final coordinates from those of the reference, over the length of the latter.
     resonant
@@ -83,7 +84,8 @@ class WorkRow:
 
     def __repr__(self) -> str:
         knob = f"step {self.step:.4g}" if self.step is not None else f"tol {self.tolerance:.2g}"
-        said = self.failure or f"energy to {self.energy_error:.1e}, position to {self.position_error:.1e}"
+        energy = "" if math.isnan(self.energy_error) else f"energy to {self.energy_error:.1e}, "
+        said = self.failure or f"{energy}position to {self.position_error:.1e}"
         return f"<WorkRow: {self.method}, {knob}, {self.precision}: {said}>"
 
 
@@ -117,9 +119,9 @@ class WorkPrecision:
 
 
 def work_precision(
-    system: Scene | HamiltonianSystem,
+    system: Scene | MovableSystem,
     span: float,
-    y0: ArrayLike | str | None = None,
+    y0: ArrayLike | Mapping[Any, Any] | str | None = None,
     *,
     methods: Sequence[MethodGiven],
     steps: Iterable[float] = (),
@@ -134,11 +136,12 @@ def work_precision(
     Parameters
     ----------
     system
-        A scene or a Hamiltonian.
+        A Hamiltonian, a scene or its name, or any other system that :func:`canon.flow.propagation.propagate` takes.
     span
         Duration in units of time; short enough that the motion can be followed to its end.
     y0
-        The starting state (q, p); of a scene also the name of a start, its default one where not given.
+        The starting state, or a number for each variable; of a scene also the name of a start, its default one where
+        not given.
     methods
         The methods, as values or by name.
     steps, tolerances
@@ -242,7 +245,7 @@ def _measured(
         tolerance=tolerance,
         cpu_seconds=min(each.cpu_seconds for each in timed),
         evaluations=found.evaluations,
-        energy_error=float(np.abs(found.energy_error).max()),
+        energy_error=math.nan if found.energies is None else float(np.abs(found.energy_error).max()),
         position_error=float(np.linalg.norm(found.q[:, -1] - reference) / np.linalg.norm(reference)),
         precision=found.precision,
     )
@@ -288,7 +291,7 @@ def _work_cells(row: WorkRow) -> tuple[str, ...]:
         name,
         knob,
         row.precision,
-        f"{row.energy_error:.1e}",
+        "–" if math.isnan(row.energy_error) else f"{row.energy_error:.1e}",
         f"{row.position_error:.1e}",
         f"{row.evaluations:,}",
         duration_in_words(row.cpu_seconds),

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
-__all__ = ["Formula", "formula_from", "formula_of", "hamiltonian_of", "require_labels"]
+__all__ = ["Formula", "check_declared", "formula_from", "formula_of", "hamiltonian_of", "require_labels"]
 
 MOST_NAMES = 500
 """Names of coordinates, momenta and parameters that a system of a study file may have."""
@@ -68,27 +68,14 @@ class Formula:
     period: float | None = None
 
     def __post_init__(self) -> None:
-        require_labels(self.name, *(name for name, _ in self.starts))
-        if len(self.q) + len(self.p) + len(self.parameters) > MOST_NAMES:
-            raise StudyError(f"{self.name}: more than {MOST_NAMES} names; write larger systems in Python")
+        check_declared(self.name, (*self.q, *self.p), self.parameters, self.starts, self.period)
         if not self.q or len(self.q) != len(self.p):
             raise StudyError(
                 f"{self.name}: {counted(len(self.q), 'coordinate')} and "
                 f"{counted(len(self.p), 'momentum', 'momenta')}; each coordinate needs one"
             )
-        names = (*self.q, *self.p, *(name for name, _ in self.parameters))
-        if long := [name for name in names if len(name) > LONGEST_NAME]:
-            raise StudyError(f"{self.name}: {long[0][:LONGEST_NAME]!r}… is a name of {len(long[0])} letters")
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise StudyError(f"{self.name}: {twice[0]!r} is declared twice")
-        for name, value in self.parameters:
-            if not math.isfinite(value):
-                raise StudyError(f"{self.name}: the parameter {name} = {value} is not a finite number")
         for name, state in self.starts:
             self.check(state, f"the start {name!r}")
-        if self.period is not None and not (math.isfinite(self.period) and self.period > 0.0):
-            raise StudyError(f"{self.name}: a period of {self.period} makes no sense: give a positive number")
 
     def check(self, state: Sequence[float], what: str) -> None:
         """Raise StudyError where a state has not 2n finite numbers."""
@@ -250,6 +237,29 @@ def hamiltonian_of(formula: Formula) -> Hamiltonian:
     except LanguageError as error:
         raise StudyError(f"system {formula.name}, H: {error}") from error
     return Hamiltonian(H, q, p)
+
+
+def check_declared(
+    name: str,
+    variables: Sequence[str],
+    parameters: Sequence[tuple[str, float]],
+    starts: Sequence[tuple[str, Sequence[float]]],
+    period: float | None,
+) -> None:
+    """Raise StudyError where names of a system are too many, too long or given twice, or numbers make no sense."""
+    require_labels(name, *(start for start, _ in starts))
+    names = [*variables, *(parameter for parameter, _ in parameters)]
+    if len(names) > MOST_NAMES:
+        raise StudyError(f"{name}: more than {MOST_NAMES} names; write larger systems in Python")
+    if long := [each for each in names if len(each) > LONGEST_NAME]:
+        raise StudyError(f"{name}: {long[0][:LONGEST_NAME]!r}… is a name of {len(long[0])} letters")
+    if twice := sorted({each for each in names if names.count(each) > 1}):
+        raise StudyError(f"{name}: {twice[0]!r} is declared twice")
+    for parameter, value in parameters:
+        if not math.isfinite(value):
+            raise StudyError(f"{name}: the parameter {parameter} = {value} is not a finite number")
+    if period is not None and not (math.isfinite(period) and period > 0.0):
+        raise StudyError(f"{name}: a period of {period} makes no sense: give a positive number")
 
 
 def _exact(x: Any) -> Expr:

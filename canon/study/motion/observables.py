@@ -12,6 +12,7 @@ import numpy as np
 from canon.flow.system_request import is_hamiltonian
 from canon.scene.scene import Scene, near
 from canon.study.errors import StudyError
+from canon.study.motion.studied_motion import variables_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -160,11 +161,11 @@ def _with_unit(
     from canon.proof.trees.sympy_types import free_symbols
 
     graph = Graph()
-    variables = (*hamiltonian.q, *hamiltonian.p)
+    variables, t = variables_of(hamiltonian)
     node = graph.from_sympy(f)
     nodes = [node, *graph.gradient(node, variables)]
     by_name = {str(symbol): value for symbol, value in values.items()}
-    point = {s: np.float64(x) for s, x in zip(variables, y0, strict=True)} | {hamiltonian.t: np.float64(0.0)}
+    point = {s: np.float64(x) for s, x in zip(variables, y0, strict=True)} | {t: np.float64(0.0)}
     missing = [s for s in free_symbols(f) if s not in point and str(s) not in by_name]
     if missing:
         raise StudyError(

@@ -1,25 +1,28 @@
-"""Motion that is studied, as it is asked for: a scene and a start by name, or a Hamiltonian and numbers."""
+"""Motion that is studied, as it is asked for: a scene and a start by name, or any system and numbers."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.system.recognised_system import recognised
+from canon.flow.system.scene_door import is_scene, opened
+from canon.flow.system.start_of_motion import state_in_order
 from canon.flow.system_request import is_hamiltonian
+from canon.scene import find
 from canon.scene.scene import Scene
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import ArrayLike, NDArray
     from sympy import Symbol
 
-    from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.system.recognised_system import MovableSystem
 
-__all__ = ["Subject", "motion_hamiltonian", "subject_of"]
+__all__ = ["Subject", "subject_of", "variables_of"]
 
 
 @dataclass(frozen=True)
@@ -28,16 +31,19 @@ class Subject:
 
     Parameters
     ----------
-    system, hamiltonian
-        The scene with the values that were asked for, or the Hamiltonian; and the Hamiltonian itself.
+    system
+        What was asked for, a scene with the values that were asked for.
+    hamiltonian
+        What moves: the Hamiltonian, or what :func:`canon.propagate` takes where none says all, a scene itself with its
+        forces and constraints among it.
     state, values
-        State (q, p) at the start, shape (2n,), and values of all parameters.
+        State at the start, shape (2n,), and values of all parameters.
     title
         What the motion is called.
     """
 
-    system: Scene | HamiltonianSystem
-    hamiltonian: HamiltonianSystem
+    system: Any
+    hamiltonian: Any
     state: NDArray[np.float64]
     values: Mapping[Symbol | str, float]
     title: str
@@ -59,16 +65,26 @@ class Subject:
 
 
 def subject_of(
-    system: Scene | HamiltonianSystem,
-    y0: ArrayLike | str | None,
+    system: Scene | MovableSystem,
+    y0: ArrayLike | Mapping[Any, Any] | str | None,
     parameters: Mapping[Symbol | str, float] | None = None,
 ) -> Subject:
-    """Return the motion of a scene or Hamiltonian from a start or state, with these values of its parameters.
+    """Return the motion of a system from a start or state, with these values of its parameters.
+
+    Parameters
+    ----------
+    system
+        Whatever :func:`canon.propagate` takes: a Hamiltonian, a Lagrangian with forces and constraints, a vector field,
+        a scene or its name.
+    y0
+        The state, or a number for each variable; of a scene also the name of a start, its first one where None.
+    parameters
+        Values of the parameters; those of a scene replace its own.
 
     Raises
     ------
     StudyError
-        Where no Hamiltonian alone describes the motion, or nothing says where it starts.
+        Where nothing says where it starts.
 
     Examples
     --------
@@ -78,43 +94,41 @@ def subject_of(
     (3.0, False)
     """
     given = {str(name): value for name, value in (parameters or {}).items()}
-    if isinstance(system, Scene):
-        scene = system.with_parameters(**given)
-        hamiltonian = motion_hamiltonian(scene)
-        return Subject(scene, hamiltonian, _state_of(scene, y0), {**scene.values}, _title_of(scene, y0))
-    return Subject(system, system, _state_of(system, y0), {**given}, type(system).__name__)
-
-
-def motion_hamiltonian(system: Scene | HamiltonianSystem) -> HamiltonianSystem:
-    """Return the Hamiltonian of a scene, or the Hamiltonian itself.
-
-    Raises
-    ------
-    StudyError
-        Where constraints or forces without potential act on the scene.
-    """
-    if not isinstance(system, Scene):
-        return system
-    if not system.is_free:
-        what = "constraints" if system.is_constrained else "forces without potential"
-        raise StudyError(
-            f"{system.name} has {what}, and methods are compared on motions that a Hamiltonian alone describes; "
-            f"'canon scene {system.name} --run' runs it and checks what is known of it, "
-            "'canon drift list' names the scenes to take"
-        )
-    return system.hamiltonian
-
-
-def _state_of(system: Scene | HamiltonianSystem, y0: ArrayLike | str | None) -> NDArray[np.float64]:
-    """Return the state (q, p) of a start or of numbers, shape (2n,)."""
-    if isinstance(system, Scene) and (y0 is None or isinstance(y0, str)):
-        return system.state(y0)
+    asked: Any = find(system) if isinstance(system, str) else system
+    if not isinstance(asked, Scene):
+        return Subject(asked, asked, _state_of(asked, y0), {**given}, type(asked).__name__)
+    scene: Any = asked.with_parameters(**given)
+    moving: Any = scene.hamiltonian if scene.is_free else scene
     if y0 is None or isinstance(y0, str):
-        raise StudyError("a Hamiltonian has no starts of its own: give the initial state (q, p) as numbers")
+        state = np.asarray(opened(scene, y0, {}).y0, dtype=np.float64)
+        return Subject(scene, moving, state, {**scene.values}, f"{scene.title}; {scene.start(y0).about}")
+    return Subject(scene, moving, _state_of(moving, y0), {**scene.values}, scene.title)
+
+
+def variables_of(system: Any) -> tuple[tuple[Symbol, ...], Symbol]:
+    """Return the variables of a system's state in their order, and its time.
+
+    Examples
+    --------
+    >>> from canon import Lagrangian, coordinates
+    >>> x = coordinates("x")
+    >>> variables_of(Lagrangian(x.dot**2 / 2, [x]))
+    ((x, x_dot), t)
+    """
+    if is_scene(system):
+        system = opened(system, (), {}).system
+    if is_hamiltonian(system):
+        return (*system.q, *system.p), system.t
+    found = recognised(system)
+    return found.state, found.t
+
+
+def _state_of(system: Any, y0: ArrayLike | Mapping[Any, Any] | str | None) -> NDArray[np.float64]:
+    """Return the state of numbers, or of a number for each variable, shape (2n,)."""
+    if y0 is None or isinstance(y0, str):
+        raise StudyError(
+            "a system that is no scene has no starts of its own: give the initial state as numbers"
+        )
+    if isinstance(y0, Mapping):
+        return np.asarray(state_in_order(y0, variables_of(system)[0]), dtype=np.float64)
     return np.asarray(y0, dtype=np.float64)
-
-
-def _title_of(scene: Scene, y0: ArrayLike | str | None) -> str:
-    if y0 is not None and not isinstance(y0, str):
-        return scene.title
-    return f"{scene.title}; {scene.start(y0).about}"
