@@ -114,6 +114,17 @@ def test_double_double_steps_are_exact_to_31_digits():
             assert max(abs(mpmath.mpf(a) + mpmath.mpf(b) - c) for a, b, c in both) < mpmath.mpf(10) ** -30
 
 
+def test_double_double_lanes_know_the_time():
+    """Orbits side by side in a system that depends on the time have the bits of each alone."""
+    arguments = {"method": SS10, "step": 0.125, "precision": "double-double", "samples": 4}
+    starts = np.array([[0.3, 0.5, 0.7], [1.0, 0.0, -1.0]])
+    together = propagate(DRIVEN, (0, 2), starts, **arguments)
+    for k, start in enumerate(starts.T):
+        alone = propagate(DRIVEN, (0, 2), start, **arguments)
+        assert (together.y[:, :, k] == alone.y).all()
+        assert (together.carried[:, :, k] == alone.carried).all()
+
+
 def test_double_double_energy_error_is_the_methods_own():
     arguments = {"method": SS10, "samples": 20}
     errors = [

@@ -61,7 +61,8 @@ def is_kept_or_refused(case: RandomMotion, name: str) -> None:
     assert not np.isnan(estimate.error).any()
     if name in ADAPTIVE:
         assert np.isfinite(estimate.error).all() or not stays(case), str(estimate)
-    true = reference(case, motion.t, WIDER.get(name, "extended"))
+    usual_width = "quad" if case.moments else "extended"  # 64 bits of the time say little within a narrow pulse
+    true = reference(case, motion.t, WIDER.get(name, usual_width))
     missed = abs(np.frompyfunc(lambda y, x: float(type(x)(float(y)) - x), 2, 1)(motion.y, true))
     known = np.isfinite(missed.astype(float))
     assert known[:, 0].all()
@@ -73,8 +74,8 @@ def stays(case: RandomMotion) -> bool:
     return bool(np.isfinite(reference(case, np.array(case.span)).astype(float)).all())
 
 
-@usual(15)
-@given(random_motions(), st.sampled_from([name for name in METHODS if name != "quad"]))
+@usual(8)
+@given(random_motions(), st.sampled_from([name for name in METHODS if name not in ("quad", "extended")]))
 def test_what_is_stated_is_kept(case: RandomMotion, name: str) -> None:
     assume(case.separable or name not in FOR_SEPARABLE)
     is_kept_or_refused(case, name)

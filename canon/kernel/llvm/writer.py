@@ -168,9 +168,10 @@ class Writer:
 
     def whole(self, integer: str) -> str:
         """Turn an i64 register into a number."""
-        high = self.splat(self.let(f"sitofp i64 {integer} to {self.number.scalar}"))
+        scalar = self.let(f"sitofp i64 {integer} to {self.number.scalar}")
         if not self.number.pair:
-            return high
+            return self.splat(scalar)
+        high = self._part.splat(scalar)
         return self.let(f"insertvalue {self.number.name} zeroinitializer, {self.number.base} {high}, 0")
 
     def splat(self, scalar: str) -> str:
