@@ -109,9 +109,15 @@ def test_scenes_are_listed(capsys):
     printed = capsys.readouterr().out
     assert "henon-heiles" in printed
     assert "double-pendulum" in printed
-    taken, others = printed.split("not taken")
-    assert "hemisphere" not in taken
+    free, others = printed.split("with constraints or forces without potential")
+    assert "hemisphere" not in free
     assert "hemisphere" in others
+
+
+def test_a_scene_with_constraints_is_judged_by_the_balance_of_energy(capsys):
+    assert main(["drift", "hemisphere", "--method", "taylor", "--span", "1", "--json"]) == 0
+    (line,) = map(json.loads, capsys.readouterr().out.splitlines())
+    assert line["bound"] < 1e-13
 
 
 def test_a_scene_driven_in_time_is_taken(capsys):
@@ -123,7 +129,7 @@ def test_a_scene_driven_in_time_is_taken(capsys):
     ("arguments", "told"),
     [
         (["drift", "henon-heile"], "did you mean henon-heiles"),
-        (["drift", "hemisphere"], "canon scene hemisphere --run"),
+        (["drift", "hemisphere", "--method", "verlet"], "made for a Hamiltonian"),
         (["drift", "kepler", "--method", "leapfrog"], "leapfrog"),
         (["drift", "kepler", "--method", "gauss-9"], "the number of stages is 1 … 8"),
         (["drift", "simple-pendulum", "--set", "l"], "--set l: write a parameter's name"),

@@ -82,17 +82,18 @@ def setting(text: str) -> tuple[str, float]:
 
 
 def list_scenes() -> None:
-    """Print every scene a Hamiltonian describes, with its starts and parameters, and name the others."""
+    """Print every scene with its starts and parameters, those that a Hamiltonian describes first."""
     from canon.scene import SCENES
 
-    taken = [scene for scene in SCENES if scene.is_free]
-    width = max(len(scene.name) for scene in taken)
-    for scene in taken:
-        print(f"{scene.name:{width}}  {scene.title}")
-        print(f"{'':{width}}  starts: {', '.join(start.name for start in scene.starts)}")
-        if scene.parameters:
-            constants = (f"{c.name} = {c.value:g} {c.unit}".strip() for c in scene.parameters)
-            print(f"{'':{width}}  parameters: {', '.join(constants)}")
-    others = ", ".join(scene.name for scene in SCENES if not scene.is_free)
-    print(f"\nnot taken, for their constraints or forces without potential: {others}")
-    print("'canon scene NAME --run' runs these and checks what is known of them")
+    width = max(len(scene.name) for scene in SCENES)
+    for free in (True, False):
+        if not free:
+            print(
+                "\nwith constraints or forces without potential, judged by the energy less the work of the forces:\n"
+            )
+        for scene in (scene for scene in SCENES if scene.is_free == free):
+            print(f"{scene.name:{width}}  {scene.title}")
+            print(f"{'':{width}}  starts: {', '.join(start.name for start in scene.starts)}")
+            if scene.parameters:
+                constants = (f"{c.name} = {c.value:g} {c.unit}".strip() for c in scene.parameters)
+                print(f"{'':{width}}  parameters: {', '.join(constants)}")

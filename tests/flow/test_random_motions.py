@@ -61,7 +61,9 @@ def is_kept_or_refused(case: RandomMotion, name: str) -> None:
     assert not np.isnan(estimate.error).any()
     if name in ADAPTIVE:
         assert np.isfinite(estimate.error).all() or not stays(case), str(estimate)
-    usual_width = "quad" if case.moments else "extended"  # 64 bits of the time say little within a narrow pulse
+    usual_width = (
+        "quad" if case.moments else "extended"
+    )  # 64 bits of the time say little within a narrow pulse
     true = reference(case, motion.t, WIDER.get(name, usual_width))
     missed = abs(np.frompyfunc(lambda y, x: float(type(x)(float(y)) - x), 2, 1)(motion.y, true))
     known = np.isfinite(missed.astype(float))

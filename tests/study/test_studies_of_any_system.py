@@ -146,7 +146,7 @@ SYSTEMS = _systems()
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_study_takes_every_sort_of_system(name, tmp_path):
-    """The bound of RK4 falls by its order (that of an energy by up to two more); what is read back from the file is the same system."""
+    """RK4's bound falls by its order, an energy's by up to two more; what is read back is the same system."""
     system, start, values, kept = SYSTEMS[name]
     study = Study.of(
         system=system,

@@ -30,7 +30,7 @@ def test_the_study_can_be_read(tmp_path):
 def test_the_program_runs_and_the_others_are_python(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     first, *others = blocks("python")
-    assert len(others) == 6
+    assert len(others) == 7
     program = tmp_path / "program.py"
     program.write_text(first)
     runpy.run_path(str(program))
@@ -38,6 +38,12 @@ def test_the_program_runs_and_the_others_are_python(tmp_path, monkeypatch, capsy
     assert (tmp_path / "quartic.png").exists()
     for text in others:
         compile(text, "studies.md", "exec")
+
+
+def test_the_study_of_another_system_is_made(tmp_path):
+    (text,) = (text for text in blocks("python") if "system_text" in text)
+    (tmp_path / "other.py").write_text(text)
+    assert len(runpy.run_path(str(tmp_path / "other.py"))["study"].cases) == 4
 
 
 @pytest.mark.parametrize(
