@@ -13,8 +13,10 @@ import numpy as np
 
 from canon.flow.adaptive.first_step import first_step
 from canon.flow.adaptive.held_steps import HeldSteps, LocalisedTerms, finer
+from canon.flow.adaptive.tested_steps import TestedSteps
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.kernel.heyoka_bridge import taylor_integrator
+from canon.kernel.program.series_gaps import may_have_gaps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -49,8 +51,8 @@ class Slice:
 class TaylorOrbit:
     """One orbit on its way: heyoka's integrator, and one without events to leave their zeros with.
 
-    ``held`` keeps the steps from passing over localised terms; ``new`` tells that the next step is the first from
-    a state that was given.
+    ``held`` keeps the steps from passing over localised terms; ``tested`` says that series may have gaps, so that every
+    step is tested; ``new`` tells that the next step is the first from a state that was given.
     """
 
     integrator: Any
@@ -59,6 +61,7 @@ class TaylorOrbit:
     span: Any
     held: HeldSteps
     longest: Any = None
+    tested: bool = False
     new: bool = True
     pieces: list[Any] = field(default_factory=list[Any])
     safe: tuple[Any, Any] = (None, None)
@@ -208,6 +211,8 @@ class TaylorOrbit:
             limits["max_delta_t"] = abs(self.span)
         if self.longest is not None:
             limits["max_delta_t"] = self.longest
+        if self.tested:
+            return self._tested_steps(integrator, times, limits.get("max_delta_t"), dense=dense)
         if not dense and len(times) == 1:  # keeping every step's series for times between costs a fifth
             outcome, _, _, steps, _, _ = integrator.propagate_until(times[-1], **limits)
             return steps, [integrator.state.copy()] if outcome == taylor_outcome.time_limit else [], outcome
@@ -221,6 +226,21 @@ class TaylorOrbit:
         self.pieces.append(piece)
         first, last = sorted(piece.bounds)
         return steps, [np.array(piece(t)) for t in times if first <= t <= last], outcome
+
+    def _tested_steps(
+        self, integrator: Any, times: list[Any], longest: Any, *, dense: bool
+    ) -> tuple[int, list[Any], Any]:
+        from heyoka import taylor_outcome
+
+        plain = self._without_events if integrator is self.integrator else lambda: integrator
+        tested = TestedSteps(integrator, plain, self.taylor_events.crossings, longest)
+        outcome = tested.towards(times[-1], _MANY_STEPS)
+        self.safe = tested.safe
+        if dense:
+            self.pieces += tested.pieces
+        if outcome == taylor_outcome.time_limit:
+            return tested.steps, [*tested.states_at(times[:-1]), integrator.state.copy()], outcome
+        return tested.steps, tested.states_at(times), outcome
 
     def _without_events(self) -> Any:
         if self.free is None:
@@ -273,10 +293,11 @@ def orbits_of(
     first = taylor_integrator(*settings, terms.beside(events) if events else events, unit)
     free = taylor_integrator(*settings, unit=unit) if events else None
     longest = None if max_step is None else number(Fraction(max_step))
+    tested = may_have_gaps(system.graph, system.rates, first.order)
     made = list[TaylorOrbit]()
     for start in starts:
         integrator = copy.deepcopy(first) if made else first
         integrator.state[:] = [number(x / unit) for x in start]
         steps = HeldSteps(terms, held, waits=not events)
-        made.append(TaylorOrbit(integrator, taylor_events, free, span, steps, longest))
+        made.append(TaylorOrbit(integrator, taylor_events, free, span, steps, longest, tested))
     return made

@@ -22,6 +22,7 @@ from canon.flow.run.event import Event, PreparedEvent
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.heyoka_bridge import heyoka_expressions
 from canon.kernel.program.hamilton_equations import HamiltonEquations, exact_number, exact_numbers
+from canon.kernel.program.series_gaps import may_have_gaps
 from canon.mechanics.hamilton.vector_field import VectorField
 
 if TYPE_CHECKING:
@@ -272,12 +273,14 @@ def _orbit(
         return hy.taylor_adaptive(equations, y0, time=start, compact_mode=compact, **stops)
 
     own = met.heyoka_events()
+    first = integrator(terms.beside(own) if own else own)
     return TaylorOrbit(
-        integrator(terms.beside(own) if own else own),
+        first,
         met,
         integrator({}) if own else None,
         end - start,
         HeldSteps(terms, lambda: integrator(terms.beside({})), waits=not own),
+        tested=may_have_gaps(field.graph, field.rates, first.order),
     )
 
 
