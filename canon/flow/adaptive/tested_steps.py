@@ -145,8 +145,10 @@ def good_steps(piece: Any, plain: Any) -> tuple[int, float]:
     """
     series = piece.tcs
     state, clock = plain.state.copy(), plain.dtime
-    plain.step(max_delta_t=type(plain.time)(0), write_tc=True)
-    plain.state[:], plain.dtime = state, clock
+    known = bool(np.isfinite(state.astype(np.float64)).all())
+    if known:
+        plain.step(max_delta_t=type(plain.time)(0), write_tc=True)
+        plain.state[:], plain.dtime = state, clock
     after = np.concatenate([series[1:, :, :2], plain.tc[np.newaxis, :, :2]])
     ends, rates = after[:, :, 0], after[:, :, 1]
     with np.errstate(all="ignore"):
@@ -154,7 +156,7 @@ def good_steps(piece: Any, plain: Any) -> tuple[int, float]:
         missed = abs((length[:, np.newaxis] * (rates - slope)).astype(np.float64)).max(axis=1)
         size = np.maximum(abs(ends), abs(series[:, :, 0])).astype(np.float64).max(axis=1)
         parts = missed / (float(plain.tol) * np.maximum(size, 1.0))
-    if not np.isfinite(state.astype(np.float64)).all():
+    if not known:
         parts[-1] = math.inf
     good = parts <= _MISSED
     first = int(np.argmin(good))
