@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass, replace
 from itertools import chain, groupby, islice
@@ -15,7 +16,13 @@ from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.diagnose.repairs.lost_term import terms_lost
 from canon.exercise.diagnose.repairs.repair import is_wrong
 from canon.exercise.diagnose.repairs.screening import screening
-from canon.exercise.diagnose.repairs.slips import common_slips, plain_variants, variants
+from canon.exercise.diagnose.repairs.slips import (
+    RARER,
+    common_slips,
+    lost_factors,
+    plain_variants,
+    rarer_variants,
+)
 from canon.exercise.diagnose.repairs.symbol_slips import slipped
 from canon.expression.symbols.symbol import Coordinate, velocity
 
@@ -65,14 +72,46 @@ def _one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     reading, effort = wrong.reading, wrong.effort
     answers = dict(answers_of(reading))
     screen = screening(reading, answers)
-    for groups in (_plain(wrong, answers), _others(wrong, answers)):
-        candidates = sorted(_passing(groups, screen, effort), key=lambda candidate: candidate.order)
-        for number, candidate in enumerate(candidates):
+    passing: list[_Candidate] = []
+    for groups, least_to_come in _tiers(wrong, answers):
+        passing = sorted((*passing, *_passing(groups, screen, effort)), key=lambda candidate: candidate.order)
+        while passing and rank(passing[0].change) < least_to_come:
             if effort.spent:
                 return
+            candidate = passing.pop(0)
             found = _judged(candidate, wrong)
             if found is not None:
-                yield replace(found, instead=_elsewhere(candidate, candidates[number + 1 :], wrong))
+                yield replace(found, instead=_elsewhere(candidate, passing, wrong))
+
+
+def _tiers(
+    wrong: WrongAnswer, answers: Mapping[str, Expr]
+) -> Iterator[tuple[list[Iterable[_Candidate]], float]]:
+    """Yield groups of candidates, with the rank below which one that passes is judged before those to come.
+
+    Where something is answered beside, a change there may be as likely, so that all are looked at together.
+    """
+    symbols = _symbols(wrong)
+
+    def plain(key: str) -> Iterable[tuple[Expr, Change]]:
+        return chain(_rescaled(answers[key]), plain_variants(answers[key]))
+
+    def factors(key: str) -> Iterable[tuple[Expr, Change]]:
+        return lost_factors(answers[key], symbols)
+
+    def terms(key: str) -> Iterable[tuple[Expr, Change]]:
+        return terms_lost(wrong.reading, key, answers)
+
+    def rarer(key: str) -> Iterable[tuple[Expr, Change]]:
+        return rarer_variants(answers[key], symbols)
+
+    yield _of_components(wrong, answers, plain), math.inf
+    if len(answers) == 1:
+        yield _of_components(wrong, answers, factors), RARER
+        yield _of_components(wrong, answers, terms), RARER
+        yield _of_components(wrong, answers, rarer), math.inf
+    else:
+        yield [*_of_components(wrong, answers, factors, rarer, terms), *_in_all(answers, symbols)], math.inf
 
 
 def _judged(candidate: _Candidate, wrong: WrongAnswer) -> Diagnosis | None:
@@ -120,37 +159,29 @@ def _passing(
     return found
 
 
-def _plain(wrong: WrongAnswer, answers: Mapping[str, Expr]) -> list[Iterable[_Candidate]]:
-    """Return for each component, those suspected first, what is most often wrong: signs, numbers, functions, powers."""
-
-    def changes(key: str) -> Iterable[tuple[Expr, Change]]:
-        return chain(_rescaled(answers[key]), plain_variants(answers[key]))
-
-    return _of_components(wrong, answers, changes)
+def _symbols(wrong: WrongAnswer) -> tuple[sp.Symbol, ...]:
+    """Return what may have been meant in place of a symbol."""
+    names = tuple(wrong.reading.scope.names.values())
+    rates = (velocity(s) for s in names if isinstance(s, Coordinate)) if wrong.reading.has("L") else ()
+    return (*names, wrong.reading.time, *rates)
 
 
-def _others(wrong: WrongAnswer, answers: Mapping[str, Expr]) -> list[Iterable[_Candidate]]:
-    """Return for each component all other changes, and lost terms; then what may be wrong in all alike."""
-    reading = wrong.reading
-    names = tuple(reading.scope.names.values())
-    rates = (velocity(s) for s in names if isinstance(s, Coordinate)) if reading.has("L") else ()
-    symbols = (*names, reading.time, *rates)
-
-    def changes(key: str) -> Iterable[tuple[Expr, Change]]:
-        return chain(variants(answers[key], symbols), terms_lost(reading, key, answers))
-
+def _in_all(answers: Mapping[str, Expr], symbols: Sequence[sp.Symbol]) -> list[Iterable[_Candidate]]:
+    """Return what may be wrong in all components under a key alike."""
     by_key = [(outer, list(keys)) for outer, keys in groupby(sorted(answers, key=_outer), key=_outer)]
-    common = [_common(outer, {key: answers[key] for key in keys}, symbols) for outer, keys in by_key]
-    return [*_of_components(wrong, answers, changes), *common]
+    return [_common(outer, {key: answers[key] for key in keys}, symbols) for outer, keys in by_key]
 
 
 def _of_components(
-    wrong: WrongAnswer, answers: Mapping[str, Expr], changes: Callable[[str], Iterable[tuple[Expr, Change]]]
+    wrong: WrongAnswer,
+    answers: Mapping[str, Expr],
+    *changes: Callable[[str], Iterable[tuple[Expr, Change]]],
 ) -> list[Iterable[_Candidate]]:
+    """Return the candidates of each component, those suspected first."""
     suspects = _suspects(wrong) or _following(wrong.reading)
 
     def candidates(key: str) -> Iterator[_Candidate]:
-        for new, change in changes(key):
+        for new, change in chain.from_iterable(make(key) for make in changes):
             if not _trivial(key, new, wrong.reading):
                 yield _Candidate({key: new}, change.at(called(key, answers)), _suspicion(key, suspects))
 

@@ -7,6 +7,7 @@ anyone is told.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from itertools import chain, islice, starmap
 from typing import TYPE_CHECKING, cast
@@ -18,7 +19,14 @@ from canon.exercise.diagnose.change import Change, Mistake, rank
 from canon.exercise.diagnose.repairs.component_screen import PRECISION, Screen
 from canon.exercise.diagnose.repairs.lost_factor import Monomials
 from canon.exercise.diagnose.repairs.lost_inside import in_some_terms, symbol_restored, terms_lost_inside
-from canon.exercise.diagnose.repairs.slips import of_one_coefficient, variants
+from canon.exercise.diagnose.repairs.slips import (
+    RARER,
+    lost_factors,
+    of_one_coefficient,
+    plain_variants,
+    rarer_variants,
+    variants,
+)
 from canon.expression.symbols.symbol import Momentum, Rate
 from canon.mechanics.algebra.substitution import size, symbols_of
 from canon.proof.domain.balls import precision
@@ -93,8 +101,8 @@ def repairs(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = 
     if not screen.points:
         return
     cost = max(1, size(part.claimed) // NODES_A_STEP)
-    for family in _families(part, screen, hints):
-        passing: list[Repair] = []
+    passing: list[Repair] = []
+    for family, least_to_come in _families(part, screen, hints):
         for candidate in family:
             if not effort.spend(cost):
                 break
@@ -104,7 +112,9 @@ def repairs(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = 
                 and not _says_only_zeros(part, candidate.right, screen)
             ):
                 passing.append(candidate)
-        for candidate in sorted(passing, key=lambda candidate: (candidate.rank, candidate.length)):
+        passing.sort(key=lambda candidate: (candidate.rank, candidate.length))
+        while passing and (effort.spent or passing[0].rank < least_to_come):
+            candidate = passing.pop(0)
             if _is_right(part, candidate.right, domain, effort):
                 yield candidate
         if effort.spent:
@@ -132,18 +142,21 @@ def _is_right(part: Part, expression: Expr, domain: Domain, effort: Effort) -> b
     return vanishes_off_kinks(residual, domain, budget=effort.for_a_proof()).holds
 
 
-def _families(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Iterator[Repair]]:
-    """Yield the candidates in groups; in each the likeliest that passes comes first, whatever its place there."""
-    yield chain(
+def _families(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[tuple[Iterator[Repair], float]]:
+    """Yield the candidates in groups, each with the rank below which one that passes is told before those to come."""
+    likely = chain(
         _of_all(part, screen),
         _terms_rescaled(part, screen),
         _terms_missing(part, screen, hints),
         starmap(Repair, symbol_restored(part, screen)),
         _monomials(part, screen),
-        _slips(part),
+        _slips(part, plain_variants(part.claimed)),
+        _slips(part, lost_factors(part.claimed, _symbols(part))),
     )
-    yield _inside(part, screen)
-    yield _two_slips(part, hints)
+    yield likely, RARER
+    yield _slips(part, rarer_variants(part.claimed, _symbols(part))), math.inf
+    yield _inside(part, screen), math.inf
+    yield _two_slips(part, hints), math.inf
 
 
 def _of_all(part: Part, screen: Screen) -> Iterator[Repair]:
@@ -158,17 +171,21 @@ def _of_all(part: Part, screen: Screen) -> Iterator[Repair]:
             yield Repair(right, Change.of(Mistake.WRONG_FACTOR, factor, place=name))
 
 
-def _slips(part: Part) -> Iterator[Repair]:
+def _symbols(part: Part) -> list[sp.Symbol]:
+    """Return what may have been meant in place of a symbol."""
+    return symbols_of(part.claimed, part.right, *part.through, *part.through.values())
+
+
+def _slips(part: Part, changed: Iterator[tuple[Expr, Change]]) -> Iterator[Repair]:
     """One slip at one place, or the same one everywhere."""
-    symbols = symbols_of(part.claimed, part.right, *part.through, *part.through.values())
-    for new, change in islice(variants(part.claimed, symbols), MOST_VARIANTS):
+    for new, change in islice(changed, MOST_VARIANTS):
         yield Repair(new, change.at(part.name))
 
 
 def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[Repair]:
     """A slip, and a term is missing besides."""
     for term in (term for term in hints if not term.is_Add):
-        for slip in _slips(part):
+        for slip in _slips(part, variants(part.claimed, _symbols(part))):
             yield Repair(slip.right + term, _missing(term, part), slip.change)
 
 

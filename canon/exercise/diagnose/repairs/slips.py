@@ -25,7 +25,15 @@ from canon.proof.trees.sympy_types import arguments
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-__all__ = ["common_slips", "of_one_coefficient", "plain_variants", "variants"]
+__all__ = [
+    "RARER",
+    "common_slips",
+    "lost_factors",
+    "of_one_coefficient",
+    "plain_variants",
+    "rarer_variants",
+    "variants",
+]
 
 _FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
 _FAMILIES = (
@@ -38,6 +46,8 @@ MOST_ALIKE = 6
 MOST_TERMS = 6
 MOST_IN_FRONT = 5
 """Factors of a term, some of which stood before a bracket."""
+RARER = 2
+"""The least rank of a rarer variant."""
 _SHIFTS = (sp.S.One, sp.S.NegativeOne)
 _CONSTANTS = (sp.pi, -sp.pi, sp.pi / 2, -sp.pi / 2)
 
@@ -65,6 +75,26 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     >>> [(str(new), change.mistake.name) for new, change in variants(sp.sin(x) - y)][:3]
     [('y + sin(x)', 'TERM_SIGN'), ('-y - sin(x)', 'TERM_SIGN'), ('-y + cos(x)', 'FUNCTION')]
     """
+    yield from plain_variants(expression)
+    yield from lost_factors(expression, symbols)
+    yield from rarer_variants(expression, symbols)
+
+
+def lost_factors(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """Yield expressions in which a symbol stands before one term more, or below it."""
+
+    def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
+        return _multiplied(node, symbols)
+
+    yield from _one_place(expression, multiplied)
+    for symbol in symbols:
+        yield expression * symbol, _of(Mistake.FACTOR_MISSING, expression, symbol)
+        if not expression.is_Add:
+            yield expression / symbol, _of(Mistake.DIVISOR_MISSING, expression, symbol)
+
+
+def rarer_variants(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+    """Yield expressions with slips of rank :data:`RARER` or above: other symbols, arguments, fractions, brackets."""
 
     def another_symbol(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return exchanged_symbol(node, symbols)
@@ -75,22 +105,17 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     def another_argument(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return in_one_argument(node, symbols)
 
-    def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
-        return _multiplied(node, symbols)
-
     functions = sorted((f for f in expression.atoms(sp.Function) if _twins(f)), key=str)[:MOST_FUNCTIONS]
 
     def multiplied_by_functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
         return _multiplied(node, functions)
 
-    yield from plain_variants(expression)
     rest = (
         by_another,
         _superfluous,
         _upside_down,
         _unwrapped,
         another_symbol,
-        multiplied,
         _dropped,
         swapped,
         _shifted,
@@ -98,13 +123,10 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
         another_argument,
         _other_branch,
         _out_of_a_bracket,
+        multiplied_by_functions,
     )
-    for edits in (*rest, multiplied_by_functions):
+    for edits in rest:
         yield from _one_place(expression, edits)
-    for symbol in symbols:
-        yield expression * symbol, _of(Mistake.FACTOR_MISSING, expression, symbol)
-        if not expression.is_Add:
-            yield expression / symbol, _of(Mistake.DIVISOR_MISSING, expression, symbol)
     yield from _everywhere(expression, symbols)
 
 
