@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
 from typing import TYPE_CHECKING
@@ -11,8 +12,6 @@ import numpy as np
 from canon.flow.adaptive.longest_step import longest_step
 from canon.flow.adaptive.watched_orbit import WatchedOrbit
 from canon.flow.kinked.regimes import kinks_of
-from canon.flow.run.compiled_nodes import compiled_nodes
-from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.samples import Samples
 
 if TYPE_CHECKING:
@@ -57,11 +56,7 @@ def dop853_motion(
         def report(fraction: float, before: int = len(done)) -> None:
             progress((before + fraction) / orbits)
 
-        longest = max_step or math.inf
-        if events or kinks is not None:
-            done.append(_watched(system, kinks, events, y0, times, method, report, longest))
-        else:
-            done.append(_dop853(system, y0, times, method, report, longest))
+        done.append(_orbit(system, kinks, events, y0, times, method, report, max_step or math.inf))
         if len(done[-1].t) < len(times) and orbits > 1:
             raise KeyboardInterrupt("an ensemble under DOP853 is done orbit by orbit: nothing of it is kept")
     return Samples(
@@ -77,7 +72,7 @@ def dop853_motion(
     )
 
 
-def _watched(
+def _orbit(
     system: HamiltonEquations,
     kinks: Kinks | None,
     events: Sequence[PreparedEvent],
@@ -87,26 +82,23 @@ def _watched(
     progress: Callable[[float], None],
     max_step: float,
 ) -> Samples:
-    """Integrate one orbit through its events and kinks."""
-    terms = longest_step(system)
-    started, sample = time.thread_time(), 1
+    """Integrate one orbit with SciPy's DOP853 on the compiled right-hand side, through its events and kinks."""
+    terms, started = longest_step(system), time.thread_time()
     states = np.empty((len(y0), len(times)))
     states[:, 0] = y0
     orbit = WatchedOrbit(
         system,
         kinks,
         events,
-        _tolerances(method),
+        (max(method.tolerance, _LEAST), method.tolerance),
         1 if times[-1] > times[0] else -1,
         lambda t, y: min(max_step, terms(t, y)),
         float(times[0]),
         y0.copy(),
     )
-    try:
-        sample = orbit.go(times, states, sample, progress)
-    except KeyboardInterrupt:
-        sample = int(np.searchsorted(times * orbit.forward, orbit.t * orbit.forward, side="right"))
-    times, states = times[:sample], states[:, :sample]
+    with contextlib.suppress(KeyboardInterrupt):  # what is kept comes back
+        orbit.go(times, states, progress)
+    times, states = times[: orbit.sampled], states[:, : orbit.sampled]
     if orbit.stopped:
         times, states = np.append(times, orbit.t), np.column_stack([states, orbit.y])
     spent, compiled = time.thread_time() - started, orbit.compile_seconds
@@ -114,56 +106,3 @@ def _watched(
         times, states, np.zeros_like(states), orbit.steps, orbit.evaluations, None, spent, compiled,
         crossings=tuple(orbit.crossings),
     )  # fmt: skip
-
-
-def _tolerances(method: DOP853) -> tuple[float, float]:
-    return max(method.tolerance, _LEAST), method.tolerance
-
-
-def _dop853(
-    system: HamiltonEquations,
-    y0: Array,
-    times: Array,
-    method: DOP853,
-    progress: Callable[[float], None],
-    max_step: float,
-) -> Samples:
-    """Integrate with SciPy's DOP853 on the compiled right-hand side."""
-    from scipy import integrate
-
-    rates = compiled_nodes(system, system.rates)
-    longest = longest_step(system)
-    started, steps, sample = time.thread_time(), 0, 1
-    relative, absolute = _tolerances(method)
-    integrator = integrate.DOP853(rates.call, times[0], y0, times[-1], rtol=relative, atol=absolute)
-    states = np.empty((len(y0), len(times)))
-    states[:, 0] = y0
-    direction = np.sign(times[-1] - times[0])
-    try:
-        while sample < len(times):
-            before, kept = integrator.t, integrator.y.copy()
-            integrator.max_step = min(max_step, longest(before, kept))
-            message = integrator.step()
-            steps += 1
-            if integrator.status == "failed" or not np.isfinite(integrator.y).all():
-                raise _lost(float(before), kept[system.rows], message)
-            reached = sample
-            while reached < len(times) and direction * (times[reached] - integrator.t) <= 0:
-                reached += 1
-            if reached > sample:
-                states[:, sample:reached] = integrator.dense_output()(times[sample:reached])
-                sample = reached
-            progress(float((integrator.t - times[0]) / (times[-1] - times[0])))
-    except KeyboardInterrupt:
-        times, states = times[:sample], states[:, :sample]
-    spent = time.thread_time() - started
-    return Samples(times, states, np.zeros_like(states), steps, integrator.nfev, None, spent, rates.seconds)
-
-
-def _lost(t: float, state: Array, reason: object) -> NonFiniteStateError:
-    return NonFiniteStateError(
-        f"the motion can't be continued after {time_and_state(t, state)} ({reason}): a collision or the edge of H's "
-        "domain; stop earlier",
-        t,
-        state,
-    )

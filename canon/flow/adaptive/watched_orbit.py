@@ -1,9 +1,10 @@
-"""DOP853 integration of one orbit through events and kinks: each is located inside a step, and a step ends on it."""
+"""DOP853 integration of one orbit, through events and kinks: each is located inside a step, and a step ends on it."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -86,6 +87,7 @@ class WatchedOrbit:
     evaluations: int = 0
     steps: int = 0
     stopped: bool = False
+    sampled: int = 1
 
     def __post_init__(self) -> None:
         self._watches: dict[Signs, Watch] = {}
@@ -107,21 +109,24 @@ class WatchedOrbit:
         if integrator.status == "failed" or not np.isfinite(integrator.y).all():
             raise _lost(before, kept[self.system.rows], message)
 
-    def go(self, times: Array, states: Array, sample: int, progress: Callable[[float], None]) -> int:
-        """Put the states at times from a sample on into their columns; return how many of all were reached."""
+    def go(self, times: Array, states: Array, progress: Callable[[float], None]) -> None:
+        """Put the states at the times after the first into their columns; ``sampled`` says how many are there."""
         in_a_row, size = 0, None
-        while sample < len(times) and not self.stopped:
+        while self.sampled < len(times) and not self.stopped:
             begun, integrator = self.t, self._integrator(self.t, self.y, float(times[-1]), size)
             met, before, kept = None, self.t, self.y
-            while sample < len(times) and met is None:
+            while self.sampled < len(times) and met is None:
                 before, kept = float(integrator.t), integrator.y.copy()
                 self._step(integrator)
-                interpolant = integrator.dense_output()
+                interpolant = _Interpolant(integrator)
                 met = self._passed(before, kept, integrator, interpolant)
                 until = integrator.t if met is None else met.t
-                while sample < len(times) and self.forward * (times[sample] - until) <= 0:
-                    states[:, sample] = interpolant(times[sample])
-                    sample += 1
+                reached = self.sampled
+                while reached < len(times) and self.forward * (times[reached] - until) <= 0:
+                    reached += 1
+                if reached > self.sampled:
+                    states[:, self.sampled : reached] = interpolant(times[self.sampled : reached])
+                    self.sampled = reached
                 progress(float((until - times[0]) / (times[-1] - times[0])))
             self.evaluations += integrator.nfev
             if met is not None:
@@ -130,21 +135,22 @@ class WatchedOrbit:
             in_a_row = in_a_row + 1 if self.t == begun else 0
             if in_a_row > _PILE:
                 raise self._error("events pile up there; stop the motion before")
-        return sample
 
     # one step ------------------------------------------------------------------------------------
 
     def _passed(self, before: float, kept: Array, integrator: Any, interpolant: Any) -> Zero | None:
         """Note what was passed in a step, and return the first zero that ends it, if one does."""
-        watch = self._watch()
-        zeros, sides = zeros_in_step(
-            lambda t: watch.values.call(t, interpolant(t) if t != integrator.t else integrator.y)[
-                : watch.count
-            ],
-            before,
-            float(integrator.t),
-            self._sides,
-        )
+        watch, sides = self._watch(), self._sides
+        zeros: Sequence[Zero] = ()
+        if watch.count:
+            zeros, sides = zeros_in_step(
+                lambda t: watch.values.call(t, interpolant(t) if t != integrator.t else integrator.y)[
+                    : watch.count
+                ],
+                before,
+                float(integrator.t),
+                self._sides,
+            )
         for zero in zeros:
             event = self._event(zero)
             if event is not None and not event.event.counts(zero.rising):
@@ -303,6 +309,21 @@ class WatchedOrbit:
     def _error(self, words: str) -> NonFiniteStateError:
         y = self.y[self.system.rows]
         return NonFiniteStateError(f"at {time_and_state(self.t, y)}: {words}", self.t, y)
+
+
+class _Interpolant:
+    """The motion inside of the latest step; its polynomial costs three rates more, and is made where it is asked."""
+
+    def __init__(self, integrator: Any) -> None:
+        self.integrator = integrator
+
+    @cached_property
+    def polynomial(self) -> Any:
+        """SciPy's dense output."""
+        return self.integrator.dense_output()
+
+    def __call__(self, t: Any) -> Array:
+        return self.polynomial(t)
 
 
 def _lost(t: float, state: Array, reason: object) -> NonFiniteStateError:
