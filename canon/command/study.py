@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -90,6 +91,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         )
     for action in (run_, resume, status):
         action.add_argument("--plot", metavar="IMAGE", type=Path, help="draw the study, every case a cell")
+    export.add_argument("--kept", metavar="NAME", help="not the numbers but what is kept: motion, section, …")
+    report.add_argument(
+        "--follow",
+        metavar="S",
+        type=seconds(86400.0),
+        help="write it anew every S seconds, until no case is pending",
+    )
     for action in (export, report):
         action.add_argument("--tag", metavar="WORD", help="only the cases with this tag")
         action.add_argument("output", metavar="OUTPUT", type=Path, help="where to write it")
@@ -160,14 +168,18 @@ def _status(arguments: argparse.Namespace) -> int:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from canon.study.cases.export import csv_of, write_netcdf, write_parquet
+    from canon.study.cases.export import csv_of, write_kept, write_netcdf, write_parquet
     from canon.study.errors import StudyError
 
     kind, results = FORMATS.get(arguments.output.suffix.lower()), _asked_for(arguments)
     if kind is None:
         known = ", ".join(f"{ending} ({name})" for ending, name in FORMATS.items())
         raise StudyError(f"{arguments.output}: the ending of its name says the format; there are {known}")
-    if kind == "CSV":
+    if arguments.kept is not None:
+        if kind != "NetCDF":
+            raise StudyError(f"{arguments.output}: what is kept is written as NetCDF, to a file NAME.nc")
+        write_kept(results, arguments.kept, arguments.output)
+    elif kind == "CSV":
         arguments.output.write_text(csv_of(results), encoding="utf-8")
     else:
         {"Parquet": write_parquet, "NetCDF": write_netcdf}[kind](results, arguments.output)
@@ -176,10 +188,15 @@ def _export(arguments: argparse.Namespace) -> int:
 
 
 def _report(arguments: argparse.Namespace) -> int:
+    from canon.command.followed_report import follow
     from canon.plot.study_page import study_report
 
-    page = study_report(_asked_for(arguments), arguments.store.stem)
-    arguments.output.write_text(page, encoding="utf-8")
+    if arguments.follow is None:
+        page = study_report(_asked_for(arguments), arguments.store.stem)
+        arguments.output.write_text(page, encoding="utf-8")
+    else:
+        store, told = _existing(arguments.store), partial(print, flush=True)
+        follow(store, partial(_asked_for, arguments), arguments.output, arguments.follow, told)
     print(f"report: {arguments.output}")
     return 0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+from datetime import UTC, datetime
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -54,7 +55,7 @@ COLUMNS = ("motion", "method", "verdict", "max |ΔE/E|", "drift per unit of time
            "seconds")  # fmt: skip
 
 
-def study_report(results: Sequence[Result], title: str) -> str:
+def study_report(results: Sequence[Result], title: str, seconds: float | None = None) -> str:
     """Return a page that shows a study: all cases as a picture and a table, and the errors of each motion.
 
     Parameters
@@ -63,6 +64,8 @@ def study_report(results: Sequence[Result], title: str) -> str:
         What :func:`canon.study.cases.result.results_of` returned.
     title
         Heading of the page.
+    seconds
+        Of the page of a study that runs: after how many seconds a browser is to load it anew.
 
     Raises
     ------
@@ -81,15 +84,21 @@ def study_report(results: Sequence[Result], title: str) -> str:
     ...     study_report(results_of(file), "Drifts").count("<tr class=")
     1
     """
-    heading = escape(title)
+    heading, again, running = escape(title), [], []
+    if seconds is not None:
+        now = f"{datetime.now(UTC):%Y-%m-%d %H:%M:%S} UTC"
+        again = [f'<meta http-equiv="refresh" content="{max(1, round(seconds))}">']
+        running = [f"<p>The study is running. This page is of {now}, and loads itself anew.</p>"]
     return "\n".join(
         [
             "<!DOCTYPE html>",
             '<html lang="en"><head><meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+            *again,
             f"<title>{heading}</title><style>{STYLE}</style></head><body>",
             f"<h1>{heading}</h1>",
+            *running,
             *_summary(results),
             *_motions(results),
             "<h2>All cases</h2>",

@@ -159,6 +159,7 @@ def test_nothing_is_read_until_it_is_asked_for(path):
     shutil.rmtree(ChunkFolder(path).path)
     assert list(results[0].kept) == ["motion", "exponent", "section", "spread"]
     assert results[0].kept.shapes["motion.x"] == (513,)
+    assert ("motion" in results[0].kept, "orbit" in results[0].kept, len(results[0].kept)) == (True, False, 4)
     with pytest.raises(DamagedChunk, match="is not there; 'canon study mend"):
         results[0].kept["motion"]
     with pytest.raises(KeyError, match="no 'orbit' was kept of the case; there is motion, exponent"):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.study.cases.result import Results, results_of
+from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from canon.study.cases.result import Result
     from canon.study.cases.store import Store
 
-__all__ = ["ExportError", "csv_of", "dataset_of", "rows_of", "write_netcdf", "write_parquet"]
+__all__ = ["ExportError", "csv_of", "dataset_of", "rows_of", "write_kept", "write_netcdf", "write_parquet"]
 
 TEXTS = (
     "key",
@@ -54,6 +55,9 @@ _SERIES = (
     ("curve", "t", "point"), ("curve", "largest", "point"), ("curve", "median", "point"),
 )  # fmt: skip
 """Series of numbers that are kept of each case, and the dimension that they lie along."""
+LARGEST_VARIABLE = 2**31 - 4
+"""Bytes of a variable in a NetCDF file of version 3."""
+
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """What spreadsheets take a text for a formula by."""
 
@@ -162,6 +166,31 @@ def _values(column: str, values: Sequence[Any]) -> list[str] | list[float]:
 def write_netcdf(given: Store | Results, path: Path) -> None:
     """Write a study as a NetCDF file of version 3, which every reader knows; see :func:`dataset_of`."""
     dataset_of(given).to_netcdf(path, engine="scipy")
+
+
+def write_kept(results: Results, name: str, path: Path) -> None:
+    """Write what was kept of cases under a name as a NetCDF file of version 3; see :meth:`Results.to_xarray`.
+
+    Raises
+    ------
+    ExportError
+        Where xarray is not installed.
+    StudyError
+        Nothing of that name was kept, or an array is larger than such files hold.
+    """
+    try:
+        found = results.to_xarray(name)
+    except ImportError as missing:
+        raise ExportError(str(missing)) from missing
+    except (KeyError, ValueError) as error:
+        raise StudyError(str(error.args[0])) from error
+    for each, variable in found.data_vars.items():
+        if variable.size * 8 > LARGEST_VARIABLE:
+            raise StudyError(
+                f"{each} of all cases has {variable.size * 8:.2g} bytes, and NetCDF files of version 3 hold "
+                f"{LARGEST_VARIABLE:.2g}: write fewer cases a file, by their tags"
+            )
+    found.rename({str(each): _plain(str(each)) for each in found.variables}).to_netcdf(path, engine="scipy")
 
 
 def _row(result: Result) -> dict[str, Any]:

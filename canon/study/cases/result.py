@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -17,9 +18,12 @@ from canon.study.cases.case import Case, case_in, part_count
 from canon.study.cases.store import Store
 from canon.study.kept.chunk_file import Chunk, ChunkFolder
 from canon.study.kept.kept_arrays import Kept
+from canon.study.kept.kept_dataset import dataset_of_kept
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    import xarray
 
 __all__ = ["Result", "Results", "State", "motions_and_settings", "results_of"]
 
@@ -160,6 +164,54 @@ class Results(Sequence[Result]):
                 if all(any(_has(each, want) for each in _values(row, name)) for name, want in asked.items())
             )
         )
+
+    def to_xarray(self, name: str) -> xarray.Dataset:
+        """Return what was kept under a name as an :class:`xarray.Dataset` along ``case``.
+
+        The numbers of a case are read when they are used; ``dataset.chunk(case=1)`` hands them to dask so. Where a case
+        has fewer numbers than others, or was not finished, there is NaN.
+
+        Parameters
+        ----------
+        name
+            ``"motion"`` (along ``sample``), ``"section"`` (along ``passage``), ``"exponent"`` (along ``time``), or the
+            name of a function.
+
+        Raises
+        ------
+        ImportError
+            Where xarray is not installed.
+        KeyError
+            Nothing of that name was kept of any case.
+        DamagedChunk
+            On reading: what was kept of a case is not there, or not what was written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from canon import Study, results_of, run_study
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     study = Study.of(system="henon-heiles", method=["verlet", "rk4"], step=0.1, span=100.0, keep="motion")
+        ...     _ = run_study(study, f"{folder}/study.sqlite")
+        ...     motions = results_of(f"{folder}/study.sqlite").to_xarray("motion")
+        ...     dict(motions.sizes), float(abs(motions.x[0] - motions.x[1]).max()) < 0.01
+        ({'case': 2, 'sample': 4097}, True)
+        """
+        cases = [row.case for row in self.rows]
+        inputs = {
+            "key": [row.key for row in self.rows],
+            "state": [row.state.value for row in self.rows],
+            "system": [case.system_name for case in cases],
+            "method": [str(case.method) for case in cases],
+            "step": [math.nan if case.step is None else case.step for case in cases],
+            "tolerance": [math.nan if case.tolerance is None else case.tolerance for case in cases],
+            "tags": ["; ".join(case.tags) for case in cases],
+        }
+        changed = dict.fromkeys(name for case in cases for name, _ in case.parameters)
+        values = {
+            f"parameter_{name}": [case.values.get(name, math.nan) for case in cases] for name in changed
+        }
+        return dataset_of_kept([row.kept for row in self.rows], name, {**inputs, **values})
 
     def _require(self, name: str) -> None:
         """Raise ValueError where no result can have a value of that name."""

@@ -48,6 +48,9 @@ class Kept(Mapping[str, Any]):
         """Shapes of the arrays by their whole names, such as ``motion.t``; nothing is read for them."""
         return {} if self.chunk is None else self.chunk.shapes
 
+    def __contains__(self, name: object) -> bool:
+        return name in tuple(self)  # the mapping's own way would read the file
+
     def __iter__(self) -> Iterator[str]:
         return iter(dict.fromkeys(name.partition(".")[0] for name in self.shapes))
 
