@@ -1,4 +1,4 @@
-"""Dataset of what is kept: arrays of many cases side by side for xarray, each case's file read when its part is used."""
+"""Dataset of what is kept: arrays of many cases side by side for xarray, each file read when its part is used."""
 
 from __future__ import annotations
 
