@@ -8,6 +8,7 @@ moves at its end and what the equations ask for there differ by what the step ha
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,6 +40,45 @@ _LONGER = 1.25
 """A bound that was found is let out by so much after many good steps that it has held."""
 
 
+@dataclass
+class _Trial:
+    """How many steps are tried together, and how the latest ones have failed.
+
+    Parameters
+    ----------
+    count
+        Steps that are tried together.
+    last
+        What the latest step that was too long has missed.
+    halvings, in_vain
+        Halvings since many steps were good, and how many of the latest in a row were no help.
+    trusting
+        Whether heyoka's steps are taken as they are: what they miss is rounding, or a singularity is near.
+    """
+
+    count: int = _FEWEST
+    last: float = math.inf
+    halvings: int = 0
+    in_vain: int = 0
+    trusting: bool = False
+
+    def succeeded(self, made: int) -> None:
+        """Note that steps were good."""
+        self.halvings = 0 if made >= _MANY else self.halvings
+        self.count, self.last = min(max(2 * self.count, _FEWEST), _MOST), math.inf
+
+    def failed(self, missed: float) -> None:
+        """Note that a step was too long."""
+        self.halvings += 1
+        self.in_vain = self.in_vain + 1 if missed > self.last * _SHRINKS else 0
+        self.last = missed
+
+    @property
+    def is_vain(self) -> bool:
+        """Whether halving helps no more."""
+        return self.in_vain >= _IN_VAIN or self.halvings > _HALVINGS
+
+
 class TestedSteps:
     """Steps of one integrator; those that prove too long are taken again, shorter.
 
@@ -65,37 +105,25 @@ class TestedSteps:
         """Go to a time in at most so many steps and return heyoka's outcome; ``pieces`` give the motion on the way."""
         from heyoka import taylor_outcome
 
-        own, count, last = self.integrator, _FEWEST, math.inf
-        halvings = in_vain = 0
-        trusting = False
+        own, trial = self.integrator, _Trial()
         while True:
-            limits = {} if self.bound is None else {"max_delta_t": self.bound}
-            outcome, _, _, steps, piece, _ = own.propagate_until(
-                end, c_output=True, max_steps=min(count, most - self.steps), **limits
-            )
-            made = 0 if piece is None else len(piece.times) - 1
-            good, missed = (0, math.inf) if piece is None else good_steps(piece, self.plain())
-            if np.isfinite(own.state.astype(np.float64)).all() and (trusting or good == made):
-                self.steps += steps
-                if piece is not None:
-                    self.pieces.append(piece)
-                    self._let_out(piece)
+            outcome, steps, piece = self._stepped(end, min(trial.count, most - self.steps))
+            made, good, missed = 0, 0, math.inf
+            if piece is not None:
+                made, (good, missed) = len(piece.times) - 1, good_steps(piece, self.plain())
+            if np.isfinite(own.state.astype(np.float64)).all() and (trial.trusting or good == made):
+                self._accept(steps, piece)
                 if outcome != taylor_outcome.step_limit or self.steps >= most:
                     return outcome
                 self._keep()
-                halvings = 0 if made >= _MANY else halvings
-                count, last = min(max(2 * count, _FEWEST), _MOST), math.inf
+                trial.succeeded(made)
                 continue
-            if trusting:
+            if trial.trusting:
                 return outcome
             if not good:
-                halvings, in_vain = halvings + 1, in_vain + 1 if missed > last * _SHRINKS else 0
-                last = missed
-                trusting = in_vain >= _IN_VAIN or halvings > _HALVINGS or not self._halve(end, piece)
-                if trusting:
-                    self.bound = self.longest
+                self._shorten(trial, missed, end, piece)
             self._go_back()
-            count = good or 1
+            trial.count = good or 1
 
     def states_at(self, times: list[Any]) -> list[Any]:
         """Return the states at those of some times, in their order, that were reached."""
@@ -107,6 +135,18 @@ class TestedSteps:
             found.append(np.array(piece(t)))
         return found
 
+    def _stepped(self, end: Any, most: int) -> tuple[Any, int, Any]:
+        """Make steps and return heyoka's outcome, how many were made, and the motion on the way."""
+        limits = {} if self.bound is None else {"max_delta_t": self.bound}
+        found = self.integrator.propagate_until(end, c_output=True, max_steps=most, **limits)
+        return found[0], found[3], found[4]
+
+    def _accept(self, steps: int, piece: Any) -> None:
+        self.steps += steps
+        if piece is not None:
+            self.pieces.append(piece)
+            self._let_out(piece)
+
     def _keep(self) -> None:
         own = self.integrator
         self.safe, self._known, self._begun = (own.state.copy(), own.dtime), len(self.told), own.time
@@ -117,6 +157,13 @@ class TestedSteps:
         del self.told[self._known :]
         if own.with_events:
             own.reset_cooldowns()
+
+    def _shorten(self, trial: _Trial, missed: float, end: Any, piece: Any) -> None:
+        """Halve the step, or trust heyoka's where that has been in vain."""
+        trial.failed(missed)
+        trial.trusting = trial.is_vain or not self._halve(end, piece)
+        if trial.trusting:
+            self.bound = self.longest
 
     def _halve(self, end: Any, piece: Any) -> bool:
         """Bound the next step by half of the one that was too long; return whether time still goes on with it."""

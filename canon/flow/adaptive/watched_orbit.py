@@ -121,12 +121,7 @@ class WatchedOrbit:
                 interpolant = _Interpolant(integrator)
                 met = self._passed(before, kept, integrator, interpolant)
                 until = integrator.t if met is None else met.t
-                reached = self.sampled
-                while reached < len(times) and self.forward * (times[reached] - until) <= 0:
-                    reached += 1
-                if reached > self.sampled:
-                    states[:, self.sampled : reached] = interpolant(times[self.sampled : reached])
-                    self.sampled = reached
+                self._sample(times, states, interpolant, until)
                 progress(float((until - times[0]) / (times[-1] - times[0])))
             self.evaluations += integrator.nfev
             if met is not None:
@@ -135,6 +130,15 @@ class WatchedOrbit:
             in_a_row = in_a_row + 1 if self.t == begun else 0
             if in_a_row > _PILE:
                 raise self._error("events pile up there; stop the motion before")
+
+    def _sample(self, times: Array, states: Array, interpolant: _Interpolant, until: float) -> None:
+        """Put the states at the times of a step into their columns."""
+        reached = self.sampled
+        while reached < len(times) and self.forward * (times[reached] - until) <= 0:
+            reached += 1
+        if reached > self.sampled:
+            states[:, self.sampled : reached] = interpolant(times[self.sampled : reached])
+            self.sampled = reached
 
     # one step ------------------------------------------------------------------------------------
 
