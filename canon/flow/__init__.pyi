@@ -7,7 +7,7 @@ from .geometry.flow_jacobian import reversal_error as reversal_error
 from .geometry.flow_jacobian import symplecticity_defect as symplecticity_defect
 from .geometry.numeric_evidence import Witness as Witness
 from .geometry.numeric_evidence import brackets_at_points as brackets_at_points
-from .geometry.numeric_evidence import integral_drift as integral_drift
+from .geometry.numeric_evidence import integral_along_motion as integral_along_motion
 from .geometry.numeric_evidence import symplectic_flow as symplectic_flow
 from .loaded_motion import load_motion as load_motion
 from .method.adaptive_methods import DOP853 as DOP853

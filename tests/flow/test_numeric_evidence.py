@@ -9,7 +9,7 @@ from canon.expression.symbols.symbol import time
 from canon.flow.geometry.numeric_evidence import (
     bilinear_covariant,
     brackets_at_points,
-    integral_drift,
+    integral_along_motion,
     symplectic_flow,
 )
 from canon.flow.run.non_finite_state import NonFiniteStateError
@@ -149,41 +149,43 @@ def test_motion_too_sensitive_for_doubles_decides_nothing():
 
 
 def test_energy_is_kept_and_energy_with_something_added_is_not():
-    seen = integral_drift(PENDULUM.H, PENDULUM, (0, 20), [1, 0])
+    seen = integral_along_motion(PENDULUM.H, PENDULUM, (0, 20), [1, 0])
     assert seen.speaks == "for"
     assert seen.largest < 1e-13
-    twin = integral_drift(PENDULUM.H + q / 100, PENDULUM, (0, 20), [1, 0])
+    twin = integral_along_motion(PENDULUM.H + q / 100, PENDULUM, (0, 20), [1, 0])
     assert twin.speaks == "against"
     assert twin.largest == pytest.approx(0.02, rel=1e-2)
     assert "certainly no constant of this motion" in twin.text
 
 
 def test_the_runge_lenz_vector_has_one_sign():
-    assert integral_drift(runge_lenz(-1), KEPLER, (0, 20), KEPLER_START, parameters=UNITS).speaks == "for"
-    twin = integral_drift(runge_lenz(1), KEPLER, (0, 20), KEPLER_START, parameters=UNITS)
+    assert (
+        integral_along_motion(runge_lenz(-1), KEPLER, (0, 20), KEPLER_START, parameters=UNITS).speaks == "for"
+    )
+    twin = integral_along_motion(runge_lenz(1), KEPLER, (0, 20), KEPLER_START, parameters=UNITS)
     assert twin.speaks == "against"
 
 
 def test_an_integral_may_hold_the_time():
     oscillator = Hamiltonian((p**2 + w**2 * q**2) / 2, q, p)
     phase = q * cos(w * time) - p * sin(w * time) / w
-    assert integral_drift(phase, oscillator, (-3, 9), [1, 0.5], parameters={w: 2}).speaks == "for"
+    assert integral_along_motion(phase, oscillator, (-3, 9), [1, 0.5], parameters={w: 2}).speaks == "for"
     twin = phase.subs(time, -time)
-    assert integral_drift(twin, oscillator, (-3, 9), [1, 0.5], parameters={w: 2}).speaks == "against"
-    assert integral_drift(DRIVEN.H, DRIVEN, (0, 9), [1, 0.3]).speaks == "against"
+    assert integral_along_motion(twin, oscillator, (-3, 9), [1, 0.5], parameters={w: 2}).speaks == "against"
+    assert integral_along_motion(DRIVEN.H, DRIVEN, (0, 9), [1, 0.3]).speaks == "against"
 
 
 def test_an_integral_of_a_vector_field_of_three_variables():
     a, b, c = symbols("a b c", real=True)
     euler = VectorField((b * c, -2 * c * a, a * b), (a, b, c))
-    assert integral_drift(a**2 + b**2 + c**2, euler, (0, 10), [1, 0.2, 0.4]).speaks == "for"
-    assert integral_drift(a**2 + b**2 - c**2, euler, (0, 10), [1, 0.2, 0.4]).speaks == "against"
+    assert integral_along_motion(a**2 + b**2 + c**2, euler, (0, 10), [1, 0.2, 0.4]).speaks == "for"
+    assert integral_along_motion(a**2 + b**2 - c**2, euler, (0, 10), [1, 0.2, 0.4]).speaks == "against"
     with pytest.raises(ValueError, match="3 variables"):
         symplectic_flow(euler, (0, 10), [1, 0.2, 0.4])
 
 
 def test_a_chaotic_motion_keeps_its_energy():
-    seen = integral_drift(HENON_HEILES.H, HENON_HEILES, (0, 400), [0, -0.15, 0.5, 0])
+    seen = integral_along_motion(HENON_HEILES.H, HENON_HEILES, (0, 400), [0, -0.15, 0.5, 0])
     assert seen.speaks == "for", seen.text
 
 
@@ -191,49 +193,51 @@ def test_units_may_be_far_from_one():
     """The Earth about the Sun in kilograms, metres and seconds."""
     parameters = {m: "5.97e24", k: "7.92e44"}
     start = ["1.496e11", 0, 0, "1.778e29"]
-    seen = integral_drift(KEPLER.H, KEPLER, (0, "3.15e7"), start, parameters=parameters)
+    seen = integral_along_motion(KEPLER.H, KEPLER, (0, "3.15e7"), start, parameters=parameters)
     assert seen.speaks == "for"
     assert seen.largest < 1e-13 * 2.65e33
-    twin = integral_drift(KEPLER.H * (1 + x / 10**15), KEPLER, (0, "3.15e7"), start, parameters=parameters)
+    twin = integral_along_motion(
+        KEPLER.H * (1 + x / 10**15), KEPLER, (0, "3.15e7"), start, parameters=parameters
+    )
     assert twin.speaks == "against"
 
 
 def test_what_changes_less_than_doubles_show_is_not_called_kept():
-    seen = integral_drift(PENDULUM.H + q / 10**18, PENDULUM, (0, 20), [1, 0])
+    seen = integral_along_motion(PENDULUM.H + q / 10**18, PENDULUM, (0, 20), [1, 0])
     assert seen.speaks == "neither"
 
 
 def test_where_nothing_can_be_measured_there_is_no_evidence():
     with pytest.raises(ValueError, match="equilibrium"):
-        integral_drift(q, PENDULUM, (0, 20), [0, 0])
+        integral_along_motion(q, PENDULUM, (0, 20), [0, 0])
     with pytest.raises(ValueError, match="no variable"):
-        integral_drift(sp.Integer(5), PENDULUM, (0, 20), [1, 0])
+        integral_along_motion(sp.Integer(5), PENDULUM, (0, 20), [1, 0])
     with pytest.raises(ValueError, match="no finite real value at t = 0"):
-        integral_drift(sp.log(-(p**2)), PENDULUM, (0, 20), [1, 0])
+        integral_along_motion(sp.log(-(p**2)), PENDULUM, (0, 20), [1, 0])
     with pytest.raises(ValueError, match="arbitrary function"):
-        integral_drift(Function("f")(q), PENDULUM, (0, 20), [1, 0])
+        integral_along_motion(Function("f")(q), PENDULUM, (0, 20), [1, 0])
     with pytest.raises(KeyError, match="k, m"):
-        integral_drift(x, KEPLER, (0, 1), KEPLER_START)
+        integral_along_motion(x, KEPLER, (0, 1), KEPLER_START)
     with pytest.raises(ValueError, match="3 numbers"):
-        integral_drift(x, KEPLER, (0, 1), [1, 0, 0], parameters=UNITS)
+        integral_along_motion(x, KEPLER, (0, 1), [1, 0, 0], parameters=UNITS)
     with pytest.raises(ValueError, match="no finite real number"):
-        integral_drift(x, KEPLER, (0, 1), [1, 0, 0, float("nan")], parameters=UNITS)
+        integral_along_motion(x, KEPLER, (0, 1), [1, 0, 0, float("nan")], parameters=UNITS)
     with pytest.raises(NonFiniteStateError):
-        integral_drift(KEPLER.H, KEPLER, (0, 3), [1, 0, 0, 0], parameters=UNITS)
+        integral_along_motion(KEPLER.H, KEPLER, (0, 3), [1, 0, 0, 0], parameters=UNITS)
 
 
 # verdicts ------------------------------------------------------------------------------------------
 
 
 def test_evidence_leaves_the_status():
-    seen = integral_drift(PENDULUM.H, PENDULUM, (0, 20), [1, 0])
+    seen = integral_along_motion(PENDULUM.H, PENDULUM, (0, 20), [1, 0])
     open_ = Verdict(Status.UNDECIDED, "the energy is constant", evidence=(Evidence("before", "known"),))
     told = open_.witness(seen.evidence)
     assert told.undecided
     assert [e.kind for e in told.evidence] == ["before", "drift of an integral"]
     with pytest.raises(Undecided):
         bool(told)
-    against = integral_drift(q, PENDULUM, (0, 20), [1, 0])
+    against = integral_along_motion(q, PENDULUM, (0, 20), [1, 0])
     for status in Status:
         assert Verdict(status).witness(seen.evidence, against.evidence).status is status
     assert seen.text in str(told)

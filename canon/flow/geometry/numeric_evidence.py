@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from canon.mechanics.canonical.transformation import CanonicalTransformation
     from canon.mechanics.hamilton.vector_field import VectorField
 
-__all__ = ["Witness", "bilinear_covariant", "brackets_at_points", "integral_drift", "symplectic_flow"]
+__all__ = ["Witness", "bilinear_covariant", "brackets_at_points", "integral_along_motion", "symplectic_flow"]
 
 _ROUNDED, _WRONG = 10, 1_000
 """Changes up to so many units of the expected round-off are round-off; from so many on they are not."""
@@ -275,7 +275,7 @@ def bilinear_covariant(
     )
 
 
-def integral_drift(
+def integral_along_motion(
     integral: Expr,
     motion: HamiltonianSystem | VectorField,
     t_span: tuple[float, float],
@@ -303,9 +303,9 @@ def integral_drift(
     >>> from sympy import cos, symbols
     >>> q, p = symbols("q p", real=True)
     >>> pendulum = Hamiltonian(p**2/2 - cos(q), q, p)
-    >>> integral_drift(pendulum.H, pendulum, (0, 20), [1, 0]).speaks
+    >>> integral_along_motion(pendulum.H, pendulum, (0, 20), [1, 0]).speaks
     'for'
-    >>> print(integral_drift(pendulum.H + q/100, pendulum, (0, 20), [1, 0]).text)
+    >>> print(integral_along_motion(pendulum.H + q/100, pendulum, (0, 20), [1, 0]).text)
     the claimed integral changes by 0.02 over t = 0 … 20, ... times the round-off expected, ...
     """
     field = vector_field_system(motion, parameters)
