@@ -19,7 +19,7 @@ from canon.flow.system.first_order_motion import moving_system
 from canon.flow.system.lagrangian_motion import SPAN
 from canon.flow.system.parameter_values import check_given, check_parameters
 from canon.flow.system.recognised_system import recognised
-from canon.flow.system.scene_door import is_scene, opened
+from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system.start_of_motion import check_constraints, state_in_order
 from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import exact_number, exact_numbers

@@ -11,7 +11,7 @@ from bisect import bisect_left
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from canon.expression.latex.undressed import CASES, PART, ROW, undressed
+from canon.expression.latex.latex_layout import CASES, PART, ROW, without_layout
 from canon.expression.text.statement import Side, Statement, unwrapped
 from canon.expression.text.tokens import LanguageError
 
@@ -93,7 +93,7 @@ def _side(bare: str, span: Span) -> Side:
 
 
 def spans(text: str) -> tuple[str, tuple[tuple[Span, ...], ...]]:
-    r"""Return an undressed field, and the sides of each statement in it.
+    r"""Return a field without its layout, and the sides of each statement in it.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def spans(text: str) -> tuple[str, tuple[tuple[Span, ...], ...]]:
     >>> [[bare[side.start : side.end] for side in sides] for sides in statements]
     [['\\dot q', '\\frac{p}{m}'], ['\\dot p', '-kq', 'F']]
     """
-    bare = unwrapped(undressed(text))
+    bare = unwrapped(without_layout(text))
     found = _cuts(bare)
     if found is None:  # brackets that do not close: the grammar says where
         return _clean(bare), ((_trimmed(bare, 0, len(bare)),),)

@@ -10,6 +10,7 @@ import re
 from typing import TYPE_CHECKING, NoReturn
 
 from canon.expression.latex.characters import REMEDIES, SIGNS, figure, letter, raised_figures, remedy
+from canon.expression.latex.latex_layout import CASES
 from canon.expression.latex.names import (
     FUNCTIONS,
     Applied,
@@ -33,7 +34,6 @@ from canon.expression.latex.printed_forms import (
     PRINTED_CALL,
 )
 from canon.expression.latex.scripts import Scripts, accented, braced_name, dots_above, scripts, upright
-from canon.expression.latex.undressed import CASES
 from canon.expression.latex.word_list import Word, WordList, Words, together
 from canon.expression.text import syntax
 from canon.expression.text.syntax import LanguageError, Name, Number, Product

@@ -17,7 +17,7 @@ from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import Plan, fixed_plan
 from canon.flow.run_record import recorded
-from canon.flow.system.scene_door import is_scene, opened
+from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system_request import any_task
 from canon.flow.trajectory import finished
 from canon.kernel.program.variational import variational

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.system.first_order_motion import FirstOrderMotion
-    from canon.flow.system.scene_door import SceneLike
+    from canon.flow.system.scene_as_system import SceneLike
     from canon.mechanics.lagrange.body import Body
 
     MovableSystem = (

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.system.recognised_system import recognised
-from canon.flow.system.scene_door import is_scene, opened
+from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system.start_of_motion import state_in_order
 from canon.flow.system_request import is_hamiltonian
 from canon.scene import find

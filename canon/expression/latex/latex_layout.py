@@ -12,7 +12,7 @@ from typing import NoReturn
 
 from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
 
-__all__ = ["CASES", "PART", "ROW", "undressed"]
+__all__ = ["CASES", "PART", "ROW", "without_layout"]
 
 ROW, PART = "\x1e", "\x1f"
 r"""What stands in the place of ``\\``, and of the gap between two formulas in dollars."""
@@ -71,7 +71,7 @@ _SYSTEM_OPENS = re.compile(
 _SYSTEM_CLOSES = re.compile(r"(?<=\})\s*\\right\s*\.")
 
 
-def undressed(text: str) -> str:
+def without_layout(text: str) -> str:
     r"""Return a LaTeX text without what only sets it on the page; every column stays where it was.
 
     Raises
@@ -81,9 +81,9 @@ def undressed(text: str) -> str:
 
     Examples
     --------
-    >>> undressed(r"\begin{align} x &= 1 \end{align}").strip()
+    >>> without_layout(r"\begin{align} x &= 1 \end{align}").strip()
     'x  = 1'
-    >>> undressed(r"$H = \boxed{p^2}$, ").strip()
+    >>> without_layout(r"$H = \boxed{p^2}$, ").strip()
     'H =       {p^2}  ,'
     """
     if len(text) > MAX_CHARACTERS:
