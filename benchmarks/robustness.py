@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 sys.path.insert(0, str(Path(__file__).parent.parent))
 sys.path.insert(0, str(Path(__file__).parent))
 
-from attacks.bits import flipped_bits
+from attacks.bits import flipped_bits, flipped_kept_bits
 from attacks.service import served_load
 from attacks.studies import hostile_studies
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 SORTS: dict[str, tuple[Callable[[int, Path], Count], int]] = {
     "bits": (flipped_bits, 1200),
+    "kept": (flipped_kept_bits, 400),
     "studies": (hostile_studies, 2000),
     "serve": (served_load, 10_000),
 }

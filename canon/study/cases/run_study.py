@@ -21,7 +21,7 @@ from canon.study.kept.chunk_file import Chunk, ChunkFolder
 from canon.study.kept.keep_choice import chosen_functions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from canon.study.cases.study import Study
 
@@ -234,11 +234,13 @@ def _here(
     pending: Iterator[tuple[str, Case, Checkpoint | None]], seconds: float, go_on: GoOn
 ) -> Iterator[tuple[str, Checkpoint | Finished]]:
     for key, case, reached in pending:
-        found = go_on(key, case, reached, seconds)
-        while isinstance(found, Checkpoint):
+        found: Checkpoint | Finished | None = reached
+        while not isinstance(found, Finished):
+            try:
+                found = go_on(key, case, found, seconds)
+            except MemoryError as error:
+                raise _too_large([f"{_called(key, case)}: MemoryError: {error}"]) from error
             yield key, found
-            found = go_on(key, case, found, seconds)
-        yield key, found
 
 
 def _room(executor: Executor) -> int:
@@ -291,10 +293,14 @@ def _on(
             f"workers died while they ran cases ({lost[0]}); what was finished is kept, run again to go on"
         )
     if too_large:
-        raise StudyError(
-            f"{counted(len(too_large), 'case')} took more memory than workers have, or killed them ({too_large[0]}); "
-            "the others are finished and kept: give workers more memory, or keep fewer samples, and run again"
-        )
+        raise _too_large(too_large)
+
+
+def _too_large(cases: Sequence[str]) -> StudyError:
+    return StudyError(
+        f"{counted(len(cases), 'case')} took more memory than workers have, or killed them ({cases[0]}); what was "
+        "finished is kept: give workers more memory, or keep fewer samples, and run again"
+    )
 
 
 def _called(key: str, case: Case) -> str:
