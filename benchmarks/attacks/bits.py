@@ -1,4 +1,4 @@
-"""Flipped bits in results files and in what is kept beside them: status, export, resume, mend, beside what was whole."""
+"""Flipped bits in results files and in what is kept: status, export, resume and mend of each, beside the undamaged."""
 
 from __future__ import annotations
 
