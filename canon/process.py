@@ -107,6 +107,7 @@ class Child:
         self._killed = False
         self._heard: queue.SimpleQueue[bytes | Ended] = queue.SimpleQueue()
         self._sender: threading.Thread | None = None
+        self._sending = threading.Lock()
         lifeline, self._held = os.pipe() if sys.platform != "win32" else (-1, -1)
         self._process = subprocess.Popen(  # the interpreter that runs now, and nothing that a stranger wrote
             [
@@ -158,8 +159,10 @@ class Child:
         seconds
             How long its answer is waited for.
         """
-        self._sender = threading.Thread(target=self._send, args=(encode, seconds), daemon=True)
-        self._sender.start()
+        sender = threading.Thread(target=self._send, args=(encode, seconds), daemon=True)
+        with self._sending:  # the process may end just now, and its listener waits for who has been started
+            sender.start()
+            self._sender = sender
 
     def receive(self, deadline: float) -> bytes:
         """Return the next message.
@@ -215,8 +218,10 @@ class Child:
         except (EOFError, OSError):
             self._heard.put(Ended("the process has ended"))
         self._process.wait()
-        if self._sender is not None:
-            self._sender.join()
+        with self._sending:
+            sender = self._sender
+        if sender is not None:
+            sender.join()
         for stream in (pipe, self._process.stdin):
             if stream is not None:
                 with suppress(OSError):

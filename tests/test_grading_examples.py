@@ -242,3 +242,16 @@ def test_gradescope_marks_a_submission_as_its_container_does(tmp_path):
     pendulum, energy = json.loads((tmp_path / "results.json").read_text())["tests"]
     assert (pendulum["score"], pendulum["status"]) == (1.0, "passed")
     assert (energy["score"], energy["status"]) == (0.0, "failed")
+
+
+def test_the_page_about_grading_tells_what_its_program_prints(capsys):
+    page = (GRADING.parents[1] / "docs" / "howto" / "grade.md").read_text("utf-8")
+    program = page.partition("```python\n")[2].partition("```")[0]
+    exec(compile(program, "grade.md", "exec"), {})  # noqa: S102 (our own page)
+    assert capsys.readouterr().out.splitlines() == [
+        "right 2.0 False False",
+        "wrong 0.0 False False",
+        "unreadable None True False",
+    ]
+    for file in sorted(GRADING.rglob("*.py")):
+        assert file.name in page or "/".join(file.parts[-3:-1]) in page, file

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import sysconfig
+import threading
 import time
 import zipfile
 from pathlib import Path
@@ -271,3 +272,26 @@ def test_a_child_whose_parent_was_killed_ends_by_itself():
             return
         time.sleep(0.1)
     pytest.fail("the orphan goes on")
+
+
+def test_a_process_that_ends_just_when_it_is_asked(monkeypatch):
+    """Its listener does not trip over the thread that was to ask, and who waits is told."""
+    child = Child("canon.exercise.judging_process")
+    child.receive(time.monotonic() + 60.0)
+    raised, start = [], threading.Thread.start
+
+    def late(thread):
+        child._process.kill()
+        child._process.wait()
+        time.sleep(0.3)
+        start(thread)
+
+    monkeypatch.setattr(threading, "excepthook", raised.append)
+    monkeypatch.setattr(threading.Thread, "start", late)
+    child.send(lambda: b"", 1.0)
+    with pytest.raises(Ended):
+        child.receive(time.monotonic() + 10.0)
+    child._listener.join(10.0)
+    assert not child._listener.is_alive()
+    assert raised == []
+    child.kill()

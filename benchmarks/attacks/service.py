@@ -56,8 +56,6 @@ HARMFUL = (
 
 def fresh(draw: random.Random) -> tuple[dict[str, object], str]:
     """Return a claim that was hardly asked before, and the verdict that it should have."""
-    if draw.random() < HOSTILE:
-        return {"rhs": "x + 1", **X, **draw.choice(HARMFUL), "source": str(draw.random())}, "hostile"
     n, m, right = draw.randint(2, 10**6), draw.randint(2, 99), draw.random() < 0.7
     off = 0 if right else draw.choice((1, -1, 3))
     made = draw.choice(
@@ -70,6 +68,11 @@ def fresh(draw: random.Random) -> tuple[dict[str, object], str]:
         )
     )
     return made, "holds" if right else "fails"
+
+
+def hostile(draw: random.Random) -> tuple[dict[str, object], str]:
+    """Return a claim that should do harm."""
+    return {"rhs": "x + 1", **X, **draw.choice(HARMFUL)}, "hostile"
 
 
 def served_load(count: int, folder: Path, seed: int = 1) -> Count:
@@ -93,8 +96,9 @@ def served_load(count: int, folder: Path, seed: int = 1) -> Count:
     )
     if (folder / "owned").exists():
         found.add("code run", "a file was written")
-    if b"Traceback" in (folder / "log").read_bytes():
-        found.add("traceback", "in the log of the service")
+    said = (folder / "log").read_text("utf-8", "replace")
+    if "Traceback" in said:
+        found.add("traceback", f"in the log of the service: {said[said.index('Traceback') :][:3000]}")
     return found
 
 
@@ -129,7 +133,8 @@ class _Load:
         for _ in todo:
             await asyncio.sleep(self.draw.expovariate(ASKED / CLIENTS))
             before = bool(self.asked) and self.draw.random() < 0.5
-            claim, wanted = self.draw.choice(self.asked) if before else fresh(self.draw)
+            usual = self.draw.choice(self.asked) if before else fresh(self.draw)
+            claim, wanted = hostile(self.draw) if self.draw.random() < HOSTILE else usual
             sort = "hostile" if wanted == "hostile" else "asked before" if before else "new"
             start = time.monotonic()
             outcome = await self._outcome(number, claim, wanted)
