@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from canon.serve.guarded_responses import LOOPBACK
 from canon.serve.request_log import LOGGER, log_as_json
@@ -16,13 +17,17 @@ from canon.serve.service_limits import Limits
 from canon.serve.web_application import application
 
 if TYPE_CHECKING:
+    import asyncio
     from collections.abc import Generator, Sequence
 
-__all__ = ["serve"]
+    from starlette.applications import Starlette
+    from uvicorn.protocols.http.h11_impl import RequestResponseCycle
+
+__all__ = ["configured", "serve"]
 
 BACKLOG = 256
 IDLE = 15
-"""Seconds for which a connection on which nothing is asked stays open."""
+"""Seconds for which a connection stays open on which no whole request has come."""
 
 
 def serve(
@@ -57,12 +62,23 @@ def serve(
     log_as_json()
     local = _is_loopback(listening)
     answers_to = (*LOOPBACK, *names) if local else (*names, *(LOOPBACK if names else ()))
-    config = uvicorn.Config(
-        application(limits, tuple(name.lower() for name in answers_to)),
+    config = configured(application(limits, tuple(name.lower() for name in answers_to)), limits, proxy)
+    place = listening.getsockname()
+    with listening, _ended_by_signals():
+        said = {"host": place[0], "port": place[1], "names": answers_to, **vars(limits)}
+        LOGGER.info("listening", extra={"said": said})
+        uvicorn.Server(config).run([listening])
+        LOGGER.info("stopped")
+
+
+def configured(app: Starlette, limits: Limits, proxy: str = "") -> uvicorn.Config:
+    """Return how uvicorn serves an application within limits."""
+    return uvicorn.Config(
+        app,
         log_config=None,
         access_log=False,
         server_header=False,
-        http="h11",
+        http=_Prompt,
         ws="none",
         lifespan="on",
         limit_concurrency=limits.connections,
@@ -72,12 +88,31 @@ def serve(
         proxy_headers=bool(proxy),
         forwarded_allow_ips=proxy or None,
     )
-    place = listening.getsockname()
-    with listening, _ended_by_signals():
-        said = {"host": place[0], "port": place[1], "names": answers_to, **vars(limits)}
-        LOGGER.info("listening", extra={"said": said})
-        uvicorn.Server(config).run([listening])
-        LOGGER.info("stopped")
+
+
+class _Prompt(H11Protocol):
+    """HTTP/1.1 on one connection, closed where no whole request comes: uvicorn waits for one without end."""
+
+    _seen: RequestResponseCycle | None = None
+    """What had been answered last when it was looked; None while nothing had."""
+    _resting = True
+    """Whether nothing was being answered then."""
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
+        super().connection_made(transport)
+        self.loop.call_later(IDLE, self._look)
+
+    def _look(self) -> None:
+        """Close the connection where nothing is being answered and nothing new was since the last look."""
+        cycle: RequestResponseCycle | None = self.cycle
+        if self.transport.is_closing():
+            return
+        resting = cycle is None or cycle.response_complete
+        if resting and self._resting and cycle is self._seen:
+            self.transport.close()
+            return
+        self._seen, self._resting = cycle, resting
+        self.loop.call_later(IDLE, self._look)
 
 
 def _listening(host: str, port: int) -> socket.socket:

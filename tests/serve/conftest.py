@@ -59,9 +59,11 @@ class Served:
     def __init__(self, app):
         import uvicorn
 
+        from canon.serve import Limits
+        from canon.serve.http_server import configured
+
         self.app = app
-        config = uvicorn.Config(app, log_config=None, access_log=False, ws="none", http="h11", lifespan="on")
-        self.server = uvicorn.Server(config)
+        self.server = uvicorn.Server(configured(app, Limits()))
         self.listening = socket.create_server(("127.0.0.1", 0))
         self.thread = threading.Thread(target=self.server.run, args=([self.listening],))
 

@@ -4,7 +4,8 @@
 const READ_AFTER = 250; // milliseconds without a key before a text is read
 const MATHML = "http://www.w3.org/1998/Math/MathML";
 const ASSUMPTIONS = ["positive", "negative", "nonzero", "real", "integer"];
-const STATUS = { holds: "holds ✓", fails: "fails ✗", undecided: "undecided", invalid: "can't be read" };
+const LAYOUT = new Set(["accent", "columnalign", "display"]);
+const STATUS = { holds: "It holds ✓", fails: "It fails ✗", undecided: "Undecided", invalid: "It can't be read" };
 
 const HINTS = {
   names: "names, with commas between them",
@@ -98,7 +99,11 @@ function textOf(shape, said) {
     case "expressions": return Object.entries(said).map(([name, text]) => `${name} = ${text}`).join("\n");
     case "lists": return Object.entries(said).flatMap(([name, texts]) => [].concat(texts).map((text) => `${name} = ${text}`)).join("\n");
     case "brackets": return said.map((pair) => Object.values(pair).join(" ; ")).join("\n");
-    case "parameters": return Object.entries(Object.groupBy?.(Object.keys(said), (name) => said[name]) ?? Object.fromEntries(Object.keys(said).map((name) => [said[name], [name]]))).map(([word, names]) => `${names.join(", ")} ${word}`).join("\n");
+    case "parameters": {
+      const named = {};
+      for (const [name, word] of Object.entries(said)) (named[word] ??= []).push(name);
+      return Object.entries(named).map(([word, names]) => `${names.join(", ")} ${word}`).join("\n");
+    }
     case "functions": return Object.entries(said).map(([name, of]) => `${name}(${of.join(", ")})`).join("\n");
     case "bodies": case "forces": case "values": return JSON.stringify(said);
     default: return String(said);
@@ -157,7 +162,10 @@ function build() {
     const label = key in kind.required ? key : `${key} (optional)`;
     addField(place, key, shape, alternatives.has(key) && !(key in kind.required) ? `${key} (one of several)` : label, HINTS[shape]);
   }
-  for (const [key, [label, hint]] of Object.entries(DECLARATIONS)) addField(key === "domain" ? "more" : "names", key, key === "domain" ? "texts" : key, label, hint);
+  for (const [key, [label, hint]] of Object.entries(DECLARATIONS)) {
+    const [place, shape] = key === "domain" ? ["more", "texts"] : ["names", key];
+    addField(place, key, shape, label, hint);
+  }
   addField("more", "t", "word", "the name of the time", "t unless said");
   addField("more", "complete", "true", "the answer must determine everything that is asked");
   $("kind-note").textContent = `The answer determines ${kind.unknowns}.`;
@@ -186,7 +194,8 @@ function declared() {
 }
 
 async function post(path, body, signal) {
-  const response = await fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), signal });
+  const headers = { "Content-Type": "application/json" };
+  const response = await fetch(path, { method: "POST", headers, body: JSON.stringify(body), signal });
   const said = await response.json();
   if (!response.ok) throw new Error(said.detail ?? `the service answered ${response.status}`);
   return said;
@@ -200,7 +209,7 @@ function mathml(text) {
 function copied(node) {
   if (node.nodeType === Node.TEXT_NODE) return document.createTextNode(node.data);
   const made = document.createElementNS(MATHML, node.localName);
-  for (const { name, value: said } of node.attributes) if (["accent", "columnalign", "display"].includes(name)) made.setAttribute(name, said);
+  for (const { name, value: said } of node.attributes) if (LAYOUT.has(name)) made.setAttribute(name, said);
   made.append(...[...node.childNodes].map(copied));
   return made;
 }
@@ -228,7 +237,10 @@ async function read(key, field) {
     const said = await post("read", { ...declared(), kind: $("kind").value, key, text }, asked.signal);
     if (asked.signal.aborted) return;
     if (said.read) {
-      field.reading.replaceChildren(...said.statements.map((one) => (one.mathml ? mathml(one.mathml) : element("code", {}, one.plain))), ...said.warnings.map((warning) => element("p", { className: "warning" }, warning)));
+      field.reading.replaceChildren(
+        ...said.statements.map((one) => (one.mathml ? mathml(one.mathml) : element("code", {}, one.plain))),
+        ...said.warnings.map((warning) => element("p", { className: "warning" }, warning)),
+      );
       tell(field, "");
     } else {
       const { place, column, reason, caret } = said.error;
@@ -263,7 +275,7 @@ async function check(event) {
 
 async function show(judgement, place) {
   const shown = element("div", { className: judgement.status });
-  shown.append(element("p", { className: "status" }, `It ${STATUS[judgement.status] ?? judgement.status}`.replace("It undecided", "Undecided").replace("It can't", "It can't")));
+  shown.append(element("p", { className: "status" }, STATUS[judgement.status]));
   const told = judgement.status === "fails" ? judgement.feedback || `${judgement.question || "the claim"} is wrong` : judgement.known;
   if (told && judgement.status !== "holds") shown.append(element("p", { className: "told" }, told));
   const example = judgement.status === "fails" && judgement.counterexample;
@@ -273,9 +285,13 @@ async function show(judgement, place) {
   }
   if (judgement.status === "fails" && judgement.corrected) shown.append(await corrected(judgement.corrected));
   for (const warning of judgement.warnings) shown.append(element("p", { className: "warning" }, warning));
-  if (judgement.status === "holds") shown.append(element("p", { className: "note" }, `Proved${judgement.certificate ? ` (${judgement.certificate})` : ""}, on the whole domain.`));
+  if (judgement.status === "holds") {
+    const how = judgement.certificate ? ` (${judgement.certificate})` : "";
+    shown.append(element("p", { className: "note" }, `Proved${how}, on the whole domain.`));
+  }
   if (judgement.steps.length) {
-    const list = element("ol", {}, ...judgement.steps.map(([text, formula]) => element("li", {}, `${text} `, element("code", {}, formula))));
+    const steps = judgement.steps.map(([text, formula]) => element("li", {}, `${text} `, element("code", {}, formula)));
+    const list = element("ol", {}, ...steps);
     shown.append(element("details", {}, element("summary", {}, "How it was judged"), list));
   }
   place.replaceChildren(shown);
