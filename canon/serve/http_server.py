@@ -6,7 +6,7 @@ import ipaddress
 import signal
 import socket
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
@@ -104,7 +104,7 @@ class _Prompt(H11Protocol):
 
     def _look(self) -> None:
         """Close the connection where nothing is being answered and nothing new was since the last look."""
-        cycle: RequestResponseCycle | None = self.cycle
+        cycle = cast("RequestResponseCycle | None", self.cycle)  # None before the first request
         if self.transport.is_closing():
             return
         resting = cycle is None or cycle.response_complete
