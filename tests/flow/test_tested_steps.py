@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,7 @@ def test_untested_steps_go_to_infinity_there(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_a_step_too_long_is_found_and_no_other() -> None:
     system = hamilton_equations_of(well(16), {})
-    made = taylor_integrator(system, [sp.Rational(1, 4), 10], 0, None)
+    made = taylor_integrator(system, [Fraction(1, 4), Fraction(10)], Fraction(0), None)
     *_, piece, _ = made.propagate_until(0.02, c_output=True)
     assert good_steps(piece, made) == (len(piece.times) - 1, 0.0)
     made.state[:], made.time = [0.01, 10.0], 0.0
