@@ -6,7 +6,8 @@ python benchmarks/extremes.py --fresh                # all of them anew
 python benchmarks/extremes.py --page                 # the page from what is there
 
 Every row runs in a process of its own. What is done is kept in out/extremes, so an interrupted run goes on where
-it stopped. Ends with status 1 where canon hung, crashed or was silently wrong.
+it stopped; the page keeps a part as it was until all of its rows are there. Ends with status 1 where canon hung,
+crashed or was silently wrong.
 """
 
 from __future__ import annotations
@@ -54,9 +55,11 @@ def main(arguments: list[str]) -> int:
         part: [(row, kept[key(part, row)]) for row in rows_of(part) if key(part, row) in kept]
         for part in PARTS
     }
+    whole = {part: found if len(found) == len(rows_of(part)) else [] for part, found in done.items()}
     tools = ", ".join(f"{name} {version(name)}" for name in ("sympy", "numpy", "scipy", "heyoka", "llvmlite"))
     where = f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
-    PAGE.write_bytes(page(done, where).encode("utf-8", "backslashreplace"))
+    earlier = PAGE.read_text(encoding="utf-8") if PAGE.exists() else ""
+    PAGE.write_bytes(page(whole, where, earlier).encode("utf-8", "backslashreplace"))
     for part in PARTS:
         print(f"{part}: {summary(done[part])}")
     return int(any(pieces[0]["kind"] in BAD for found in done.values() for _, pieces in found))

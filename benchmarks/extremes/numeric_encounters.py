@@ -107,6 +107,11 @@ def rows() -> Iterator[Row]:
     )
     yield Row("collision-verlet", "the same, Verlet in steps of 0.01", fixed_through_collision)
     yield Row(
+        "collision-solvable",
+        "the same by Kepler steps of 0.01 (Wisdom and Holman's map), which turn back at the centre",
+        solvable_through_collision,
+    )
+    yield Row(
         "collision-dop853",
         "the same, canon's DOP853()",
         lambda: refused(lambda: run(fall(2.0), method=DOP853()), NonFiniteStateError, holds="collision"),
@@ -219,6 +224,15 @@ def fixed_through_collision() -> Outcome:
     given = fall(2.0)
     _, warning = with_warnings(lambda: run(given, method=Splitting("verlet"), step=0.01))
     return Outcome(warning or "no warning", refused=bool(warning), right=None if warning else False)
+
+
+def solvable_through_collision() -> Outcome:
+    given = fall(2.0)
+    motion = propagate(given.hamiltonian, given.span, given.y0, method=WisdomHolman(), step=0.01, samples=20)
+    estimate = motion.error_estimate()
+    until = estimate.meaningful_until
+    told = until is not None and until < 1.3
+    return Outcome(str(estimate).split("; by ")[0], refused=told, right=None if told else False)
 
 
 def stopped_before_collision() -> Outcome:

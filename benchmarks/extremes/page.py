@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, Any
 
 from extremes.row import shown
@@ -20,8 +21,7 @@ _HEAD = """\
 # At the extremes
 
 Where numbers, expressions and systems end: what was tried, what ordinary tools do there, and what canon does.
-Written by `python benchmarks/extremes.py` ({where}); every row runs in a process of its own,
-under a limit of time and memory.
+Written by `python benchmarks/extremes.py`; every row runs in a process of its own, under a limit of time and memory.
 
 A result stands with its true error and the error that the tool itself states (canon: an estimate with the trajectory or
 verdict; others: the tolerance they were asked for). **said** is a clear error, a warning or UNDECIDED with the reason;
@@ -29,6 +29,7 @@ verdict; others: the tolerance they were asked for). **said** is a clear error, 
 are wall time in a warm process, with compilation.
 """
 
+_SECTION = re.compile(r"^## (\w+)$(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
 _TITLES = {"numeric": "Numeric", "symbolic": "Symbolic", "system": "System"}
 _WORDS = {
     "result": "result", "said": "said", "wrong": "**wrong**", "unknown": "unstated", "hang": "**hangs**",
@@ -61,17 +62,19 @@ def bounded(found: Sequence[tuple[Row, Pieces]]) -> tuple[int, int]:
     return len(both), sum(error <= estimate for error, estimate in both)
 
 
-def page(parts: Mapping[str, Sequence[tuple[Row, Pieces]]], where: str) -> str:
-    """Return the page."""
-    return "\n".join(
-        [_HEAD.format(where=where), *(_table(part, found) for part, found in parts.items() if found)]
-    )
+def page(parts: Mapping[str, Sequence[tuple[Row, Pieces]]], where: str, earlier: str = "") -> str:
+    """Return the page; a part without rows is taken from an earlier page, with where and when it was run."""
+    kept = {title: f"## {title}{rest}" for title, rest in _SECTION.findall(earlier)}
+    tables = {part: _table(part, found, where) for part, found in parts.items() if found}
+    sections = [tables.get(part) or kept.get(_TITLES.get(part, part), "") for part in parts]
+    return "\n".join([_HEAD, *filter(None, sections)])
 
 
-def _table(part: str, found: Sequence[tuple[Row, Pieces]]) -> str:
+def _table(part: str, found: Sequence[tuple[Row, Pieces]], where: str) -> str:
     head = "| row | tried | ordinary tools | canon | true error | stated | s |\n|---|---|---|---|---|---|---|"
     lines = [_line(row, pieces) for row, pieces in found]
-    return "\n".join([f"## {_TITLES.get(part, part)}\n\n{summary(found)}\n", head, *lines, ""])
+    said = f"{summary(found)}\nRun on {where}."
+    return "\n".join([f"## {_TITLES.get(part, part)}\n\n{said}\n", head, *lines, ""])
 
 
 def _line(row: Row, pieces: Pieces) -> str:

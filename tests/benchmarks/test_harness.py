@@ -39,6 +39,17 @@ def test_the_page_counts_them(found):
     assert "**hangs**, killed after 1 s" in text
 
 
+def test_a_part_that_was_not_run_stays_as_it_was(found):
+    earlier = page({"numeric": found, "symbolic": found[:1], "system": found[:2]}, "there")
+    later = page({"numeric": found[:3], "symbolic": [], "system": found[:3]}, "here", earlier)
+    assert [later.count(f"Run on {where}.") for where in ("here", "there")] == [2, 1]
+    assert later.split("## Symbolic")[1].split("## ")[0].strip() == (
+        earlier.split("## Symbolic")[1].split("## ")[0].strip()
+    )
+    again = page({"numeric": found, "symbolic": found[:1], "system": found[:2]}, "there", later)
+    assert again == earlier
+
+
 @pytest.mark.parametrize(
     ("outcome", "kind"),
     [
