@@ -17,9 +17,9 @@ TOOLS = ("dev", "docs")
 HEAD = """\
 # Licences
 
-canon itself is under the BSD 3-Clause License. What it rests on, with what that rests on in turn, as the metadata of each
-package says it; written by `python docs/licences.py` and held against `pyproject.toml` by a test. "core" is what
-`pip install canon-mechanics` brings, the other words are extras.
+canon itself is under the BSD 3-Clause License. What it rests on, with what that rests on in turn, as the metadata
+of each package says it; written by `python docs/licences.py` and held against `pyproject.toml` by a test. "core" is
+what `pip install canon-mechanics` brings, the other words are extras.
 
 | package | needed by | licence |
 |---|---|---|

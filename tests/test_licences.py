@@ -22,7 +22,9 @@ def required():
 
 def test_every_dependency_has_its_licence():
     assert required() <= set(ROWS), f"run python docs/licences.py: {sorted(required() - set(ROWS))}"
-    assert all(re.search(r"MIT|BSD|Apache|MPL|PSF|Python Software|see its", ROWS[name]) for name in required())
+    assert all(
+        re.search(r"MIT|BSD|Apache|MPL|PSF|Python Software|see its", ROWS[name]) for name in required()
+    )
 
 
 def test_the_page_is_what_its_script_says_of_its_head():
