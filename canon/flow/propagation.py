@@ -64,6 +64,8 @@ def propagate(
         - ``NewtonEuler``: (q, q̇), the reactions being known along the motion by their names;
         - a ``Routhian``: (q, s, q̇, p) with the ignored coordinates s, which are reconstructed, and their momenta;
         - a ``VectorField``, or heyoka's list of pairs (variable, right-hand side): their variables;
+        - a function f(t, y) as SciPy's ``solve_ivp`` takes it: y. It is read as formulas, see
+          :func:`canon.mechanics.field_of_function`;
         - SymPy's ``LagrangesMethod``: (q, q̇);
         - a scene or its name: (q, p) where a Hamiltonian says all, else (q, q̇); its parameters have values already.
     t_span

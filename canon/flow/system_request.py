@@ -24,6 +24,7 @@ from canon.flow.system.start_of_motion import check_constraints, state_in_order
 from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import exact_number, exact_numbers
 from canon.mechanics.algebra.dynamicsymbols import plain
+from canon.mechanics.hamilton.traced_function import is_rates_function, read_at_start
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,6 +56,9 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
         As :func:`canon.flow.propagation.propagate` documents them.
     """
     scene = is_scene(request.system)
+    if is_rates_function(request.system):
+        begin, _ = two_ends(request.t_span, request.y0)
+        request = replace(request, system=read_at_start(request.system, float(begin), request.y0))
     if scene:
         system, y0, parameters = opened(request.system, request.y0, request.parameters or {})
         request = replace(request, system=system, y0=y0, parameters=parameters)

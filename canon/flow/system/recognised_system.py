@@ -11,6 +11,7 @@ from canon.flow.system.listed_equations import field_motion, heyoka_field, is_he
 from canon.flow.system.quasi_velocity_motion import appell_motion, newton_euler_motion, quasi_motion
 from canon.flow.system.routhian_motion import routhian_motion, routhian_state
 from canon.flow.system.written_with_signs import written_with_signs
+from canon.mechanics.hamilton.traced_function import is_rates_function
 from canon.mechanics.hamilton.vector_field import VectorField
 from canon.mechanics.lagrange.appell import GibbsAppell
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
         | LagrangesMethod
         | KanesMethod
         | Sequence[tuple[Any, Any]]
+        | Callable[[Any, Any], Any]
         | SceneLike
         | str
     )
@@ -121,6 +123,11 @@ def recognised(system: Any) -> RecognisedSystem:
     if isinstance(system, VectorField):
         motion = field_motion(system)
         return RecognisedSystem(motion.state, motion.t, motion.parameters, lambda _: motion)
+    if is_rates_function(system):
+        raise TypeError(
+            f"{system!r} does not say how many variables it has: give canon.mechanics.field_of_function(f, n), which "
+            "reads a function f(t, y) of n variables as a vector field"
+        )
     raise TypeError(
         f"{system!r} is no system that can be propagated: give a Hamiltonian, a Lagrangian with its forces and "
         "constraints, Gibbs–Appell or Newton–Euler equations, a Routhian, a vector field, a scene or its name, SymPy's "
