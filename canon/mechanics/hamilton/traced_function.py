@@ -35,7 +35,12 @@ _READABLE = (
 
 def is_rates_function(system: Any) -> bool:
     """Tell whether a system is a function f(t, y) and no value that canon knows."""
-    return callable(system) and not isinstance(system, type) and not hasattr(system, "H")
+    own = type(system).__module__.partition(".")[0] in (
+        "canon",
+        "sympy",
+        "heyoka",
+    )  # a vector field can be called
+    return callable(system) and not own and not isinstance(system, type) and not hasattr(system, "H")
 
 
 def field_of_function(f: Callable[[Any, Any], Any], n: int) -> VectorField:
