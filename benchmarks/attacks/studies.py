@@ -37,6 +37,8 @@ STUDY = {
     "samples": "512",
     "parts": "2",
     "observables": '["energy"]',
+    "keep": '["motion", { section = "t - 30" }]',
+    "tags": '["paper"]',
 }
 MORE = ("start", "parameters", "steps_per_period", "periods", "tolerance", "precision", "colour")
 

@@ -14,7 +14,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from canon import Event, Study, coordinates, flow_jacobian, propagate, results_of, run_study
+from canon import (
+    Event,
+    Splitting,
+    Study,
+    TimeTransformed,
+    coordinates,
+    flow_jacobian,
+    propagate,
+    results_of,
+    run_study,
+)
 from canon.cli import main
 from canon.study import DamagedChunk, StudyError, mend
 from canon.study.cases.case import Case, key_of
@@ -307,3 +317,32 @@ def test_a_driven_motion_is_kept_in_its_own_variables(tmp_path):
     assert len(crossings) == len(result.kept["section"]["t"]) > 2
     inside = (t[crossings] <= result.kept["section"]["t"]) & (result.kept["section"]["t"] <= t[crossings + 1])
     assert inside.all()
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"system": "rolling-disc", "method": "taylor", "keep": ["motion", {"section": "theta - 1"}]},
+        {"system": "kepler", "method": TimeTransformed(Splitting("kahan-li-8")), "step": 0.01, "keep": "motion"},
+        {
+            "system": "kepler",
+            "method": "dop853",
+            "keep": ["motion", {"section": "y", "direction": "falling"}],
+        },
+    ],
+    ids=lambda given: given["system"],
+)
+def test_motions_of_every_kind_are_kept(tmp_path, given):
+    """Second route: propagate, at the times that were kept."""
+    run_study(Study.of(span=20.0, samples=300, **given), tmp_path / "s.sqlite")
+    (result,) = results_of(tmp_path / "s.sqlite")
+    assert result.failure == ""
+    motion, case = result.kept["motion"], result.case
+    found = propagate(
+        case.hamiltonian, (0, case.span), case.state, method="taylor", parameters=case.values, times=motion["t"]
+    )  # fmt: skip
+    tolerance = 1e-6
+    for name in case.variables:
+        np.testing.assert_allclose(motion[name], found[name], rtol=tolerance, atol=tolerance)
+    for name in result.kept["section"] if len(result.kept) > 1 else ():
+        assert np.isfinite(result.kept["section"][name]).all()
