@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import shutil
 import signal
 import time
 from typing import TYPE_CHECKING
@@ -114,6 +115,7 @@ def hostile_studies(count: int, folder: Path, seed: int = 1) -> Count:
     path = folder / "hostile.toml"
     for number in range(count):
         path.write_text(_file(number, draw), encoding="utf-8", errors="replace")
+        shutil.rmtree(folder / "hostile.sqlite.kept", ignore_errors=True)
         for old in folder.glob("hostile.sqlite*"):
             old.unlink()
         found.add(

@@ -323,7 +323,12 @@ def test_a_driven_motion_is_kept_in_its_own_variables(tmp_path):
     "given",
     [
         {"system": "rolling-disc", "method": "taylor", "keep": ["motion", {"section": "theta - 1"}]},
-        {"system": "kepler", "method": TimeTransformed(Splitting("kahan-li-8")), "step": 0.01, "keep": "motion"},
+        {
+            "system": "kepler",
+            "method": TimeTransformed(Splitting("kahan-li-8")),
+            "step": 0.01,
+            "keep": "motion",
+        },
         {
             "system": "kepler",
             "method": "dop853",
