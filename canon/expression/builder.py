@@ -12,6 +12,8 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.expression.conditions import alternatives, related
+from canon.expression.ranges.over_ranges import over_ranges
+from canon.expression.ranges.range_of_call import INTEGRAL, PRODUCT, SUM, bound_names
 from canon.expression.symbols.magnitude import MOST_DIGITS, digits
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, time_derivative, velocity
 from canon.expression.text import syntax
@@ -53,11 +55,16 @@ class Builder:
             raise LanguageError.together([fault, *others]) if others else fault from None
 
     def _strange_names(self, node: syntax.Node) -> Iterator[LanguageError]:
+        bound = bound_names(node)
         for part in syntax.parts(node):
             called = isinstance(part, syntax.Call)
             name = part.function if called else part.text if isinstance(part, syntax.Name) else ""
             known = name in (*self.scope.functions, *FUNCTIONS, *_OWN, "") or self.scope.declares(name)
-            if not known and (called or name not in CONSTANTS):
+            if (
+                not known
+                and (called or name not in (*CONSTANTS, "i"))
+                and name.rpartition("_")[2] not in bound
+            ):
                 what = "is not a function of the language" if called else "is not declared"
                 yield LanguageError(self.text, part.column, f"{name} {what}", self.scope.near(name))
 
@@ -120,6 +127,8 @@ class Builder:
             self.refuse(node, f"{node.text} is a function", f"write {node.text}({arguments})")
         if node.text in CONSTANTS:
             return CONSTANTS[node.text]
+        if node.text == "i" and not self.scope.declares("I"):
+            return sp.I
         if node.text in FUNCTIONS:
             self.refuse(node, f"{node.text} needs its argument in parentheses")
         return self.refuse(node, f"{node.text} is not declared", self.scope.near(node.text))
@@ -147,6 +156,8 @@ class Builder:
             return self.primed(node)
         if name == "Piecewise":
             return self.piecewise(node)
+        if name in (INTEGRAL, SUM, PRODUCT):
+            return over_ranges(self, node)
         if name not in FUNCTIONS:
             self.refuse(node, f"{name} is not a function of the language", self.scope.near(name))
         return self.of_vocabulary(node)
@@ -378,21 +389,8 @@ def _bits(value: Expr) -> int:
     return max(int(number.p).bit_length(), int(number.q).bit_length(), 1)
 
 
-_OWN = (
-    "Derivative",
-    "diff",
-    "D",
-    "Piecewise",
-    "Ne",
-    "Eq",
-    "And",
-    "Or",
-    "True",
-    TOTAL,
-    PARTIAL,
-    PRIMED,
-    "d/dx",
-)
+_OWN = ("Derivative", "diff", "D", "Piecewise", "Ne", "Eq", "And", "Or", "True", TOTAL, PARTIAL, PRIMED, "d/dx",
+        INTEGRAL, SUM, PRODUCT)  # fmt: skip
 """Functions with a meaning of their own."""
 
 

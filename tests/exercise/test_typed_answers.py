@@ -149,3 +149,33 @@ def test_what_is_not_read_is_told_with_what_to_write(text, told):
     found = judged({"kind": "euler-lagrange", "q": ["x"], "L": "x_dot**2/2 - k*x**2/2"}, claim=[text])
     assert found.status == "invalid"
     assert told in found.known
+
+
+LISTS = [
+    "[Eq(m*Derivative(x(t), (t, 2)), -k*x(t)), Eq(y(t).diff(t, 2), -g)]",
+    "{m x''[t] == -k x[t], y''[t] == -g}",
+    "Matrix([[m*x'' + k*x], [y'' + g]])",
+    r"\begin{pmatrix} m\ddot x \\ \ddot y \end{pmatrix} = \begin{pmatrix} -kx \\ -g \end{pmatrix}",
+    "matrix([m*x'' + k*x],[y'' + g])",
+    "<p>m x'' = -k x</p><p>y'' = -g</p>",
+]
+
+
+TWO = {
+    "kind": "euler-lagrange",
+    "q": ["x", "y"],
+    "L": "m*(x_dot**2 + y_dot**2)/2 - k*x**2/2 - m*g*y",
+}
+
+
+@pytest.mark.parametrize("typed", LISTS)
+def test_equations_in_one_list_or_matrix_are_judged_one_by_one(typed):
+    assert judged(TWO, claim=[typed]).status == "holds"
+    wrong = typed.replace("k", "3*k", 1) if "begin" not in typed else typed.replace("-k", "-3k")
+    assert judged(TWO, claim=[wrong]).status == "fails"
+
+
+def test_a_name_may_stand_before_a_column():
+    field = {"kind": "lie-bracket", "x": ["x", "y"], "X": ["y", "0"], "Y": ["0", "x"]}
+    assert judged(field, claim=r"Z = \begin{pmatrix} -x \\ y \end{pmatrix}").status == "holds"
+    assert judged(field, claim=r"Z = \begin{pmatrix} x \\ y \end{pmatrix}").status == "fails"

@@ -383,7 +383,7 @@ FAULTS = [
     (r"$\dddot x", 2, "not read"),
     (r"$x < \infty", 6, "not read"),
     (r"$\foo{x}", 2, "not read"),
-    (r"$\int x", 2, "not read"),
+    (r"$\int x", 2, "a lower and an upper limit"),
     (r"$\begin{cases} x \end{cases}", 18, "should be"),
     (r"$\begin{cases} x & x > 0", 2, "never closed"),
     (r"$\begin{pmatrix} x \end{pmatrix}", 2, "not read"),

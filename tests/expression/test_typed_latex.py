@@ -18,7 +18,7 @@ LABEL = re.compile(
     r"\w+(\([\w,']*\))?|\w+'|\{\w+,\w+\}|\[\w+,\w+\]|d\w+/dt|-?∂[A-Z]/∂\w+'?|[A-Z][-+][A-Z]|H\+∂F/∂t"
 )
 """What names an answer, or a definition from a book."""
-FILES = ("latex.json", "latex_held_out.json", "outside.json")
+FILES = ("latex.json", "latex_held_out.json", "outside.json", "first_sight.json")
 
 
 @cache
@@ -31,7 +31,7 @@ def scope_of(name):
     """Return the scope that a corpus names, and the same names for SymPy's parser."""
     said = next(
         corpus(file)["scopes"][name]
-        for file in ("latex.json", "outside.json")
+        for file in ("latex.json", "outside.json", "first_sight.json")
         if name in corpus(file)["scopes"]
     )
     q = [Coordinate(x, real=True) for x in said["q"].split()]

@@ -6,10 +6,19 @@ import re
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from canon.expression.text.notation import is_latex
+
 if TYPE_CHECKING:
     from canon.expression.text.statement import Side, Statement
 
-__all__ = ["components_of", "entries_of", "equation_between", "of_matrix", "whole_statement"]
+__all__ = [
+    "components_of",
+    "entries_of",
+    "equation_between",
+    "equations_listed",
+    "of_matrix",
+    "whole_statement",
+]
 
 MOST_ENTRIES = 100
 """Most components in one field."""
@@ -19,8 +28,17 @@ _LATEX_MATRIX = re.compile(
     re.DOTALL,
 )
 _PLAIN_MATRIX = re.compile(
-    r"\s*(?:\w{1,9}\.)?(?:Immutable|Mutable)?(?:Dense)?(?:Matrix|Vector)\(\s*\[(?P<inside>.*)\]\s*\)[\s.]*",
+    r"\s*(?:(?:\w{1,9}\.)?(?:Immutable|Mutable)?(?:Dense)?(?:Matrix|Vector)\(\s*\[(?P<inside>.*)\]|"
+    r"matrix\((?P<rows>\s*\[.*\]))\s*\)[\s.;]*",
     re.DOTALL,
+)
+_BEFORE_MATRIX = re.compile(
+    r"[^=<>]{1,400}=(?=[\s$&]*(?:\\left\s*[(\[]\s*)?(?:\\begin\{(?:[pbB]|small)?matrix\}|(?:\w{1,9}\.)?"
+    r"(?:Immutable|Mutable)?(?:Dense)?(?:Matrix|Vector|matrix)\())"
+)
+_NAME_OF_MATRIX = re.compile(
+    r"[\s$]*(?:\\(?:dot|ddot|vec|mathbf|boldsymbol|bm|hat|mathrm|mathcal|underline)\s*)?"
+    r"\{?\s*\\?[^\W\d]\w{0,12}\s*\}?(?:_\{?\w{1,9}\}?)?'{0,2}\s*(?:\([\w, \\]{0,40}\))?\s*"
 )
 
 
@@ -45,14 +63,30 @@ def of_matrix(text: str) -> list[str]:
     --------
     >>> [entry.strip() for entry in of_matrix(r"$\begin{pmatrix} y \\ -x \end{pmatrix}$")]
     ['$ y', '$ -x']
+    >>> [entry.split() for entry in of_matrix("Matrix([x, y]) = Matrix([1, 2])")]
+    [['x', '=', '1'], ['y', '=', '2']]
     >>> [entry.strip() for entry in of_matrix("Matrix([[y], [-x]])")], of_matrix("Matrix([[1, 0], [0, 1]])")
     (['y', '-x'], [])
     """
+    if before := _BEFORE_MATRIX.match(text):
+        right = of_matrix(" " * before.end() + text[before.end() :])
+        left = text[: before.end() - 1]
+        if not right or _NAME_OF_MATRIX.fullmatch(left):
+            return right
+        named = of_matrix(left)
+        if len(named) != len(right):
+            return []
+        return [_equation(a, b, before.end() - 1) for a, b in zip(named, right, strict=True)]
     if found := _LATEX_MATRIX.fullmatch(text):
         return _of_latex_matrix(text, *found.span("inside"))
     if found := _PLAIN_MATRIX.fullmatch(text):
-        return _of_plain_matrix(text, *found.span("inside"))
+        return _of_plain_matrix(text, *found.span("inside" if found["inside"] is not None else "rows"))
     return []
+
+
+def _equation(left: str, right: str, sign: int) -> str:
+    """Return the equation of two entries, its sign where that of the matrices stood."""
+    return f"{left.ljust(sign)}={right[sign + 1 :].replace('$', ' ', 1)}"
 
 
 def _of_latex_matrix(text: str, begin: int, end: int) -> list[str]:
@@ -97,6 +131,18 @@ def components_of(text: str) -> list[str]:
     if not 3 <= len(cuts) <= MOST_ENTRIES + 1:
         return []
     return [" " * (a + 1) + text[a + 1 : b] for a, b in pairwise(cuts)]
+
+
+def equations_listed(text: str) -> list[str]:
+    """Return the equations of one list, each at its column; nothing where it is none.
+
+    Examples
+    --------
+    >>> [equation.strip() for equation in equations_listed("[Eq(x', p), Eq(p', -x)]")], equations_listed("(a, b)")
+    (["Eq(x', p)", "Eq(p', -x)"], [])
+    """
+    entries = [] if is_latex(text) else components_of(text)
+    return entries if all("=" in entry or "Eq(" in entry for entry in entries) else []
 
 
 def entries_of(text: str) -> list[str]:

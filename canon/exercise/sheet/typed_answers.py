@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.sheet.field_texts import components_of, equation_between, of_matrix, whole_statement
+from canon.exercise.sheet import field_texts
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.left_sides import OTHER_SPELLINGS, Label, Quantity, is_definition, label_of
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.sheet import Claim
     from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side, Statement
+
+    _Fault = Callable[[str, LanguageError], Exception]
 
 __all__ = ["TypedAnswers", "typed_answers"]
 
@@ -55,9 +57,7 @@ class TypedAnswers:
     units: dict[str, str] = field(default_factory=dict[str, str])
 
 
-def typed_answers(
-    claim: Claim, scope: Scope, fault: Callable[[str, LanguageError], Exception]
-) -> TypedAnswers:
+def typed_answers(claim: Claim, scope: Scope, fault: _Fault) -> TypedAnswers:
     """Return what a claim says with every text of it in plain form.
 
     Parameters
@@ -80,7 +80,7 @@ def typed_answers(
 class _Plain:
     """Makes one claim plain."""
 
-    def __init__(self, claim: Claim, scope: Scope, fault: Callable[[str, LanguageError], Exception]) -> None:
+    def __init__(self, claim: Claim, scope: Scope, fault: _Fault) -> None:
         self.of = claim
         self.scope = scope
         self.fault = fault
@@ -210,7 +210,7 @@ class _Plain:
                 self.read(place, text, side, asked)
                 readable.append(side)
         readable.append(sides[-1])
-        self.found.links += [(place, equation_between(a, b)) for a, b in pairwise(readable)]
+        self.found.links += [(place, field_texts.equation_between(a, b)) for a, b in pairwise(readable)]
         return sides[-1].text
 
     def passed(self, place: str, side: Side) -> None:
@@ -305,15 +305,13 @@ class _Plain:
 
     def names_of(self, place: str) -> tuple[Quantity, ...]:
         """Return what each component of a list is called."""
-        keys = self.of.keys
         of, rates = {
             "q_dot": ("q", 1), "p_dot": ("p", 1), "X": ("x", 1), "map.Q": ("new_q", 0), "map.P": ("new_p", 0),
             "inverse_map.q": ("q", 0), "inverse_map.p": ("p", 0), "Q": ("q", 0), "P": ("p", 0), "force": ("q", 0),
             "Qnc": ("q", 0),
         }.get(place, ("", 0))  # fmt: skip
-        listed: Any = keys.get(of, [])
-        names: list[str] = listed if isinstance(listed, list) else [listed]
-        found: list[Quantity] = []
+        listed: Any = self.of.keys.get(of, [])
+        names, found = (listed if isinstance(listed, list) else [listed]), list[Quantity]()
         for i, name in enumerate(names, 1):
             if place in ("Q", "P", "force", "Qnc"):
                 letter = "Q" if place in ("force", "Qnc") else place
@@ -329,12 +327,12 @@ class _Plain:
 
     def apart(self, place: str, text: str) -> list[str]:
         """Return the components that stand in one text: in one bracket, or as several equations."""
-        if entries := of_matrix(text):
+        if entries := field_texts.of_matrix(text):
             return entries
         statements = self.statements(place, text)
         if len(statements) > 1:
-            return [whole_statement(statement, text) for statement in statements]
-        return components_of(text) or [text]
+            return [field_texts.whole_statement(statement, text) for statement in statements]
+        return field_texts.components_of(text) or [text]
 
     def in_order(self, place: str, texts: Sequence[str], names: tuple[Quantity, ...]) -> list[str]:
         """Return components in the order that is asked for, where their left sides say another one."""
@@ -351,7 +349,9 @@ class _Plain:
 
     def equations(self, place: str, value: Any) -> list[Any]:
         """Return a list of equations, chains taken apart."""
-        texts = value if isinstance(value, list) else [value]
+        texts: list[Any] = value if isinstance(value, list) else [value]
+        if len(texts) == 1 and isinstance(texts[0], str):
+            texts = field_texts.of_matrix(texts[0]) or field_texts.equations_listed(texts[0]) or texts
         found: list[Any] = []
         for i, text in enumerate(texts):
             where = f"{place}[{i}]"
@@ -373,9 +373,8 @@ class _Plain:
         sides = statement.sides
         rest = tuple(side for side in sides if not is_definition(side.said, "claim", self.scope))
         if len(rest) == len(sides):
-            return (
-                [sides[0].text] if len(sides) == 1 else [equation_between(a, b) for a, b in pairwise(sides)]
-            )
+            links = [field_texts.equation_between(a, b) for a, b in pairwise(sides)]
+            return links or [sides[0].text]
         whole = len(rest) == 1 and "-" in sides[0].said and rest[0].said.strip("$0. ")
         if len(rest) < 2 and not whole:
             reason = "this is Lagrange's equation itself, true of every system"
@@ -383,7 +382,11 @@ class _Plain:
         for side in sides:
             if side not in rest:
                 self.passed(place, side)
-        return [rest[0].text] if len(rest) == 1 else [equation_between(a, b) for a, b in pairwise(rest)]
+        return (
+            [rest[0].text]
+            if len(rest) == 1
+            else [field_texts.equation_between(a, b) for a, b in pairwise(rest)]
+        )
 
     def statements(self, place: str, text: str) -> tuple[Statement, ...]:
         """Return the statements of a text."""

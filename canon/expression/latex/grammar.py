@@ -32,6 +32,7 @@ from canon.expression.latex.meaning import Meaning
 from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered, mark_of
 from canon.expression.latex.quotient import dividing, shown
 from canon.expression.latex.words import Word, Words, words_of
+from canon.expression.ranges.latex_ranges import with_ranges
 from canon.expression.text.syntax import (
     Call,
     Comparison,
@@ -147,12 +148,22 @@ def parse_latex(text: str, scope: Scope) -> Node:
         column = others[0][0].start + 1
         raise LanguageError(text, column, "a second equation begins here", "write one equation only")
     try:
-        words = words_of(bare, scope, sides[0].start, sides[-1].end)
-        return _Build(words, Meaning(bare, scope, words.spaced)).transform(_structure(bare, words))
+        return _tree(bare, scope, sides[0].start, sides[-1].end)
     except VisitError as error:
         raise _of_field(text, error.orig_exc) from None
     except LanguageError as error:
         raise _of_field(text, error) from None
+
+
+def _tree(text: str, scope: Scope, start: int, end: int) -> Node:
+    """Return the tree of what stands between two places, integrals and sums read first."""
+
+    def read(part: str, begin: int, stop: int, variable: str) -> Node:
+        return _tree(part, scope.with_variable(variable), begin, stop)
+
+    text, inner = with_ranges(text, start, end, read)
+    words = words_of(text, scope, start, end, inner)
+    return _Build(words, Meaning(text, scope, words.spaced)).transform(_structure(text, words))
 
 
 def _of_field(text: str, error: Exception) -> Exception:

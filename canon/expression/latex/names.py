@@ -184,7 +184,7 @@ class Names:
         whole = self.spelled((letters,), pieces, order, column) or self._mark(letters, 0, column)
         if whole is not None:
             return [whole]
-        if (letters in FUNCTIONS or letters in ("pi", "i")) and not pieces and not order:
+        if (letters in FUNCTIONS or letters in ("pi", "i", "I")) and not pieces and not order:
             return [self._spelled_out(letters, column)]
         splits = self._splits(letters, column)
         ends = self._ends(letters, column, pieces, order, splits, powered=powered)
@@ -216,13 +216,10 @@ class Names:
                 f"{letters} can be read as \\{letters} and as {factors}",
                 f"write \\{letters}, or the factors with spaces",
             )
-        if letters == "i":
-            if self.declares("I"):
-                self._refuse(
-                    column,
-                    "i is not declared, and I is",
-                    "write I for the symbol; the imaginary unit needs a sheet without I",
-                )
+        if letters == "i" and self.declares("I"):
+            remedy = "write I for the symbol; the imaginary unit needs a sheet without I"
+            self._refuse(column, "i is not declared, and I is", remedy)
+        if letters in ("i", "I"):
             return Name("I", 0, column)
         return Name("pi", 0, column) if letters == "pi" else Function(FUNCTIONS[letters], column)
 

@@ -10,7 +10,7 @@ from canon.expression.text.syntax import LanguageError, Number
 
 if TYPE_CHECKING:
     from canon.expression.latex.names import Item
-    from canon.expression.latex.pieces import LatexFraction, Operator
+    from canon.expression.latex.pieces import Group, LatexFraction, Operator
 
 __all__ = ["Word", "WordList", "Words", "together"]
 
@@ -32,7 +32,7 @@ class Word:
     """One word: its kind in the grammar, what it means, how it looks and where it stands."""
 
     kind: str
-    item: Item | LatexFraction | Operator | None
+    item: Item | LatexFraction | Operator | Group | None
     shown: str
     column: int
 
@@ -86,7 +86,7 @@ class WordList:
         return self.in_cases and self.last in ("CCOLUMN", "CAND", "COR", "LCLAUSE")
 
     def emit(
-        self, kind: str, shown: str, column: int, item: Item | LatexFraction | Operator | None = None
+        self, kind: str, shown: str, column: int, item: Item | LatexFraction | Operator | Group | None = None
     ) -> None:
         """Take one word."""
         if len(self.words) >= syntax.MAX_TOKENS:

@@ -22,7 +22,7 @@ from canon.expression.latex.names import (
     spellings,
     stems,
 )
-from canon.expression.latex.pieces import LatexFraction, Operator
+from canon.expression.latex.pieces import Group, LatexFraction, Operator
 from canon.expression.latex.printed_forms import (
     CLAUSE,
     CONDITION,
@@ -36,9 +36,11 @@ from canon.expression.latex.printed_forms import (
 from canon.expression.latex.scripts import Scripts, accented, braced_name, dots_above, scripts, upright
 from canon.expression.latex.word_list import Word, WordList, Words, together
 from canon.expression.text import syntax
-from canon.expression.text.syntax import LanguageError, Name, Number, Product
+from canon.expression.text.syntax import LanguageError, Name, Node, Number, Product
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from canon.expression.text.scope import Scope
 
 __all__ = ["Word", "Words", "words_of"]
@@ -57,24 +59,25 @@ _COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:[A-Za-z]+(?:\{[^{}]{0,200}\})?|.)", r
 _SIZES = re.compile(r"\\(?:left|right|middle|[bB]igg?[lrm]?)(?![A-Za-z])\s*")
 _ACCENTS = {"dot": 1, "ddot": 2}
 _SQUARED = re.compile(r"(?:\s|\\,|\\right|\|)*(?:\^\s*(?:2(?![0-9])|\{\s*2\s*\})|²)")
-_MOST_FAULTS = 5
-"""Most faults that are told at once."""
+_MOST_FAULTS = 5  # that are told at once
 
 
-def words_of(text: str, scope: Scope, start: int = 0, end: int | None = None) -> Words:
+def words_of(
+    text: str, scope: Scope, start: int = 0, end: int | None = None, inner: Mapping[int, Node] | None = None
+) -> Words:
     """Return the words of a formula in LaTeX, which begins and ends at these places of its field.
+
+    Integrals and sums have been read: ``inner`` has their trees by the places of the signs that stand for them.
 
     Raises
     ------
     LanguageError
         Where the text is too large, not closed, or has something in it that is not read; all such places are told.
     """
-    if len(text) > syntax.MAX_CHARACTERS:
-        most = syntax.MAX_CHARACTERS
-        raise LanguageError(
-            text, most, f"{len(text)} characters, and at most {most} are read", "split the claim"
-        )
-    reader = _Reader(text, scope, start, len(text) if end is None else end)
+    if len(text) > (most := syntax.MAX_CHARACTERS):
+        told = f"{len(text)} characters, and at most {most} are read"
+        raise LanguageError(text, most, told, "split the claim")
+    reader = _Reader(text, scope, (start, len(text) if end is None else end), inner or {})
     faults: list[LanguageError] = []
     while reader.at < reader.end and len(faults) < _MOST_FAULTS:
         at = reader.at
@@ -93,11 +96,12 @@ def words_of(text: str, scope: Scope, start: int = 0, end: int | None = None) ->
 class _Reader:
     """Walks through the text once, from left to right."""
 
-    def __init__(self, text: str, scope: Scope, start: int, end: int) -> None:
+    def __init__(self, text: str, scope: Scope, span: tuple[int, int], inner: Mapping[int, Node]) -> None:
         self.text = text
         self.names = Names(text, scope)
-        self.at, self.end = start, end
+        self.at, self.end = span
         self.out = WordList(text)
+        self.inner = inner
 
     def refuse(self, column: int, reason: str, remedy: str = "") -> NoReturn:
         raise LanguageError(self.text, column, reason, remedy)
@@ -329,7 +333,10 @@ class _Reader:
 
     def sign(self, character: str) -> None:
         column = self.at + 1
-        if character == "&" and self.out.in_cases:
+        if self.at in self.inner:
+            self.out.emit("ATOM", "(…)", column, Group(self.inner[self.at], braces=False, column=column))
+            self.at += 1
+        elif character == "&" and self.out.in_cases:
             self.at += 1
             self.out.emit("CCOLUMN", "&", column)
         elif character in SIGNS:
@@ -338,9 +345,8 @@ class _Reader:
         elif fraction := figure(character):
             self.at += 1
             above, below = (Number(number, 1, column) for number in fraction)
-            item = LatexFraction(
-                Product(((False, above), (True, below)), column), numbers=True, column=column
-            )
+            quotient = Product(((False, above), (True, below)), column)
+            item = LatexFraction(quotient, numbers=True, column=column)
             self.out.emit("ATOM", character, column, item)
         elif (figures := raised_figures(self.text, self.at, self.end))[0]:
             self.out.raised_by(figures[0], column)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from canon.expression.text.declared_names import function_name
+from canon.expression.text.differentials import PARTIAL, PRIMED
 from canon.expression.text.syntax import (
     Call,
     Comparison,
@@ -234,11 +235,23 @@ def constructed(reader: FactorParser, token: Token) -> Node | None:
         return None
     arguments = [node for node in with_brackets(reader) if not _is_assumption(node)]
     node = make(token.column, arguments)
+    if isinstance(node, Name) and token.text == "Subscript":
+        return _with_subscript(reader, node)
     if node is None:
         raise reader.fault(
             f"{token.text} with {len(arguments)} argument(s)", "write the formula itself", token
         )
     return node
+
+
+def _with_subscript(reader: FactorParser, name: Name) -> Name:
+    """Return the declared name that ``Subscript[m, 1]`` is, m_1 or m1, and pass over ``[t]`` behind one that moves."""
+    plain = name.text.replace("_", "")
+    if not reader.scope.declares(name.text) and reader.scope.declares(plain):
+        name = Name(plain, 0, name.column)
+    if [t.text for t in reader.tokens[reader.at : reader.at + 3]] == ["[", reader.scope.time.name, "]"]:
+        reader.at += 3
+    return name
 
 
 def _is_assumption(node: Node) -> bool:
@@ -306,9 +319,50 @@ def _derivative(column: int, arguments: list[Node]) -> Node | None:
     return Call("Derivative", tuple(arguments), column) if len(arguments) > 1 else None
 
 
+def _over(kind: str) -> Callable[[int, list[Node]], Node | None]:
+    """Return the constructor of an integral or sum; without a range it has no value."""
+    return lambda column, arguments: Call(kind, tuple(arguments), column) if len(arguments) > 1 else None
+
+
+def _slope_at(column: int, arguments: list[Node]) -> Node | None:
+    """Return the derivative at a place that SymPy prints as ``Subs(Derivative(V(_xi_1), _xi_1), _xi_1, x)``."""
+    match arguments:
+        case [Call("Derivative", (Call(f, (Name(v),)), Name(w))), Name(u), place] if v == w == u:
+            order = 1
+        case [
+            Call("Derivative", (Call(f, (Name(v),)), Tuple((Name(w), Number(order, 1))))),
+            Name(u),
+            place,
+        ] if v == w == u:
+            pass
+        case _:
+            return None
+    value, times = Call(f, (place,), column), Number(order, 1, column)
+    return (
+        Call(PARTIAL, (value, place, times), column)
+        if isinstance(place, Name)
+        else Call(PRIMED, (value, times), column)
+    )
+
+
+def _subscripted(column: int, arguments: list[Node]) -> Node | None:
+    """Return the name that Mathematica's ``Subscript[m, 1]`` is."""
+    match arguments:
+        case [Name(text, 0), Number(number, 1)]:
+            return Name(f"{text}_{number}", 0, column)
+        case [Name(text, 0), Name(index, 0)]:
+            return Name(f"{text}_{index}", 0, column)
+        case _:
+            return None
+
+
 _CONSTRUCTORS: Mapping[str, Callable[[int, list[Node]], Node | None]] = {
     "Mul": _product, "Times": _product, "Add": _sum, "Plus": _sum, "Pow": _power, "Power": _power, "pow": _power,
     "Rational": _quotient, "Fraction": _quotient, "Integer": _itself, "Float": _itself, "S": _itself,
     "sympify": _itself, "Hold": _itself, "HoldForm": _itself, "Tuple": _tuple, "D": _derivative,
     "Equal": _equation, "Equality": _equation, "power": _power, "square": _squared, "rational": _quotient,
+    **dict.fromkeys(("Integral", "integrate", "Integrate"), _over("Integral")),
+    **dict.fromkeys(("Sum", "sum", "summation"), _over("Sum")),
+    **dict.fromkeys(("Product", "product"), _over("Product")),
+    "Subscript": _subscripted, "Subs": _slope_at,
 }  # fmt: skip

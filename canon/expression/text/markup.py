@@ -20,12 +20,21 @@ _MATHML = re.compile(r"<(?:math|mrow|mi|mfrac)\b")
 _ENTITY = re.compile(r"&(?!lt;|gt;|amp;)#?[A-Za-z0-9]{2,12};")
 _SUB = re.compile(r"<sub>\s*([\w,]{1,12})\s*</sub>", re.IGNORECASE)
 _SUP = re.compile(r"<sup>([^<>]{1,200})</sup>", re.IGNORECASE)
+_FRACTION = re.compile(r"<sup>\s*(\w{1,9})\s*</sup>\s*[⁄/]\s*<sub>\s*(\w{1,9})\s*</sub>", re.IGNORECASE)
 _BREAK = re.compile(r"<br ?/?>|</(?:p|div|li|tr)>", re.IGNORECASE)
 _TAG = re.compile(
     r"</?(?:p|div|span|i|em|b|strong|var|code|pre|tt|li|ul|ol|font|u|small)(?: [^<>]{0,200})?>", re.IGNORECASE
 )
-_DRAWN = re.compile(r"[─━│⎛⎜⎝⎞⎟⎠⎡⎢⎣⎤⎥⎦⎧⎨⎩⌠⌡╲╱]|(?<=\n)[ \t]{0,99}-{3,}[ \t]{0,99}(?=\n)")
+_DRAWN = re.compile(
+    r"[─━│⎛⎜⎝⎞⎟⎠⎡⎢⎣⎤⎥⎦⎧⎨⎩⌠⌡╲╱]|(?<=\n)[ \t]{0,99}-{3,}[ \t]{0,99}(?=\n)|^[ ]+\d[\d ]*(?=\n *\S)", re.MULTILINE
+)
 """Lines and large brackets that are drawn with characters."""
+_PROMPT = re.compile(r"^\s*(?:\(%[io]\d{1,5}\)|(?:In|Out)\s?\[\d{1,5}\](?::=|=|:)|>>>)(?=\s)")
+"""What programs write before a line."""
+_WIDTHLESS = re.compile(r"[\u200b\u2060\ufeff]")
+_ASSIGNED = re.compile(r"^(\s*[A-Za-z]\w{0,9}\s*):(?![:=])(?=[^;]*;\s*$)")
+"""Maxima's ``L: …;``."""
+_PRIMED = re.compile(r"Derivative\[([1-4])\]\[((?:\\\[[A-Z][A-Za-z]{1,20}\]|\w){1,40})\](?=\[)")
 _FENCE = re.compile(r"^\s*```[a-z]{0,12}\n(.*?)\n?```\s*$", re.DOTALL)
 
 
@@ -46,6 +55,9 @@ def unmarked(text: str) -> str:
     """
     if len(text) > MAX_CHARACTERS:
         return text
+    text = _ASSIGNED.sub(r"\1=", _PROMPT.sub(_blank, text))
+    if "Derivative[" in text:
+        text = _PRIMED.sub(_with_primes, text)
     if drawn := _DRAWN.search(text):
         reason = "this is a drawing of the formula over several lines, as SymPy's pprint makes it"
         raise LanguageError(text, drawn.start() + 1, reason, "write what print(…) or latex(…) of it shows")
@@ -54,10 +66,19 @@ def unmarked(text: str) -> str:
         reader.feed(text)
         return reader.text()
     if _HTML.search(text):
-        text = _ENTITY.sub(lambda found: html.unescape(found.group()), text)
+        text = _FRACTION.sub(r"(\1/\2)", _ENTITY.sub(lambda found: html.unescape(found.group()), text))
         text = _BREAK.sub("\n", _SUP.sub(r"^(\1)", _SUB.sub(r"_\1", text)))
-        text = html.unescape(_TAG.sub("", text)).strip()
+        text = _WIDTHLESS.sub("", html.unescape(_TAG.sub("", text))).strip()
     return _without_markdown(text)
+
+
+def _blank(found: re.Match[str]) -> str:
+    return " " * len(found.group())
+
+
+def _with_primes(found: re.Match[str]) -> str:
+    """Return Mathematica's ``Derivative[2][x]`` as ``x''``, as long as it was."""
+    return f"{found[2]}{chr(39) * int(found[1])}".rjust(len(found.group()))
 
 
 def _without_markdown(text: str) -> str:

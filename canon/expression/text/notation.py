@@ -6,11 +6,13 @@ import re
 
 __all__ = ["is_latex"]
 
-_IS_LATEX = re.compile(r"\$|\\(?:[A-Za-z]|[(\\{|,;:! ]|\[(?![A-Z][A-Za-z]{1,20}\]))|[\^_]\{")
+_IS_LATEX = re.compile(r"[$∫∑∏]|\\(?:[A-Za-z]|[(\\{|,;:! ]|\[(?![A-Z][A-Za-z]{1,20}\]))|[\^_]\{")
 
 
 def is_latex(text: str) -> bool:
-    r"""Tell whether a text is LaTeX: it holds a dollar, a command such as ``\theta``, or ``^{`` or ``_{``.
+    r"""Tell whether a text is LaTeX.
+
+    It is where it holds a dollar, a command such as ``\theta``, ``^{`` or ``_{``, or the sign of an integral or a sum.
 
     Plain text has none of these; ``\[Theta]`` is Mathematica's.
 

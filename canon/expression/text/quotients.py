@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from canon.expression.symbols.symbol import Momentum
 from canon.expression.text.applied_functions import is_function
-from canon.expression.text.syntax import Name, Node, Number, Power, Product, parts
+from canon.expression.text.syntax import Name, Negative, Node, Number, Power, Product, parts
 
 if TYPE_CHECKING:
     from canon.expression.text.factor_parser import FactorParser
@@ -66,8 +66,9 @@ def ended(reader: FactorParser, factors: list[tuple[bool, Node]], starts: list[i
     below = piece[slash + 1 :]
     bracketed = below[-1].text == _CLOSING.get(below[0].text)
     tight = all(t.tight for t in piece[slash:]) and not reader.token.tight
-    plain = isinstance(factors[-2][1], Number) and isinstance(factors[-1][1], Number)
-    half = isinstance(factors[-1][1], Number) and _steady(reader, factors[-2][1]) and reader.token.text == "("
+    over = factors[-2][1].operand if isinstance(factors[-2][1], Negative) else factors[-2][1]
+    plain = isinstance(over, Number) and isinstance(factors[-1][1], Number)
+    half = isinstance(factors[-1][1], Number) and _steady(reader, over) and reader.token.text == "("
     plain = plain or half
     steady = is_function(reader) and all(_steady(reader, node) for _, node in factors)
     if bracketed or (tight and (plain or steady)):

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import difflib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
+
+from sympy import Symbol
 
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, acceleration, time, velocity
 from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES, WRITTEN_OUT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from sympy import Symbol
 
 __all__ = ["Scope", "split"]
 
@@ -91,6 +91,12 @@ class Scope:
     def declares(self, name: str) -> bool:
         """Tell whether a name stands for a declared symbol or a rate."""
         return name not in self.functions and self.symbol(name) is not None
+
+    def with_variable(self, name: str) -> Scope:
+        """Return a scope that knows one more name, the variable of an integral; the scope itself if it knows it."""
+        if not name or self.symbol(name) is not None or name in self.functions:
+            return self
+        return replace(self, names={**self.names, name: Symbol(name, real=True)})
 
     def near(self, name: str) -> str:
         """Return a remedy for an unknown name."""

@@ -98,7 +98,7 @@ _AFTER = (
     rf"(?:{_LETTER}|[0-9_{''.join(_SUB)}{''.join(_MARKS)}{''.join(_PRIMES)}]|(?<=_)\{{[^{{}}\s]{{1,12}}\}})"
 )
 _TOKEN = re.compile(
-    r"(?P<space>[\s\u2061\u2062\u2063]+|'(?=diff\b)|\\(?=[*_^])"
+    r"(?P<space>[\s\u2061\u2062\u2063]+|'(?=(?:diff|integrate|sum)\b)|\\(?=[*_^])"
     r"|(?:np|numpy|math|sp|sympy|sym|sy|sm|smp|mpmath|cmath)\.(?=[A-Za-z])|[.,;](?=\s*$))"
     r"|(?P<string>'[A-Za-z_]\w{0,40}'|\"[A-Za-z_]\w{0,40}\")"
     r"|(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"

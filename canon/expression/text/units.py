@@ -25,7 +25,7 @@ __all__ = ["Unit", "units", "without_units"]
 OF_MECHANICS = ("kg", "rad", "Hz", "Pa", "m", "s", "N", "J", "W")
 """Units that may stand without brackets; the other letters are more often a quantity that was not declared."""
 COHERENT = (*OF_MECHANICS, "mol", "Wb", "A", "K", "C", "V", "F", "T", "H", "Ω")
-_NUMBER = re.compile(r"(?<![\w.\\])(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?(?![\w.])")
+_NUMBER = re.compile(r"(?<![\w.\\\]])(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?(?![\w.])")
 _POWER = r"(?:[²³]|⁻[¹²³]|(?:\^|\*\*)(?:[-−]?[0-9]{1,2}|\([-−]?[0-9]{1,2}\)|\{[-−]?[0-9]{1,2}\}))?"
 
 

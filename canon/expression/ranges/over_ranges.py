@@ -1,0 +1,84 @@
+"""Values of integrals and sums over ranges, from their syntax trees."""
+
+from __future__ import annotations
+
+from functools import reduce
+from typing import TYPE_CHECKING, NoReturn, Protocol
+
+import sympy as sp
+
+from canon.expression.ranges.definite_integral import definite_integral
+from canon.expression.ranges.range_of_call import INTEGRAL, SUM, Range, ranges, with_index
+from canon.expression.text.syntax import parts
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sympy import Expr
+
+    from canon.expression.text.scope import Scope
+    from canon.expression.text.syntax import Call, Node
+
+__all__ = ["over_ranges"]
+
+MOST_TERMS = 100
+MOST_NODES = 20_000
+"""Size of all terms of a sum together."""
+
+
+class _Builder(Protocol):
+    """What gives a tree its meaning."""
+
+    text: str
+    scope: Scope
+
+    def __init__(self, text: str, scope: Scope) -> None: ...
+    def expression(self, node: Node) -> Expr: ...
+    def refuse(self, node: Node, reason: str, remedy: str = "") -> NoReturn: ...
+
+
+def over_ranges(builder: _Builder, node: Call) -> Expr:
+    """Return the value of a definite integral, of a finite sum or product.
+
+    Raises
+    ------
+    LanguageError
+        Where a range is not complete, a bound of a sum no number, or an integral of no known form.
+    """
+    operand = node.arguments[0]
+    found: Sequence[Range] = ranges(node.arguments[1:])
+    if not found or (node.function != INTEGRAL and len(found) > 1):
+        builder.refuse(
+            node, f"{node.function} takes a variable and two bounds", f"write {node.function}(f, (x, 0, a))"
+        )
+    if node.function == INTEGRAL:
+        return _integrated(builder, node, operand, found)
+    index = found[0]
+    lower, upper = (builder.expression(bound) for bound in (index.lower, index.upper))
+    if not (lower.is_Integer and upper.is_Integer and 0 <= int(upper) - int(lower) < MOST_TERMS):
+        reason = f"a sum or product has from 1 to {MOST_TERMS} terms here"
+        builder.refuse(node, reason, "write numbers as its bounds, or its value")
+    numbers = range(int(lower), int(upper) + 1)
+    if len(numbers) * sum(1 for _ in parts(operand)) > MOST_NODES:
+        builder.refuse(node, "this sum is longer than anyone writes", "write its value")
+    name, known = index.variable.text, builder.scope.declares
+    terms = [builder.expression(with_index(operand, name, number, known)) for number in numbers]
+    return sp.Add(*terms) if node.function == SUM else sp.Mul(*terms)
+
+
+def _integrated(builder: _Builder, node: Call, operand: Node, found: Sequence[Range]) -> Expr:
+    """Return the integral over one range after the other, the first the innermost."""
+    scope = reduce(lambda known, one: known.with_variable(one.variable.text), found, builder.scope)
+    inside = type(builder)(builder.text, scope)
+    value = inside.expression(operand)
+    for number, one in enumerate(found):
+        x = scope.symbol(one.variable.text)
+        if x is None or one.variable.primes:
+            builder.refuse(one.variable, "an integral is over a variable, no function or rate")
+        outer = inside if number + 1 < len(found) else builder
+        whole = definite_integral(value, x, outer.expression(one.lower), outer.expression(one.upper))
+        if whole is None:
+            reason = "this integral is not read: the integrand is no sum of powers, sines, cosines and exponentials"
+            builder.refuse(node, reason, "write its value, as a function of its ends")
+        value = whole
+    return value

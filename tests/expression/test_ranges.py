@@ -1,0 +1,96 @@
+"""Definite integrals and finite sums as they are written: what they are read as, against quadrature and SymPy."""
+
+import mpmath
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from canon import coordinates
+from canon.expression.parse import LanguageError, Scope, parse_expression
+from canon.expression.ranges.definite_integral import definite_integral
+
+theta, x_1, x_2 = coordinates("theta x_1 x_2")
+m_1, m_2, m, a, k, beta = sp.symbols("m_1 m_2 m a k beta", positive=True)
+SCOPE = Scope({s.name: s for s in (theta, x_1, x_2, m_1, m_2, m, a, k, beta)})
+t = SCOPE.time
+
+READ = [
+    (r"\int_0^{2\pi} \sin^2\theta\,d\theta", sp.pi),
+    (r"\frac{1}{2\pi}\int_{0}^{2\pi}\!\cos^4\theta\,\mathrm{d}\theta + m", m + sp.Rational(3, 8)),
+    (r"m\int\limits_0^a s\left(1 + s\right) ds", m * (a**2 / 2 + a**3 / 3)),
+    (r"\int_0^t e^{-\beta s}\,ds", (1 - sp.exp(-beta * t)) / beta),
+    (r"\int_0^1\int_0^s u\,du\,ds", sp.Rational(1, 6)),
+    (r"\int_0^a d s", a),
+    ("∫_0^a s^2 ds", a**3 / 3),
+    ("Integral(s**2*k, (s, 0, a))", k * a**3 / 3),
+    ("integrate(s*u, (s, 0, 1), (u, 0, a))", a**2 / 4),
+    ("'integrate(sin(s), s, 0, %pi)", 2),
+    ("Integrate[Sin[s], {s, 0, a}]", 1 - sp.cos(a)),
+    ("Integral(1/s, (s, a, 2*a))", sp.log(2)),
+    (r"\sum_{i=1}^{2} \tfrac12 m_i \dot x_i^2", m_1 * x_1.dot**2 / 2 + m_2 * x_2.dot**2 / 2),
+    (r"\sum_{k=1}^3 k^2 + m", 14 + m),
+    (r"\prod_{i=1}^{3} i", 6),
+    ("∑_{i=1}^{2} m_i", m_1 + m_2),
+    ("Sum(m_i, (i, 1, 2))", m_1 + m_2),
+    ("Sum[i m, {i, 1, 3}]", 6 * m),
+    ("sum(j^2, j, 1, 3)", 14),
+]
+
+
+@pytest.mark.parametrize(("text", "meaning"), READ)
+def test_ranges_are_read(text, meaning):
+    assert sp.expand(parse_expression(text, SCOPE) - meaning) == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (r"\sum_{i=1}^{2} m_i + x_i", "does the sum go on"),
+        (r"\sum_{i=1}^{2} 2i", "an index behind a number"),
+        (r"\sum_{i=1}^{n} m_i", "the limits of a sum"),
+        (r"\int x dx", "a lower and an upper limit"),
+        (r"\int_0^a \frac{ds}{1+s}", "no differential outside brackets"),
+        (r"\int_0^a ds\, s", "does what follows belong"),
+        ("Integral(1/(1 + cos(s)), (s, 0, a))", "this integral is not read"),
+        ("Integral(s**2, s)", "takes a variable and two bounds"),
+        ("Integral(1/s, (s, -1, a))", "this integral is not read"),
+        ("Sum(m, (i, 1, k))", "from 1 to 100 terms"),
+        ("Sum(m, (i, 1, 10**9))", "from 1 to 100 terms"),
+        ("Integral(s**10**5, (s, 0, 1))", "an exponent beyond"),
+        ("Sum(zz*i, (i, 1, 2))", "zz is not declared"),
+    ],
+)
+def test_what_is_open_or_not_known_is_refused(text, said):
+    with pytest.raises(LanguageError) as error:
+        parse_expression(text, SCOPE)
+    assert said in str(error.value)
+
+
+x = sp.Symbol("x", real=True)
+linear = st.tuples(st.integers(-3, 3), st.integers(-3, 3)).map(lambda ab: ab[0] * x + ab[1])
+wave = st.builds(lambda g, u: g(u), st.sampled_from([sp.sin, sp.cos, sp.exp]), linear)
+term = st.builds(
+    lambda c, n, g: c * x**n * g, st.integers(-4, 4), st.integers(0, 4), st.one_of(wave, st.just(sp.S.One))
+)
+integrands = st.lists(
+    st.one_of(term, st.builds(lambda u, v: sp.sin(u) * sp.cos(v) ** 2, linear, linear)),
+    min_size=1,
+    max_size=3,
+)
+
+
+@settings(max_examples=12, deadline=None)
+@given(integrands, st.integers(-3, 3), st.integers(-3, 3))
+def test_integrals_agree_with_quadrature(parts, lower, upper):
+    f = sp.Add(*parts)
+    found = definite_integral(f, x, sp.Integer(lower), sp.Integer(upper))
+    assert found is not None
+    by_quadrature = mpmath.quad(sp.lambdify(x, f, "mpmath"), [lower, (lower + upper) / 2, upper])
+    assert abs(sp.N(found, 30) - by_quadrature) < 1e-8 * (1 + abs(by_quadrature))
+
+
+def test_the_variable_of_an_integral_is_its_own():
+    """A bound may hold the name that is integrated over; it means the one outside."""
+    assert parse_expression("Integral(theta, (theta, 0, theta))", SCOPE) == theta**2 / 2
+    assert parse_expression("m*Integral(m, (m, 0, a))", SCOPE) == m * a**2 / 2
