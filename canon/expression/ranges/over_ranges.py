@@ -53,7 +53,7 @@ def over_ranges(builder: _Builder, node: Call) -> Expr:
         )
     if node.function == INTEGRAL:
         return _integrated(builder, node, operand, found)
-    index = found[0]
+    index = next(iter(found))
     lower, upper = (builder.expression(bound) for bound in (index.lower, index.upper))
     if not (lower.is_Integer and upper.is_Integer and 0 <= int(upper) - int(lower) < MOST_TERMS):
         reason = f"a sum or product has from 1 to {MOST_TERMS} terms here"
