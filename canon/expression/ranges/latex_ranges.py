@@ -23,6 +23,7 @@ __all__ = ["PLACE", "with_ranges"]
 
 PLACE = "\ue000"
 """The sign that stands in the place of an integral or a sum."""
+MOST_NESTED = 3
 MOST_FIGURES = 9
 """Greatest bound of a sum whose index is replaced in the text."""
 
@@ -127,6 +128,8 @@ def _integral(text: str, operator: _Operator, end: int, read: _Read) -> tuple[No
         token = _TOKEN.match(text, at, end)
         sign = token.group() if token else text[at]
         nested += depth == 0 and _OPERATOR.fullmatch(sign) is not None and sign.lstrip("\\")[0] in "i∫"
+        if nested > MOST_NESTED:
+            raise LanguageError(text, at + 1, f"more than {MOST_NESTED} integrals in one", "split the claim")
         depth += sign.lstrip("\\").endswith(("(", "[", "{")) - sign.lstrip("\\").endswith((")", "]", "}"))
         at = found.end() if found else at + len(sign)
     reason = "this integral has no differential outside brackets"
@@ -174,6 +177,9 @@ def _sum(text: str, operator: _Operator, end: int, read: _Read) -> tuple[Node, i
             text, operator.lower[0] + 1, reason, r"write \sum_{i=1}^{3}, or the terms one by one"
         )
     stop = _end_of_term(text, operator.end, end)
+    if within := re.compile(r"\\(?:sum|prod|int)|[∫∑∏]").search(text, operator.end, stop):
+        reason = "an integral or sum within a sum is not read"
+        raise LanguageError(text, within.start() + 1, reason, "write the terms one by one")
     letter = rf"(?<![A-Za-z\\]){index[1]}(?![A-Za-z])"
     if after := re.compile(letter).search(text, stop, end):
         reason = f"does the sum go on to here, where {index[1]} stands again?"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NoReturn, Protocol
 import sympy as sp
 
 from canon.expression.ranges.definite_integral import definite_integral
-from canon.expression.ranges.range_of_call import INTEGRAL, SUM, Range, ranges, with_index
-from canon.expression.text.syntax import parts
+from canon.expression.ranges.range_of_call import INTEGRAL, PRODUCT, SUM, Range, ranges, with_index
+from canon.expression.text.syntax import Call, parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from canon.expression.text.scope import Scope
-    from canon.expression.text.syntax import Call, Node
+    from canon.expression.text.syntax import Node
 
 __all__ = ["over_ranges"]
 
@@ -58,6 +58,8 @@ def over_ranges(builder: _Builder, node: Call) -> Expr:
     if not (lower.is_Integer and upper.is_Integer and 0 <= int(upper) - int(lower) < MOST_TERMS):
         reason = f"a sum or product has from 1 to {MOST_TERMS} terms here"
         builder.refuse(node, reason, "write numbers as its bounds, or its value")
+    if any(isinstance(part, Call) and part.function in (SUM, PRODUCT) for part in parts(operand)):
+        builder.refuse(node, "a sum within a sum is not read", "write the terms of one of them")
     numbers = range(int(lower), int(upper) + 1)
     if len(numbers) * sum(1 for _ in parts(operand)) > MOST_NODES:
         builder.refuse(node, "this sum is longer than anyone writes", "write its value")
