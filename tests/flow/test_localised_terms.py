@@ -193,3 +193,15 @@ def test_a_rest_energy_is_no_sign_of_an_error():
     H = Hamiltonian(sp.sqrt(1 + x.momentum**2) + (1 - sp.exp(-x / 2)) ** 2 / 2**40, [x], [x.momentum])
     motion = propagate(H, y0=[1 / 16, 2.0**-20], t_span=(0, 20), samples=8)
     assert motion.error_estimate().relative[-1] < 1e-14
+
+
+@pytest.mark.parametrize("end", [3, -3])
+def test_a_pulse_between_fixed_steps_is_known_to_the_estimate_in_both_directions(end):
+    """ṗ = −1/(1 + (128 (t ∓ 3/8))²): a pulse a quarter as wide as a step, which half the step sees no better."""
+    met = sp.Rational(3, 8) * (1 if end > 0 else -1)
+    H = moving(x / (32 * (1 + (128 * (t - met)) ** 2)))
+    motion = propagate(H, y0=[1, 0], t_span=(0, end), method=Splitting("verlet"), step=1 / 32, samples=8)
+    area = np.arctan(128 * (motion.t - float(met))) - math.atan(-128 * float(met))
+    estimate = motion.error_estimate()
+    assert "Taylor" in estimate.companion
+    assert (abs(motion.y[1] + area / (32 * 128)) <= estimate.error[1]).all()

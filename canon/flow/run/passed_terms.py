@@ -37,8 +37,9 @@ def may_have_passed(system: HamiltonEquations, samples: Samples, step: float) ->
     system, samples
         The equations and their motion, states of shape (2n, times, orbits).
     step
-        The size of the steps.
+        The size of the steps, negative where the motion runs back.
     """
+    step = abs(step)
     exponents = exponents_of(system.graph, system.rates)
     if any(not (abs(x) <= sights(2.0**-52)[1]).all() for x in _along(system, samples, exponents)):
         return True
