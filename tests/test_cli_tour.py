@@ -10,7 +10,7 @@ from canon.cli import main
 from canon.exercise.sheet.sheet import bundled_sheet
 
 README = Path(__file__).parents[1] / "README.md"
-TOUR = README.read_text(encoding="utf-8").partition("## Five more commands")[0]
+TOUR = README.read_text(encoding="utf-8").partition("## Six more commands")[0]
 VERDICT = re.compile(r"^[✓✗] (holds|fails)\s+(\S+)", re.MULTILINE)
 
 

@@ -22,7 +22,7 @@ from canon.flow.integrate import integrate
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.number_formats import FIXED
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.flow.run.observables_along import jumped, rounding_of, size_of_terms
+from canon.flow.run.observables_along import energy_rounding, jumped
 from canon.flow.run.passed_terms import may_have_passed
 from canon.flow.run.sampling_plan import Plan
 from canon.kernel.llvm.number_types import EXTENDED
@@ -217,7 +217,7 @@ def _contradicted_by_energy(
     """
     slopes = np.roll(_rates(system, samples.t, samples.y), len(scale) // 2, axis=0)
     reach = (slopes * scale).sum(axis=0)
-    unseen = rounding_of(precision) * size_of_terms(system, samples)
+    unseen = energy_rounding(system, samples, precision)
     return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach + unseen)
 
 

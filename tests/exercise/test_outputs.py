@@ -340,9 +340,10 @@ def test_a_doctest_grades_with_it(tmp_path):
         [sys.executable, "-m", "doctest", str(test)], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout) == (0, "")
-    test.write_text(test.read_text("utf-8").replace("(x + 1)", "(x - 1)"), "utf-8")
+    wrong = tmp_path / "q2.py"  # a file of its own: the compiled one is known by its second and its size
+    wrong.write_text(test.read_text("utf-8").replace("(x + 1)", "(x - 1)"), "utf-8")
     done = subprocess.run(
-        [sys.executable, "-m", "doctest", str(test)], capture_output=True, text=True, check=False
+        [sys.executable, "-m", "doctest", str(wrong)], capture_output=True, text=True, check=False
     )
     assert done.returncode == 1
     assert "AssertionError: in rhs the sign of" in done.stdout

@@ -55,6 +55,7 @@ def test_factors_side_by_side(text, meant):
         ("x^2/2m", 6, "x\\^2/2\\*m or x\\^2/\\(2\\*m\\)"),
         ("x**2y", 5, "belong to the exponent"),
         ("x**2(a + l)", 5, "belong to the exponent"),
+        ("x^a(a + l)", 4, "belong to the exponent"),
         ("m(a)", 2, "applied to this"),
         ("m (a)", 3, "applied to this"),
         ("theta(0)", 6, "applied to this"),

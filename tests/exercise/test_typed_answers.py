@@ -133,10 +133,10 @@ def test_vectors_of_thousands_are_refused_at_once(claim):
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("Integral(k*x, (x, 0, a))", "write the integral out"),
-        ("∫ k x dx", "write the integral out"),
-        ("Sum(k*x**n, (n, 1, 10**9))", "write its terms one by one"),
-        (r"$\sum_{n=1}^{10^9} k x^n$", "write the sum out"),
+        ("Integral(k*x, (x, 0, a))", "a is not declared"),
+        ("∫ k x dx", "a lower and an upper limit"),
+        ("Sum(k*x**n, (n, 1, 10**9))", "from 1 to 100 terms"),
+        (r"$\sum_{n=1}^{10^9} k x^n$", "numbers up to 9"),
         ("x' = ±k", "it stands for two answers"),
         ("Matrix([[k, 0], [0, k]])", "write the components one by one"),
         (

@@ -586,9 +586,9 @@ def test_deep_but_allowed_nesting_is_read(opening, closing):
 def test_a_long_sum_takes_linear_time():
     def seconds(terms):
         text = "$" + "+".join([r"\frac{g}{l}\sin\theta"] * terms)
-        start = clock.perf_counter()
+        start = clock.process_time()
         parse_latex(text, SCOPE)
-        return clock.perf_counter() - start
+        return clock.process_time() - start
 
     seconds(10)
     assert seconds(1600) < 12 * max(seconds(400), 0.02)

@@ -198,3 +198,21 @@ def test_time_transformed_motions_that_an_event_has_ended(how):
     # The apocentre is passed after half a period of 2π.
     assert abs(motion.t[-1] - np.pi) <= estimate.events[0] < 1e-4
     assert (true_error(motion, kepler_truth(kepler_start(0.5), motion.t)) <= estimate.error).all()
+
+
+def test_an_exponential_that_is_small_is_rounded_by_its_exponent_and_blamed_for_nothing():
+    x = coordinates("x")
+    far = sp.exp(-8 * (x + sp.Rational(19, 16)) ** 2) / 32
+    motion = propagate(
+        Hamiltonian(x.momentum**2 / 2 + x**2 / 8 + far, [x], [x.momentum]), (0, 3), [0, 0], samples=8
+    )
+    wider = propagate(
+        Hamiltonian(x.momentum**2 / 2 + x**2 / 8 + far, [x], [x.momentum]),
+        (0, 3),
+        [0, 0],
+        samples=8,
+        precision="quad",
+    )
+    estimate = motion.error_estimate()
+    assert estimate.relative.max() < 1e-13
+    assert (abs(motion.y - wider.y) <= estimate.error).all()

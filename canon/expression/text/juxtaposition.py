@@ -105,7 +105,8 @@ class Reader(FactorParser):
         bare = before.operand if isinstance(before, Negative) else before
         exponent = isinstance(bare, Power) and last.kind != "super" and last.text not in (")", "]", "}")
         power_of = isinstance(bare, Power) and isinstance(bare.exponent, Number) and is_function(self)
-        bracket = isinstance(bare, Power) and isinstance(bare.exponent, Number) and token.text == "("
+        # R^2(…) is a product by hand; x**2(…) is code that lacks a sign.
+        bracket = token.text == "(" and last.kind == "number" and self.tokens[self.at - 2].text == "^"
         if exponent and token.tight and self.bare_end != self.at and not (power_of or bracket):
             raise self.fault(
                 "does this still belong to the exponent?", "put a space or * before it, or brackets"

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE, multiprecision
+from canon.kernel.program.localised_terms import exponents_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = [
-    "AccuracyWarning", "jumped", "measured", "rounding_of", "size_of_terms", "values_in", "warn_of_jumps",
+    "AccuracyWarning", "energy_rounding", "jumped", "measured", "size_of_terms", "values_in", "warn_of_jumps",
 ]  # fmt: skip
 
 _IMPLAUSIBLE = 0.5
@@ -47,7 +48,7 @@ def measured(
     return [(_rounded(value), _rounded(value - value[0])) for value in found]
 
 
-def rounding_of(precision: str) -> float:
+def _rounding_of(precision: str) -> float:
     """Return the part of the size of its terms that :func:`measured` may get a function of the state wrong by."""
     return 2.0**-60 if _in_long_doubles(precision) else 1e-37
 
@@ -138,16 +139,36 @@ def size_of_terms(system: HamiltonEquations, samples: Samples) -> Array:
 
     They do where a pendulum −cos θ is released from the horizontal: what rounding leaves of them is no measure.
     """
-    node = system.graph.nodes[system.hamiltonian]
-    terms = node.operands if node.kind == "add" else (system.hamiltonian,)
     values = dict(zip(system.inputs, (*samples.y, samples.t[:, np.newaxis]), strict=True))
     with np.errstate(all="ignore"):
-        found = system.graph.evaluate(terms, values)
+        found = system.graph.evaluate(_terms(system), values)
     sizes = np.sum([abs(np.broadcast_to(v, samples.y.shape[1:])) for v in found], axis=0)
     usual, large = np.median(sizes, axis=0), np.quantile(sizes, 0.9, axis=0)
     # A motion that begins and soon ends at rest, as with dry friction, has terms on the way only.
     usual = np.where(sizes[0] > 0, usual, large)
     return np.where(sizes[0] > _VANISHING * usual, sizes[0], usual)
+
+
+def energy_rounding(system: HamiltonEquations, samples: Samples, precision: str) -> Array:
+    """Return what :func:`measured` may get H wrong by along a motion, shape (orbits,).
+
+    An exponential is wrong by its exponent times the rounding of a number, in parts of its own size.
+    """
+    graph, size = system.graph, size_of_terms(system, samples)
+    values = dict(zip(system.inputs, (*samples.y, samples.t[:, np.newaxis]), strict=True))
+    for term in _terms(system):
+        exponents = exponents_of(graph, [term])
+        if exponents:
+            with np.errstate(all="ignore"):
+                found, *powers = graph.evaluate([term, *exponents], values)
+                wrong = np.max([np.abs(found * power) for power in powers], axis=0)
+            size = size + np.broadcast_to(np.nan_to_num(wrong), samples.y.shape[1:]).max(axis=0)
+    return _rounding_of(precision) * size
+
+
+def _terms(system: HamiltonEquations) -> tuple[int, ...]:
+    node = system.graph.nodes[system.hamiltonian]
+    return node.operands if node.kind == "add" else (system.hamiltonian,)
 
 
 def _rounded(values: npt.NDArray[Any]) -> Array:
