@@ -7,10 +7,11 @@ coefficients between are as small as the zero is near. heyoka takes the length o
 from __future__ import annotations
 
 import functools
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from canon.expression.graph.graph import Graph
 
@@ -52,32 +53,83 @@ def _gap(period: int, order: int) -> bool:
 
 
 def degree_of(graph: Graph, nodes: Sequence[int]) -> int:
-    """Return the highest degree that expressions, or parts of them, have as polynomials; functions count as variables.
+    """Return the highest degree with which expressions, or parts of them, vanish where a motion may pass at speed.
+
+    That is their degree as polynomials of the variables, which may vanish together on a straight way, and the highest
+    power of one function that all their terms have: sin θ₁ cos θ₂ vanishes twice only at points that a motion does not
+    meet, and 1 + cos⁹ θ does not vanish with its second term.
 
     Examples
     --------
-    >>> from sympy import sin, sqrt, symbols
+    >>> from sympy import cos, sin, sqrt, symbols
     >>> from canon.expression.graph.graph import Graph
     >>> x, y = symbols("x y")
     >>> graph = Graph()
-    >>> [degree_of(graph, [graph.from_sympy(f)]) for f in (x**3 * y, sin(x) ** 7, sqrt(1 + x**8), x / (x + y) ** 3)]
-    [4, 7, 8, 2]
+    >>> expressions = x**3 * y, sin(x) ** 7, x * sin(x) * cos(x) * sin(y), sqrt(1 + x**8), y + sin(x) ** 9
+    >>> [degree_of(graph, [graph.from_sympy(f)]) for f in expressions]
+    [4, 7, 2, 8, 1]
     """
-    degrees = dict[int, int]()
+    found, asked = dict[int, _Degree](), list(nodes)
     for each in graph.reachable(nodes):
         kind, operands, _ = graph.nodes[each]
-        below = [degrees[o] for o in operands]
+        below = [found[o] for o in operands]
         match kind:
             case "symbol":
-                degrees[each] = 1
+                found[each] = _Degree(1, {})
+            case "number" | "named":
+                found[each] = _NONE
             case "add":
-                degrees[each] = max(below, default=0)
+                found[each] = _Degree(max(d.variables for d in below), _common(below))
             case "mul":
-                degrees[each] = sum(below)
+                found[each] = _Degree(sum(d.variables for d in below), _together(below))
             case "pow":
                 exponent = graph.nodes[operands[1]]
-                whole = exponent.kind == "number" and exponent.value.denominator == 1 and exponent.value > 0
-                degrees[each] = below[0] * int(exponent.value) if whole else min(1, max(below))
+                rational = exponent.kind == "number"
+                if rational and exponent.value.denominator == 1 and exponent.value > 0:
+                    found[each] = below[0].times(int(exponent.value))
+                else:
+                    asked += operands
+                    found[each] = _NONE if rational and exponent.value < 0 else _function(each, below)
             case _:
-                degrees[each] = min(1, max(below, default=0))
-    return max(degrees.values(), default=0)
+                asked += operands
+                found[each] = _function(each, below)
+    return max((found[each].highest for each in asked), default=0)
+
+
+@dataclass(frozen=True)
+class _Degree:
+    """The degree of a product in all variables together, and in each function in it."""
+
+    variables: int
+    functions: Mapping[int, int]
+
+    @property
+    def highest(self) -> int:
+        return self.variables + max(self.functions.values(), default=0)
+
+    def times(self, power: int) -> _Degree:
+        return _Degree(self.variables * power, {f: n * power for f, n in self.functions.items()})
+
+
+_NONE = _Degree(0, {})
+
+
+def _function(node: int, below: Sequence[_Degree]) -> _Degree:
+    """Return the degree of a function of something that varies, as one of itself."""
+    return _Degree(0, {node: 1}) if any(degree.highest for degree in below) else _NONE
+
+
+def _together(below: Sequence[_Degree]) -> dict[int, int]:
+    """Return the power of each function in a product."""
+    found = dict[int, int]()
+    for degree in below:
+        for f, n in degree.functions.items():
+            found[f] = found.get(f, 0) + n
+    return found
+
+
+def _common(below: Sequence[_Degree]) -> dict[int, int]:
+    """Return the power of each function that all terms of a sum have."""
+    first, *rest = (degree.functions for degree in below)
+    shared = (f for f in first if all(f in other for other in rest))
+    return {f: min(first[f], *(other[f] for other in rest)) for f in shared}
