@@ -6,6 +6,7 @@ import json
 import queue
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -145,14 +146,17 @@ class JudgePool:
 
     def _put_back(self, worker: Worker) -> None:
         """Let the next claim have a process, a new one where it was killed or has judged enough."""
-        if self._closed.is_set():
-            worker.stop()
-        elif worker.judged >= CLAIMS_A_PROCESS:
-            worker.stop()
-            worker.start()
-        elif worker.judged:
-            worker.start()
-        self._idle.put(worker)
+        try:
+            with suppress(OSError):  # the system has no process to give now; the next claim asks again
+                if self._closed.is_set():
+                    worker.stop()
+                elif worker.judged >= CLAIMS_A_PROCESS:
+                    worker.stop()
+                    worker.start()
+                elif worker.judged:
+                    worker.start()
+        finally:
+            self._idle.put(worker)
 
 
 def said(claim: Claim) -> str:

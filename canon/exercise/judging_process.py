@@ -88,7 +88,7 @@ class Worker:
             return invalid(claim, "\n".join(error.brief for error in claim.errors))
         try:
             child = self._running()
-        except (Late, Ended):
+        except (Late, Ended, OSError):
             self.stop()
             return _open(claim, "no process could be started to judge it", 0.0)
         self.judged += 1

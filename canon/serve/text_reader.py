@@ -74,7 +74,11 @@ class TextReader:
         if child is None or not child.usable or self._texts >= TEXTS_A_PROCESS:
             self._stop()
             self._child = child = Child("canon.serve.reading_process", leads=True)
-            child.receive(time.monotonic() + START)
+            try:
+                child.receive(time.monotonic() + START)
+            except (Late, Ended):
+                self._stop()
+                raise
             self._texts = 0
         return child
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import ipaddress
+import json
 import time
 from contextlib import aclosing, asynccontextmanager
 from importlib import resources
@@ -94,6 +95,11 @@ def application(limits: Limits | None = None, names: Collection[str] = LOOPBACK)
     return made
 
 
+def _json(found: dict[str, Any]) -> Response:
+    """Return an answer in ASCII, in which half of a surrogate pair that was typed can stand too."""
+    return Response(json.dumps(found), media_type="application/json")
+
+
 class _Service:
     """What the paths share: the processes, and how much each client may still ask."""
 
@@ -133,7 +139,7 @@ class _Service:
         note(request.scope, **report.counts)
         if alone:
             return Response(found[0].json_line, media_type="application/json")
-        return JSONResponse(
+        return _json(
             {"title": sheet.title, "counts": report.counts, "verdicts": [each.to_dict() for each in found]}
         )
 
@@ -156,7 +162,7 @@ class _Service:
         self._take(request, 1.0 / TEXTS_A_CLAIM)
         found = await self.reader.how_read(asked_text(body))
         note(request.scope, bytes=len(body), read=found["read"])
-        return JSONResponse(found)
+        return _json(found)
 
     async def health(self, _: Request) -> Response:
         """Tell that the service runs, and how busy it is."""

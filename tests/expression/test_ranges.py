@@ -1,5 +1,7 @@
 """Definite integrals and finite sums as they are written: what they are read as, against quadrature and SymPy."""
 
+from contextlib import suppress
+
 import mpmath
 import pytest
 import sympy as sp
@@ -7,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon import coordinates
+from canon.exercise import Claim, InvalidClaim, judge
 from canon.expression.parse import LanguageError, Scope, parse_expression
 from canon.expression.ranges.definite_integral import definite_integral
 
@@ -94,3 +97,29 @@ def test_the_variable_of_an_integral_is_its_own():
     """A bound may hold the name that is integrated over; it means the one outside."""
     assert parse_expression("Integral(theta, (theta, 0, theta))", SCOPE) == theta**2 / 2
     assert parse_expression("m*Integral(m, (m, 0, a))", SCOPE) == m * a**2 / 2
+
+
+@pytest.mark.parametrize(
+    ("text", "parameters"),
+    [
+        ("Integral(cos(n*x), (x, 0, 2*pi))", {"n": "integer", "x": "real"}),  # 2 pi for n = 0
+        ("Integral(cos(n*x)*cos(m*x), (x, 0, 2*pi))", {"n": "integer", "m": "integer", "x": "real"}),
+        (r"$\int_0^{2\pi} \sin(nx)\sin(mx)\,dx$", {"n": "integer", "m": "integer", "x": "real"}),
+        ("Integral(abs(r), (r, -1, 1))", {"r": "positive"}),  # 1
+        (r"$\int_{-1}^{1}\sqrt{r^2}\,dr$", {"r": "positive"}),
+        ("Integral(sin(2*pi*x), (x, 0, 1/2))", {"x": "integer"}),  # 1/pi
+        (r"$\int_0^1 x^2 dx^2$", {"x": "real"}),
+    ],
+)
+def test_no_integral_vanishes_that_does_not(text, parameters):
+    claim = Claim("a", "equality-only", {"lhs": text, "rhs": "0", "parameters": parameters})
+    with suppress(InvalidClaim):
+        assert not judge(claim).holds
+
+
+def test_what_has_a_value_is_read_still():
+    keys = {"lhs": "Integral(cos(n*x), (x, 0, a))", "rhs": "sin(n*a)/n"}
+    claim = Claim(
+        "a", "equality-only", {**keys, "parameters": {"n": "nonzero", "a": "real", "x": "positive"}}
+    )
+    assert judge(claim).holds

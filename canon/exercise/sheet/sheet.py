@@ -221,13 +221,14 @@ def sheet_from(data: bytes, *, file: str = "", toml: bool = False) -> Sheet:
     except UnicodeDecodeError as error:
         raise SheetError(f"{shown}: not UTF-8 text (byte {error.start})") from error
     try:
-        found = _toml(text) if toml else _json(text)
+        return _sheet(_toml(text) if toml else _json(text), file, shown)
     except RecursionError as error:
         raise SheetError(f"{shown}: nested too deeply to be a sheet") from error
+    except SheetError:
+        raise
     except ValueError as error:
         remedy = _QUOTES if toml and "\\" in str(error) else ""
         raise SheetError(f"{shown}: not valid {'TOML' if toml else 'JSON'} ({error}){remedy}") from error
-    return _sheet(found, file, shown)
 
 
 _QUOTES = (

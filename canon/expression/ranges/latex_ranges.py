@@ -142,6 +142,9 @@ def _integrated(text: str, operator: _Operator, differential: re.Match[str], rea
     if differential["primes"]:
         column = differential.start() + 1
         raise LanguageError(text, column, "a differential of a rate", "write the integral over one variable")
+    if behind := re.compile(r"\s*[\^_]").match(text, differential.end()):
+        column = behind.end()
+        raise LanguageError(text, column, "a power or index of a differential", r"write \int_{0}^{a} f\,dx")
     begin, stop = differential.span("variable")
     stop = max(stop, differential.end("index"))
     name = text[begin:stop].lstrip("\\").replace("{", "").replace("}", "")

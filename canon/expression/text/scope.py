@@ -93,8 +93,8 @@ class Scope:
         return name not in self.functions and self.symbol(name) is not None
 
     def with_variable(self, name: str) -> Scope:
-        """Return a scope that knows one more name, the variable of an integral; the scope itself if it knows it."""
-        if not name or self.symbol(name) is not None or name in self.functions:
+        """Return a scope in which a name is the variable of an integral: any real number, whatever it is outside."""
+        if not name or name in self.functions:
             return self
         return replace(self, names={**self.names, name: Symbol(name, real=True)})
 

@@ -11,6 +11,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import tempfile
 import zipfile
 from dataclasses import dataclass
@@ -76,6 +77,8 @@ class Chunk:
         if '"kept": {"checksum": ' not in outcome:
             return None
         written = json.loads(outcome)["kept"]
+        if not (re.fullmatch("[0-9a-f]{64}", written["checksum"]) and re.fullmatch(r"[\w -]+", key)):
+            return None  # no file of this folder has such a name
         return Chunk(key, written["checksum"], {name: tuple(n) for name, n in written["shapes"].items()})
 
     @staticmethod

@@ -67,6 +67,10 @@ def _section(table: dict[str, Any]) -> str:
     return f"{direction} {formula}"
 
 
+_OF_NUMPY = ("file", "args", "kwds", "allow_pickle")
+"""Names that NumPy's archives keep for themselves."""
+
+
 def chosen_functions(functions: Mapping[str, Function]) -> Choice:
     """Return the names of functions whose results are kept, each with a digest of its code.
 
@@ -92,15 +96,29 @@ def chosen_functions(functions: Mapping[str, Function]) -> Choice:
             raise TypeError(
                 f"keep = {{{name!r}: {reprlib.repr(function)}}}: give a function of a kept motion"
             )
-        if not name.isidentifier() or name in (MOTION, EXPONENT, SECTION):
+        if not name.isidentifier() or name in (MOTION, EXPONENT, SECTION, *_OF_NUMPY):
             raise ValueError(
                 f"what is kept can't be called {name!r}: give letters and digits, and none of canon's names"
             )
-        found.append((name, f"function {_digest(function.__code__)}"))
+        found.append((name, f"function {_digest(function.__code__, _plain(function))}"))
     return tuple(found)
 
 
-def _digest(code: CodeType) -> str:
-    constants = [_digest(each) if isinstance(each, CodeType) else repr(each) for each in code.co_consts]
+def _plain(function: FunctionType) -> str:
+    """Return the defaults of a function that are numbers or texts."""
+    named = (function.__kwdefaults__ or {}).items()
+    given = (*enumerate(function.__defaults__ or ()), *sorted(named))
+    return repr([each for each in given if isinstance(each[1], int | float | str | None)])
+
+
+def _digest(code: CodeType, defaults: str = "") -> str:
+    constants = [defaults, *map(_constant, code.co_consts)]
     names = (code.co_names, code.co_varnames, code.co_freevars)
     return hashlib.sha256(repr((code.co_code, constants, names)).encode()).hexdigest()[:16]
+
+
+def _constant(each: object) -> str:
+    """Return a constant as text that is the same in every process: sets have no order of their own."""
+    if isinstance(each, CodeType):
+        return _digest(each)
+    return repr(sorted(map(repr, each))) if isinstance(each, frozenset) else repr(each)

@@ -73,7 +73,7 @@ class SideBySide:
     def _of(self, case: int, rest: Sequence[Any]) -> Array:
         kept = self.kept[case]
         if self.name not in kept.shapes or kept.chunk is None:
-            return self._padded(np.empty((0,) * (len(self.shape) - 1)), rest)
+            return self._padded(np.full((0,) * (len(self.shape) - 1), np.nan), rest)
         return self._padded(kept.folder.arrays(kept.chunk, [self.name])[self.name], rest)
 
     def _padded(self, array: Array, rest: Sequence[Any]) -> Array:
