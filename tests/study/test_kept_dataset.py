@@ -52,7 +52,10 @@ def test_a_dataset_has_the_numbers_of_every_case(path):
             arrays = found if isinstance(found, dict) else {name: found}
             for variable, whole in dataset.data_vars.items():
                 part = whole[number].values
-                own = arrays.get(variable, np.empty((0,) * part.ndim))
+                if variable not in arrays:
+                    assert np.isnan(part).all(), "a case that is not finished has no numbers"
+                    continue
+                own = arrays[variable]
                 np.testing.assert_array_equal(part[tuple(map(slice, own.shape))], own)
                 assert np.isnan(part).sum() == part.size - own.size
 
