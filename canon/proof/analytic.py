@@ -13,9 +13,10 @@ import sympy as sp
 from sympy.core.function import AppliedUndef, Derivative
 from sympy.polys.polyerrors import PolynomialError
 
-from canon.proof.domain.domain import Domain, linear, parts_of
+from canon.proof.domain.domain import Domain
 from canon.proof.domain.limits import QUICK, Full, OutOfTime, TooLarge
 from canon.proof.domain.reality import certainly_real
+from canon.proof.domain.relations import linear, parts_of
 from canon.proof.functions.angles import Refine
 from canon.proof.functions.normal_form import NormalForm
 from canon.proof.rungs.ladder import MOST_STARTS, REFUSALS

@@ -4,7 +4,8 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.proof.domain.domain import Domain, isolated
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.relations import isolated
 from canon.proof.vanish import vanishes
 
 x, y = sp.symbols("x y", real=True)

@@ -28,8 +28,9 @@ from canon.proof.continuity.one_sided import (
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.continuity.winding_centre import common_zero
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.domain.domain import EVERYWHERE, Domain, conditions_hold, linear, parts_of
+from canon.proof.domain.domain import EVERYWHERE, Domain, conditions_hold
 from canon.proof.domain.reality import certainly_real
+from canon.proof.domain.relations import linear, parts_of
 from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
 from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.trees.anatomy import anatomy

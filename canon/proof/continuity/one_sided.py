@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy.core.relational import Relational
 
-from canon.proof.domain.domain import declared_complex
+from canon.proof.domain.declarations import declared_complex
 from canon.proof.domain.reality import certainly_real
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.sympy_types import arguments, free_symbols

@@ -18,7 +18,8 @@ from sympy.core.function import AppliedUndef
 from canon.proof.definedness.formula_around import NoPiece, formula_around, put_in
 from canon.proof.definedness.hazards import branching, hazards, incomplete, unconditional
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.domain.domain import EVERYWHERE, Domain, declared_complex
+from canon.proof.domain.declarations import declared_complex
+from canon.proof.domain.domain import EVERYWHERE, Domain
 from canon.proof.domain.limits import QUICK
 from canon.proof.domain.verdict import Counterexample
 from canon.proof.refute.refute import landmarks

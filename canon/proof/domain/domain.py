@@ -13,120 +13,30 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
-from sympy import Abs, And, Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
+from sympy import Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
 from canon.frozen_mapping import FrozenMapping
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
+from canon.proof.domain.declarations import allows, declared_complex, said_of
 from canon.proof.domain.feasible_points import moved_inside
 from canon.proof.domain.rational_points import rational_solution
+from canon.proof.domain.relations import isolated, linear, parts_of, unfolded
 from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import free_symbols, rational
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from sympy import Basic, Expr
-    from sympy.core.relational import Relational
+    from sympy import Expr
 
 __all__ = [
     "EVERYWHERE",
     "Domain",
     "as_domain",
     "conditions_hold",
-    "declared_complex",
-    "isolated",
-    "linear",
-    "parts_of",
-    "said_of",
 ]
-
-
-def _declared(named: Basic) -> Mapping[str, bool]:
-    """Return what was declared of a symbol, or of a function (SymPy keeps that with the function's class)."""
-    return getattr(named.func, "_kwargs", {}) if isinstance(named, AppliedUndef) else named.assumptions0
-
-
-def declared_complex(symbol: Basic) -> bool:
-    """Tell whether a symbol or function was declared complex and not real; all others are read as real."""
-    said = _declared(symbol)
-    return said.get("real") is not True and ("complex" in said or "imaginary" in said)
-
-
-def said_of(named: Basic) -> dict[str, bool]:
-    """Return what was declared of a symbol or an applied function beyond what holds for every rational number.
-
-    Examples
-    --------
-    >>> said_of(Symbol("x", real=True)), said_of(Symbol("z", imaginary=True))["real"]
-    ({}, False)
-    """
-    return {
-        fact: so
-        for fact, so in _declared(named).items()
-        if not fact.startswith("extended_") and _OF_EVERY_RATIONAL.get(fact) is not so
-    }
-
-
-_OF_EVERY_RATIONAL: dict[str, bool] = {
-    **dict.fromkeys(("commutative", "complex", "real", "finite", "hermitian", "rational", "algebraic"), True),
-    **dict.fromkeys(("infinite", "imaginary", "irrational", "transcendental"), False),
-}
-
-
-def parts_of(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
-    """Yield conditions one by one, what And joins taken apart."""
-    for condition in conditions:
-        if isinstance(condition, And):
-            yield from parts_of(condition.args)
-        else:
-            yield condition
-
-
-def linear(condition: Relational) -> bool:
-    """Tell whether both sides of a relation differ by something linear in the symbols."""
-    gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
-    return not any(gap.diff(s).free_symbols for s in free_symbols(gap))
-
-
-def isolated(condition: Boolean) -> Boolean:
-    """Write a linear bound on one symbol with the symbol alone on the left, others as they are.
-
-    Examples
-    --------
-    >>> from sympy import pi, symbols
-    >>> x, y = symbols("x y", real=True)
-    >>> isolated(pi - 2*x >= 0), isolated(x - y > 0)
-    (x <= pi/2, x - y > 0)
-    """
-    if not isinstance(condition, Lt | Le | Gt | Ge):
-        return condition
-    gap = cast("Expr", condition.lhs) - cast("Expr", condition.rhs)
-    symbols = free_symbols(gap)
-    if len(symbols) != 1 or condition.lhs in symbols:
-        return condition
-    (symbol,) = symbols
-    slope = gap.diff(symbol)
-    if slope.free_symbols or not (slope.is_positive or slope.is_negative):
-        return condition
-    relation = type(condition) if slope.is_positive else _REVERSED[type(condition)]
-    return cast("Boolean", relation(symbol, -gap.subs(symbol, 0) / slope))
-
-
-_REVERSED = {Lt: Gt, Le: Ge, Gt: Lt, Ge: Le}
-
-
-def _unfolded(condition: Boolean) -> tuple[Boolean, ...]:
-    """Return |g| < c as g < c and −g < c, which bound a symbol where g is linear."""
-    if not isinstance(condition, Lt | Le | Gt | Ge) or any(map(declared_complex, free_symbols(condition))):
-        return (condition,)
-    less, greater = cast("Expr", condition.lts), cast("Expr", condition.gts)
-    if not isinstance(less, Abs):
-        return (condition,)
-    relation = Lt if isinstance(condition, Lt | Gt) else Le
-    inner = less.args[0]
-    return cast("tuple[Boolean, ...]", (relation(inner, greater), relation(-inner, greater)))
 
 
 @dataclass(frozen=True)
@@ -163,7 +73,7 @@ class Domain:
                 raise TypeError(
                     f"a condition should be one of SymPy's, such as x > 0 or Ne(x, 0), not {condition!r}"
                 )
-        bounds = (isolated(bound) for condition in self.conditions for bound in _unfolded(condition))
+        bounds = (isolated(bound) for condition in self.conditions for bound in unfolded(condition))
         object.__setattr__(self, "conditions", tuple(bounds))
         for name, ends in box.items():
             if not isinstance(name, Symbol):
@@ -395,10 +305,5 @@ def _belongs(
     conditions: Sequence[Boolean],
 ) -> bool:
     """Whether what was declared of each symbol, and every condition, holds at a point."""
-    allowed = all(_allows(facts[s], number) for s, number in point.items())
+    allowed = all(allows(facts[s], number) for s, number in point.items())
     return allowed and conditions_hold(conditions, point)
-
-
-def _allows(facts: Mapping[str, bool], number: Rational) -> bool:
-    """Tell whether a number is all that a symbol was declared to be, by SymPy's own account of the number."""
-    return all(getattr(number, f"is_{fact}") is so for fact, so in facts.items())

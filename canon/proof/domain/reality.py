@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from canon.proof.domain.domain import declared_complex
+from canon.proof.domain.declarations import declared_complex
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from flint import arb, fmpq
 from sympy.core.function import AppliedUndef, Derivative, Subs
 
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.domain.domain import declared_complex
+from canon.proof.domain.declarations import declared_complex
 from canon.proof.domain.limits import THOROUGH, Limits
 from canon.proof.domain.reality import certainly_real
 from canon.proof.functions import angles, arcs, complex_parts, elliptic, gammas, large_powers, powers, waves

@@ -16,7 +16,7 @@ from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.domain.domain import Domain, declared_complex
+from canon.proof.domain.declarations import declared_complex
 from canon.proof.trees.anatomy import Anatomy, anatomy
 from canon.proof.trees.sympy_types import arguments, rational
 
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from sympy import Expr, Symbol
+
+    from canon.proof.domain.domain import Domain
 
     Point = dict[Symbol, sp.Rational]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy.core.function import AppliedUndef, Derivative, Subs
 
-from canon.proof.domain.domain import said_of
+from canon.proof.domain.declarations import said_of
 
 if TYPE_CHECKING:
     import random

@@ -9,7 +9,8 @@ import sympy as sp
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
-from canon.proof.domain.domain import Domain, declared_complex
+from canon.proof.domain.declarations import declared_complex
+from canon.proof.domain.domain import Domain
 from canon.proof.domain.reality import certainly_real
 from canon.proof.rungs.periods import period_of
 from canon.proof.trees.anatomy import anatomy

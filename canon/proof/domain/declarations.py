@@ -1,0 +1,52 @@
+"""Declarations: what was said of a symbol or a function by its SymPy assumptions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sympy.core.function import AppliedUndef
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from sympy import Basic, Rational
+
+__all__ = ["allows", "declared_complex", "said_of"]
+
+
+def _declared(named: Basic) -> Mapping[str, bool]:
+    """Return what was declared of a symbol, or of a function (SymPy keeps that with the function's class)."""
+    return getattr(named.func, "_kwargs", {}) if isinstance(named, AppliedUndef) else named.assumptions0
+
+
+def declared_complex(symbol: Basic) -> bool:
+    """Tell whether a symbol or function was declared complex and not real; all others are read as real."""
+    said = _declared(symbol)
+    return said.get("real") is not True and ("complex" in said or "imaginary" in said)
+
+
+def said_of(named: Basic) -> dict[str, bool]:
+    """Return what was declared of a symbol or an applied function beyond what holds for every rational number.
+
+    Examples
+    --------
+    >>> from sympy import Symbol
+    >>> said_of(Symbol("x", real=True)), said_of(Symbol("z", imaginary=True))["real"]
+    ({}, False)
+    """
+    return {
+        fact: so
+        for fact, so in _declared(named).items()
+        if not fact.startswith("extended_") and _OF_EVERY_RATIONAL.get(fact) is not so
+    }
+
+
+_OF_EVERY_RATIONAL: dict[str, bool] = {
+    **dict.fromkeys(("commutative", "complex", "real", "finite", "hermitian", "rational", "algebraic"), True),
+    **dict.fromkeys(("infinite", "imaginary", "irrational", "transcendental"), False),
+}
+
+
+def allows(facts: Mapping[str, bool], number: Rational) -> bool:
+    """Tell whether a number is all that a symbol was declared to be, by SymPy's own account of the number."""
+    return all(getattr(number, f"is_{fact}") is so for fact, so in facts.items())
