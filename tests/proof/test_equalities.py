@@ -56,10 +56,10 @@ def test_both_factors_of_an_equality_are_visited():
 
 
 def test_equations_without_rational_points_cost_little():
-    start = time.monotonic()
+    start = time.process_time()
     for conditions in ((Eq(a**2, 2),), (Eq(a**2 + b**2, 3),), (Eq(a**4 + b**4, 7),)):
         assert list(Domain(conditions).points([a, b], 6)) == []
-    assert time.monotonic() - start < 5
+    assert time.process_time() - start < 5
 
 
 def test_solutions_are_solutions():

@@ -94,6 +94,6 @@ def test_conditions_that_no_function_satisfies_refute_nothing():
 
 def test_looking_for_a_thin_domain_keeps_to_its_deadline():
     wild = sum((sin(exp(x) * i) - i) ** 2 for i in range(1, 30)) < Rational(1, 100)
-    start = time.monotonic()
-    assert list(Domain((wild,)).points([x], 60, deadline=start + 0.3)) == []
-    assert time.monotonic() - start < 2.0
+    start = time.process_time()
+    assert list(Domain((wild,)).points([x], 60, deadline=time.monotonic() + 0.3)) == []
+    assert time.process_time() - start < 2.0
