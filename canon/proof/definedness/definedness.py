@@ -109,9 +109,9 @@ def lack_of_value(expr: Expr, domain: Domain, deadline: float, *, valued: bool =
     >>> lack_of_value(1 / hidden, EVERYWHERE, time.monotonic() + 1).sentence("f")
     'f has a value nowhere: its denominator -x**2 - 2*x + (x + 1)**2 - 1 is zero everywhere'
     """
-    if defined_nowhere(expr):
-        return Lack("it is infinite or undefined")
     found = anatomy([expr])
+    if defined_nowhere(expr, found):
+        return Lack("it is infinite or undefined")
     open_ = incomplete(found.parts)
     if valued and not found.has(sp.Piecewise):
         return None

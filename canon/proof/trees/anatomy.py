@@ -65,9 +65,11 @@ def anatomy(exprs: Iterable[sp.Basic]) -> Anatomy:
             if part in sizes:
                 continue
             if ready:
-                sizes[part] = 1 + sum(sizes[a] for a in part.args)
-            else:
+                sizes[part] = 1 + sum(map(sizes.__getitem__, part.args))
+            elif inner := part.args:
                 stack.append((part, True))
-                stack.extend((a, False) for a in part.args if a not in sizes)
+                stack.extend([(a, False) for a in inner if a not in sizes])
+            else:
+                sizes[part] = 1
         total += sizes[expr]
     return Anatomy(tuple(sizes), total)

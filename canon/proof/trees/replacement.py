@@ -11,7 +11,7 @@ from sympy.core.relational import Relational
 from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction, TrigonometricFunction
 
-from canon.proof.trees.anatomy import anatomy
+from canon.proof.trees.anatomy import Anatomy, anatomy
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,7 +38,7 @@ UNWRITTEN = (
 )
 """Functions that stay as they are at large numbers."""
 
-NOT_NUMBERS = (sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity)
+NOT_NUMBERS = (*map(type, (sp.nan, sp.zoo, sp.oo, sp.S.NegativeInfinity)), sp.AccumBounds)
 
 LAZY = (sp.Piecewise, ExprWithLimits, sp.Derivative, sp.Subs, sp.Max, sp.Min)
 """Expressions that may have a value though one of their parts has none."""
@@ -102,14 +102,17 @@ def _too_long(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> bool:
     return False
 
 
-def defined_nowhere(expr: sp.Basic) -> bool:
+def defined_nowhere(expr: sp.Basic, found: Anatomy | None = None) -> bool:
     """Tell whether a part that is not a finite number leaves the whole without a value.
 
     A piece that does not apply, a bound of a sum or an argument of Max that loses need not have one.
+    What the expression consists of may be given where it is known.
     """
-    poisoned: set[sp.Basic] = set()
-    for part in anatomy([expr]).parts:  # what a part consists of comes before it
-        itself = part in NOT_NUMBERS or isinstance(part, sp.AccumBounds)
-        if itself or not (isinstance(part, LAZY) or poisoned.isdisjoint(part.args)):
+    parts = (found or anatomy([expr])).parts  # what a part consists of comes before it
+    poisoned: set[sp.Basic] = {part for part in parts if isinstance(part, NOT_NUMBERS)}
+    if not poisoned:
+        return False
+    for part in parts:
+        if not (isinstance(part, LAZY) or poisoned.isdisjoint(part.args)):
             poisoned.add(part)
     return expr in poisoned
