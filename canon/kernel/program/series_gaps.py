@@ -82,18 +82,26 @@ def degree_of(graph: Graph, nodes: Sequence[int]) -> int:
                 found[each] = _Degree(max(d.variables for d in below), _common(below))
             case "mul":
                 found[each] = _Degree(sum(d.variables for d in below), _together(below))
-            case "pow":
-                exponent = graph.nodes[operands[1]]
-                rational = exponent.kind == "number"
-                if rational and exponent.value.denominator == 1 and exponent.value > 0:
-                    found[each] = below[0].times(int(exponent.value))
-                else:
-                    asked += operands
-                    found[each] = _NONE if rational and exponent.value < 0 else _function(each, below)
+            case "pow" if (power := _whole_power(graph, operands[1])) is not None:
+                found[each] = below[0].times(power)
+            case "pow" if _is_negative(graph, operands[1]):
+                asked += operands
+                found[each] = _NONE
             case _:
                 asked += operands
                 found[each] = _function(each, below)
     return max((found[each].highest for each in asked), default=0)
+
+
+def _whole_power(graph: Graph, exponent: int) -> int | None:
+    """Return an exponent that is a positive whole number."""
+    kind, _, value = graph.nodes[exponent]
+    return int(value) if kind == "number" and value.denominator == 1 and value > 0 else None
+
+
+def _is_negative(graph: Graph, exponent: int) -> bool:
+    kind, _, value = graph.nodes[exponent]
+    return kind == "number" and value < 0
 
 
 @dataclass(frozen=True)
