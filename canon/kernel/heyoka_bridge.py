@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
+    from canon.array import Array
     from canon.expression.graph.graph import Graph
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = [
-    "fraction_of", "heyoka_equations", "heyoka_expressions", "heyoka_functions", "heyoka_number", "is_heyoka_number",
-    "taylor_integrator",
+    "fraction_of", "heyoka_doubles", "heyoka_equations", "heyoka_expressions", "heyoka_functions", "heyoka_number",
+    "is_heyoka_number", "taylor_integrator",
 ]  # fmt: skip
 
 _SAME_NAME = (
@@ -74,8 +75,30 @@ def heyoka_number(precision: str | int) -> Callable[[Fraction], Any]:
         raise ValueError(
             f"precision={precision!r}: Taylor() has 'double', 'extended', 'quad' and decimal digits, 16 … 1000"
         )
-    bits = math.ceil(precision * math.log2(10)) + 2
+    bits = _bits(precision)
     return lambda value: hy.real(_decimal(value, precision + 5), bits)
+
+
+def heyoka_doubles(x: Array, precision: str | int) -> Any:
+    """Return doubles as an array of heyoka's numbers of a precision: the same numbers, none is rounded.
+
+    Examples
+    --------
+    >>> heyoka_doubles(np.array([0.5, 3.0]), "double")
+    array([0.5, 3. ])
+    """
+    import heyoka as hy
+
+    if not isinstance(precision, int):
+        if precision != "quad":
+            return x.astype(np.longdouble if precision == "extended" else np.float64)
+        return np.array([hy.real128(each) for each in x.ravel().tolist()]).reshape(x.shape)
+    bits = _bits(precision)
+    return np.array([hy.real(each, bits) for each in x.ravel().tolist()]).reshape(x.shape)
+
+
+def _bits(digits: int) -> int:
+    return math.ceil(digits * math.log2(10)) + 2
 
 
 def _decimal(value: Fraction, digits: int) -> str:

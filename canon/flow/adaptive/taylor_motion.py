@@ -18,7 +18,7 @@ from canon.flow.adaptive.taylor_events import TaylorEvents
 from canon.flow.adaptive.taylor_orbit import Slice, TaylorOrbit, orbits_of
 from canon.flow.kinked.regimes import kinks_of
 from canon.flow.run.samples import Samples
-from canon.kernel.heyoka_bridge import heyoka_number
+from canon.kernel.heyoka_bridge import heyoka_doubles, heyoka_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Sequence
@@ -74,7 +74,9 @@ def taylor_motion(
     compiling = time.perf_counter()
     number = heyoka_number(precision)
     first = 0 if so_far is None else len(so_far.t) - 1
-    grid = np.array([number(plan.last(k)) for k in range(first, len(plan.instants))])
+    grid = heyoka_doubles(plan.instants[first:], precision)
+    for k in plan.exact.keys() & range(first, len(plan.instants)):
+        grid[k - first] = number(plan.exact[k])
     t0, span = plan.last(first), grid[-1] - grid[0]
     unit = state_unit(system, states[0] if so_far is None else so_far.y[:, 0], plan)
     taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward, unit=unit)
@@ -100,7 +102,6 @@ def taylor_motion(
     run.follow(grid, plan, first, progress, system.rows, dense=dense)
     found = np.concatenate(run.rows).transpose(1, 0, 2)
     y = found.astype(np.float64)
-    exact = np.array([number(Fraction(x)) for x in y.ravel().tolist()]).reshape(y.shape)
     t = plan.instants[first : first + y.shape[1]]
     if run.stopped:
         t = np.append(t[: y.shape[1] - 1], taylor_events.crossings[-1].t)
@@ -109,7 +110,7 @@ def taylor_motion(
     return Samples(
         t=t,
         y=y,
-        carried=(found - exact).astype(np.float64),
+        carried=(found - heyoka_doubles(y, precision)).astype(np.float64),
         steps=run.steps,
         evaluations=run.steps,
         step=None,
