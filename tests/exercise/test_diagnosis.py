@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+import sympy as sp
 
 from canon.exercise.claim_verdict import examine
 from canon.exercise.diagnose.change import Mistake
@@ -15,6 +16,7 @@ from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.explained_judgement import judgements
 from canon.exercise.report import sentences
+from canon.exercise.sheet.measures import measure_of
 from canon.exercise.sheet.sheet import Claim, read_sheet
 
 ROOT = Path(__file__).parents[2]
@@ -118,6 +120,37 @@ def is_a_solution(claim, sentence):
     return holds(Claim(claim.id, claim.keys["of"], keys))
 
 
+def is_so_of_a_number(claim, sentence):
+    """Whether the slip that a sentence names leads from the value that was claimed to one that is right."""
+    example = examine(claim).verdict.counterexample
+    given = {name: sp.sympify(value) for name, value in claim.keys.get("given", {}).items()}
+    value = claim.keys["value"]
+    right = [sp.sympify(v).subs(given) for v in (value if isinstance(value, list) else [value])]
+    if (open_ := re.search(r"(\d+) of (\d+) values stays? open", sentence)) is not None:
+        return int(open_[2]) == len(right) and "complete" in claim.keys
+    if "is no unit of" in sentence or "dimension" in sentence:
+        return (
+            measure_of(re.search(r"[A-Za-z/^0-9]+$", claim.keys["claim"])[0]).powers
+            != measure_of(claim.keys["unit"]).powers
+        )
+    claimed = sp.sympify(example.left)
+    if "further from" in sentence:
+        said = sp.sympify(re.search(r"allows: (\S+)$", sentence)[1])
+        return sp.Abs(min(sp.Abs(v - claimed) for v in right) - said) < said / 10
+    if "the exact one is asked for" in sentence:
+        digits = len(claim.keys["claim"].partition(".")[2])
+        gaps = [sp.Abs(v - sp.Rational(claim.keys["claim"])).n(20) for v in right]
+        return any(0 < gap <= sp.Rational(1, 2 * 10**digits) for gap in gaps)
+    mended = {
+        "the value has the wrong sign": -claimed,
+        "the value should be its reciprocal": 1 / claimed,
+        "the value should be half as large": claimed / 2,
+        "the value should be twice as large": 2 * claimed,
+        "the value seems to be in degrees; it is asked in radians": claimed * sp.pi / 180,
+    }[sentence]
+    return any(sp.Abs(v - mended) < sp.Abs(v) / 100 for v in right)
+
+
 def is_so(claim, sentence):
     """Whether what is stated of a claim is so: where an answer is named, the claim of that answer holds."""
     word = sentence.partition(":")[0]
@@ -138,6 +171,8 @@ def is_so(claim, sentence):
             return is_a_solution(claim, sentence) == ("is no solution" not in sentence)
         case "first-order":
             return goes_further(claim, sentence)
+        case "number":
+            return is_so_of_a_number(claim, sentence)
         case _:
             return any(text in sentence for text in STATEMENTS)
 

@@ -203,7 +203,7 @@ class Reader(FactorParser):
                 if token.primes:
                     return Name(token.text, token.primes, token.column)
                 return Call(token.text, (Name(self.scope.time.name, 0, opening.column),), token.column)
-            if opening.text == "[" and opening.tight and self.tokens[self.at + 2].text in ("]", "]]"):
+            if opening.text == "[" and opening.tight and self.closes_after(2):
                 raise self.fault("there is no indexing", "write ( ) for grouping, * for a product")
             return Name(token.text, token.primes, token.column)
         if token.text == "d" and (node := derivative(self, token)) is not None:
@@ -215,6 +215,11 @@ class Reader(FactorParser):
         if bracket and opening.tight:
             return self.called(token)
         return Name(token.text, token.primes, token.column)
+
+    def closes_after(self, tokens: int) -> bool:
+        """Tell whether a square bracket closes so many tokens on."""
+        place = self.at + tokens
+        return place < len(self.tokens) and self.tokens[place].text in ("]", "]]")
 
     def of_function(self, token: Token, bracket: bool) -> Node:
         """Read a value of a declared function, or with primes its derivative."""
