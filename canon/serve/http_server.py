@@ -28,6 +28,8 @@ __all__ = ["configured", "serve"]
 BACKLOG = 256
 IDLE = 15
 """Seconds for which a connection stays open on which no whole request has come."""
+UNREAD = 30.0
+"""Seconds for which an answer that a client does not take is kept for it."""
 
 
 def serve(
@@ -91,16 +93,41 @@ def configured(app: Starlette, limits: Limits, proxy: str = "") -> uvicorn.Confi
 
 
 class _Prompt(H11Protocol):
-    """HTTP/1.1 on one connection, closed where no whole request comes: uvicorn waits for one without end."""
+    """HTTP/1.1 on one connection, closed where no whole request comes or an answer is not taken.
+
+    uvicorn waits for both without end.
+    """
 
     _seen: RequestResponseCycle | None = None
     """What had been answered last when it was looked; None while nothing had."""
     _resting = True
     """Whether nothing was being answered then."""
+    _giving_up: asyncio.TimerHandle | None = None
+    """What will end the connection, unless the client takes what was sent before."""
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
         super().connection_made(transport)
+        transport.set_write_buffer_limits(0)  # the next piece of an answer waits until the last one has gone
         self.loop.call_later(IDLE, self._look)
+
+    def pause_writing(self) -> None:
+        super().pause_writing()
+        self._giving_up = self.loop.call_later(
+            UNREAD, self.transport.abort
+        )  # closing would wait for the client
+
+    def resume_writing(self) -> None:
+        super().resume_writing()
+        self._take_back()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        super().connection_lost(exc)
+        self._take_back()
+
+    def _take_back(self) -> None:
+        if self._giving_up is not None:
+            self._giving_up.cancel()
+            self._giving_up = None
 
     def _look(self) -> None:
         """Close the connection where nothing is being answered and nothing new was since the last look."""

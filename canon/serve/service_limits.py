@@ -24,7 +24,7 @@ class Limits:
     waiting
         Claims of all clients that are judged or wait for it.
     rate
-        Claims a minute for each client; a second of judging counts as one more, forty texts read as one.
+        Claims a minute for each client; forty texts read count as one, a second of judging or reading as one more.
     burst
         Claims that a client who has not asked for a while may ask at once.
     connections

@@ -14,6 +14,8 @@ from canon.serve.refusal import Refusal
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from canon.serve.token_bucket import WorkTime
+
 __all__ = ["TextReader"]
 
 SECONDS = 3.0
@@ -37,8 +39,15 @@ class TextReader:
         """Texts that are read or wait for it."""
         self._thread.submit(self._ready)
 
-    async def how_read(self, asked: Mapping[str, Any]) -> dict[str, Any]:
+    async def how_read(self, asked: Mapping[str, Any], work: WorkTime) -> dict[str, Any]:
         """Return how a text is read, as :func:`canon.serve.reading_process.how_read` says it.
+
+        Parameters
+        ----------
+        asked
+            The text, and the names that it may use.
+        work
+            What counts the seconds of reading; those of waiting are not counted.
 
         Raises
         ------
@@ -49,7 +58,9 @@ class TextReader:
             raise Refusal(503, f"{WAITING} texts wait to be read; ask again in a second", retry_after=1.0)
         self.waiting += 1
         try:
-            return await asyncio.get_running_loop().run_in_executor(self._thread, self._read, dict(asked))
+            return await asyncio.get_running_loop().run_in_executor(
+                self._thread, self._read, dict(asked), work
+            )
         finally:
             self.waiting -= 1
 
@@ -58,15 +69,19 @@ class TextReader:
         self._thread.shutdown(wait=False, cancel_futures=True)
         self._stop()
 
-    def _read(self, asked: dict[str, Any]) -> dict[str, Any]:
-        try:
-            child = self._ready()
-            self._texts += 1
-            child.send(lambda: json.dumps(asked).encode(), SECONDS)
-            return json.loads(child.receive(time.monotonic() + SECONDS))
-        except (Late, Ended) as reason:
-            self._stop()
-            raise Refusal(422, f"this text could not be read within {SECONDS:g} s; shorten it") from reason
+    def _read(self, asked: dict[str, Any], work: WorkTime) -> dict[str, Any]:
+        child = self._ready()
+        with work:
+            try:
+                self._texts += 1
+                child.send(lambda: json.dumps(asked).encode(), SECONDS)
+                return json.loads(child.receive(time.monotonic() + SECONDS))
+            except (Late, Ended) as reason:
+                self._stop()
+                self._ready()  # the next text does not wait for it, and whose text ended the last one pays
+                raise Refusal(
+                    422, f"this text could not be read within {SECONDS:g} s; shorten it"
+                ) from reason
 
     def _ready(self) -> Child:
         """Return the process once it waits for a text; a new one where it ended or has read enough."""
@@ -76,9 +91,13 @@ class TextReader:
             self._child = child = Child("canon.serve.reading_process", leads=True)
             try:
                 child.receive(time.monotonic() + START)
-            except (Late, Ended):
+            except (Late, Ended) as reason:
                 self._stop()
-                raise
+                raise Refusal(
+                    503,
+                    "the process that reads texts does not start; ask again in a minute",
+                    retry_after=60.0,
+                ) from reason
             self._texts = 0
         return child
 

@@ -1,4 +1,4 @@
-"""Token buckets, one a client: each request takes some out, time puts them back."""
+"""Token buckets, one a client: each request takes some out, and the work it makes; time puts them back."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["Buckets"]
+__all__ = ["Buckets", "WorkTime"]
 
 MOST_CLIENTS = 10_000
 """Clients that are remembered; the one that asked the longest ago is forgotten first."""
@@ -64,3 +64,29 @@ class Buckets:
         self._levels.move_to_end(client)
         while len(self._levels) > MOST_CLIENTS:
             self._levels.popitem(last=False)
+
+
+class WorkTime:
+    """Seconds that pieces of work took, each in a ``with`` block, whatever came of it.
+
+    Examples
+    --------
+    >>> clock = iter((1.0, 4.0)).__next__
+    >>> work = WorkTime(clock)
+    >>> with work:
+    ...     pass
+    >>> work.seconds
+    3.0
+    """
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        self._now, self._start = now, 0.0
+        self.seconds = 0.0
+
+    def __enter__(self) -> None:
+        """Begin a piece of work."""
+        self._start = self._now()
+
+    def __exit__(self, *_: object) -> None:
+        """Count a piece of work."""
+        self.seconds += self._now() - self._start

@@ -6,7 +6,7 @@ import asyncio
 import ipaddress
 import json
 import time
-from contextlib import aclosing, asynccontextmanager
+from contextlib import aclosing, asynccontextmanager, contextmanager
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,7 @@ from starlette.routing import Route
 
 from canon.exercise.report.report import Report
 from canon.serve.api_page import api_page
-from canon.serve.guarded_responses import LOOPBACK, GuardedResponses
+from canon.serve.guarded_responses import HEADERS, LOOPBACK, GuardedResponses
 from canon.serve.judging_queue import JudgingQueue
 from canon.serve.kinds_for_the_page import kinds
 from canon.serve.openapi_document import openapi
@@ -27,20 +27,21 @@ from canon.serve.request_body import asked_claims, asked_text, body_of
 from canon.serve.request_log import RequestLog, note
 from canon.serve.service_limits import Limits
 from canon.serve.text_reader import TextReader
-from canon.serve.token_bucket import Buckets
+from canon.serve.token_bucket import Buckets, WorkTime
 from canon.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, Collection
+    from collections.abc import AsyncGenerator, Collection, Generator
 
     from starlette.requests import Request
 
     from canon.exercise.report.judgement import Judgement
+    from canon.exercise.sheet.sheet import Sheet
 
 __all__ = ["application"]
 
 TEXTS_A_CLAIM = 40
-"""How many texts are read for what one claim costs."""
+"""How many texts are read, or requests looked at, for what one claim costs; their time is put to account besides."""
 LINES = "application/x-ndjson"
 _FILES = {
     "/": ("index.html", "text/html; charset=utf-8"),
@@ -123,9 +124,11 @@ class _Service:
 
     async def check(self, request: Request) -> Response:
         """Judge a sheet, or one claim."""
+        self._take(request, 1.0 / TEXTS_A_CLAIM)
         body = await body_of(request, self.limits.body)
-        sheet, alone = await asyncio.to_thread(asked_claims, body, self.limits.claims)
-        self._take(request, len(sheet.claims))
+        with self._on_account(request) as work:
+            sheet, alone = await asyncio.to_thread(self._asked, body, work)
+        self._take(request, len(sheet.claims) - 1.0 / TEXTS_A_CLAIM)
         note(request.scope, bytes=len(body), claims=len(sheet.claims))
         if not alone and LINES in request.headers.get("accept", ""):
             return await self._lines(request, sheet.claims)
@@ -158,9 +161,10 @@ class _Service:
 
     async def read(self, request: Request) -> Response:
         """Tell how a text is read."""
-        body = await body_of(request, self.limits.body)
         self._take(request, 1.0 / TEXTS_A_CLAIM)
-        found = await self.reader.how_read(asked_text(body))
+        body = await body_of(request, self.limits.body)
+        with self._on_account(request) as work:
+            found = await self.reader.how_read(asked_text(body), work)
         note(request.scope, bytes=len(body), read=found["read"])
         return _json(found)
 
@@ -198,6 +202,19 @@ class _Service:
                 retry_after=wait,
             )
 
+    def _asked(self, body: bytes, work: WorkTime) -> tuple[Sheet, bool]:
+        with work:
+            return asked_claims(body, self.limits.claims)
+
+    @contextmanager
+    def _on_account(self, request: Request) -> Generator[WorkTime]:
+        """Give what counts the seconds of work; they are put to the client's account, even where nothing came of it."""
+        work = WorkTime()
+        try:
+            yield work
+        finally:
+            self.buckets.charge(_client(request), work.seconds)
+
     def _charged(self, request: Request, judgement: Judgement) -> Judgement:
         """Return a judgement whose time was put to the client's account."""
         if judgement.seconds > 1.0:
@@ -212,7 +229,11 @@ def _client(request: Request) -> str:
         address = ipaddress.ip_address(host)
     except ValueError:
         return host
-    return host if address.version == 4 else str(ipaddress.ip_network((address, 64), strict=False))
+    if isinstance(address, ipaddress.IPv6Address):
+        if address.ipv4_mapped is None:
+            return str(ipaddress.ip_network((address, 64), strict=False))
+        address = address.ipv4_mapped  # how a socket for both versions names who asks by IPv4
+    return str(address)
 
 
 def _file(name: str, kind: str) -> Any:
@@ -237,4 +258,4 @@ async def _not_found(_: Request, error: Exception) -> Response:
 
 
 async def _fault(_: Request, __: Exception) -> Response:
-    return problem(500, _TOLD[500])
+    return problem(500, _TOLD[500], HEADERS)  # answered outside of what guards the other responses

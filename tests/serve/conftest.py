@@ -28,8 +28,8 @@ class Answer:
 class Client:
     """What asks a service, from an address of its own."""
 
-    def __init__(self, app, port, address="127.0.0.1"):
-        self.app, self.port, self.address = app, port, address
+    def __init__(self, app, port, address="127.0.0.1", server=None):
+        self.app, self.port, self.address, self.server = app, port, address, server
 
     def request(self, method, path, *, json=None, content=None, headers=()):
         said = dict(headers)
@@ -72,7 +72,7 @@ class Served:
         while not self.server.started:
             assert self.thread.is_alive()
             self.thread.join(0.02)
-        return Client(self.app, self.listening.getsockname()[1])
+        return Client(self.app, self.listening.getsockname()[1], server=self.server)
 
     def __exit__(self, *_):
         self.server.should_exit = True

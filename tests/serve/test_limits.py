@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import logging
 import socket
 import threading
 from types import SimpleNamespace
@@ -12,9 +14,15 @@ from hypothesis import strategies as st
 
 pytest.importorskip("starlette", reason="the extra 'serve' is not installed")
 
+from starlette.applications import Starlette
+from starlette.responses import Response, StreamingResponse
+from starlette.routing import Route
+
 from canon.exercise.report.judgement import Judgement
-from canon.serve import Limits, application, http_server
-from canon.serve.token_bucket import MOST_CLIENTS, Buckets
+from canon.serve import Limits, application, http_server, text_reader, web_application
+from canon.serve.guarded_responses import HEADERS
+from canon.serve.refusal import Refusal
+from canon.serve.token_bucket import MOST_CLIENTS, Buckets, WorkTime
 
 RIGHT = {"id": "right", "kind": "equality-only", "lhs": "2*x", "rhs": "x + x", "parameters": {"x": "real"}}
 
@@ -36,11 +44,14 @@ class Slow:
 
 
 class Silent:
-    """A reader that reads nothing."""
+    """A reader that reads nothing, or says that it worked for long."""
 
     waiting = 0
 
-    async def how_read(self, asked):
+    async def how_read(self, asked, work):
+        work.seconds += {"long": 3.0, "endless": 3.0}.get(asked["text"], 0.0)
+        if asked["text"] == "endless":
+            raise Refusal(422, "this text could not be read")
         return {"read": True, "statements": [], "warnings": []}
 
     def close(self):
@@ -52,6 +63,10 @@ def served(monkeypatch, running):
     monkeypatch.setattr("canon.serve.judging_queue.JudgePool", Slow)
     monkeypatch.setattr("canon.serve.web_application.TextReader", Silent)
     return lambda **limits: running(application(Limits(**limits)))
+
+
+def http_connections(client):
+    return len(client.server.server_state.connections)
 
 
 def pool_of(client):
@@ -76,9 +91,85 @@ def test_who_asks_too_often_is_told_when_to_come_back(served):
             429,
         ]  # each took 3 s, which counts as well
         assert "at most 1 claims a minute" in answers[1].json()["detail"]
-        assert 1 <= int(answers[1].headers["retry-after"]) <= 60
+        owed = int(answers[1].headers["retry-after"])
+        assert 59 <= owed <= 61  # a claim's worth, and what it took to look at the requests
         assert client.post("/read", json={"text": "x"}).status_code == 429
         assert client.get("/health").status_code == 200
+
+
+@pytest.mark.parametrize(("text", "status"), [("long", 200), ("endless", 422)])
+def test_a_text_that_takes_long_to_read_costs_what_its_reading_takes(served, text, status):
+    """Three seconds of a process cost as many claims as three seconds of judging do, whatever came of them."""
+    with served(rate=1.0, burst=3.0) as client:
+        assert client.post("/read", json={"text": text}).status_code == status
+        refused = client.post("/read", json={"text": "x"})
+        assert refused.status_code == client.post("/check", json=RIGHT).status_code == 429
+        assert 1 <= int(refused.headers["retry-after"]) <= 61
+    with served(rate=1.0, burst=3.0) as client:
+        assert [client.post("/read", json={"text": "x"}).status_code for _ in range(9)] == [200] * 9
+
+
+def test_what_is_no_claim_is_not_free(served):
+    json_ = {"Content-Type": "application/json"}
+    with served(rate=0.001, burst=1.0) as client:
+        answers = [client.post("/check", content=b"{", headers=json_).status_code for _ in range(42)]
+        assert (answers[0], answers[-1]) == (400, 429)
+
+
+def test_the_work_of_reading_is_counted_where_it_ends_and_where_it_does_not(monkeypatch):
+    """By a process that answers, then one that does not; the next one is started at the cost of the same text."""
+    started = []
+
+    class Process:
+        usable = True
+
+        def __init__(self, *_, **__):
+            started.append(self)
+            self.asked = 0
+
+        def send(self, encode, seconds):
+            self.asked += 1
+
+        def receive(self, deadline):
+            if self.asked == 2:
+                raise text_reader.Late
+            return b"{}"
+
+        def kill(self):
+            self.usable = False
+
+    clock = iter(range(100)).__next__
+
+    async def asked():
+        reader = text_reader.TextReader()
+        found = []
+        for _ in range(3):
+            work = WorkTime(clock)
+            try:
+                await reader.how_read({"text": "x"}, work)
+            except Refusal as refusal:
+                found.append(refusal.status)
+            found.append(work.seconds)
+        reader.close()
+        return found
+
+    monkeypatch.setattr(text_reader, "Child", Process)
+    assert asyncio.run(asked()) == [1, 422, 1, 1]
+    assert [process.usable for process in started] == [False, False]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [("::ffff:192.0.2.1", "192.0.2.1", True), ("::ffff:192.0.2.1", "::ffff:192.0.2.2", False),
+     ("2001:db8::1", "2001:db8::2", True), ("2001:db8::1", "2001:db8:0:1::1", False),
+     ("192.0.2.1", "192.0.2.2", False)],
+)  # fmt: skip
+def test_a_client_is_an_address_or_the_network_of_one_person(one, other, same):
+    """A socket for both versions of IP names clients of version 4 within one network of version 6."""
+    clients = [
+        web_application._client(SimpleNamespace(client=SimpleNamespace(host=host))) for host in (one, other)
+    ]
+    assert (clients[0] == clients[1]) is same
 
 
 def test_other_clients_are_served_meanwhile(served):
@@ -134,6 +225,56 @@ def test_a_connection_on_which_no_request_comes_is_closed(served, monkeypatch, s
         assert silent.recv(100) == b""
 
 
+async def pieces(ended):
+    try:
+        while True:
+            await asyncio.sleep(0)  # as one waits for a verdict
+            yield b"x" * 1_000_000
+    finally:
+        ended.set()
+
+
+@pytest.mark.parametrize("whole", [True, False], ids=["an answer in one", "an answer in pieces"])
+def test_a_client_that_does_not_take_its_answer_is_let_go(monkeypatch, running, whole):
+    """Nothing more is made for it, and what was made is dropped; others are answered."""
+    monkeypatch.setattr(http_server, "UNREAD", 0.3)
+    ended = threading.Event()
+
+    async def much(_):
+        return Response(b"x" * 50_000_000) if whole else StreamingResponse(pieces(ended))
+
+    async def little(_):
+        return Response(b"here")
+
+    with (
+        running(Starlette(routes=[Route("/much", much), Route("/", little)])) as client,
+        socket.create_connection(("127.0.0.1", client.port), 30) as deaf,
+    ):
+        deaf.sendall(b"GET /much HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        assert whole or ended.wait(30)
+        while client.get("/").content != b"here" or http_connections(client) > 0:
+            pass  # what keeps a connection that nobody reads would hang here
+        got = 0
+        while piece := deaf.recv(1_000_000):
+            got += len(piece)
+        assert got < 50_000_000  # what the system had taken already
+
+
+def test_a_client_that_takes_its_answer_slowly_gets_all_of_it(running):
+    async def much(_):
+        return Response(b"x" * 20_000_000)
+
+    with (
+        running(Starlette(routes=[Route("/", much)])) as client,
+        socket.create_connection(("127.0.0.1", client.port), 30) as slow,
+    ):
+        slow.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
+        found = 0
+        while piece := slow.recv(10_000):
+            found += piece.count(b"x")
+    assert found == 20_000_000
+
+
 def test_a_connection_on_which_something_is_answered_stays():
     """However long the answer takes, and for a whole period after it; looked at step by step."""
     closed, looks = [], []
@@ -152,6 +293,39 @@ def test_a_connection_on_which_something_is_answered_stays():
     assert closed == [True]
     prompt._look()
     assert len(looks) == 6
+
+
+def test_a_fault_of_the_service_is_no_answer_and_stands_in_the_log(served):
+    """An error that nobody thought of is a 500 with the usual headers, and its traceback is logged, once each."""
+    lines = []
+
+    class Kept(logging.Handler):
+        def emit(self, record):
+            lines.append((record.name, getattr(record, "said", {}).get("status"), record.exc_info))
+
+    def broken(_):
+        raise RuntimeError("nobody thought of this")
+
+    loggers, kept = [logging.getLogger(name) for name in ("canon.serve", "uvicorn.error")], Kept(logging.INFO)
+    levels = [logger.level for logger in loggers]
+    with served() as client:
+        pool_of(client).judge = broken
+        for logger in loggers:
+            logger.addHandler(kept)
+            logger.setLevel(logging.INFO)
+        answer = client.post("/check", json=RIGHT)
+        assert client.get("/health").json()["waiting"]["claims"] == 0
+    for logger, level in zip(loggers, levels, strict=True):  # the server tells of it after it has answered
+        logger.removeHandler(kept)
+        logger.setLevel(level)
+    assert (answer.status_code, answer.json()["detail"]) == (
+        500,
+        "a fault of the service; its log says where",
+    )
+    assert {name.lower() for name in HEADERS} <= set(answer.headers)
+    assert "nobody" not in answer.text
+    assert [status for name, status, _ in lines if name == "canon.serve"] == [500, 200]
+    assert [str(error[1]) for *_, error in lines if error] == ["nobody thought of this"]
 
 
 @pytest.mark.parametrize(

@@ -113,6 +113,28 @@ def test_right_wrong_and_unreadable_are_told_apart(page):
     assert (region.get_attribute("role"), region.get_attribute("aria-live")) == ("status", "polite")
 
 
+NO_MATHML = """
+const asked = window.fetch;
+window.fetch = (path, said) => path === "read" && !JSON.parse(said.body).key
+  ? Promise.resolve(new Response('{"read": true, "warnings": [], "statements": [{"mathml": "", "plain": ""}]}'))
+  : asked(path, said);
+"""
+
+
+@pytest.mark.parametrize("long", [False, True])
+def test_a_corrected_answer_is_shown_whatever_its_length(page, long):
+    """As a formula, and as text where it is too long for the service to set."""
+    filled(page)
+    if long:
+        page.execute_script(NO_MATHML)
+    typed(page, "claim", "theta'' + g/(2*l)*sin(theta) = 0")
+    page.find_element(By.ID, "check").click()
+    wait(page, lambda: page.find_elements(By.CSS_SELECTOR, ".corrected code" if long else ".corrected math"))
+    shown = page.find_element(By.CSS_SELECTOR, ".corrected").text
+    assert "parsing" not in shown
+    assert not long or "sin(theta)" in shown
+
+
 def test_the_keyboard_is_enough(page):
     page.find_element(By.TAG_NAME, "body").send_keys(Keys.TAB)
     order = []

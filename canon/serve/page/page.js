@@ -303,7 +303,7 @@ async function corrected(text) {
     let set = element("code", {}, part);
     try {
       const said = await post("read", { ...declared(), kind: $("kind").value, text: part });
-      if (said.read) set = element("div", {}, ...said.statements.map((one) => mathml(one.mathml)));
+      if (said.read && said.statements.every((one) => one.mathml)) set = element("div", {}, ...said.statements.map((one) => mathml(one.mathml)));
     } catch { /* it is shown as text */ }
     place.append(set);
   }
