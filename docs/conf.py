@@ -150,7 +150,7 @@ RETURNED = {
         "study.cases.result.State",
         "study.cases.run_study.StudyStatus",
         "study.energy_drift.drift_rows.DriftRow",
-        "study.cases.store.StoreError",
+        "study.cases.store_tables.StoreError",
     ),
     "exercise": ("exercise.sheet.sheet.ClaimError",),
 }

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from canon.process import RESTS_ON, Child, Ended, Late, folders
+from canon.process import Child, Ended, Late
+from canon.trusted_folders import RESTS_ON, trusted_folders
 
 ROOT = Path(__file__).parents[1]
 TRAP = "import pathlib; pathlib.Path({marker!r}).open('a').write({name!r})\nraise SystemExit('owned')\n"
@@ -199,12 +200,12 @@ def test_what_canon_rests_on_comes_from_where_it_is_in_use(tmp_path, monkeypatch
 
     here = Path(sympy.__file__).parent
     (tmp_path / "sympy").symlink_to(here, target_is_directory=True)
-    code = "import canon.process; print(*canon.process.folders(), sep='\\n')"
+    code = "from canon.trusted_folders import trusted_folders; print(*trusted_folders(), sep='\\n')"
     told = run(["-c", f"import sympy; {code}"], ROOT, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]))
     assert told.stdout.split("\n")[0] == str(tmp_path)
     told = run(["-c", code], tmp_path)
     assert told.stdout.split("\n")[0] == str(here.parent)
-    assert str(here.parent) in folders()
+    assert str(here.parent) in trusted_folders()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no groups of processes")

@@ -315,7 +315,8 @@ def _executor(arguments: argparse.Namespace) -> Generator[tuple[Executor | None,
         import multiprocessing
         from concurrent.futures import ProcessPoolExecutor
 
-        from canon.process import end_with_parent, safe_path
+        from canon.process import end_with_parent
+        from canon.trusted_folders import safe_path
 
         spawned = multiprocessing.get_context("spawn")
         with safe_path(), ProcessPoolExecutor(arguments.jobs, spawned, end_with_parent) as pool:

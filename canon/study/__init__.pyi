@@ -9,7 +9,7 @@ from .cases.result import results_of as results_of
 from .cases.run_study import run_study as run_study
 from .cases.run_study import status_of as status_of
 from .cases.store import DamagedRows as DamagedRows
-from .cases.store import StoreError as StoreError
+from .cases.store_tables import StoreError as StoreError
 from .cases.study import Study as Study
 from .cases.study import read_study as read_study
 from .energy_drift.block_means import Blocks as Blocks

@@ -122,6 +122,36 @@ def test_what_is_no_formula_is_refused_with_what_to_write(what: str) -> None:
     assert "VectorField" in str(caught.value)
 
 
+COMPLEX: dict[str, tuple[Callable[..., Any], Any, str]] = {
+    "a complex start": (
+        lambda t, y: -y,
+        [1j, 2.0],
+        r"the start .* is complex \(\[1j, 2.0\]\): give real and imaginary",
+    ),
+    "an array of complex numbers": (lambda t, y: -y, np.array([1 + 2j]), "the start .* is complex"),
+    "a text": (lambda t, y: -y, ["one"], "the start .* should be real numbers"),
+    "a complex factor": (lambda t, y: [1j * y[0]], [1.0], "1j is no formula and no finite number"),
+    "complex for numbers": (
+        lambda t, y: [y[0] + (0j if isinstance(y[0], float) else 0)],
+        [1.0],
+        r"what f\(t, y\) returns at the start is complex",
+    ),
+    "a root of less than nothing": (lambda t, y: [np.sqrt(y[0])], [-1.0], "not finite at y0"),
+    "an arcsine beyond one": (lambda t, y: [np.arcsin(y[0])], [2.0], "not finite at y0"),
+    "a logarithm of nothing": (lambda t, y: [np.log(y[0])], [0.0], "not finite at y0"),
+    "a quotient by nothing": (lambda t, y: [1 / y[0]], [0.0], "not finite at y0"),
+}
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # NumPy's own, of what the function does
+@pytest.mark.parametrize("what", COMPLEX)
+def test_what_is_not_real_is_told_in_a_sentence(what: str) -> None:
+    """No imaginary part is dropped, and nothing of SymPy's or NumPy's own errors is shown."""
+    f, start, told = COMPLEX[what]
+    with pytest.raises((TypeError, ValueError), match=told):
+        propagate(f, (0, 1), start)
+
+
 def test_rates_are_as_many_as_variables() -> None:
     with pytest.raises(ValueError, match="returns 1 rate for 2 variables"):
         propagate(lambda t, y: [y[1]], (0, 1), [1.0, 0.0])

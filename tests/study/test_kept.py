@@ -27,9 +27,10 @@ from canon import (
 )
 from canon.cli import main
 from canon.study import DamagedChunk, StudyError, mend
+from canon.study.cases import kept_of_case, store
 from canon.study.cases.case import Case, key_of
 from canon.study.cases.run_study import resume, status_of
-from canon.study.cases.store import Store
+from canon.study.cases.store import Store, StoreError
 from canon.study.kept.chunk_file import ChunkFolder
 from canon.study.kept.keep_choice import chosen_functions
 
@@ -218,6 +219,27 @@ def test_damage_is_told_by_case_set_aside_and_computed_again(path, whole):
     assert mend(path).chunks == ()
 
 
+def test_mending_beside_a_running_study_takes_nothing_from_it(tmp_path, monkeypatch):
+    """Mending that comes between a chunk and its row waits; for no longer than its patience, then says so."""
+    path, written, write = tmp_path / "s.sqlite", [], ChunkFolder.write
+    monkeypatch.setattr(store, "PATIENCE", 0.05)
+
+    def interrupted(folder, chunk, content):
+        write(folder, chunk, content)
+        with pytest.raises(StoreError, match="another process has been writing"):
+            mend(path)
+        written.append(chunk.file_name)
+
+    monkeypatch.setattr(ChunkFolder, "write", interrupted)
+    study = Study.of(
+        system="henon-heiles", method=["verlet", "rk4"], step=0.1, span=60.0, samples=256, keep="motion"
+    )
+    assert run_study(study, path).finished == 2
+    assert mend(path).chunks == ()
+    assert sorted(written) == [file.name for file in ChunkFolder(path).files()]
+    assert all(len(result.kept["motion"]["t"]) == 257 for result in results_of(path))
+
+
 def test_a_kill_between_chunk_and_record_costs_nothing(path, whole):
     Store(path).forget([results_of(path)[0].key])
     assert run_study(STUDY, path, keep=FUNCTIONS).pending == 0
@@ -225,18 +247,18 @@ def test_a_kill_between_chunk_and_record_costs_nothing(path, whole):
 
 
 def test_what_is_kept_is_merged(tmp_path, whole):
-    store = Store(tmp_path / "all.sqlite")
-    store.add_from(Store(whole))
-    assert all_of(store.path) == all_of(whole)
+    merged = Store(tmp_path / "all.sqlite")
+    merged.add_from(Store(whole))
+    assert all_of(merged.path) == all_of(whole)
 
 
 def test_a_damaged_chunk_is_not_merged(tmp_path, path):
     file = ChunkFolder(path).files()[0]
     file.write_bytes(file.read_bytes()[:-1])
-    store = Store(tmp_path / "all.sqlite")
+    merged = Store(tmp_path / "all.sqlite")
     with pytest.raises(DamagedChunk):
-        store.add_from(Store(path))
-    assert store.cases() == {}
+        merged.add_from(Store(path))
+    assert merged.cases() == {}
 
 
 def test_a_file_that_keeps_a_functions_results_goes_on_with_that_function_only(path):
@@ -287,6 +309,46 @@ def test_what_a_function_returns_has_to_be_numbers(tmp_path, value, why):
     assert why in result.failure
 
 
+def of_verlet_only(motion):
+    return {"end": motion["x"][-1] + (None if abs(motion.energy_change).max() > 1e-5 else 1.0)}
+
+
+@pytest.mark.parametrize(
+    ("function", "told"),
+    [(of_verlet_only, "spread raised TypeError: unsupported operand"),
+     (lambda motion: motion.nothing, "spread raised AttributeError: 'KeptMotion' object has no attribute 'nothing'"),
+     (lambda motion: motion["z"], "spread raised KeyError")],
+    ids=["a wrong type", "an attribute", "a name"],
+)  # fmt: skip
+def test_a_function_that_raises_fails_its_case_and_no_other(tmp_path, function, told):
+    """What it raised is told with its place; the other cases of the study go on."""
+    study = Study.of(system="henon-heiles", method=["verlet", "rk4"], step=0.1, span=60.0, samples=256)
+    status = run_study(study, path := tmp_path / "s.sqlite", keep={"spread": function})
+    both = function is not of_verlet_only
+    assert (status.finished, status.failed, status.pending) == (0 if both else 1, 2 if both else 1, 0)
+    failed = [result for result in results_of(path) if result.state.value == "failed"]
+    for result in failed:
+        assert told in result.failure
+        assert f"(test_kept.py:{function.__code__.co_firstlineno + (0 if both else 1)} in " in result.failure
+    said = command("status", path)[1]
+    assert told in said
+
+
+def test_an_error_of_canon_itself_ends_the_study(tmp_path, monkeypatch):
+    """A fault in canon's own code is no result of a case."""
+    study = Study.of(
+        system="henon-heiles", method="verlet", step=0.1, span=60.0, samples=256, keep="exponent"
+    )
+
+    def broken(case):
+        raise TypeError("a fault of canon")
+
+    monkeypatch.setattr(kept_of_case, "_exponent", broken)
+    with pytest.raises(TypeError, match="a fault of canon"):
+        run_study(study, tmp_path / "s.sqlite")
+    assert status_of(Store(tmp_path / "s.sqlite")).pending == 1
+
+
 @pytest.mark.parametrize(
     "keep",
     ["orbit", 5, [["motion"]], {"section": ""}, {"section": "x", "way": 1}, {"section": "x", "direction": "up"},
@@ -322,7 +384,7 @@ def test_a_driven_motion_is_kept_in_its_own_variables(tmp_path):
 @pytest.mark.parametrize(
     "given",
     [
-        {"system": "rolling-disc", "method": "taylor", "keep": ["motion", {"section": "theta - 1"}]},
+        {"system": "chaplygin-sleigh", "method": "taylor", "keep": ["motion", {"section": "theta - 1"}]},
         {
             "system": "kepler",
             "method": TimeTransformed(Splitting("kahan-li-8")),
@@ -349,5 +411,6 @@ def test_motions_of_every_kind_are_kept(tmp_path, given):
     tolerance = 1e-6
     for name in case.variables:
         np.testing.assert_allclose(motion[name], found[name], rtol=tolerance, atol=tolerance)
+    assert "section" not in result.kept or len(result.kept["section"]["t"]) > 0
     for name in result.kept["section"] if len(result.kept) > 1 else ():
         assert np.isfinite(result.kept["section"][name]).all()

@@ -65,7 +65,8 @@ def test_killed_between_writing_and_naming_a_chunk(tmp_path, monkeypatch):
     """The moment a kill seldom meets: the chunk is written in part, or whole while its record is not."""
     path = tmp_path / "study.sqlite"
 
-    def killed(self, record):
+    def killed(self, record, before):
+        before()
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:

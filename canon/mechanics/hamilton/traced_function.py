@@ -6,9 +6,10 @@ formulas, so that Taylor's method, every precision and the error estimates apply
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import sympy as sp
@@ -19,6 +20,8 @@ from canon.mechanics.hamilton.vector_field import VectorField
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from canon.array import Array
 
 __all__ = ["field_of_function", "is_rates_function", "read_at_start"]
 
@@ -86,7 +89,8 @@ def read_at_start(f: Callable[[Any, Any], Any], t0: float, y0: Any) -> VectorFie
     Raises
     ------
     TypeError, ValueError
-        As :func:`field_of_function` does; or its formulas are not what it returns for numbers.
+        As :func:`field_of_function` does; or the start or what it returns there are no real numbers, or not what its
+        formulas give.
 
     Examples
     --------
@@ -95,20 +99,36 @@ def read_at_start(f: Callable[[Any, Any], Any], t0: float, y0: Any) -> VectorFie
     """
     if y0 is None or isinstance(y0, Mapping | str):
         raise ValueError("the start of a function f(t, y) is given as numbers in order: y0 = [1.0, 0.0]")
-    numbers = np.asarray(y0, dtype=np.float64)
+    numbers = _real_numbers(y0, "the start of a function f(t, y)")
     field = field_of_function(f, len(numbers))
     start = numbers.reshape(len(numbers), -1)[:, 0]
-    returned = np.ravel(np.asarray(f(t0, start.copy()), dtype=np.float64))
-    point = dict(zip((*field.x, time), (*start, t0), strict=True))
-    told = [
-        float(sp.N(rate.xreplace({s: sp.Float(x) for s, x in point.items()}))) for rate in field.components
-    ]
+    returned = np.ravel(_real_numbers(f(t0, start.copy()), "what f(t, y) returns at the start"))
+    point = dict(zip((*field.x, time), map(sp.Float, (*start, t0)), strict=True))
+    told = [_value(cast("sp.Expr", rate.xreplace(point))) for rate in field.components]
+    returned[~np.isfinite(returned)] = math.nan  # no value there, which is told when the motion starts
     size = np.abs(returned).max(initial=0.0)
     if not np.allclose(told, returned, rtol=_NEAR, atol=_NEAR * size, equal_nan=True):
         raise TypeError(
             f"at the start f(t, y) returns {returned.tolist()}, read as formulas {told}: {_READABLE}"
         )
     return field
+
+
+def _real_numbers(given: Any, what: str) -> Array:
+    if np.asarray(given).dtype.kind == "c":  # NumPy would drop the imaginary parts of an array
+        raise TypeError(
+            f"{what} is complex ({given!r}): give real and imaginary parts as variables of their own"
+        )
+    try:
+        return np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError) as strange:
+        raise TypeError(f"{what} should be real numbers, not {given!r}") from strange
+
+
+def _value(formula: sp.Expr) -> float:
+    """Return the value of a formula, nan where that is no finite real number, as NumPy's functions have it."""
+    value = sp.N(formula)
+    return float(value) if value.is_real else math.nan
 
 
 class _Traced:

@@ -66,16 +66,20 @@ def orphaned_chunks(store: Store) -> tuple[DamagedFile, ...]:
 def set_chunks_aside(store: Store) -> tuple[DamagedFile, ...]:
     """Move damaged and orphaned chunks to a folder beside the others, and forget the records that named them.
 
+    A study that runs meanwhile waits with what it writes, and loses nothing.
+
     Returns
     -------
     tuple of DamagedFile
         What was wrong, and where.
     """
-    damaged, orphaned, folder = damaged_chunks(store), orphaned_chunks(store), ChunkFolder(store.path)
+    folder = ChunkFolder(store.path)
+    with store.while_nobody_writes():
+        damaged, orphaned = damaged_chunks(store), orphaned_chunks(store)
+        for each in (*damaged, *orphaned):
+            if each.file.exists():
+                folder.set_aside(each.file)
     store.forget(each.key for each in damaged)
-    for each in (*damaged, *orphaned):
-        if each.file.exists():
-            folder.set_aside(each.file)
     return (*damaged, *orphaned)
 
 

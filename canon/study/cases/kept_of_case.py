@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import traceback
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -24,7 +26,10 @@ if TYPE_CHECKING:
     from canon.study.cases.case import Case
     from canon.study.motion.extended_phase_space import Driven
 
-__all__ = ["kept_arrays", "kept_on_the_way", "section_of"]
+__all__ = ["FailedFunction", "kept_arrays", "kept_on_the_way", "section_of"]
+
+INNERMOST = 5
+"""Places in a function that raised which are told, the innermost ones."""
 
 TIMES_OF_EXPONENT = 64
 """Times at which the exponent of a motion is kept: how it settles shows in them."""
@@ -87,6 +92,8 @@ def kept_arrays(
     ------
     KeyError
         A function of the case is not given.
+    FailedFunction
+        One of them raised.
     ValueError
         What one of them returns can't be kept.
     """
@@ -104,8 +111,26 @@ def kept_arrays(
             if name == MOTION:
                 found |= {f"{MOTION}.{each}": row for each, row in motion.arrays.items()}
             else:
-                found |= finite_arrays(name, functions[name](motion))
+                found |= finite_arrays(name, _result(name, functions[name], motion))
     return found
+
+
+class FailedFunction(Exception):
+    """Raised where a function of the motion, which is not canon's, raised; says where in it."""
+
+    def __init__(self, name: str, error: Exception) -> None:
+        inside = traceback.extract_tb(error.__traceback__)[1:]  # the first is the call from here
+        where = ", ".join(f"{Path(at.filename).name}:{at.lineno} in {at.name}" for at in inside[-INNERMOST:])
+        super().__init__(f"{name} raised {type(error).__name__}: {error}" + (f" ({where})" if where else ""))
+
+
+def _result(name: str, function: Callable[..., Any], motion: KeptMotion) -> Any:
+    try:
+        return function(motion)
+    except MemoryError:
+        raise
+    except Exception as error:  # of code that is not canon's: it fails for this case, and may not for others
+        raise FailedFunction(name, error) from error
 
 
 def _exponent(case: Case) -> dict[str, Array]:

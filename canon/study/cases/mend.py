@@ -45,7 +45,8 @@ class Mended:
 def mend(path: str | Path) -> Mended:
     """Set the damaged rows of a results file aside, and keep every row that is as it was written.
 
-    Nobody else should be writing to the file meanwhile.
+    A study may run meanwhile, and waits with what it writes. Only where rows are damaged, and the file is exchanged
+    therefore, may a case that is finished at that moment be computed again.
 
     Parameters
     ----------

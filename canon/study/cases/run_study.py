@@ -14,7 +14,7 @@ import numpy as np
 from canon.expression.symbols.user_input import counted
 from canon.study.cases.case import Case, case_in, key_of, part_count, versions
 from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance
-from canon.study.cases.kept_of_case import kept_arrays
+from canon.study.cases.kept_of_case import FailedFunction, kept_arrays
 from canon.study.cases.store import Record, Store
 from canon.study.errors import StudyError
 from canon.study.kept.chunk_file import Chunk, ChunkFolder
@@ -90,7 +90,8 @@ def run_study(
     keep
         Functions by name, whose results are kept of each case beside what the study says: each gets a
         :class:`canon.study.KeptMotion` and returns a number, an array, or a mapping of these by name. Workers need
-        to be able to import them; a function whose code has changed is run anew, with its case.
+        to be able to import them; a function whose code has changed is run anew, with its case. Where one raises, its
+        case has failed, with what it raised and where; the other cases go on.
 
     Returns
     -------
@@ -181,7 +182,7 @@ def _finished(key: str, case: Case, found: Outcome, functions: Mapping[str, Func
     end = found.end
     try:
         arrays = kept_arrays(case, end.kept, np.array(end.t), np.array(end.change), functions)
-    except (ArithmeticError, LookupError, ValueError, RuntimeError) as error:
+    except (FailedFunction, ArithmeticError, LookupError, ValueError, RuntimeError) as error:
         return Finished(Record(key, "", f"what is to be kept of it: {error}", found.seconds))
     chunk, content = Chunk.of(key, arrays)
     outcome = json.dumps({**found.numbers, "kept": chunk.to_dict()})
@@ -211,15 +212,19 @@ def _run(
     chunks = ChunkFolder(store.path)
     for key, found in coming:
         if isinstance(found, Finished):
-            if found.chunk is not None:
-                chunks.write(found.chunk, found.content)
-            store.save(found.record)
+            store.save(found.record, partial(_keep, chunks, found))
             done.pop(key, None)
         else:
             store.save_checkpoint(key, found.part, found.to_text())
             done[key] = found.part / part_count(cases[key])
         if progress is not None:
             progress(replace(status_of(store), partly=sum(done.values())))
+
+
+def _keep(chunks: ChunkFolder, found: Finished) -> None:
+    """Write what a record names; in the record's transaction, so that nobody sets it aside before it is named."""
+    if found.chunk is not None:
+        chunks.write(found.chunk, found.content)
 
 
 def _not_finished(cases: Mapping[str, Case], store: Store) -> Iterator[tuple[str, Case, Checkpoint | None]]:

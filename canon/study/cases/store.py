@@ -20,55 +20,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from canon.study.cases.row_checksum import COLUMNS, DamagedRow, checked, with_checksum
+from canon.study.cases.store_tables import StoreError, checked_tables, how_to_mend
 from canon.study.kept.chunk_file import Chunk, ChunkFolder
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 
 __all__ = ["DamagedRows", "Record", "Store", "StoreError"]
-
-APPLICATION = 0x63616E6F
-"""Marks the file as one of canon's ("cano")."""
-
-VERSION = 4
-"""Version of the tables below."""
 
 PATIENCE = 60.0
 """Seconds to wait while another process writes."""
 
 SHOWN = 5
 """Damaged rows that an error names."""
-
-TABLES = """
-CREATE TABLE cases (
-    key TEXT PRIMARY KEY,
-    inputs TEXT NOT NULL,
-    checksum TEXT NOT NULL
-) STRICT;
-CREATE TABLE records (
-    key TEXT PRIMARY KEY REFERENCES cases (key),
-    failure TEXT NOT NULL,
-    outcome TEXT NOT NULL,
-    seconds REAL NOT NULL,
-    finished TEXT NOT NULL,
-    checksum TEXT NOT NULL
-) STRICT;
-CREATE TABLE checkpoints (
-    key TEXT PRIMARY KEY REFERENCES cases (key),
-    part INTEGER NOT NULL,
-    point TEXT NOT NULL,
-    checksum TEXT NOT NULL
-) STRICT;
-CREATE TABLE tags (
-    key TEXT NOT NULL REFERENCES cases (key),
-    tag TEXT NOT NULL,
-    checksum TEXT NOT NULL,
-    PRIMARY KEY (key, tag)
-) STRICT;
-"""
-
-WITHOUT_TAGS = 3
-"""Version of files that have all tables but the last, which they are given when they are opened."""
 
 ADD_CASE = "INSERT OR IGNORE INTO cases VALUES (?, ?, ?)"
 
@@ -82,10 +46,6 @@ ON CONFLICT (key) DO UPDATE SET part = excluded.part, point = excluded.point, ch
 WHERE excluded.part > part
 """
 """Keeps a checkpoint where there is no record, nor one that is further along."""
-
-
-class StoreError(OSError):
-    """Raised for a file that can't be read or written as a store of results; its data stay as they are."""
 
 
 class DamagedRows(StoreError):
@@ -153,7 +113,7 @@ class Store:
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
         with self._open() as connection:
-            self._check(connection)
+            checked_tables(self.path, connection)
 
     def add_cases(self, inputs: dict[str, str]) -> None:
         """Add cases by key with their inputs as text; those that are there already stay."""
@@ -177,9 +137,18 @@ class Store:
         """Return the inputs of all cases by key, in the order they were added."""
         return dict(self._rows("cases"))
 
-    def save(self, record: Record) -> None:
-        """Keep a record and drop the case's checkpoint, in one transaction; a record that is there already stays."""
+    def save(self, record: Record, before: Callable[[], None] = lambda: None) -> None:
+        """Keep a record and drop the case's checkpoint, in one transaction; a record that is there already stays.
+
+        Parameters
+        ----------
+        record
+            What came of the case.
+        before
+            Called before in the same transaction, while nobody else writes: it keeps what the record names.
+        """
         with self._writing() as connection:
+            before()
             connection.execute(ADD_RECORD, record.row())
             connection.execute("DELETE FROM checkpoints WHERE key = ?", (record.key,))
 
@@ -237,14 +206,29 @@ class Store:
         rows = {table: [with_checksum(table, *row) for row in other._rows(table)] for table in COLUMNS}
         self.require_intact()
         here, there = ChunkFolder(self.path), ChunkFolder(other.path)
-        for key, record in other.records().items():
-            if (chunk := Chunk.named_by(key, record.outcome)) is not None:
-                here.write(chunk, there.content(chunk))
-        self.add_rows(rows)
+        named = [Chunk.named_by(key, record.outcome) for key, record in other.records().items()]
 
-    def add_rows(self, rows: dict[str, list[tuple[str | float, ...]]]) -> None:
-        """Add rows with their checksums, by table, in one transaction, as :meth:`add_from` does."""
+        def write_chunks() -> None:
+            for chunk in named:
+                if chunk is not None:
+                    here.write(chunk, there.content(chunk))
+
+        self.add_rows(rows, write_chunks)
+
+    def add_rows(
+        self, rows: dict[str, list[tuple[str | float, ...]]], before: Callable[[], None] = lambda: None
+    ) -> None:
+        """Add rows with their checksums, by table, in one transaction, as :meth:`add_from` does.
+
+        Parameters
+        ----------
+        rows
+            By table.
+        before
+            As in :meth:`save`.
+        """
         with self._writing() as connection:
+            before()
             connection.executemany(ADD_CASE, rows["cases"])
             connection.executemany(ADD_RECORD, rows["records"])
             connection.execute("DELETE FROM checkpoints WHERE key IN (SELECT key FROM records)")
@@ -267,6 +251,16 @@ class Store:
         """Remove the records of these cases, such as failed ones to be tried again."""
         with self._writing() as connection:
             connection.executemany("DELETE FROM records WHERE key = ?", [(key,) for key in keys])
+
+    @contextmanager
+    def while_nobody_writes(self) -> Generator[None]:
+        """Keep other processes from writing to the file, for a while shorter than their patience.
+
+        Whoever writes meanwhile waits. What is kept beside the file is written in the same transaction as the record
+        that names it, so that while this lasts every such file has its record.
+        """
+        with self._writing():
+            yield
 
     def damaged(self) -> tuple[DamagedRow, ...]:
         """Return the rows whose checksum is not that of their contents."""
@@ -311,7 +305,7 @@ class Store:
         except sqlite3.Error as error:
             raise StoreError(self._explained(error)) from error
         except UnicodeDecodeError as error:  # of the words that SQLite quotes from its damaged tables
-            raise StoreError(f"{self.path}: it is damaged; {self._remedy()}") from error
+            raise StoreError(f"{self.path}: it is damaged; {how_to_mend(self.path)}") from error
 
     @contextmanager
     def _writing(self) -> Generator[sqlite3.Connection]:
@@ -325,45 +319,12 @@ class Store:
                     connection.execute("ROLLBACK")
                 raise
 
-    def _check(self, connection: sqlite3.Connection) -> None:
-        """Make the tables in an empty file; refuse a file of another kind, version, or in pieces."""
-        for is_due, make in ((_is_new, self._make), (_is_without_tags, _add_tags_table)):
-            if is_due(connection):
-                connection.execute("BEGIN IMMEDIATE")
-                try:
-                    make(connection)
-                finally:
-                    if connection.in_transaction:
-                        connection.execute("ROLLBACK")
-        if _pragma(connection, "user_version") != VERSION:
-            raise StoreError(
-                f"{self.path} was written by another version of canon: use that one, or another file"
-            )
-        found = connection.execute("PRAGMA integrity_check(1)").fetchone()[0]
-        made = connection.execute("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY rowid")
-        if found == "ok" and [sql for (sql,) in made] != _statements():
-            found = "its tables are not those of a study"
-        if found != "ok":
-            raise StoreError(f"{self.path} is damaged ({found.splitlines()[-1]}); {self._remedy()}")
-
-    def _make(self, connection: sqlite3.Connection) -> None:
-        """Make the tables; another process may have done so since we looked."""
-        if not _is_new(connection):
-            return
-        if connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
-            raise StoreError(f"{self.path} is a database of another program; give another file")
-        for statement in _statements():
-            connection.execute(statement)
-        connection.execute(f"PRAGMA application_id = {APPLICATION}")
-        connection.execute(f"PRAGMA user_version = {VERSION}")
-        connection.execute("COMMIT")
-
     def _explained(self, error: sqlite3.Error) -> str:
         """Say what happened to which file and what to do."""
         told = str(error)
         remedies = {
             "not a database": "it is no SQLite file; give another file",
-            "malformed": f"it is damaged; {self._remedy()}",
+            "malformed": f"it is damaged; {how_to_mend(self.path)}",
             "readonly": "it can't be written; check its permissions, or copy it",
             "unable to open": "it can't be opened; check that the folder exists and may be written",
             "disk I/O": "the disk is full or failing; what was finished before is kept: make room and run again",
@@ -372,30 +333,3 @@ class Store:
         }
         remedy = next((remedy for sign, remedy in remedies.items() if sign in told), told)
         return f"{self.path}: {remedy} (SQLite says: {told})"
-
-    def _remedy(self) -> str:
-        return f"'canon study mend {self.path}' keeps what can be read, or restore a copy"
-
-
-def _is_new(connection: sqlite3.Connection) -> bool:
-    return _pragma(connection, "application_id") != APPLICATION
-
-
-def _is_without_tags(connection: sqlite3.Connection) -> bool:
-    return _pragma(connection, "user_version") == WITHOUT_TAGS
-
-
-def _add_tags_table(connection: sqlite3.Connection) -> None:
-    """Make the table that older files lack; another process may have done so since we looked."""
-    if _is_without_tags(connection):
-        connection.execute(_statements()[-1])
-        connection.execute(f"PRAGMA user_version = {VERSION}")
-        connection.execute("COMMIT")
-
-
-def _statements() -> list[str]:
-    return [statement.strip() for statement in TABLES.split(";") if statement.strip()]
-
-
-def _pragma(connection: sqlite3.Connection, name: str) -> int:
-    return int(connection.execute(f"PRAGMA {name}").fetchone()[0])

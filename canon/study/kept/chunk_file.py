@@ -1,8 +1,8 @@
 """Chunk of a case: the arrays kept of it, in one NumPy archive beside the results file, named by its checksum.
 
-A chunk is written as a whole before the row that names it, with its length and SHA-256 in the row. So a row
-that is there has its chunk, a kill between the two leaves a chunk that no row names, and a flipped bit in a chunk is
-told when it is read.
+A chunk is written as a whole before the row that names it, in the row's transaction, with its length and SHA-256 in
+the row. So a row that is there has its chunk, a kill between the two leaves a chunk that no row names, nobody mends
+between the two, and a flipped bit in a chunk is told when it is read.
 """
 
 from __future__ import annotations
