@@ -63,6 +63,13 @@ from .hamilton.symmetry import poissons_theorem as poissons_theorem
 from .hamilton.traced_function import field_of_function as field_of_function
 from .hamilton.vector_field import VectorField as VectorField
 from .hamilton.vector_field import hamiltonian_field as hamiltonian_field
+from .integrable.classical_coordinates import Chart as Chart
+from .integrable.hamilton_jacobi import CompleteIntegral as CompleteIntegral
+from .integrable.hamilton_jacobi import hamilton_jacobi as hamilton_jacobi
+from .integrable.separability import is_separable as is_separable
+from .integrable.separability import levi_civita_condition as levi_civita_condition
+from .integrable.separated_momenta import NotSeparatedError as NotSeparatedError
+from .integrable.separated_momenta import SeparatedMomentum as SeparatedMomentum
 from .lagrange.appell import GibbsAppell as GibbsAppell
 from .lagrange.body import Particle as Particle
 from .lagrange.body import PlanarBody as PlanarBody
