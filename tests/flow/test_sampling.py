@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from canon.flow.fixed_step.advance import advance_orbits
 from canon.flow.method.method import DOP853, Gauss, Splitting, Taylor
 from canon.flow.propagation import propagate
 from tests.flow.systems import HENON_HEILES, HENON_HEILES_START
@@ -62,3 +63,46 @@ def test_adaptive_methods_are_evaluated_at_the_very_times(method):
 def test_times_that_make_no_sense_are_refused(wrong, message):
     with pytest.raises(ValueError, match=message):
         propagate(HENON_HEILES, SPAN, HENON_HEILES_START, method=Splitting("verlet"), step=0.1, **wrong)
+
+
+@pytest.mark.parametrize("precision", ["double", "compensated", "extended", "double-double", "single"])
+@pytest.mark.parametrize("orbits", [1, 7])
+def test_states_kept_in_compiled_code_are_those_kept_one_by_one(precision, orbits, monkeypatch):
+    start = np.array(HENON_HEILES_START)
+    if orbits > 1:
+        start = start[:, np.newaxis] * np.linspace(0.9, 1.0, orbits)
+    for method in (
+        (Splitting("kahan-li-8"), Gauss(4)) if precision == "compensated" else (Splitting("verlet"),)
+    ):
+        found = []
+        for many in (2, 10**9):
+            monkeypatch.setattr(advance_orbits, "__defaults__", (*advance_orbits.__defaults__[:-1], many))
+            for kept in ({"samples": 3000}, {"times": np.sort(np.random.default_rng(1).uniform(0, 30, 500))}):
+                motion = propagate(
+                    HENON_HEILES, (0, 30), start, method=method, step=0.01, precision=precision, **kept
+                )
+                found.append((motion.t, motion.y, motion.final))
+        for compiled, one_by_one in zip(found[:2], found[2:], strict=True):
+            for a, b in zip(compiled, one_by_one, strict=True):
+                np.testing.assert_array_equal(a, b)
+
+
+def test_an_interruption_between_slices_keeps_what_lies_before(monkeypatch):
+    calls = []
+
+    def interrupted(fraction):
+        calls.append(fraction)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+
+    whole = propagate(
+        HENON_HEILES, (0, 50), HENON_HEILES_START, method=Splitting("verlet"), step=0.01, samples=5000
+    )
+    with pytest.raises(KeyboardInterrupt) as caught:
+        propagate(
+            HENON_HEILES, (0, 50), HENON_HEILES_START, method=Splitting("verlet"), step=0.01, samples=5000,
+            progress=interrupted,
+        )  # fmt: skip
+    part = caught.value.motion
+    assert 64 < len(part.t) < 5001
+    np.testing.assert_array_equal(part.y, whole.y[:, : len(part.t)])

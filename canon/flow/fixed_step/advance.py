@@ -21,6 +21,9 @@ __all__ = ["AdvancedStates", "Interruption", "advance_orbits"]
 _SLICE_SECONDS = 0.1
 """Between calls of compiled code Python can handle an interruption and report progress."""
 
+_MANY = 2048
+"""From so many samples on, a run is worth the 10 ms for which the loop that takes them in one call is compiled."""
+
 _KEPT_NUMBERS = 1 << 16
 """So many numbers of states are kept as the loop has them before they are brought into order."""
 
@@ -72,6 +75,7 @@ def advance_orbits(
     watch: LoopObservables | None = None,
     memory: Memory | None = None,
     rows: Memory | None = None,
+    many: int = _MANY,
 ) -> AdvancedStates:
     """Advance orbits step by step and keep their states at the wanted step numbers.
 
@@ -96,6 +100,8 @@ def advance_orbits(
         What an implicit method kept beyond the state, where a run is resumed.
     rows
         The components that are coordinates and momenta, for messages.
+    many
+        From so many stops on, they are passed in compiled code; the states are the same bit for bit.
 
     Raises
     ------
@@ -105,9 +111,15 @@ def advance_orbits(
     buffers = LoopBuffers(loop, high, low, coefficients, watch, memory)
     rows_kept, watched = _Rows(buffers, len(stops)), list[Array]()
     started, slices = time.thread_time(), _Slices(buffers, stops[0], stops[-1], rows, progress)
+    numbers = np.array(stops, dtype=np.int64)
+    one_by_one = watch is not None or len(stops) < many
     try:
-        for sample, stop in enumerate(stops):
-            slices.go_to(stop)
+        while (sample := rows_kept.count) < len(stops):
+            ahead = 0 if one_by_one else slices.stops_ahead(numbers[sample : sample + rows_kept.room])
+            if ahead > 1:
+                slices.go_through(numbers[sample : sample + ahead], rows_kept)
+                continue
+            slices.go_to(stops[sample])
             if sample and watch is not None:
                 watched.append(buffers.watched())
             rows_kept.keep()
@@ -164,6 +176,17 @@ class _Slices:
             if self.done - self.begun == self.steps or self.done == self.last:
                 self._end()
 
+    def stops_ahead(self, stops: Memory) -> int:
+        """Return how many of the next stops lie in this slice."""
+        return int(np.searchsorted(stops, self.begun + self.steps, side="right"))
+
+    def go_through(self, stops: Memory, rows: _Rows) -> None:
+        """Take all steps up to the last of stops in this slice and keep the states at all of them."""
+        rows.keep_many(np.concatenate([[self.done], stops]))
+        self.done = int(stops[-1])
+        if self.done - self.begun == self.steps or self.done == self.last:
+            self._end()
+
     def check_finite(self) -> None:
         """Make sure that the state is finite; the error has the last one known to be."""
         if not self.buffers.finite():
@@ -211,6 +234,19 @@ class _Rows:
             place = 0
         self._y[place], self._e[place] = self.buffers.y, self.buffers.e
         self.count += 1
+
+    @property
+    def room(self) -> int:
+        """How many states there is memory for before they are brought into order; then all of it."""
+        return len(self._y) - (self.count - self._ordered) or len(self._y)
+
+    def keep_many(self, stops: Memory) -> None:
+        """Let the buffers go from stop to stop and keep their states at all but the first."""
+        if self.count - self._ordered == len(self._y):
+            self._order()
+        place = self.count - self._ordered
+        self.buffers.sample(stops, self._y[place:], self._e[place:])
+        self.count += len(stops) - 1
 
     def _order(self) -> None:
         part, new = slice(self._ordered, self.count), self.count - self._ordered

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
+from canon.kernel.loops.sampling_loop import sampling_function
 from canon.kernel.loops.statistics_loop import ENTRIES
 
 if TYPE_CHECKING:
@@ -112,6 +113,20 @@ class LoopBuffers:
             return
         numbers = (first, steps, self.blocks, self.watch.cadence)
         self.watch.code.call(self.loop.code.address, *self._addresses, *numbers, self.record.ctypes.data)
+
+    def sample(self, stops: Memory, y: Memory, e: Memory) -> None:
+        """Go from stop to stop, the first of which is where the motion stands, and copy y and e at the others.
+
+        Parameters
+        ----------
+        stops
+            Step numbers, shape (samples + 1,).
+        y, e
+            Where the copies go, one after the other along the first axis.
+        """
+        rows = stops.ctypes.data, y.ctypes.data, e.ctypes.data
+        sizes = len(stops) - 1, self.blocks, self.y.nbytes, self.e.nbytes
+        sampling_function().call(self.loop.code.address, *self._addresses, *rows, *sizes)
 
     def _call(self, y: Memory, e: Memory, first: int, steps: int, blocks: int) -> None:
         self.loop.code.call(y.ctypes.data, e.ctypes.data, self.c.ctypes.data, first, steps, blocks)

@@ -35,6 +35,9 @@ _SLICE = 10_000
 _LEAP = 16
 """So many steps at least are taken in one go."""
 
+_MANY = 32
+"""From so many kept states on they are passed in compiled code: there is one leap after the other."""
+
 
 @dataclass(frozen=True, eq=False)
 class StepEnd:
@@ -168,7 +171,7 @@ class TransformedOrbit:
         try:
             found = advance_orbits(
                 self.steps.loop, start.high, start.low, self.pairs, stops, lambda _: self.report(old),
-                memory=start.beyond, rows=rows,
+                memory=start.beyond, rows=rows, many=_MANY,
             )  # fmt: skip
         except NonFiniteStateError:
             found = None
