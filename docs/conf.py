@@ -118,6 +118,7 @@ RETURNED = {
     ),
     "flow": (
         "flow.error_estimate.ErrorEstimate",
+        "flow.equations.contact_regimes.ContactRegime",
         "flow.run.event.Crossing",
         "flow.geometry.flow_jacobian.FlowJacobian",
         "flow.method.solvable_splitting.SolvableSplitting",

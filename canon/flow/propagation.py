@@ -60,6 +60,7 @@ def propagate(
         - a Hamiltonian: (q, p);
         - a Lagrangian with its forces, or a ``ConstrainedLagrangian``: (q, q̇). Constraints are differentiated and
           stabilised, so that they stay kept to round-off; those that follow from others at the start are left out;
+        - a ``UnilateralLagrangian``, whose contacts open and close: (q, q̇); ``motion.regimes`` says which held when;
         - ``GibbsAppell``, SymPy's ``KanesMethod``: (q, u) with the quasi-velocities u;
         - ``NewtonEuler``: (q, q̇), the reactions being known along the motion by their names;
         - a ``Routhian``: (q, s, q̇, p) with the ignored coordinates s, which are reconstructed, and their momenta;

@@ -7,7 +7,7 @@ compiled of it is the same.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, cast
 
@@ -22,6 +22,7 @@ from canon.expression.symbols.expression_data import (
     symbol_data,
     symbol_from,
 )
+from canon.flow.equations.first_order_motion import Contact, Contacts, MovingSystem, Residual
 from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.method import RK4, Gauss, Splitting, TimeTransformed
@@ -30,7 +31,6 @@ from canon.flow.run.event import Crossing, Event
 from canon.flow.run.samples import Samples
 from canon.flow.run.sampling_plan import Plan
 from canon.flow.run_record import RunRecord
-from canon.flow.system.first_order_motion import MovingSystem, Residual
 from canon.flow.task import Task
 from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 from canon.flow.transformed.transformed_motion import RunState
@@ -50,9 +50,9 @@ __all__ = ["record_data", "record_from"]
 _CLASSES: dict[str, Any] = {
     each.__name__: each
     for each in (
-        RunRecord, Task, Samples, Plan, HamiltonEquations, MovingSystem, Residual, ExtendedSystem, RunState, StepEnd,
-        LoopState, Event, Crossing, Splitting, Gauss, RK4, Taylor, DOP853, TimeTransformed, SolvableSplitting,
-        WisdomHolman, SABA, SBAB, Scheme,
+        RunRecord, Task, Samples, Plan, HamiltonEquations, MovingSystem, Residual, Contact, Contacts, ExtendedSystem,
+        RunState, StepEnd, LoopState, Event, Crossing, Splitting, Gauss, RK4, Taylor, DOP853, TimeTransformed,
+        SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme,
     )
 }  # fmt: skip
 
@@ -197,7 +197,11 @@ class _Reader:
         kind = _CLASSES[name]
         made = object.__new__(kind)
         for each in fields(kind):
-            object.__setattr__(made, each.name, self.of(values[each.name]))
+            # Files written before a field was there do not hold it.
+            value = (
+                self.of(values[each.name]) if each.name in values or each.default is MISSING else each.default
+            )
+            object.__setattr__(made, each.name, value)
         return made
 
 

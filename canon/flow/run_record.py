@@ -10,10 +10,12 @@ import numpy as np
 
 from canon.expression.symbols.symbol import momentum, velocity
 from canon.expression.symbols.user_input import counted
+from canon.flow.equations.contact_regimes import check_contacts, impacts_pile_up, regimes_of
+from canon.flow.equations.left_out import check_left_out
 from canon.flow.integrate import integrate, silently
+from canon.flow.run.non_finite_state import PiledUpError
 from canon.flow.run.observables_along import measured, size_of_terms, warn_of_jumps
 from canon.flow.run.samples import Samples, Statistics
-from canon.flow.system.left_out import check_left_out
 from canon.flow.system.named_values import node_along, variables_of
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.hamilton_equations import exact_number
@@ -25,7 +27,8 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from canon.array import Array
-    from canon.flow.system.first_order_motion import MovingSystem
+    from canon.flow.equations.contact_regimes import ContactRegime
+    from canon.flow.equations.first_order_motion import MovingSystem
     from canon.flow.task import Task
 
 __all__ = ["Energies", "Measured", "RunRecord", "recorded"]
@@ -167,6 +170,21 @@ class RunRecord:
         return np.array(self.values(nodes))
 
     @property
+    def regimes(self) -> tuple[ContactRegime, ...]:
+        """Which unilateral constraints were in contact when.
+
+        Raises
+        ------
+        AttributeError
+            The system has none.
+        """
+        if self.moving is None or self.moving.contacts is None:
+            raise AttributeError(
+                "the system has no unilateral constraints, so the motion has no regimes of contact"
+            )
+        return regimes_of(self.moving, self.samples)
+
+    @property
     def energies(self) -> Energies:
         """The energy at the samples.
 
@@ -275,11 +293,17 @@ def recorded(
     AccuracyWarning
         The energy shows that the motion is not the system's.
     """
-    found = integrate(task, progress, so_far)
+    try:
+        found = integrate(task, progress, so_far)
+    except PiledUpError as lost:
+        if moving is None or moving.contacts is None:
+            raise
+        raise impacts_pile_up(lost) from None
     record = RunRecord(task.ended(found), found, moving)
     defect = record.measured.defect
     if task.system.autonomous and not any(met.after is not None for met in found.crossings):
         warn_of_jumps(task.system, found, defect.reshape(len(defect), -1))
     if moving is not None:
         check_left_out(moving, found)
+        check_contacts(moving, found)
     return record

@@ -13,10 +13,10 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.flow.checked_request import functions_by_name, parted_by_orbit, task_of, task_with, two_ends
+from canon.flow.equations.bounce import with_bounces
+from canon.flow.equations.first_order_motion import moving_system
+from canon.flow.equations.lagrangian_motion import SPAN
 from canon.flow.method.method_text import method_of
-from canon.flow.system.bounce import with_bounces
-from canon.flow.system.first_order_motion import moving_system
-from canon.flow.system.lagrangian_motion import SPAN
 from canon.flow.system.parameter_values import check_given, check_parameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_as_system import is_scene, opened
@@ -32,10 +32,10 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from canon.array import Array
+    from canon.flow.equations.first_order_motion import FirstOrderMotion, MovingSystem
     from canon.flow.method.method import Method
     from canon.flow.request import Request
     from canon.flow.run.event import Event
-    from canon.flow.system.first_order_motion import FirstOrderMotion, MovingSystem
     from canon.flow.system.recognised_system import RecognisedSystem
     from canon.flow.task import Task
 
@@ -105,8 +105,11 @@ def _system_task(request: Request, *, of_scene: bool) -> tuple[Task, MovingSyste
     start |= dict(zip(found.state, states[0].reshape(len(found.state), -1), strict=True))
     first = {s: float(np.ravel(value)[0]) for s, value in start.items()}
     motion, met = with_bounces(found.derived(first), met, first)
-    check_constraints(motion, start, _words(motion))
-    unit = _work_unit(motion, first)
+    hidden = _contacts_at_start(motion, orbits)
+    check_constraints(motion, start | hidden, _words(motion))
+    if motion.contacts is not None:
+        met = (*met, *(event for contact in motion.contacts.each for event in contact.events))
+    unit = _work_unit(motion, first | hidden)
     moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying], unit)
     chosen = method_of(request.method)
     _check_method(chosen, moving)
@@ -161,6 +164,8 @@ def _full_states(
     numbers = [
         [double_pair(_one(value, name)) for value in values.tolist()] for name, values in varying.items()
     ]
+    if moving.contacts is not None:
+        numbers += [[double_pair(value)] for value in moving.contacts.hidden.values()]
     half, work = moving.first_half, 0 if moving.work is None else 1
     spare = moving.equations.spare
     made: list[Array] = []
@@ -175,6 +180,17 @@ def _full_states(
 
 def _one(value: Any, name: str) -> Fraction:
     return exact_number(value, name)
+
+
+def _contacts_at_start(motion: FirstOrderMotion, orbits: int) -> dict[Symbol, Any]:
+    """Return numbers for what is integrated along for contacts."""
+    if motion.contacts is None:
+        return {}
+    if orbits > 1:
+        raise ValueError(
+            "contacts open and close at times of each orbit's own: propagate the orbits one by one"
+        )
+    return {s: float(value) for s, value in motion.contacts.hidden.items()}
 
 
 def _work_unit(motion: FirstOrderMotion, start: Mapping[Symbol, float]) -> Fraction:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
+from canon.flow.equations.contact_regimes import seen_by_people
 from canon.flow.error_estimate import ErrorEstimate, error_estimate
 from canon.flow.interpolation import states_at
 from canon.flow.labelled_motion import labelled
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from canon.array import Array
+    from canon.flow.equations.contact_regimes import ContactRegime
     from canon.flow.method.method import Method
     from canon.flow.run.event import Crossing
     from canon.flow.run.samples import Statistics
@@ -143,6 +145,11 @@ class Trajectory:
         """What the constraints f and the rates A q̇ + a₀ are along the motion, where they should be 0."""
         return self.record.of_constraints("residuals")
 
+    @property
+    def regimes(self) -> tuple[ContactRegime, ...]:
+        """Which unilateral constraints were in contact when; an AttributeError where there are none."""
+        return self.record.regimes
+
     def __getitem__(self, what: str | Expr) -> Array:
         """Return a variable, velocity, momentum, multiplier or observable by name, or any function of them.
 
@@ -221,9 +228,8 @@ class Trajectory:
     def energy_error(self) -> Array:
         """Relative error of the energy, (H − H₀)/abs(H₀), or H − H₀ where H₀ = H(start) is zero; shape (times,).
 
-        Where forces or what depends on time do work on a system, the defect of its energy balance,
-        E(t) − E(0) − W(t) with W = ∫ power dt, takes the place of H − H₀.
-        An H₀ that is nothing beside the terms of H, as of a pendulum −cos θ released from π/2, counts as zero.
+        Where forces or what depends on time do work, the defect of the energy balance, E(t) − E(0) − W(t) with
+        W = ∫ power dt, takes the place of H − H₀. An H₀ that is nothing beside the terms of H counts as zero.
 
         Raises
         ------
@@ -238,9 +244,8 @@ class Trajectory:
     def error_estimate(self, orbits: Sequence[int] | None = None) -> ErrorEstimate:
         """Return how far this motion is from the true one, by a companion run that is more exact.
 
-        A method of fixed steps is repeated with half the step in wider numbers, which takes many times as long
-        as the motion did; others are compared with Taylor's method in wider numbers. See
-        :mod:`canon.flow.error_estimate`.
+        A method of fixed steps is repeated with half the step in wider numbers, which takes many times as long as the
+        motion did; others are compared with Taylor's method in wider numbers: :mod:`canon.flow.error_estimate`.
 
         Parameters
         ----------
@@ -293,9 +298,8 @@ class Trajectory:
         """Return the state at any time inside the span, shape (2n,), or at many, (2n, times).
 
         Taylor, where ``propagate(…, dense=True)`` kept its polynomials: as accurate as the steps, that is to the
-        method's tolerance. Methods of fixed steps: the states of the run, bit for bit at its steps (implicit methods:
-        to round-off), from the sample before by steps of the run and one shorter step, which errs as one step of
-        the method.
+        method's tolerance. Methods of fixed steps: the states of the run, bit for bit at its steps (implicit ones: to
+        round-off), from the sample before by steps of the run and one shorter step, which errs as one of the method.
 
         Raises
         ------
@@ -318,9 +322,9 @@ class Trajectory:
     ) -> Trajectory:
         """Go on with the motion and return all of it, from its first time on.
 
-        Methods of fixed steps, time-transformed ones too, take the steps that a run without the break would have
-        taken: its states, observables and statistics are the same bits. Taylor's are too where an interrupted run is
-        completed; DOP853 chooses its first step anew.
+        Methods of fixed steps, time-transformed ones too, take the steps that a run without the break would have taken:
+        its states, observables and statistics are the same bits. Taylor's too, where an interrupted run is completed;
+        DOP853 chooses its first step anew.
 
         Parameters
         ----------
@@ -392,5 +396,5 @@ def trajectory_of(record: RunRecord) -> Trajectory:
     return Trajectory(
         found.t, found.y, found.carried, seen.energies, task.method, task.precision_name, found.step, found.steps,
         found.evaluations, found.cpu_seconds, found.compile_seconds, task.system.autonomous,
-        seen.observables, seen.changes, seen.statistics, found.crossings, record,
+        seen.observables, seen.changes, seen.statistics, seen_by_people(found.crossings), record,
     )  # fmt: skip

@@ -107,6 +107,7 @@ from .lagrange.quasi_velocity import maggi_accelerations as maggi_accelerations
 from .lagrange.quasi_velocity import maggi_equations as maggi_equations
 from .lagrange.sympy_bridge import QuasiMotion as QuasiMotion
 from .lagrange.sympy_bridge import from_sympy_mechanics as from_sympy_mechanics
+from .lagrange.unilateral import UnilateralLagrangian as UnilateralLagrangian
 from .perturbation.averaging import Averaged as Averaged
 from .perturbation.averaging import AveragingError as AveragingError
 from .perturbation.averaging import adiabatic_invariant as adiabatic_invariant

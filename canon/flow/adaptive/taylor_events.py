@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.run.event import Crossing
-from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
+from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, time_and_state
 from canon.flow.run.observables_along import values_in
 from canon.kernel.heyoka_bridge import heyoka_functions
 from canon.kernel.llvm.number_types import DOUBLE, DOUBLE_DOUBLE, EXTENDED
@@ -133,13 +133,14 @@ class TaylorEvents:
     ) -> PreparedEvent | None:
         """Meet the first of the other events whose function changes its sign from one state to the next, if any.
 
-        Rounding may have put the first state a little beyond the zero already.
+        Rounding may have put the first state a little beyond the zero already. ``after`` is the state at t + part.
         """
-        near = part * _ROUNDING
+        near, later = abs(part) * _ROUNDING, float(t) + part
         for event in self.events:
             if self._told(event, float(t), near) or any(event is other for other in handled):
                 continue
-            old, new = (self._value(event, float(t), *self._parts(state)) for state in (before, after))
+            old = self._value(event, float(t), *self._parts(before))
+            new = self._value(event, later, *self._parts(after))
             passed = old * new < 0 or (new != 0 and abs(old) < abs(new) * _ROUNDING)
             if passed and event.event.counts(new > 0):
                 changed = None if event.jump is None else self._changed(event.jump, float(t), before)
@@ -152,19 +153,21 @@ class TaylorEvents:
         """Return whether one of the latest crossings is this event's at nearly the same time."""
         return any(met.event is event.event and abs(met.t - t) <= near for met in self.crossings[-9:])
 
-    def check_left(self, event: PreparedEvent, changed: Any, t: Any, after: Any) -> None:
-        """Make sure that a motion has left an event's zero to the side to which it was sent.
+    def check_left(self, event: PreparedEvent, changed: Any, t: Any, after: Any, later: Any) -> None:
+        """Make sure that a motion, changed at t, has left an event's zero later to the side to which it was sent.
 
         Raises
         ------
         NonFiniteStateError
             It is back already: events pile up.
         """
-        now = self._value(event, float(t), *self._parts(after))
+        if event.switches:
+            return
+        now = self._value(event, float(later), *self._parts(after))
         sent = self._value(event, float(t), *self._parts(changed), rate=True) * self.forward
         if now * sent <= 0:
             y = (changed * self.size).astype(np.float64)[self.system.rows]
-            raise NonFiniteStateError(
+            raise PiledUpError(
                 f"{event.event} is met again at once at {time_and_state(float(t), y)}: events pile up there; stop the "
                 "motion before",
                 float(t),

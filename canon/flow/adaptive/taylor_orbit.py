@@ -146,7 +146,7 @@ class TaylorOrbit:
             self.free.state[:], self.free.dtime = before, clock
             part = natural * type(natural)(_SMALL_PART)
             self.free.propagate_until(own.time + part)
-            found = self.taylor_events.crossed(handled, own.time, abs(float(part)), before, self.free.state)
+            found = self.taylor_events.crossed(handled, own.time, float(part), before, self.free.state)
             if found is None:
                 return handled
             handled.append(found)
@@ -172,7 +172,7 @@ class TaylorOrbit:
         steps, found, _ = self._towards(free, [*near, end], dense=dense)
         for event in events:
             if event.jump is not None:
-                self.taylor_events.check_left(event, before, own.time, free.state)
+                self.taylor_events.check_left(event, before, own.time, free.state, free.time)
         own.state[:], own.dtime = free.state, free.dtime
         if self.taylor_events.terminal:
             own.reset_cooldowns()

@@ -15,7 +15,7 @@ from canon.flow.kinked.place import Place
 from canon.flow.kinked.regimes import HELD, Regime
 from canon.flow.run.compiled_nodes import CompiledNodes, compiled_nodes
 from canon.flow.run.event import Crossing, Event
-from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
+from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, time_and_state
 from canon.kernel.llvm.number_types import DOUBLE, EXTENDED
 
 if TYPE_CHECKING:
@@ -129,7 +129,8 @@ class WatchedOrbit:
                 self._happen(met, before, kept)
             in_a_row = in_a_row + 1 if self.t == begun else 0
             if in_a_row > _PILE:
-                raise self._error("events pile up there; stop the motion before")
+                lost = self._error("events pile up there; stop the motion before")
+                raise PiledUpError(str(lost), lost.time, lost.state)
 
     def _sample(self, times: Array, states: Array, interpolant: _Interpolant, until: float) -> None:
         """Put the states at the times of a step into their columns."""

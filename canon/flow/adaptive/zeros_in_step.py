@@ -59,10 +59,14 @@ def zeros_in_step(
 
 
 def _root(value: Callable[[float], float], a: float, b: float, at_b: float) -> float:
-    from scipy.optimize import brentq
+    from scipy.optimize import brentq, minimize_scalar
 
     if value(a) * at_b >= 0:  # the start of a step lies at the zero, rounded to the other side
-        return a
+        side = math.copysign(1.0, at_b)
+        turn: Any = minimize_scalar(lambda t: side * value(t), bounds=sorted((a, b)), method="bounded")
+        if side * value(float(turn.x)) >= 0:
+            return a
+        a = float(turn.x)
     root: Any = brentq(value, a, b, xtol=2.0**-51 * max(abs(a), abs(b), 2.0**-900))
     return float(root)
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
 from canon.flow.run.event import Crossing
-from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
+from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, time_and_state
 from canon.flow.run.observables_along import values_in
 from canon.kernel.loops.event_loop import event_function
 from canon.kernel.loops.statistics_loop import wide_number
@@ -161,7 +161,7 @@ class EventLocator:
                 return here, place, []
         t, y = float(self.steps.time(n, rest.begin)), rest.base.high[self.system.rows, 0]
         again = self.crossings[-1].event if self.crossings else "an event"
-        raise NonFiniteStateError(
+        raise PiledUpError(
             f"{again} is met again at once at {time_and_state(t, y)}: events pile up there; stop the motion before",
             t,
             y,
@@ -189,6 +189,8 @@ class EventLocator:
             rest.n, place, base, self.steps.moved(base, rest.n, place, Fraction(1))
         )
         self.sides[i] = _sign(following.latest[i][1]) or -self.sides[i]
+        if self.events[i].switches:
+            self.sides[i] = _sign(self.values_and_rates(base, t)[i][0]) or self.sides[i]
         return following
 
     def _record(

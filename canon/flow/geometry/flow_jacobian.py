@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.array import Array
+    from canon.flow.equations.first_order_motion import MovingSystem
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
-    from canon.flow.system.first_order_motion import MovingSystem
     from canon.flow.system.recognised_system import MovableSystem
     from canon.flow.task import Task
 

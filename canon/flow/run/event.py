@@ -122,12 +122,16 @@ class Crossing:
 
 @dataclass(frozen=True, eq=False)
 class PreparedEvent:
-    """An event's nodes in a system's graph: g, dg/dt along the motion, and the state after its change."""
+    """An event's nodes in a system's graph: g, dg/dt along the motion, and the state after its change.
+
+    ``switches``: the change itself takes g away from zero, so that the motion need not leave it.
+    """
 
     event: Event
     value: int
     rate: int
     jump: tuple[int, ...] | None
+    switches: bool = False
 
 
 def prepared_events(system: HamiltonEquations, events: Sequence[Event]) -> tuple[PreparedEvent, ...]:
@@ -159,8 +163,8 @@ def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
     if isinstance(event.action, str):
         return PreparedEvent(event, value, rate, None)
     given: dict[Any, Expr] = dict(event.action)
-    rows = system.rows
-    strange = [str(s) for s in given if s not in {state[row] for row in rows}]
+    changeable = {*(state[row] for row in system.rows), *(s for s in state if isinstance(s, sp.Dummy))}
+    strange = [str(s) for s in given if s not in changeable]
     if strange:
         raise ValueError(
             f"the event {event} changes {', '.join(strange)}: it can change coordinates and momenta"
@@ -171,7 +175,8 @@ def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
         else graph.symbol(s)
         for s in state
     ]
-    return PreparedEvent(event, value, rate, tuple(jump))
+    switched = {s for s in given if isinstance(s, sp.Dummy)}
+    return PreparedEvent(event, value, rate, tuple(jump), not switched.isdisjoint(graph.symbols(value)))
 
 
 def _reflected(

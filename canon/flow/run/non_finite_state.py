@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from canon.array import Array
 
-__all__ = ["NonFiniteStateError", "time_and_state"]
+__all__ = ["NonFiniteStateError", "PiledUpError", "time_and_state"]
 
 
 class NonFiniteStateError(ArithmeticError):
@@ -25,6 +25,10 @@ class NonFiniteStateError(ArithmeticError):
         super().__init__(message)
         self.time = time
         self.state = state
+
+
+class PiledUpError(NonFiniteStateError):
+    """Raised where events that change the state come ever faster, so that the motion does not get beyond them."""
 
 
 def time_and_state(t: float, state: Array) -> str:

@@ -22,7 +22,14 @@ if TYPE_CHECKING:
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = [
-    "AccuracyWarning", "energy_rounding", "jumped", "measured", "size_of_terms", "values_in", "warn_of_jumps",
+    "AccuracyWarning",
+    "energy_rounding",
+    "frames_of_canon",
+    "jumped",
+    "measured",
+    "size_of_terms",
+    "values_in",
+    "warn_of_jumps",
 ]  # fmt: skip
 
 _IMPLAUSIBLE = 0.5
@@ -115,11 +122,11 @@ def warn_of_jumps(system: HamiltonEquations, samples: Samples, change: Array) ->
         f"{samples.t[first - 1]:.9g} before that): a step jumped over a collision or is far too large; what follows is "
         "not the system's motion. Take a smaller step, Taylor(), or stop before with an Event",
         AccuracyWarning,
-        stacklevel=_frames_of_canon(),  # the line that called propagate() or resume()
+        stacklevel=frames_of_canon(),  # the line that called propagate() or resume()
     )
 
 
-def _frames_of_canon() -> int:
+def frames_of_canon() -> int:
     """Return the stack level, for a warning of the caller, of the first line that is not canon's."""
     frame, level = inspect.currentframe(), 0
     while frame is not None and str(frame.f_globals.get("__name__")).startswith("canon."):

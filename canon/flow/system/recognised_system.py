@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.symbol import velocity
-from canon.flow.system.lagrangian_motion import constraints_of, lagrangian_motion
-from canon.flow.system.listed_equations import field_motion, heyoka_field, is_heyoka_system
-from canon.flow.system.quasi_velocity_motion import appell_motion, newton_euler_motion, quasi_motion
-from canon.flow.system.routhian_motion import routhian_motion, routhian_state
+from canon.flow.equations.contact_motion import contact_motion
+from canon.flow.equations.lagrangian_motion import constraints_of, lagrangian_motion
+from canon.flow.equations.listed_equations import field_motion, heyoka_field, is_heyoka_system
+from canon.flow.equations.quasi_velocity_motion import appell_motion, newton_euler_motion, quasi_motion
+from canon.flow.equations.routhian_motion import routhian_motion, routhian_state
 from canon.flow.system.written_with_signs import written_with_signs
 from canon.mechanics.hamilton.traced_function import is_rates_function
 from canon.mechanics.hamilton.vector_field import VectorField
@@ -18,6 +19,7 @@ from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.newton_euler import NewtonEuler
 from canon.mechanics.lagrange.sympy_bridge import QuasiMotion, from_sympy_mechanics
+from canon.mechanics.lagrange.unilateral import UnilateralLagrangian
 from canon.mechanics.reduction.routh import Routhian
 
 if TYPE_CHECKING:
@@ -26,8 +28,8 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
     from sympy.physics.mechanics import KanesMethod, LagrangesMethod
 
+    from canon.flow.equations.first_order_motion import FirstOrderMotion
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
-    from canon.flow.system.first_order_motion import FirstOrderMotion
     from canon.flow.system.scene_as_system import SceneLike
     from canon.mechanics.lagrange.body import Body
 
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
         HamiltonianSystem
         | Lagrangian
         | ConstrainedLagrangian
+        | UnilateralLagrangian
         | Routhian
         | GibbsAppell
         | QuasiMotion
@@ -97,6 +100,10 @@ def recognised(system: Any) -> RecognisedSystem:
     system = written_with_signs(system)
     if isinstance(system, Lagrangian | ConstrainedLagrangian):
         return _of_lagrangian(system)
+    if isinstance(system, UnilateralLagrangian):
+        found = _of_lagrangian(system.system)
+        said = (*found.parameters, *system.unilateral, *(system.restitution or ()))
+        return _with(found.state, found.t, said, lambda start: contact_motion(system, start))
     if isinstance(system, Routhian):
         L = system.lagrangian
         said = (L.L, *L.forces, *system.ignorable_velocities)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.array import Array
-    from canon.flow.system.first_order_motion import FirstOrderMotion
+    from canon.flow.equations.first_order_motion import FirstOrderMotion
 
 __all__ = ["check_constraints", "state_in_order"]
 

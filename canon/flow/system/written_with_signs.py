@@ -8,6 +8,7 @@ from canon.expression.graph.piecewise_form import without_pieces
 from canon.mechanics.hamilton.vector_field import VectorField
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.lagrange.unilateral import UnilateralLagrangian
 
 __all__ = ["written_with_signs"]
 
@@ -33,6 +34,13 @@ def written_with_signs(system: Any) -> Any:
         if lagrangian is system.lagrangian:
             return system
         return ConstrainedLagrangian(lagrangian, system.holonomic, system.nonholonomic)
+    if isinstance(system, UnilateralLagrangian):
+        inner = written_with_signs(system.system)
+        return (
+            system
+            if inner is system.system
+            else UnilateralLagrangian(inner, system.unilateral, system.restitution)
+        )
     if not isinstance(system, Lagrangian):
         return system
     L, *forces = written = [without_pieces(f) for f in (system.L, *system.forces)]

@@ -19,7 +19,7 @@ from canon.expression.symbols.expression_data import (
     symbol_data,
     symbol_from,
 )
-from canon.flow.system.listed_equations import heyoka_field, is_heyoka_system
+from canon.flow.equations.listed_equations import heyoka_field, is_heyoka_system
 from canon.flow.system.recognised_system import recognised
 from canon.mechanics.hamilton.vector_field import VectorField
 from canon.mechanics.lagrange.appell import GibbsAppell

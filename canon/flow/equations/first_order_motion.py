@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.expression.graph.graph import Graph
+    from canon.flow.run.event import Event
 
 __all__ = ["FirstOrderMotion", "MovingSystem", "Residual", "moving_system"]
 
@@ -33,6 +34,63 @@ class Residual:
     node: int
     words: str
     left_out: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """A unilateral constraint f ≥ 0 along a motion.
+
+    Parameters
+    ----------
+    words
+        f in words.
+    value, multiplier
+        The nodes of f and of λ.
+    switch
+        The variable, integrated along unseen, that is positive while the contact is closed and 0 while it is open.
+    closed
+        Whether it is closed at the start.
+    opens, lands, parts, crowded
+        The events: λ falls to 0; f falls to 0; f has risen for good after the contact opened; f falls to 0 while
+        another contact is closed, None where that matters nothing.
+    """
+
+    words: str
+    value: int
+    multiplier: int
+    switch: Symbol
+    closed: bool
+    opens: Event
+    lands: Event
+    parts: Event
+    crowded: Event | None = None
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """All of its events."""
+        return (self.opens, self.lands, self.parts, *(() if self.crowded is None else (self.crowded,)))
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """The unilateral constraints of a motion, and what is integrated along for them.
+
+    Parameters
+    ----------
+    each
+        The contacts, in their order.
+    hidden
+        Variables that rest between events, and their starts.
+    work
+        The variable of the work done, which impacts change too.
+    losses
+        The nodes of what impacts add to the energy, by the symbol of the work after each.
+    """
+
+    each: tuple[Contact, ...]
+    hidden: Mapping[Symbol, Fraction]
+    work: Symbol
+    losses: Mapping[Symbol, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +123,8 @@ class FirstOrderMotion:
         What the constraints make vanish: positions, then rates.
     matrix
         The matrix of masses and constraints that impulses go through, nodes; empty where none is known.
+    contacts
+        Unilateral constraints, which open and close.
     """
 
     kind: str
@@ -81,6 +141,7 @@ class FirstOrderMotion:
     reactions: tuple[int, ...] = ()
     residuals: tuple[Residual, ...] = ()
     matrix: tuple[tuple[int, ...], ...] = ()
+    contacts: Contacts | None = None
 
     @property
     def state(self) -> tuple[Symbol, ...]:
@@ -98,7 +159,16 @@ class FirstOrderMotion:
         """Every node."""
         known = [node for node in (self.energy, self.power) if node is not None]
         vanish = [residual.node for residual in self.residuals]
-        return (*self.rates, *known, *self.named.values(), *self.multipliers, *self.reactions, *vanish)
+        along = (*self.named.values(), *self.multipliers, *self.reactions, *vanish)
+        if self.contacts is None:
+            return (*self.rates, *known, *along)
+        return (
+            *self.rates,
+            *known,
+            *along,
+            *self.contacts.losses.values(),
+            *(c.value for c in self.contacts.each),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +187,8 @@ class MovingSystem:
         The nodes of q̇, of λ, and of the forces of constraint.
     residuals
         What the constraints make vanish.
+    contacts
+        Unilateral constraints.
     """
 
     kind: str
@@ -130,6 +202,7 @@ class MovingSystem:
     multipliers: tuple[int, ...]
     reactions: tuple[int, ...]
     residuals: tuple[Residual, ...]
+    contacts: Contacts | None = None
 
     @property
     def state(self) -> tuple[Symbol, ...]:
@@ -172,15 +245,18 @@ def moving_system(
     energy = None if motion.energy is None else found[motion.energy]
     power = graph.zero if motion.power is None else found[motion.power]
     conserved, work = graph.zero if energy is None else energy, None
-    if energy is not None and power != graph.zero:
-        W = sp.Dummy("W", real=True)
+    contacts, named = motion.contacts, {s: found[node] for s, node in motion.named.items()}
+    if energy is not None and (power != graph.zero or contacts is not None):
+        W = sp.Dummy("W", real=True) if contacts is None else contacts.work
         work = graph.scaled(work_unit, graph.symbol(W))
         conserved = graph.add((energy, graph.negative(work)))
         first.append(W)
         forward.append(graph.scaled(1 / work_unit, power))
         second.append(sp.Dummy("rest", real=True))
         after.append(graph.zero)
-    for each in varying:
+        for later, loss in ({} if contacts is None else contacts.losses).items():
+            named[later] = graph.add((graph.symbol(W), graph.scaled(1 / work_unit, found[loss])))
+    for each in (*varying, *(() if contacts is None else contacts.hidden)):
         first.append(each)
         forward.append(graph.zero)
         second.append(sp.Dummy(each.name, real=True))
@@ -200,7 +276,7 @@ def moving_system(
         varying=len(first) - half,
         canonical=False,
         spare=spare,
-        named={s: found[node] for s, node in motion.named.items()},
+        named=named,
     )
     return MovingSystem(
         kind=motion.kind,
@@ -214,4 +290,10 @@ def moving_system(
         multipliers=tuple(found[node] for node in motion.multipliers),
         reactions=tuple(found[node] for node in motion.reactions),
         residuals=tuple(replace(each, node=found[each.node]) for each in motion.residuals),
+        contacts=contacts and _in_numbers(contacts, found),
     )
+
+
+def _in_numbers(contacts: Contacts, found: Mapping[int, int]) -> Contacts:
+    each = tuple(replace(c, value=found[c.value], multiplier=found[c.multiplier]) for c in contacts.each)
+    return replace(contacts, each=each, losses={s: found[node] for s, node in contacts.losses.items()})

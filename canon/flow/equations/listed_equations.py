@@ -10,7 +10,7 @@ import sympy as sp
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import given_expression, given_symbols
-from canon.flow.system.first_order_motion import FirstOrderMotion
+from canon.flow.equations.first_order_motion import FirstOrderMotion
 from canon.mechanics.algebra.substitution import exchanged
 from canon.mechanics.hamilton.vector_field import VectorField
 

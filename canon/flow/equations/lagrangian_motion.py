@@ -18,8 +18,8 @@ import sympy as sp
 
 from canon.expression.symbols.symbol import acceleration, momentum
 from canon.expression.symbols.user_input import counted
-from canon.flow.system.first_order_motion import FirstOrderMotion, Residual
-from canon.flow.system.linear_equations import SingularAtStartError, independent_rows, solved_from_start
+from canon.flow.equations.first_order_motion import FirstOrderMotion, Residual
+from canon.flow.equations.linear_equations import SingularAtStartError, independent_rows, solved_from_start
 from canon.mechanics.at_scale.constrained import constrained
 from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
 
@@ -35,7 +35,14 @@ if TYPE_CHECKING:
     from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
     from canon.mechanics.lagrange.lagrangian import Lagrangian
 
-__all__ = ["SPAN", "constraints_of", "lagrangian_motion", "multiplier_symbol", "values_at_start"]
+__all__ = [
+    "SPAN",
+    "constraints_of",
+    "lagrangian_motion",
+    "multiplier_symbol",
+    "rate_of_pull",
+    "values_at_start",
+]
 
 _PULL = sp.Dummy("alpha", positive=True)
 
@@ -103,7 +110,7 @@ def lagrangian_motion(
     accelerations, kept = solved[:n], tuple(map(graph.negative, solved[n:]))
     if bound is not None:
         alpha = graph.number(
-            Fraction(_fastest(graph, (*q, *v), (*map(graph.symbol, v), *accelerations), start))
+            Fraction(rate_of_pull(graph, (*q, *v), (*map(graph.symbol, v), *accelerations), start))
         )
         solved = graph.substitute(solved, {graph.symbol(_PULL): alpha})
         accelerations, kept = tuple(solved[:n]), tuple(map(graph.negative, solved[n:]))
@@ -200,10 +207,10 @@ def _bordered(
     return matrix, right
 
 
-def _fastest(
+def rate_of_pull(
     graph: Graph, state: Sequence[Symbol], rates: Sequence[int], start: Mapping[Symbol, float]
 ) -> float:
-    """Return the largest rate of the motion's linearisation at the start, or a slow one of the span."""
+    """Return α: the largest rate of the motion's linearisation at the start, or a slow one of the span."""
     slopes = [graph.gradient(rate, state) for rate in rates]
     point = {**start, _PULL: 0.0}
     jacobian = np.array([[float(x) for x in graph.evaluate(row, point)] for row in slopes])

@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from canon.expression.symbols.symbol import velocity
-from canon.flow.system.first_order_motion import FirstOrderMotion
-from canon.flow.system.lagrangian_motion import lagrangian_motion
+from canon.flow.equations.first_order_motion import FirstOrderMotion
+from canon.flow.equations.lagrangian_motion import lagrangian_motion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

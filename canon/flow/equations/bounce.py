@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.flow.system.lagrangian_motion import values_at_start
-from canon.flow.system.linear_equations import solved_from_start
+from canon.flow.equations.lagrangian_motion import values_at_start
+from canon.flow.equations.linear_equations import solved_from_start
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from sympy import Symbol
 
+    from canon.flow.equations.first_order_motion import FirstOrderMotion
     from canon.flow.run.event import Event
-    from canon.flow.system.first_order_motion import FirstOrderMotion
 
 __all__ = ["with_bounces"]
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from canon.flow.equations.first_order_motion import MovingSystem
     from canon.flow.run.samples import Samples
-    from canon.flow.system.first_order_motion import MovingSystem
 
 __all__ = ["check_left_out"]
 
