@@ -190,6 +190,13 @@ def _sum(text: str, operator: _Operator, end: int, read: _Read) -> tuple[Node, i
     places = [found.start() for found in re.compile(letter).finditer(text, operator.end, stop)]
     if beside := next((i for i in places if re.search(r"\d\s*$", text[operator.end : i])), None):
         raise LanguageError(text, beside + 1, "an index behind a number", rf"write {index[1]} \cdot 2")
+    digit = re.compile(rf"(?<!_)(?<!_\{{){index[1]}\s*\d").search(text, operator.end, stop)
+    if digit is not None and digit.start() in places:
+        raise LanguageError(text, digit.end(), "a number behind an index", rf"write 2 \cdot {index[1]}")
+    double = rf"_\{{\s*(?:{index[1]}\s*[A-Za-z,]|[A-Za-z]\s*,?\s*{index[1]})"
+    if both := re.compile(double).search(text, operator.end, stop):
+        reason = f"which of these subscripts is the index {index[1]}?"
+        raise LanguageError(text, both.start() + 1, reason, "write the terms one by one")
     terms: list[Node] = []
     for number in range(int(index[2]), int(last[1]) + 1):
         signs = [*text]

@@ -5,11 +5,19 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING, NoReturn, Protocol
 
-import sympy as sp
-
 from canon.expression.ranges.definite_integral import definite_integral
-from canon.expression.ranges.range_of_call import INTEGRAL, PRODUCT, SUM, Range, ranges, with_index
-from canon.expression.text.syntax import Call, parts
+from canon.expression.ranges.integrand_values import part_without_value
+from canon.expression.ranges.range_of_call import (
+    INTEGRAL,
+    PRODUCT,
+    SUM,
+    Range,
+    name_with_index_inside,
+    ranges,
+    with_index,
+)
+from canon.expression.symbols.symbol import Coordinate, Momentum
+from canon.expression.text.syntax import Call, Name, Product, Sum, parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,15 +72,22 @@ def over_ranges(builder: _Builder, node: Call) -> Expr:
     if len(numbers) * sum(1 for _ in parts(operand)) > MOST_NODES:
         builder.refuse(node, "this sum is longer than anyone writes", "write its value")
     name, known = index.variable.text, builder.scope.declares
-    terms = [builder.expression(with_index(operand, name, number, known)) for number in numbers]
-    return sp.Add(*terms) if node.function == SUM else sp.Mul(*terms)
+    if (doubtful := name_with_index_inside(operand, name)) is not None:
+        reason = f"does {doubtful.text} change with the index {name}?"
+        builder.refuse(doubtful, reason, "write the terms one by one")
+    terms = tuple((False, with_index(operand, name, number, known)) for number in numbers)
+    return builder.expression((Sum if node.function == SUM else Product)(terms, node.column))
 
 
 def _integrated(builder: _Builder, node: Call, operand: Node, found: Sequence[Range]) -> Expr:
     """Return the integral over one range after the other, the first the innermost."""
+    _refuse_what_moves(builder, operand, found)
     scope = reduce(lambda known, one: known.with_variable(one.variable.text), found, builder.scope)
     inside = type(builder)(builder.text, scope)
     value = inside.expression(operand)
+    if (part := part_without_value(builder, node, found)) is not None:
+        reason = "this integral is not read: here its integrand may have no value on the range"
+        builder.refuse(part, reason, "write its value, as a function of its ends")
     for number, one in enumerate(found):
         x = scope.symbol(one.variable.text)
         if x is None or one.variable.primes:
@@ -84,3 +99,17 @@ def _integrated(builder: _Builder, node: Call, operand: Node, found: Sequence[Ra
             builder.refuse(node, reason, "write its value, as a function of its ends")
         value = whole
     return value
+
+
+def _refuse_what_moves(builder: _Builder, operand: Node, found: Sequence[Range]) -> None:
+    """Refuse ∫ x dt and ∫ p dq, which mean the values along a motion that is not given here."""
+    scope, variables = builder.scope, {one.variable.text for one in found}
+    over_time = scope.time.name in variables
+    over_coordinate = any(isinstance(scope.symbol(name), Coordinate) for name in variables)
+    for part in parts(operand):
+        if not isinstance(part, Name) or part.text in variables:
+            continue
+        momentum = isinstance(scope.symbol(part.text), Momentum)
+        if (over_time and scope.moves(part.text)) or (over_coordinate and momentum):
+            reason = f"{part.text} changes along the motion: is it held fixed under the integral?"
+            builder.refuse(part, reason, "write the value of the integral")

@@ -22,7 +22,16 @@ from canon.expression.text.syntax import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-__all__ = ["INTEGRAL", "PRODUCT", "SUM", "Range", "bound_names", "ranges", "with_index"]
+__all__ = [
+    "INTEGRAL",
+    "PRODUCT",
+    "SUM",
+    "Range",
+    "bound_names",
+    "name_with_index_inside",
+    "ranges",
+    "with_index",
+]
 
 INTEGRAL, SUM, PRODUCT = "Integral", "Sum", "Product"
 
@@ -92,11 +101,12 @@ def with_index(node: Node, index: str, number: int, known: Callable[[str], bool]
         case Name(text, primes, column):
             if text == index and not primes:
                 return Number(number, 1, column)
-            bare = text.removesuffix(f"_{index}")
-            if bare == text:
+            stem, rate = _without_rate(text)
+            bare = stem.removesuffix(f"_{index}")
+            if bare == stem:
                 return node
             spelled = f"{bare}{number}" if known(f"{bare}{number}") else f"{bare}_{number}"
-            return Name(spelled, primes, column)
+            return Name(spelled + rate, primes, column)
         case Call():
             return replace(node, arguments=tuple(map(inside, node.arguments)))
         case Tuple():
@@ -113,3 +123,31 @@ def with_index(node: Node, index: str, number: int, known: Callable[[str], bool]
             return replace(node, base=inside(node.base), exponent=inside(node.exponent))
         case Number():
             return node
+
+
+def name_with_index_inside(node: Node, index: str) -> Name | None:
+    """Return a name with two subscripts of which one may be the index, as ``m_ij``; None where there is none.
+
+    Examples
+    --------
+    >>> name_with_index_inside(Name("m_ij", 0, 1), "i").text, name_with_index_inside(Name("p_phi", 0, 1), "i")
+    ('m_ij', None)
+    """
+    for part in parts(node):
+        if not isinstance(part, Name):
+            continue
+        subscripts = _without_rate(part.text)[0].split("_")[1:]
+        if subscripts[-1:] == [index]:
+            subscripts.pop()
+        if any(index in one and len(one) < 3 and one not in _SHORT_GREEK for one in subscripts):
+            return part
+    return None
+
+
+_SHORT_GREEK = ("mu", "nu", "xi", "pi")
+
+
+def _without_rate(name: str) -> tuple[str, str]:
+    """Return a name and the ending of its rate, nothing where it has none."""
+    ending = next((ending for ending in ("_ddot", "_dot") if name.endswith(ending)), "")
+    return name.removesuffix(ending), ending

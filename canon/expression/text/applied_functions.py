@@ -324,6 +324,14 @@ def _over(kind: str) -> Callable[[int, list[Node]], Node | None]:
     return lambda column, arguments: Call(kind, tuple(arguments), column) if len(arguments) > 1 else None
 
 
+def _outermost_first(column: int, arguments: list[Node]) -> Node | None:
+    """Return Mathematica's integral, whose first range is the outermost; that of Integral is the innermost."""
+    operand, *over = arguments or [None]
+    if operand is None or not over:
+        return None
+    return Call("Integral", (operand, *reversed(over)), column)
+
+
 def _slope_at(column: int, arguments: list[Node]) -> Node | None:
     """Return the derivative at a place that SymPy prints as ``Subs(Derivative(V(_xi_1), _xi_1), _xi_1, x)``."""
     match arguments:
@@ -361,7 +369,8 @@ _CONSTRUCTORS: Mapping[str, Callable[[int, list[Node]], Node | None]] = {
     "Rational": _quotient, "Fraction": _quotient, "Integer": _itself, "Float": _itself, "S": _itself,
     "sympify": _itself, "Hold": _itself, "HoldForm": _itself, "Tuple": _tuple, "D": _derivative,
     "Equal": _equation, "Equality": _equation, "power": _power, "square": _squared, "rational": _quotient,
-    **dict.fromkeys(("Integral", "integrate", "Integrate"), _over("Integral")),
+    **dict.fromkeys(("Integral", "integrate"), _over("Integral")),
+    "Integrate": _outermost_first,
     **dict.fromkeys(("Sum", "sum", "summation"), _over("Sum")),
     **dict.fromkeys(("Product", "product"), _over("Product")),
     "Subscript": _subscripted, "Subs": _slope_at,

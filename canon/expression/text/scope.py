@@ -92,11 +92,11 @@ class Scope:
         """Tell whether a name stands for a declared symbol or a rate."""
         return name not in self.functions and self.symbol(name) is not None
 
-    def with_variable(self, name: str) -> Scope:
+    def with_variable(self, name: str, *, positive: bool | None = None) -> Scope:
         """Return a scope in which a name is the variable of an integral: any real number, whatever it is outside."""
         if not name or name in self.functions:
             return self
-        return replace(self, names={**self.names, name: Symbol(name, real=True)})
+        return replace(self, names={**self.names, name: Symbol(name, real=True, positive=positive)})
 
     def near(self, name: str) -> str:
         """Return a remedy for an unknown name."""
