@@ -346,8 +346,12 @@ def _check_events(task: Task) -> None:
         raise ValueError(f"dense=True: {task.method} has no polynomials to keep; Taylor() has")
     if not task.events:
         return
-    if task.states[0].shape[1] > 1:
-        raise ValueError("events are met at times of each orbit's own: propagate the orbits one by one")
+    stops = [event for event in task.events if event.action == "stop"]
+    if stops and task.states[0].shape[1] > 1:
+        raise ValueError(
+            f"the event {stops[0]} would stop each of many orbits at a time of its own, and their states are kept at "
+            "common times: record it, action='record', or propagate the orbits one by one"
+        )
     if task.cadence is not None:
         raise ValueError("events and cadence: statistics inside the loop do not see events; leave one out")
     prepared_events(task.system, task.events)

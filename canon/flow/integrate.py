@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.adaptive.dop853 import dop853_motion
@@ -12,7 +13,8 @@ from canon.flow.fixed_step.statistics import loop_observables
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY, Engine
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.event import prepared_events
-from canon.flow.run.samples import joined
+from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.run.samples import joined, side_by_side
 from canon.flow.transformed.transformed_motion import transformed_motion
 
 if TYPE_CHECKING:
@@ -40,7 +42,37 @@ def integrate(
     NonFiniteStateError
         The motion can't be continued.
     """
+    if task.events and task.states[0].shape[1] > 1:
+        return _one_by_one(task, progress, so_far)
     return _ENGINES[task.method.engine](task, task.method, progress, so_far)
+
+
+def _one_by_one(task: Task, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
+    """Return orbits with events, each the same bits as by itself, as they are met at times of each orbit's own.
+
+    Raises
+    ------
+    NonFiniteStateError
+        One of them can't be continued; the message says which.
+    KeyboardInterrupt
+        The run was interrupted: what is done of one orbit is no part of a motion of all.
+    """
+    made: list[Samples] = []
+    count = task.states[0].shape[1]
+    for k in range(count):
+
+        def report(fraction: float, before: int = k) -> None:
+            progress((before + fraction) / count)
+
+        high, low = (part[:, [k]] for part in task.states)
+        own = replace(task, states=(high, low))
+        try:
+            made.append(integrate(own, report, None if so_far is None else so_far.each[k]))
+        except NonFiniteStateError as lost:
+            raise type(lost)(f"orbit {k}: {lost}", lost.time, lost.state) from None
+        if not own.arrived(made[-1]):
+            raise KeyboardInterrupt("orbits with events are done one by one: nothing of them is kept")
+    return side_by_side(made)
 
 
 def _in_fictitious_time(

@@ -112,7 +112,8 @@ def propagate(
         change over every block of steps between two samples, and running extremes. 10⁹ steps with
         ``samples=1000, cadence=1`` keep 1000 rows.
     events
-        What is to happen where functions of the state cross zero, see :class:`canon.Event`; of one orbit.
+        What is to happen where functions of the state cross zero, see :class:`canon.Event`. Many orbits go one by one
+        then, each as by itself, and ``motion.events[k]`` has those of orbit k.
     dense
         Keep Taylor's polynomials, so that the trajectory can be called with any time: ``motion(t)``. Methods of
         fixed steps need nothing kept for that.

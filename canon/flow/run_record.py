@@ -93,6 +93,13 @@ class RunRecord:
         met = self.samples.crossings
         return bool(met) and met[-1].event.action == "stop"
 
+    def with_events_of(self, orbits: Sequence[int] | None) -> Samples:
+        """Return the samples with the events of some orbits only, all where not given."""
+        found = self.samples
+        if orbits is None or not found.each:
+            return found
+        return replace(found, crossings=tuple(met for k in orbits for met in found.each[k].crossings))
+
     @property
     def names(self) -> list[str]:
         """The names of the variables that are shown."""

@@ -66,6 +66,8 @@ class Task:
 
     def arrived(self, found: Samples) -> bool:
         """Return whether samples reach to the end of what was to be done."""
+        if found.each:
+            return all(map(self.arrived, found.each))
         if self.fictitious is not None:
             return found.beyond.arrived
         return len(found.t) == len(self.plan.instants)

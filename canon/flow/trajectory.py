@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.equations.contact_regimes import ContactRegime
     from canon.flow.method.method import Method
-    from canon.flow.run.event import Crossing
     from canon.flow.run.samples import Statistics
     from canon.flow.run_record import Energies, RunRecord
 
@@ -71,7 +70,7 @@ class Trajectory:
         Where ``cadence`` was given: mean, least and greatest change of ``"energy"`` and the observables between
         one sample and the next, by name.
     events
-        The events met, in their order.
+        The events met, in their order; of many orbits a tuple of them for each.
     record
         What was to be done and what came out in full, from which all else is read and goes on.
     """
@@ -91,7 +90,7 @@ class Trajectory:
     observables: Mapping[str, Array]
     changes: Mapping[str, Array]
     statistics: Mapping[str, Statistics]
-    events: tuple[Crossing, ...]
+    events: tuple[Any, ...]
     record: RunRecord = field(repr=False, compare=False)
 
     def __repr__(self) -> str:
@@ -265,7 +264,7 @@ class Trajectory:
         """
         record = self.record
         change = np.zeros(self.y.shape[1:]) if self.energies is None else self.energies.defect
-        return error_estimate(record.task, record.samples, change, orbits)
+        return error_estimate(record.task, record.with_events_of(orbits), change, orbits)
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the variables, the energy and the observables as an xarray dataset along ``t`` (extra ``export``)."""
@@ -396,5 +395,5 @@ def trajectory_of(record: RunRecord) -> Trajectory:
     return Trajectory(
         found.t, found.y, found.carried, seen.energies, task.method, task.precision_name, found.step, found.steps,
         found.evaluations, found.cpu_seconds, found.compile_seconds, task.system.autonomous,
-        seen.observables, seen.changes, seen.statistics, seen_by_people(found.crossings), record,
+        seen.observables, seen.changes, seen.statistics, seen_by_people(found), record,
     )  # fmt: skip

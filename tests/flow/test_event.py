@@ -238,7 +238,7 @@ def test_a_driven_systems_events_read_the_clock():
         ({"events": [Event(sp.Integer(1))]}, ValueError, "does not depend"),
         ({"events": [Event(px, 0, "bounce")]}, ValueError, "no wall"),
         ({"events": [Event(x, 0, {y: y})]}, ValueError, "changes y"),
-        ({"events": [Event(x)], "y0": [[0.5, 0.6], [0.0, 0.0]]}, ValueError, "one by one"),
+        ({"events": [Event(x, 0, "stop")], "y0": [[0.5, 0.6], [0.0, 0.0]]}, ValueError, "one by one"),
         ({"events": [Event(x)], "cadence": 1}, ValueError, "cadence"),
     ],
 )

@@ -105,7 +105,7 @@ def test_families_are_resumed_and_read_between_samples():
         ({"parameters": {m: [1, 2]}}, KeyError, "holds k"),
         ({"parameters": {m: [1, 2], k: 1, "w": [1, 2]}}, KeyError, "w, which H does not hold"),
         ({"y0": [[1, 1, 1], [0, 0, 0]]}, ValueError, r"shape \(orbits,\)"),
-        ({"events": [Event(x)]}, ValueError, "one by one"),
+        ({"events": [Event(x, action="stop")]}, ValueError, "one by one"),
     ],
 )
 def test_parameters_that_make_no_sense_are_refused(change, error, message):

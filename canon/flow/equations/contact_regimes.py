@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from sympy import Dummy
@@ -14,10 +14,7 @@ from canon.flow.run.non_finite_state import PiledUpError, time_and_state
 from canon.flow.run.observables_along import AccuracyWarning, frames_of_canon
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from canon.flow.equations.first_order_motion import Contact, Contacts, MovingSystem
-    from canon.flow.run.event import Crossing
     from canon.flow.run.samples import Samples
 
 __all__ = ["ContactRegime", "check_contacts", "impacts_pile_up", "regimes_of", "seen_by_people"]
@@ -78,9 +75,13 @@ def _closes(moving: MovingSystem, contact: Contact, samples: Samples, k: int) ->
     return bool(samples.y[moving.equations.q.index(contact.switch), -1, 0] > 0)
 
 
-def seen_by_people(crossings: Sequence[Crossing]) -> tuple[Crossing, ...]:
-    """Return crossings without those that only keep account of a contact."""
-    return tuple(met for met in crossings if met.event.name or not isinstance(met.event.function, Dummy))
+def seen_by_people(found: Samples) -> tuple[Any, ...]:
+    """Return the events met, a tuple for each of many orbits, without those that only keep account of a contact."""
+    if found.each:
+        return tuple(map(seen_by_people, found.each))
+    return tuple(
+        met for met in found.crossings if met.event.name or not isinstance(met.event.function, Dummy)
+    )
 
 
 def check_contacts(moving: MovingSystem, samples: Samples) -> None:

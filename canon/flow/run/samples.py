@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,7 @@ from canon.array import Array
 if TYPE_CHECKING:
     from canon.flow.run.event import Crossing
 
-__all__ = ["Dense", "Samples", "Statistics", "joined"]
+__all__ = ["Dense", "Samples", "Statistics", "joined", "side_by_side"]
 
 Dense = Callable[[Array], Array]
 """States (2n, times) at times."""
@@ -43,9 +43,11 @@ class Samples:
     beyond
         What the method needs beyond the last state to go on with the same bits.
     crossings
-        Events met.
+        Events met; of many orbits those of the first, then those of the second …
     dense
         The motion of each orbit as a function of time, where it was asked for.
+    each
+        Of many orbits with events, which go one by one: the samples of each.
     """
 
     t: Array
@@ -60,6 +62,26 @@ class Samples:
     beyond: Any = None
     crossings: tuple[Crossing, ...] = ()
     dense: tuple[Dense, ...] = ()
+    each: tuple[Samples, ...] = ()
+
+
+def side_by_side(each: Sequence[Samples]) -> Samples:
+    """Return orbits of the same times, integrated one by one, as one motion."""
+    count = min(len(one.t) for one in each)
+    return replace(
+        each[0],
+        t=each[0].t[:count],
+        y=np.concatenate([one.y[:, :count] for one in each], axis=2),
+        carried=np.concatenate([one.carried[:, :count] for one in each], axis=2),
+        steps=sum(one.steps for one in each),
+        evaluations=sum(one.evaluations for one in each),
+        cpu_seconds=sum(one.cpu_seconds for one in each),
+        compile_seconds=sum(one.compile_seconds for one in each),
+        beyond=None,
+        crossings=tuple(met for one in each for met in one.crossings),
+        dense=tuple(dense for one in each for dense in one.dense),
+        each=tuple(each),
+    )
 
 
 def joined(before: Samples | None, after: Samples) -> Samples:
