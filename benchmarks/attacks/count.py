@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import io
+import os
 import traceback
 from collections import Counter
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field
+from typing import Any
 
 from canon.cli import main
 
-__all__ = ["BAD", "Count", "command"]
+__all__ = ["BAD", "Count", "command", "load_is_low"]
 
 BAD = (
     "traceback",
@@ -20,7 +22,9 @@ BAD = (
     "left running",
     "wrong status",
     "false line",
+    "false verdict",
     "lost",
+    "closed without a word",
 )
 """What must not come of an attack."""
 
@@ -44,6 +48,18 @@ class Count:
     def bad(self) -> int:
         return sum(self.outcomes[outcome] for outcome in BAD)
 
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "sort": self.sort,
+            "outcomes": dict(sorted(self.outcomes.items())),
+            "first": self.first,
+            "figures": self.figures,
+        }
+
+    @staticmethod
+    def from_dict(written: dict[str, Any]) -> Count:
+        return Count(**{**written, "outcomes": Counter(written["outcomes"])})
+
     def __str__(self) -> str:
         told = ", ".join(f"{number} {outcome}" for outcome, number in sorted(self.outcomes.items()))
         lines = [f"{self.sort}: {self.outcomes.total()}: {told}; {self.bad} bad"]
@@ -64,3 +80,8 @@ def command(*arguments: object) -> tuple[int | None, str, str]:
                 raise
             return None, out.getvalue(), traceback.format_exc()
     return status, out.getvalue(), err.getvalue()
+
+
+def load_is_low() -> bool:
+    """Whether the machine has had a processor to spare in the last minute."""
+    return os.getloadavg()[0] < (os.cpu_count() or 1)

@@ -86,6 +86,51 @@ VALUES = (
         '"q.__class__"',
         "'$\\frac{q}{0}$'",
     ),
+    *(
+        '"../../../etc/passwd"',
+        '"/dev/zero"',
+        '"/proc/self/mem"',
+        '"~root"',
+        '"$(touch owned)"',
+        r'"\u202eenil"',
+        r'"\u2066"',
+    ),
+    *(
+        "-0.0",
+        "1e400",
+        "-1e-400",
+        '"inf"',
+        '"nan"',
+        '"1e400"',
+        "{ a.b.c.d = 1 }",
+        "[{}, {}]",
+        "['verlet', 'verlet']",
+    ),
+    *(
+        "['taylor', 'taylor', 'taylor']",
+        "[0.1, 0.1]",
+        "[1, 1.0, true]",
+        '"é"',
+        r'"e\u0301"',
+        '"ｖerlet"',
+        '"Verlet "',
+        "''",
+    ),
+    *(
+        "9223372036854775808",
+        "-9223372036854775809",
+        "0b1" + "0" * 2_000,
+        "0o7" * 1,
+        "00:00:00",
+        "{ section = 'q', direction = 5 }",
+    ),
+    *(
+        "{ section = '" + "(" * 500 + "q' }",
+        "['motion', 'motion']",
+        "{ section = 'p*0' }",
+        "{ taylor = 1e-400 }",
+        "{ gauss = 2.0 }",
+    ),
     "[" * 300 + "]" * 300,
     "[" * 5000 + "]" * 5000,
     "[" + "0.1, " * 20_000 + "]",
@@ -106,6 +151,40 @@ WHOLE = (
     "[[study]]\n" * 5_000,
     "\x00" * 1_000,
     "x = 1\n" * 10_000,
+    "[[study]]\nstep = 0.1\nstep = 0.2\n",
+    "[system.a]\n[system.a]\n",
+    "[system]\na = 1\n[system.a]\nH = 'p**2'\n",
+    "[[study]]\n[study]\n",
+    "\ufeff[[study]]\n",
+    "[[study]]\r\rsystem = 'kepler'",
+    "# " + "x" * 10_000_000,
+    "[[study]]\nsystem = " + "'" * 3 + "x" * 1_000_000,
+)
+
+
+NAMES = (
+    *(
+        r'"=cmd|x"',
+        r'"\u001b[31mred"',
+        r'"a\nstudy.sqlite: 4 cases"',
+        '"../up"',
+        '"/"',
+        '""',
+        '"."',
+        '"a/b"',
+        r'"\u0000"',
+    ),
+    *(
+        r'"\u202ecba"',
+        '"é"',
+        r'"e\u0301"',
+        '"-rf"',
+        '"--help"',
+        '"henon-heiles"',
+        '"' + "n" * 5_000 + '"',
+        '"a,b;c"',
+        '"\'"',
+    ),
 )
 
 
@@ -134,11 +213,7 @@ def _file(number: int, draw: random.Random) -> str:
         table[draw.choice((*table, *MORE) if table is study else tuple(table))] = draw.choice(VALUES)
         if "periods" in table:
             table.pop("span", None)
-    name = (
-        "own"
-        if draw.random() < 0.9
-        else draw.choice((r'"=cmd|x"', r'"\u001b[31mred"', r'"a\nstudy.sqlite: 4 cases"'))
-    )
+    name = "own" if draw.random() < 0.9 else draw.choice(NAMES)
     lines = [f"[system.{name}]", *(f"{key} = {value}" for key, value in system.items())]
     text = "\n".join([*lines, "[[study]]", *(f"{key} = {value}" for key, value in study.items())])
     if draw.random() < 0.1:

@@ -6,6 +6,8 @@ import asyncio
 import json
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from starlette.requests import ClientDisconnect
+
 from canon.exercise.sheet.sheet import Claim, Sheet, SheetError, sheet_from
 from canon.serve.refusal import Refusal
 
@@ -42,6 +44,8 @@ async def body_of(request: Request, most: int) -> bytes:
                     raise too_large
     except TimeoutError:
         raise Refusal(408, f"the body did not come within {SECONDS:g} s; send it at once") from None
+    except ClientDisconnect:
+        raise Refusal(499, "the client went away before its request had come") from None
     return bytes(found)
 
 

@@ -217,6 +217,32 @@ def test_a_long_sheet_does_not_keep_others_waiting_for_its_end(served):
         assert [claim.id for claim in pool_of(client).asked].index("short") <= 2
 
 
+def test_a_client_that_goes_in_the_middle_of_its_request_is_no_fault(served):
+    lines = []
+
+    class Kept(logging.Handler):
+        def emit(self, record):
+            lines.append((getattr(record, "said", {}).get("status"), record.exc_info))
+
+    kept, loggers = Kept(logging.INFO), [logging.getLogger(name) for name in ("canon.serve", "uvicorn.error")]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.addHandler(kept)
+        logger.setLevel(logging.INFO)
+    with served() as client, socket.create_connection(("127.0.0.1", client.port), 30) as going:
+        head = b"POST /check HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        going.sendall(head + b"Content-Length: 50\r\n\r\n[")
+        while not http_connections(client):
+            pass
+        going.close()
+        while (499, None) not in lines:
+            pass
+    for logger, level in zip(loggers, levels, strict=True):
+        logger.removeHandler(kept)
+        logger.setLevel(level)
+    assert not [error for _, error in lines if error]
+
+
 @pytest.mark.parametrize("said", [b"", b"POST /check HTTP/1.1\r\nHost: local"])
 def test_a_connection_on_which_no_request_comes_is_closed(served, monkeypatch, said):
     monkeypatch.setattr(http_server, "IDLE", 0.3)
