@@ -1,7 +1,15 @@
+from .action_variables import ActionVariables as ActionVariables
+from .action_variables import action_variables as action_variables
+from .action_variables import angles as angles
+from .action_variables import frequencies as frequencies
+from .ball_function import NotHolomorphicError as NotHolomorphicError
 from .classical_coordinates import Chart as Chart
+from .cycles import Cycle as Cycle
+from .cycles import CycleKind as CycleKind
 from .hamilton_jacobi import CompleteIntegral as CompleteIntegral
 from .hamilton_jacobi import hamilton_jacobi as hamilton_jacobi
 from .separability import is_separable as is_separable
 from .separability import levi_civita_condition as levi_civita_condition
 from .separated_momenta import NotSeparatedError as NotSeparatedError
 from .separated_momenta import SeparatedMomentum as SeparatedMomentum
+from .turning_points import NoCycleError as NoCycleError

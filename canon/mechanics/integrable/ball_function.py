@@ -1,0 +1,187 @@
+"""Functions of one complex variable on balls, which tell where they are holomorphic.
+
+As the quadrature of Arb asks (F. Johansson, Numerical integration in arbitrary-precision ball arithmetic,
+doi:10.1007/978-3-319-96418-8_30): called with ``analytic`` the value is finite only where the function is holomorphic
+on the whole ball.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+from flint import acb
+from sympy import Expr, Symbol
+
+from canon.proof.domain.balls import value
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+__all__ = ["BallFunction", "NotHolomorphicError"]
+
+ENTIRE: dict[Any, Callable[[acb], acb]] = {
+    sp.sin: lambda z: z.sin(),
+    sp.cos: lambda z: z.cos(),
+    sp.sinh: lambda z: z.sinh(),
+    sp.cosh: lambda z: z.cosh(),
+    sp.exp: lambda z: z.exp(),
+    sp.tan: lambda z: z.tan(),
+    sp.cot: lambda z: z.cot(),
+    sp.sec: lambda z: z.sec(),
+    sp.csc: lambda z: z.csc(),
+    sp.tanh: lambda z: z.tanh(),
+    sp.coth: lambda z: z.coth(),
+    sp.sech: lambda z: z.sech(),
+    sp.csch: lambda z: z.csch(),
+}
+"""Functions without branch cuts; at poles their balls are not finite."""
+
+NOWHERE = acb("nan")
+
+
+class NotHolomorphicError(ValueError):
+    """Raised for functions that have no holomorphic continuation here, such as absolute values."""
+
+
+class BallFunction:
+    """A function of one variable, compiled once for many balls.
+
+    Parameters
+    ----------
+    f
+        The function, of elementary functions.
+    variable
+        Its variable.
+    values
+        The values of all its other symbols.
+
+    Raises
+    ------
+    NotHolomorphicError
+        Where a function in f is not modelled.
+
+    Examples
+    --------
+    >>> q, k = sp.symbols("q k")
+    >>> f = BallFunction(sp.sqrt(q) + k, q, {k: acb(1)})
+    >>> f(acb(4)).overlaps(acb(3)), f(acb(-4), analytic=True).is_finite()
+    (True, False)
+    """
+
+    def __init__(self, f: Expr, variable: Symbol, values: Mapping[Symbol, acb]) -> None:
+        self.f = f
+        self._constants: list[acb] = []
+        self._steps: list[tuple[int, tuple[int, ...], Callable[[list[acb], bool], acb]]] = []
+        self._places: dict[sp.Basic, int] = {}
+        self._variable, self._values = variable, values
+        self._last = self._place(f)
+
+    def __call__(self, z: acb, analytic: bool = False) -> acb:
+        """Return the value on a ball; not finite where ``analytic`` and not certainly holomorphic there."""
+        memory = list(self._constants)
+        for place, arguments, step in self._steps:
+            memory[place] = step([memory[i] for i in arguments], analytic) if arguments else z
+        return memory[self._last]
+
+    def _place(self, node: sp.Basic) -> int:
+        known = self._places.get(node)
+        if known is not None:
+            return known
+        if node == self._variable:
+            return self._kept(node, NOWHERE, ((), _product))
+        if not node.has(self._variable):
+            return self._kept(node, _constant(node, self._values), None)
+        arguments = tuple(self._place(a) for a in _operands(node))
+        return self._kept(node, NOWHERE, (arguments, _operation(node)))
+
+    def _kept(
+        self,
+        node: sp.Basic,
+        constant: acb,
+        step: tuple[tuple[int, ...], Callable[[list[acb], bool], acb]] | None,
+    ) -> int:
+        place = len(self._constants)
+        self._constants.append(constant)
+        if step is not None:
+            self._steps.append((place, *step))
+        self._places[node] = place
+        return place
+
+
+def _constant(node: sp.Basic, values: Mapping[Symbol, acb]) -> acb:
+    if isinstance(node, Symbol):
+        if node not in values:
+            raise ValueError(f"{node} has no value; give it among the parameters")
+        return values[node]
+    if not node.free_symbols:
+        return value(node, {})  # pyright: ignore[reportArgumentType]
+    memory = dict(values)
+    return value(node, {}, memory)  # pyright: ignore[reportArgumentType]
+
+
+def _operands(node: sp.Basic) -> tuple[sp.Basic, ...]:
+    """Return what has to be known for a node; the exponent of a power is part of the operation."""
+    if isinstance(node, sp.Pow) and isinstance(node.exp, sp.Rational):
+        return (node.base,)
+    return node.args
+
+
+def _operation(node: sp.Basic) -> Callable[[list[acb], bool], acb]:
+    if isinstance(node, sp.Add):
+        return _sum
+    if isinstance(node, sp.Mul):
+        return _product
+    if isinstance(node, sp.Pow):
+        return _rational_power(node.exp) if isinstance(node.exp, sp.Rational) else _power
+    function = ENTIRE.get(node.func)
+    if function is not None:
+        return _entire(function)
+    if isinstance(node, sp.log) and len(node.args) == 1:
+        return lambda arguments, analytic: arguments[0].log(analytic=analytic)
+    raise NotHolomorphicError(
+        f"{node.func.__name__} is not among the functions that cycles are integrated over; write the potential "
+        "with powers, exponentials, logarithms, trigonometric and hyperbolic functions"
+    )
+
+
+def _entire(function: Callable[[acb], acb]) -> Callable[[list[acb], bool], acb]:
+    def applied(arguments: list[acb], _analytic: bool) -> acb:
+        return function(arguments[0])
+
+    return applied
+
+
+def _sum(arguments: list[acb], _analytic: bool) -> acb:
+    total = arguments[0]
+    for other in arguments[1:]:
+        total += other
+    return total
+
+
+def _product(arguments: list[acb], _analytic: bool) -> acb:
+    total = arguments[0]
+    for other in arguments[1:]:
+        total *= other
+    return total
+
+
+def _power(arguments: list[acb], analytic: bool) -> acb:
+    base, exponent = arguments
+    return (exponent * base.log(analytic=analytic)).exp()
+
+
+def _rational_power(exponent: sp.Rational) -> Callable[[list[acb], bool], acb]:
+    n, d = int(exponent.p), int(exponent.q)
+
+    def power(arguments: list[acb], analytic: bool) -> acb:
+        base = arguments[0]
+        if n < 0 and base.contains(0):
+            return NOWHERE
+        if d == 1:
+            return base**n
+        if d == 2:
+            return base.sqrt(analytic=analytic) ** n
+        return (base.log(analytic=analytic) * n / d).exp()
+
+    return power
