@@ -220,8 +220,32 @@ def test_e_is_eulers_number_where_it_is_not_declared():
     assert parse_expression("$e^{2}", SCOPE) == sp.exp(2)
     eccentricity = sp.Symbol("e", real=True)
     assert parse_expression("$e^{2}", Scope({"e": eccentricity})) == eccentricity**2
-    assert parse_expression("$1 - 2 e + \\sin e", SCOPE) == 1 - 2 * sp.E + sp.sin(sp.E)
+    assert parse_expression(r"$1 - 2 e + \sin{\left(e \right)}", SCOPE) == 1 - 2 * sp.E + sp.sin(sp.E)
+    assert parse_expression(r"$1 - 2 \mathrm{e}", SCOPE) == 1 - 2 * sp.E
     assert parse_expression("$1 - e", Scope({"e": eccentricity})) == 1 - eccentricity
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["$a(1 - e^2)$", "$1 + e\\cos a$", "$a e$", "a*(1 - e**2)", "a(1 - e²)", "1 + e*cos(a)", "e", "e^(2)",
+     "<p>a(1-e<sup>2</sup>)</p>"],
+)  # fmt: skip
+def test_a_forgotten_eccentricity_is_asked_about(text):
+    """It is a name wherever it is declared, and Euler's number under an exponent with a name, in every notation."""
+    a, e = sp.Symbol("a", real=True), sp.Symbol("e", real=True)
+    with pytest.raises(LanguageError, match="is e Euler's number, or a name that is not declared"):
+        parse_expression(text, Scope({"a": a}))
+    assert e in parse_expression(text, Scope({"a": a, "e": e})).free_symbols
+    for exponential in (
+        "e^(-a)",
+        "e**a",
+        "$e^{-a}$",
+        "$\\mathrm{e}^a$",
+        "<p>e<sup>a</sup></p>",
+        "%e^a",
+        "$e^a$",
+    ):
+        assert parse_expression(exponential, Scope({"a": a})).func is sp.exp
 
 
 def test_a_declared_name_overrides_what_a_letter_means():

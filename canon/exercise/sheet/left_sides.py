@@ -157,6 +157,7 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     >>> is_definition("T-V", "L", Scope()), is_definition("T+V", "L", Scope())
     (True, False)
     """
+    said = said.replace("−", "-")
     names = re.findall(r"[A-Z]", said)
     if any(scope.declares(name) for name in names[:9]):
         return False

@@ -29,6 +29,7 @@ from canon.expression.latex.pieces import (
     raised,
     unbraced,
 )
+from canon.expression.latex.printed_forms import refuse_open_e
 from canon.expression.latex.quotient import shown
 from canon.expression.latex.understood_time import has_rate_or_is_momentum, without_time
 from canon.expression.text.differentials import PRIMED
@@ -98,9 +99,11 @@ class Meaning:
 
     def _power(self, piece: Powered) -> Node:
         if isinstance(piece.base, Mark):
-            if piece.base.text == "e":
-                return Call("exp", (piece.exponent,), piece.column)
-            self._stray(piece.base)
+            if piece.base.text != "e":
+                self._stray(piece.base)
+            if isinstance(piece.exponent, Number):
+                refuse_open_e(self.text, piece.base.column)
+            return Call("exp", (piece.exponent,), piece.column)
         return Power(self.node(piece.base), piece.exponent, piece.column)
 
     def factors(self, items: tuple[Piece, ...]) -> list[Node]:
@@ -346,6 +349,7 @@ class Meaning:
     def _marked(self, items: tuple[Piece, ...], at: int, mark: Mark) -> tuple[Node, int]:
         """Return what a letter alone means, Euler's number or with what follows a differential, and where it ends."""
         if mark.text == "e":
+            refuse_open_e(self.text, mark.column)
             return Call("exp", (Number(1, 1, mark.column),), mark.column), at + 1
         return self._varied(items, at, mark), at + 2
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import re
 
+from canon.expression.text.syntax import LanguageError
+from canon.expression.text.vocabulary import WHICH_E
+
 __all__ = [
     "CLAUSE",
     "CONDITION",
@@ -13,6 +16,7 @@ __all__ = [
     "PARTIAL",
     "PLAIN",
     "PRINTED_CALL",
+    "refuse_open_e",
 ]
 
 DECORATIONS = {
@@ -39,3 +43,32 @@ PARTIAL = re.compile(
 OF_SPECIAL_FUNCTIONS = {"W": "LambertW", "K": "elliptic_k", "E": "elliptic_e"}
 PRINTED_CALL = re.compile(r"(?:\^\{(?:[^{}]|\{(?:[^{}]|\{[^{}]{0,99}+\}){0,99}+\}){1,99}+\})?\\left\(")
 r"""How SymPy prints their argument, after a power."""
+
+_TYPED = re.compile(r"\^\s*[^\s{]|(?<!\\left)\(|\S\+|\+\S|\\(?:sin|cos|tan|exp|log|ln)(?!\{\\left\(|\^\{|h)")
+_WORD_BEFORE = re.compile(r"(?:(\\[A-Za-z]+)|[A-Za-z'])\s*$")
+_BEFORE = ("\\cdot", "\\pi", "\\left", "\\leq", "\\geq", "\\neq", "\\wedge", "\\vee")
+
+
+def refuse_open_e(text: str, column: int) -> None:
+    r"""Refuse an ``e`` that need not be Euler's number: it is where SymPy's ``latex()`` prints it, before all symbols.
+
+    What a person types, ``a(1 - e^2)``, may as well be a forgotten eccentricity.
+
+    Raises
+    ------
+    LanguageError
+        With both readings.
+
+    Examples
+    --------
+    >>> refuse_open_e("e^{2} a", 1)
+    >>> refuse_open_e("a (1 - e^2)", 8)
+    Traceback (most recent call last):
+        ...
+    canon.expression.text.tokens.LanguageError: column 8: is e Euler's number, or a name that is not declared, as ...
+    """
+    word = _WORD_BEFORE.search(text, 0, column - 1)
+    upright = text[column - 1 : column] != "e"
+    if upright or ((word is None or word[1] in _BEFORE) and _TYPED.search(text) is None):
+        return
+    raise LanguageError(text, column, WHICH_E, r"write \mathrm{e} for the number; a name is declared")

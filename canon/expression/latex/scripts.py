@@ -26,8 +26,9 @@ _LETTER = re.compile(r"\\([A-Za-z]+)")
 _RUN = re.compile(r"[A-Za-z0-9]+")
 _LOWERED = re.compile(r"[₀-₉]+")
 _DOTS = re.compile("[\u0307\u0308]+")
+_NAME = r"(?:\\[A-Za-z]+|[A-Za-z])(?:\s*_\s*(?:\w|\{\s*\w+\s*\}))?"
 _BRACED_NAME = re.compile(
-    r"\{\s*(?:\\(d?dot)\s*)?(?:\{\s*)?((?:\\[A-Za-z]+|[A-Za-z])(?:\s*_\s*(?:\w|\{\s*\w+\s*\}))?)\s*(?:\}\s*)?\}(?=\s*(?:_|'|\^\s*\{?\s*\\prime))"
+    rf"\{{\s*(?:\\(d?dot)\s*)?(?:\{{\s*({_NAME})\s*\}}|({_NAME}))\s*\}}(?=\s*(?:_|'|\^\s*\{{?\s*\\prime))"
 )
 _MAX_PIECES = 5
 """Most pieces of one subscript; each may double the names it could mean."""
@@ -99,8 +100,9 @@ def braced_name(text: str, at: int, end: int) -> tuple[tuple[str, ...], Pieces, 
     if match is None:
         return None
     order = {None: 0, "dot": 1, "ddot": 2}[match.group(1)]
-    found, after = _base(text, match.start(2), 1)
-    return found, scripts(text, after, match.end(2)).pieces, order, match.end()
+    name = 2 if match.group(2) else 3
+    found, after = _base(text, match.start(name), 1)
+    return found, scripts(text, after, match.end(name)).pieces, order, match.end()
 
 
 def accented(text: str, at: int, end: int) -> Accented:

@@ -23,6 +23,7 @@ from canon.expression.text.syntax import (
     Sum,
     Tuple,
 )
+from canon.expression.text.vocabulary import WHICH_E
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -208,7 +209,7 @@ def _exponential(reader: FactorParser, token: Token) -> Node | None:
     exponent = reader.token
     if exponent.kind == "super":
         reader.at += 1
-        return Call("exp", (reader.raised(exponent),), token.column)
+        return _raised_e(reader, token, reader.raised(exponent))
     if sign := reader.take("^", "**"):
         reader.deeper(sign)
         inside = reader.exponent(sign)
@@ -219,8 +220,22 @@ def _exponential(reader: FactorParser, token: Token) -> Node | None:
             and reader.tokens[reader.at - 1].text not in (")", "}", "]")
         ):
             raise reader.fault("does this still belong to the exponent?", "write brackets, e^(a*t)")
-        return Call("exp", (inside,), token.column)
+        return _raised_e(reader, token, inside)
+    if token.text == "e":
+        raise reader.fault(WHICH_E, "write exp(1) for the number; a name is declared", token)
     return Call("exp", (Number(1, 1, token.column),), token.column) if token.text == "%e" else None
+
+
+def _raised_e(reader: FactorParser, token: Token, exponent: Node) -> Node:
+    """Return exp of an exponent; with a bare number as exponent, e may be a name that is not declared."""
+    if isinstance(exponent, Number) and token.text != "%e":
+        shown = f"{exponent.numerator}"[:9]
+        raise reader.fault(
+            WHICH_E if token.text == "e" else "is E Euler's number, or a name that is not declared?",
+            f"write exp({shown}) for the number; a name is declared",
+            token,
+        )
+    return Call("exp", (exponent,), token.column)
 
 
 def constructed(reader: FactorParser, token: Token) -> Node | None:
@@ -326,9 +341,9 @@ def _over(kind: str) -> Callable[[int, list[Node]], Node | None]:
 
 def _outermost_first(column: int, arguments: list[Node]) -> Node | None:
     """Return Mathematica's integral, whose first range is the outermost; that of Integral is the innermost."""
-    operand, *over = arguments or [None]
-    if operand is None or not over:
+    if len(arguments) < 2:
         return None
+    operand, *over = arguments
     return Call("Integral", (operand, *reversed(over)), column)
 
 

@@ -9,6 +9,7 @@ import html
 import re
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
+from itertools import pairwise
 
 from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
 
@@ -26,11 +27,20 @@ _TAG = re.compile(
     r"</?(?:p|div|span|i|em|b|strong|var|code|pre|tt|li|ul|ol|font|u|small)(?: [^<>]{0,200})?>", re.IGNORECASE
 )
 _DRAWN = re.compile(
-    r"[─━│⎛⎜⎝⎞⎟⎠⎡⎢⎣⎤⎥⎦⎧⎨⎩⌠⌡╲╱]|(?<=\n)[ \t]{0,99}-{3,}[ \t]{0,99}(?=\n)|^[ ]+\d[\d ]*(?=\n *\S)", re.MULTILINE
+    r"[─━│⎛⎜⎝⎞⎟⎠⎡⎢⎣⎤⎥⎦⎧⎨⎩⌠⌡╲╱]|(?<=\n)[ \t]{0,99}-{1,99}[ \t]{0,99}(?=\n)|_{3}|^\[ +\]$|^[ ]+\d[\d ]*(?=\n *\S)",
+    re.MULTILINE,
 )
 """Lines and large brackets that are drawn with characters."""
-_PROMPT = re.compile(r"^\s*(?:\(%[io]\d{1,5}\)|(?:In|Out)\s?\[\d{1,5}\](?::=|=|:)|>>>)(?=\s)")
+_PROMPT = re.compile(
+    r"^\s*(?:\(%[io]\d{1,5}\)|%[io]\d{1,5}\s?[=:]|ans\s?=|(?:In|Out)\s?\[\d{1,5}\](?::=|=|:)|>>>)(?=\s)"
+    r"|(?:(?<==)|^)\s*@\([\w, ]{1,60}\)"
+    r"|^\s*(?:EOM|EoM|Answer|Solution|Result|Equation of motion|Hamiltonian|Lagrangian):(?=\s)"
+)
 """What programs write before a line."""
+_EMPHASISED = re.compile(r"^(\s*)(?:\*\*|__|[*_])([A-Za-z]\w{0,9})(?:\*\*|__|[*_])(\s*=)")
+"""A bold or slanted name before ``=``."""
+_ELEMENTWISE = re.compile(r"(?<=[\w)\]])\.([*/^])")
+"""MATLAB's operators for arrays."""
 _WIDTHLESS = re.compile(r"[\u200b\u2060\ufeff]")
 _ASSIGNED = re.compile(r"^(\s*[A-Za-z]\w{0,9}\s*):(?![:=])(?=[^;]*;\s*$)")
 """Maxima's ``L: …;``."""
@@ -56,9 +66,14 @@ def unmarked(text: str) -> str:
     if len(text) > MAX_CHARACTERS:
         return text
     text = _ASSIGNED.sub(r"\1=", _PROMPT.sub(_blank, text))
+    if "\n" not in text.strip():
+        text = text.replace("│", "|").replace("ℯ", "%e")
+    text = _EMPHASISED.sub(r"\1\2\3", text)
+    if "\\" not in text:
+        text = _ELEMENTWISE.sub(r"\1", text)
     if "Derivative[" in text:
         text = _PRIMED.sub(_with_primes, text)
-    if drawn := _DRAWN.search(text):
+    if drawn := _DRAWN.search(text) or _rows_of_a_drawing(text):
         reason = "this is a drawing of the formula over several lines, as SymPy's pprint makes it"
         raise LanguageError(text, drawn.start() + 1, reason, "write what print(…) or latex(…) of it shows")
     if _MATHML.search(text):
@@ -70,6 +85,19 @@ def unmarked(text: str) -> str:
         text = _BREAK.sub("\n", _SUP.sub(r"^(\1)", _SUB.sub(r"_\1", text)))
         text = _WIDTHLESS.sub("", html.unescape(_TAG.sub("", text))).strip()
     return _without_markdown(text)
+
+
+def _rows_of_a_drawing(text: str) -> re.Match[str] | None:
+    """Return two lines that never stand one under the other, as an exponent above its base; None if there are none."""
+    if "\\" in text or "<" in text or text.count("\n") > MAX_NESTING:
+        return None
+    lines = list(re.finditer(r"[^\n]+", text))
+    for above, below in pairwise(lines):
+        taken = [{i for i, c in enumerate(line.group()) if not c.isspace()} for line in (above, below)]
+        written = all(any(map(str.isalnum, line.group())) for line in (above, below))
+        if written and not taken[0] & taken[1]:
+            return below
+    return None
 
 
 def _blank(found: re.Match[str]) -> str:

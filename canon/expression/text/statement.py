@@ -48,7 +48,7 @@ class Statement:
 
 
 _OPEN, _CLOSE = "([{⟨", ")]}⟩"
-_EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡)(?![=>])")
+_EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡|≔)(?![=>])")
 _ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)and(?=\s)")
 MAX_SIDES = 100
 """Most sides in one field."""

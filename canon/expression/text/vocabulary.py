@@ -55,6 +55,7 @@ OTHER_NAMES = {"ln": "log", "Log": "log", "arcsin": "asin", "arccos": "acos", "a
                 "ArcTanh": "atanh", "ArcCot": "acot", "elliptic_kc": "elliptic_k", "elliptic_ec": "elliptic_e",
                 "EllipticK": "elliptic_k", "EllipticE": "elliptic_e", "ProductLog": "LambertW",
                 "signum": "sign"}  # fmt: skip
+WHICH_E = "is e Euler's number, or a name that is not declared, as that of an eccentricity?"
 WRITTEN_OUT = {
     **dict.fromkeys(
         ("Integral", "integrate", "Integrate", "quad", "int"),
