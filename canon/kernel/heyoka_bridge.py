@@ -29,7 +29,7 @@ __all__ = [
 
 _SAME_NAME = (
     "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
-    "atanh", "atan2",
+    "atanh", "atan2", "erf", "erfc",
 )  # fmt: skip
 
 _COMPACT_FROM = 300

@@ -20,6 +20,12 @@ def _one_plus_square(g: Arena, x: int, sign: int, power: Fraction | int) -> int:
     return raised(g, add(g, [g.number(1), scaled(g, Fraction(sign), raised(g, x, 2))]), power)
 
 
+def _bell(g: Arena, x: int, factor: int) -> int:
+    """Return factor exp(−x²)/√π."""
+    bell = function(g, "exp", negative(g, raised(g, x, 2)))
+    return mul(g, [g.number(factor), bell, raised(g, g.named("pi"), -_HALF)])
+
+
 _HALF = Fraction(1, 2)
 
 SLOPES: dict[str, Callable[[Arena, int, int], int]] = {
@@ -37,6 +43,8 @@ SLOPES: dict[str, Callable[[Arena, int, int], int]] = {
     "asinh": lambda g, x, _: _one_plus_square(g, x, 1, -_HALF),
     "acosh": lambda g, x, _: mul(g, [raised(g, add(g, [x, g.number(shift)]), -_HALF) for shift in (-1, 1)]),
     "atanh": lambda g, x, _: _one_plus_square(g, x, -1, -1),
+    "erf": lambda g, x, _: _bell(g, x, 2),
+    "erfc": lambda g, x, _: _bell(g, x, -2),
     "Abs": lambda g, x, _: function(g, "sign", x),
     "sign": lambda g, _x, _f: g.number(0),
 }
@@ -44,7 +52,7 @@ SLOPES: dict[str, Callable[[Arena, int, int], int]] = {
 
 AT_ZERO = {
     "sin": 0, "cos": 1, "tan": 0, "exp": 1, "asin": 0, "atan": 0, "sinh": 0, "cosh": 1, "tanh": 0,
-    "asinh": 0, "atanh": 0, "Abs": 0, "sign": 0,
+    "asinh": 0, "atanh": 0, "erf": 0, "erfc": 1, "Abs": 0, "sign": 0,
 }  # fmt: skip
 
 

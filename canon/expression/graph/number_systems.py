@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -21,8 +22,11 @@ _NUMPY_NAMES = {
 }  # fmt: skip
 _FUNCTION_NAMES = (
     "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
-    "atanh", "atan2", "Abs", "sign",
+    "atanh", "atan2", "Abs", "sign", "erf", "erfc",
 )  # fmt: skip
+_DEEPEST = 20_000
+"""Powers of 2 below this negative one are zero in every type of NumPy's."""
+
 _NAMED = {
     "pi": "3.14159265358979323846264338327950288419716939937510582",
     "E": "2.71828182845904523536028747135266249775724709369995957",
@@ -71,6 +75,26 @@ class Arithmetic:
         return np.errstate(all="ignore")
 
 
+def _each(dtype: type[np.floating[Any]], name: str) -> Callable[[Any], Any]:
+    """Return a function that NumPy does not have, in doubles by Python's own, else by mpmath, number by number."""
+    of_double = getattr(math, name)
+
+    def of_wide(x: Any) -> Any:
+        if not np.isfinite(x):
+            return dtype(of_double(float(x)))
+        from mpmath import MPContext, nstr
+
+        context = MPContext()
+        context.prec = 80
+        above, below = x.as_integer_ratio()
+        part, exponent = context.frexp(getattr(context, name)(context.mpf(above) / below))
+        return np.ldexp(dtype(nstr(part, 24)), max(exponent, -_DEEPEST))
+
+    one = of_double if dtype is np.float64 else of_wide
+    mapped = np.vectorize(one, otypes=[dtype])
+    return lambda x: mapped(x)[()]
+
+
 def _numpy(dtype: type[np.floating[Any]]) -> Arithmetic:
     largest = np.finfo(dtype).maxexp
 
@@ -95,7 +119,10 @@ def _numpy(dtype: type[np.floating[Any]]) -> Arithmetic:
     def named(name: str) -> Any:
         return dtype(_NAMED[name])
 
-    functions = {name: getattr(np, _NUMPY_NAMES.get(name, name)) for name in _FUNCTION_NAMES}
+    own = {"erf": _each(dtype, "erf"), "erfc": _each(dtype, "erfc")}
+    functions = own | {
+        name: getattr(np, _NUMPY_NAMES.get(name, name)) for name in _FUNCTION_NAMES if name not in own
+    }
     return Arithmetic(
         name=np.dtype(dtype).name,
         digits=np.finfo(dtype).precision,

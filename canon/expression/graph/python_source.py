@@ -35,7 +35,7 @@ _FUNCTIONS: dict[str, Any] = {
     name: getattr(math, name)
     for name in (
         "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh",
-        "atan2", "sqrt", "pi",
+        "atan2", "erf", "erfc", "sqrt", "pi",
     )
 } | {"E": math.e, "Abs": abs, "sign": lambda x: float((x > 0) - (x < 0))}  # fmt: skip
 

@@ -23,7 +23,7 @@ _FUNCTIONS: dict[type, str] = {
     getattr(sp, name): name
     for name in (
         "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh",
-        "asinh", "acosh", "atanh", "Abs", "sign", "atan2",
+        "asinh", "acosh", "atanh", "Abs", "sign", "atan2", "erf", "erfc",
     )
 }  # fmt: skip
 

@@ -26,7 +26,7 @@ _OPERATIONS: dict[str, Any] = {
     name: getattr(sp, name)
     for name in (
         "Add", "Mul", "Pow", "sin", "cos", "tan", "cot", "sec", "csc", "exp", "log", "asin", "acos", "atan", "acot",
-        "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "Abs", "sign",
+        "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "Abs", "sign", "erf", "erfc",
     )
 }  # fmt: skip
 

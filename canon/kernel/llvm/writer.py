@@ -26,7 +26,7 @@ _LONG = 128
 
 LIBRARY = (
     "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
-    "atanh", "atan2", "pow",
+    "atanh", "atan2", "erf", "erfc", "pow",
 )  # fmt: skip
 """Functions that come from the platform's libm."""
 

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 __all__ = ["denominators_of", "exponents_of", "sights"]
 
 _EXPONENTIAL = ("exp", "sinh", "cosh", "tanh")
+_OF_SQUARES = ("erf", "erfc")
+"""Functions that are constant but for exp(−x²)."""
+
 _MARGIN = 14.0
 """exp(−14) ≈ 10⁻⁶: a term 10⁶ times larger than all others is still seen in time."""
 
@@ -50,6 +53,8 @@ def exponents_of(graph: Graph, nodes: Sequence[int]) -> tuple[int, ...]:
         kind, operands, _ = graph.nodes[each]
         if kind in _EXPONENTIAL:
             found[operands[0]] = None
+        elif kind in _OF_SQUARES:
+            found[graph.power(operands[0], 2)] = None
         elif kind == "pow" and graph.symbols(operands[1]):
             found[graph.mul([operands[1], graph.function("log", operands[0])])] = None
     varying = sorted(node for node in found if graph.symbols(node))
