@@ -136,6 +136,145 @@ def test_the_table_on_the_page_is_true():
         assert sp.expand(parse_expression(last.text, scope) - parse_expression(meaning, scope)) == 0, form
 
 
+MEANINGS = {
+    "x⁻¹": "1/x",
+    "2 m g l": "2*m*g*l",
+    "2mgl": "2*m*g*l",
+    "m·g·l": "m*g*l",
+    "m×g": "m*g",
+    "m*g*l": "m*g*l",
+    "mgl(1 - cos θ)": "m*g*l*(1 - cos(theta))",
+    "½ m": "m/2",
+    "1/2 m": "m/2",
+    "m/2 (x + a)": "m*(x + a)/2",
+    "p²/(2m)": "p**2/(2*m)",
+    "p²/2m": "p**2/(2*m)",
+    "(g/l) sin θ": "g*sin(theta)/l",
+    "g/l sin θ": "g*sin(theta)/l",
+    "θ̇": "theta_dot",
+    "θ̈": "theta_ddot",
+    "θ'": "theta_dot",
+    "θ″": "theta_ddot",
+    "theta_dot": "theta_dot",
+    "thetadot": "theta_dot",
+    "dθ/dt": "theta_dot",
+    "(r dθ/dt)²": "r**2*theta_dot**2",
+    "(rdθ/dt)²": "r**2*theta_dot**2",
+    "d²θ/dt²": "theta_ddot",
+    "θ̇₁": "theta1_dot",
+    "θ1'": "theta1_dot",
+    "d/dt(m l² θ̇)": "m*l**2*theta_ddot",
+    "x'[t]": "x_dot",
+    "theta(t)": "theta",
+    "sin θ": "sin(theta)",
+    "sinθ": "sin(theta)",
+    "sin 2θ": "sin(2*theta)",
+    "2 sin^2 θ": "2*sin(theta)**2",
+    "sin²θ φ̇²": "sin(theta)**2*phi_dot**2",
+    "cos ωt": "cos(omega*t)",
+    "ln x": "log(x)",
+    "arctan(x)": "atan(x)",
+    "sin⁻¹(x)": "asin(x)",
+    "e^(-k t)": "exp(-k*t)",
+    "√(g/l)": "sqrt(g/l)",
+    "V'(x)": "Derivative(V(x), x)",
+    "dV/dx": "Derivative(V(x), x)",
+    "∂V/∂x": "Derivative(V(x), x)",
+    "Derivative(V(x), x)": "Derivative(V(x), x)",
+    "diff(V(x), x)": "Derivative(V(x), x)",
+    "θ": "theta",
+    "φ": "phi",
+    "ω": "omega",
+    "λ": "lam",
+    "θ₁": "theta1",
+    "θ_1": "theta1",
+    "θ1": "theta1",
+    "ℓ": "l",
+    "&#124;x − a&#124;": "Abs(x - a)",
+    "theta(t).diff(t, 2)": "theta_ddot",
+    "S.Half*m": "m/2",
+    "np.power(x, 2)": "x**2",
+    "Derivative(theta(t), (t, 2))": "theta_ddot",
+    "Subs(Derivative(V(u), u), u, x)": "Derivative(V(x), x)",
+    "Rational(1, 2)*m": "m/2",
+    "np.sin(x)": "sin(x)",
+    "Mul(Integer(2), Symbol('m'))": "2*m",
+    "Sqrt[g/l]": "sqrt(g/l)",
+    "D[x[t], {t, 2}]": "x_ddot",
+    "Derivative[1][x][t]": "x_dot",
+    "Subscript[m, 1]": "m_1",
+    "ArcTan[x, y]": "atan2(y, x)",
+    "'diff(x,t,2)": "x_ddot",
+    "%pi": "pi",
+    "%e^(-t)": "exp(-t)",
+    "<p>m&nbsp;x<sup>2</sup></p>": "m*x**2",
+    "**2*m**": "2*m",
+    "2*m": "2*m",
+    r"\int_0^{2\pi} \sin^2\theta\,d\theta": "pi",
+    "∫_0^a x^2 dx": "a**3/3",
+    "Integral(x**2, (x, 0, a))": "a**3/3",
+    "Integrate[x^2, {x, 0, a}]": "a**3/3",
+    "integrate(x^2, x, 0, a)": "a**3/3",
+    r"\sum_{i=1}^{2} m_i x_i^2": "m_1*x_1**2 + m_2*x_2**2",
+    "Sum(k**2, (k, 1, 3))": "14",
+    "I": "I",
+    "i": "I",
+    r"\mathrm{i}": "I",
+    "%i": "I",
+    "x^2": "x**2",
+    "x**2": "x**2",
+    "x²": "x**2",
+    r"\[Theta]''[t] == -(g/l) Sin[\[Theta][t]]": "theta_ddot + g*sin(theta)/l",
+    "Eq(a, b)": "a - b",
+    "V'(r - a)": "",
+    "V''(2x)": "",
+}
+"""What the page's table of plain text shows, and what it is; empty where the meaning has no plain spelling."""
+OTHER_ROWS = ("left sides", "chains", "several")
+"""Rows about whole answers, which are tested with questions."""
+
+
+def plain_table():
+    """Return the pieces of the second table of the page, but those with dots and those about whole answers."""
+    page = (Path(__file__).parents[2] / "docs" / "sheets.md").read_text("utf-8")
+    rows = page.split("| what | how it may be typed |\n|---|---|\n")[1].split("\n\n")[0].splitlines()
+    said = [row.strip("| ").split(" | ", 1) for row in rows]
+    skipped = (
+        "[ ]",
+        "{ }",
+        "( )",
+        "theta",
+        "phi",
+        "omega",
+        "lam",
+        "lambda",
+        "theta1",
+        "l",
+        "<math>…</math>",
+        "(x' = p/m)",
+    )
+    return [
+        piece
+        for what, typed in said
+        if what not in OTHER_ROWS
+        for piece in re.findall(r"(?<!`)`([^`]+)`(?!`)", typed)
+        if "…" not in piece
+        and (piece not in skipped or what not in ("names", "brackets", "HTML, MathML, Markdown"))
+    ]
+
+
+def test_the_table_of_plain_text_is_true():
+    coordinates_ = coordinates("x y theta phi theta1 r x_1 x_2")
+    names = {s.name: s for s in (*coordinates_, *parameters("m k g l lam a b omega m_1 m_2"))}
+    scope = Scope({**names, "p": Momentum("p", real=True)}, {"V": ("x",)})
+    pieces = plain_table()
+    assert len(pieces) > 80
+    for piece in pieces:
+        found = parse_equation(piece.replace("&#124;", "|"), scope)
+        if MEANINGS[piece]:
+            assert sp.expand(found - parse_expression(MEANINGS[piece], scope)) == 0, piece
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_twins_are_not_taken_for_the_forms(name):
     taken = [entry["twin"] for entry in corpus(name)["forms"] if says(entry["twin"], entry)]

@@ -23,23 +23,30 @@ __all__ = [
 MOST_ENTRIES = 100
 """Most components in one field."""
 _LATEX_MATRIX = re.compile(
-    r"[\s$]*(?:\\left\s*[(\[])?\s*\\begin\{((?:[pbB]|small)?matrix)\}(?P<inside>.*)\\end\{\1\}"
+    r"[\s$]*(?:\\left\s*[(\[])?\s*\\begin\{((?:[pbB]|small)?matrix|array)\}"
+    r"(?:\{[clr| ]{1,20}\})?(?P<inside>.*)\\end\{\1\}"
     r"\s*(?:\\right\s*[)\]])?[\s$.,]*",
     re.DOTALL,
 )
 _PLAIN_MATRIX = re.compile(
-    r"\s*(?:(?:\w{1,9}\.)?(?:Immutable|Mutable)?(?:Dense)?(?:Matrix|Vector)\(\s*\[(?P<inside>.*)\]|"
+    r"\s*(?:(?:\w{1,9}\.)?(?:Immutable|Mutable)?(?:Dense)?(?:Matrix|Vector|array)\(\s*\[(?P<inside>.*)\]|"
     r"matrix\((?P<rows>\s*\[.*\]))\s*\)[\s.;]*",
     re.DOTALL,
 )
 _BEFORE_MATRIX = re.compile(
-    r"[^=<>]{1,400}=(?=[\s$&]*(?:\\left\s*[(\[]\s*)?(?:\\begin\{(?:[pbB]|small)?matrix\}|(?:\w{1,9}\.)?"
-    r"(?:Immutable|Mutable)?(?:Dense)?(?:Matrix|Vector|matrix)\())"
+    r"[^=<>]{1,400}=(?=[\s$&]*(?:\\left\s*[(\[]\s*)?(?:\\begin\{(?:(?:[pbB]|small)?matrix|array)\}|(?:\w{1,9}\.)?"
+    r"(?:Immutable|Mutable)?(?:Dense)?(?:Matrix|Vector|matrix|array)\())"
 )
 _NAME_OF_MATRIX = re.compile(
     r"[\s$]*(?:\\(?:dot|ddot|vec|mathbf|boldsymbol|bm|hat|mathrm|mathcal|underline)\s*)?"
-    r"\{?\s*\\?[^\W\d]\w{0,12}\s*\}?(?:_\{?\w{1,9}\}?)?'{0,2}\s*(?:\([\w, \\]{0,40}\))?\s*"
+    r"\{?\s*\\?[^\W\d]\w{0,12}\s*\}?(?:_\{?\w{1,9}\}?)?'{0,2}\s*(?:\([\w, \\]{0,40}\))?\s*|[\s$]*\[\s*X\s*,\s*Y\s*\]\s*"
 )
+_NAME_OF_VECTOR = re.compile(r"[\s$]*\\(?:vec|mathbf|boldsymbol)\s*\{?\s*\\?[A-Za-z]{1,12}\s*\}?\s*=")
+_DRESS = re.compile(
+    r"^\s*MatrixForm(?=\[.*\]\s*$)|//\s*MatrixForm\s*$|\\left(?![A-Za-z])|\\right(?![A-Za-z])"
+    r"|(?<=[)\]}])\s*\^\s*\{?\s*(?:T|\\top|\\intercal|\\mathsf\s*\{?T\}?)\s*\}?(?=[\s$.]*$)"
+)
+"""What is around a list of components and says nothing of them."""
 
 
 def equation_between(left: Side, right: Side) -> str:
@@ -114,8 +121,29 @@ def _of_plain_matrix(text: str, begin: int, end: int) -> list[str]:
 
 
 def components_of(text: str) -> list[str]:
-    """Return the components of ``(a, b)`` or ``[a, b]``, each at its column; nothing where it is no such bracket."""
-    stripped = text.strip().rstrip(".")
+    r"""Return the components of ``(a, b)`` or ``[[a, b]]``, each at its column; nothing where it is no such bracket.
+
+    Examples
+    --------
+    >>> components_of("[[x, y]]"), components_of("x + y")
+    (['  x', '     y'], [])
+    >>> components_of(r"$\vec v = (x, y)^T$")
+    ['          $x', '            $ y']
+    """
+    named = _NAME_OF_VECTOR.match(text)
+    bare = _DRESS.sub(_blanks, text if named is None else " " * named.end() + text[named.end() :])
+    bare = bare.replace("\\langle", "⟨      ").replace("\\rangle", "⟩      ")
+    latex = "$" in text or "\\" in text
+    return _listed(bare.replace("$", " "), "$" if latex else " ")
+
+
+def _blanks(found: re.Match[str]) -> str:
+    return " " * len(found.group())
+
+
+def _listed(text: str, mark: str) -> list[str]:
+    """Return what stands between the commas of one bracket, the mark in the place of each comma."""
+    stripped = text.strip().rstrip(". ")
     pairs = {"(": ")", "[": "]", "{": "}", "⟨": "⟩"}
     if len(stripped) < 3 or pairs.get(stripped[0]) != stripped[-1]:
         return []
@@ -128,9 +156,11 @@ def components_of(text: str) -> list[str]:
         if depth == 1 and character == ",":
             cuts.append(begin + i)
     cuts.append(begin + len(stripped) - 1)
-    if not 3 <= len(cuts) <= MOST_ENTRIES + 1:
+    if len(cuts) == 2:
+        return _listed(" " * (begin + 1) + text[begin + 1 : cuts[-1]], mark)
+    if len(cuts) > MOST_ENTRIES + 1:
         return []
-    return [" " * (a + 1) + text[a + 1 : b] for a, b in pairwise(cuts)]
+    return [" " * a + mark + text[a + 1 : b] for a, b in pairwise(cuts)]
 
 
 def equations_listed(text: str) -> list[str]:

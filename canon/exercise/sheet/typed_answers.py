@@ -17,6 +17,7 @@ from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.left_sides import OTHER_SPELLINGS, Label, Quantity, is_definition, label_of
 from canon.exercise.sheet.typed_values import both_signs, typed_values
+from canon.exercise.sheet.vector_equations import vector_equations
 from canon.expression.parse import LanguageError, parse_expression, statements_of
 from canon.expression.text.declared_names import key_of
 
@@ -351,7 +352,7 @@ class _Plain:
         """Return a list of equations, chains taken apart."""
         texts: list[Any] = value if isinstance(value, list) else [value]
         if len(texts) == 1 and isinstance(texts[0], str):
-            texts = field_texts.of_matrix(texts[0]) or field_texts.equations_listed(texts[0]) or texts
+            texts = vector_equations(texts[0]) or field_texts.equations_listed(texts[0]) or texts
         found: list[Any] = []
         for i, text in enumerate(texts):
             where = f"{place}[{i}]"
@@ -382,11 +383,9 @@ class _Plain:
         for side in sides:
             if side not in rest:
                 self.passed(place, side)
-        return (
-            [rest[0].text]
-            if len(rest) == 1
-            else [field_texts.equation_between(a, b) for a, b in pairwise(rest)]
-        )
+        if len(rest) == 1:
+            return [rest[0].text]
+        return [field_texts.equation_between(a, b) for a, b in pairwise(rest)]
 
     def statements(self, place: str, text: str) -> tuple[Statement, ...]:
         """Return the statements of a text."""
