@@ -24,6 +24,7 @@ from canon.flow.method.number_formats import FIXED
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.observables_along import energy_rounding, jumped
 from canon.flow.run.passed_terms import may_have_passed
+from canon.flow.run.running_error import rounding_of_rates
 from canon.flow.run.sampling_plan import Plan
 from canon.kernel.llvm.number_types import EXTENDED
 
@@ -177,7 +178,9 @@ def error_estimate(
             continue
         found, words = made, better.words
         away, (apart, rounded) = _compared(own, made.y[rows][:, :known], made.carried[rows][:, :known])
-        its_own = np.where(np.isnan(rounded), scale * better.unit, rounded)
+        its_own = np.where(np.isnan(rounded), scale * better.unit, rounded) * _cancelled(
+            task.system, made, scale
+        )
         at_rest = (own == 0).all(axis=1) & (away[:, -1] <= np.spacing(0.0))
         told = ((its_own[:, -1] <= away[:, -1]) | at_rest).all()
         away = away + its_own
@@ -219,6 +222,20 @@ def _contradicted_by_energy(
     reach = (slopes * scale).sum(axis=0)
     unseen = energy_rounding(system, samples, precision)
     return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach + unseen)
+
+
+def _cancelled(system: HamiltonEquations, samples: Samples, scale: Array) -> Array:
+    """Return how many times more a step's rates are rounded than its states, shape (orbits,); 1 where they are not.
+
+    What rounding does to states is known from a neighbour that starts so far beside the motion. Rates whose terms
+    cancel are rounded by more, in parts of the motion's size.
+    """
+    orbits = scale.shape[2]
+    rounding = rounding_of_rates(system, samples.t, samples.y[:, :, :orbits])
+    step = abs(samples.t[-1] - samples.t[0]) * samples.y.shape[2] / max(1, samples.steps)
+    with np.errstate(all="ignore"):
+        more = (rounding * step / scale).max(axis=(0, 1))
+    return np.where(np.isfinite(more), np.maximum(more, 1.0), 1.0)
 
 
 def _rates(system: HamiltonEquations, t: Array, y: Array) -> npt.NDArray[Any]:
