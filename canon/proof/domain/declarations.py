@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from sympy.core.function import AppliedUndef
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from sympy import Basic, Rational
 
@@ -47,6 +47,34 @@ _OF_EVERY_RATIONAL: dict[str, bool] = {
 }
 
 
+_SEEN_AT_ONCE: dict[str, Callable[[Rational], bool]] = {
+    "positive": lambda number: number.p > 0,
+    "negative": lambda number: number.p < 0,
+    "zero": lambda number: number.p == 0,
+    "nonzero": lambda number: number.p != 0,
+    "nonnegative": lambda number: number.p >= 0,
+    "nonpositive": lambda number: number.p <= 0,
+    "integer": lambda number: number.q == 1,
+    "noninteger": lambda number: number.q != 1,
+    "even": lambda number: number.q == 1 and number.p % 2 == 0,
+    "odd": lambda number: number.q == 1 and number.p % 2 == 1,
+}
+"""Facts that a fraction p/q in lowest terms, q > 0, shows; SymPy would deduce all its facts to tell one of them."""
+
+
 def allows(facts: Mapping[str, bool], number: Rational) -> bool:
-    """Tell whether a number is all that a symbol was declared to be, by SymPy's own account of the number."""
-    return all(getattr(number, f"is_{fact}") is so for fact, so in facts.items())
+    """Tell whether a number is all that a symbol was declared to be; what is not seen at once, SymPy says.
+
+    Examples
+    --------
+    >>> from sympy import Rational, Symbol
+    >>> facts = said_of(Symbol("m", positive=True))
+    >>> allows(facts, Rational(1, 3)), allows(facts, Rational(-1, 3))
+    (True, False)
+    """
+    return all(_is(number, fact) is so for fact, so in facts.items())
+
+
+def _is(number: Rational, fact: str) -> bool | None:
+    seen = _SEEN_AT_ONCE.get(fact)
+    return getattr(number, f"is_{fact}") if seen is None else bool(seen(number))

@@ -81,11 +81,16 @@ class Screen:
 
     def passes(self, expression: Expr) -> bool:
         """Whether an expression could be right as far as its values tell."""
-        found = self.values(expression)
-        if found is None or self.right is None:
+        if self.right is None:
             return False
-        with precision(PRECISION):
-            return all((a - b).contains(0) for a, b in zip(found, self.right, strict=True))
+        try:
+            with precision(PRECISION):  # the next point is looked at only where this one leaves it open
+                return all(
+                    (value(expression, {}, memo) - b).contains(0)
+                    for memo, b in zip(self.points, self.right, strict=True)
+                )
+        except (Undefined, NotDecided, Unmodelled):
+            return False
 
     def vanish(self, expression: Expr) -> bool:
         """Whether an expression vanishes as far as its values tell."""

@@ -182,17 +182,22 @@ def _one_place(
                 yield whole, change
 
 
+def _each_term(node: Expr) -> Iterator[tuple[Expr, tuple[Expr, ...]]]:
+    """Yield each term of a sum, and the others: put together anew, these cost less than what is subtracted again."""
+    terms = arguments(node) if node.is_Add else ()
+    for i, term in enumerate(terms):
+        yield term, (*terms[:i], *terms[i + 1 :])
+
+
 def _signs(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    if node.is_Add:
-        for term in arguments(node):
-            yield node - 2 * term, _of(Mistake.TERM_SIGN, term)
+    for term, others in _each_term(node):
+        yield sp.Add(*others, -term), _of(Mistake.TERM_SIGN, term)
 
 
 def _factors(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    if node.is_Add:
-        for term in arguments(node):
-            for factor in _FACTORS:
-                yield node + (factor - 1) * term, _of(Mistake.TERM_FACTOR, term, factor)
+    for term, others in _each_term(node):
+        for factor in _FACTORS:
+            yield sp.Add(*others, factor * term), _of(Mistake.TERM_FACTOR, term, factor)
 
 
 def _together(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -304,9 +309,8 @@ def _divided_by_a_bracket(node: Expr, term: Expr, other: Expr) -> Iterator[tuple
 
 
 def _superfluous(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    if node.is_Add:
-        for term in arguments(node):
-            yield node - term, _of(Mistake.TERM_SUPERFLUOUS, term)
+    for term, others in _each_term(node):
+        yield sp.Add(*others), _of(Mistake.TERM_SUPERFLUOUS, term)
 
 
 def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
@@ -326,13 +330,12 @@ def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:
 
 
 def _multiplied(node: Expr, symbols: Sequence[Expr]) -> Iterator[tuple[Expr, Change]]:
-    if node.is_Add:
-        for term in arguments(node):
-            for symbol in symbols:
-                yield node - term + term * symbol, _of(Mistake.FACTOR_MISSING, term, symbol)
-                yield node - term + term / symbol, _of(Mistake.DIVISOR_MISSING, term, symbol)
-                if symbol.is_Symbol:
-                    yield node - term + term * symbol**2, _of(Mistake.FACTOR_MISSING, term, symbol**2)
+    for term, others in _each_term(node):
+        for symbol in symbols:
+            yield sp.Add(*others, term * symbol), _of(Mistake.FACTOR_MISSING, term, symbol)
+            yield sp.Add(*others, term / symbol), _of(Mistake.DIVISOR_MISSING, term, symbol)
+            if symbol.is_Symbol:
+                yield sp.Add(*others, term * symbol**2), _of(Mistake.FACTOR_MISSING, term, symbol**2)
 
 
 def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
