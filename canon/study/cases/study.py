@@ -25,7 +25,8 @@ from canon.study.energy_drift.drift import FEWEST
 from canon.study.energy_drift.sample_times import FEWEST_USUAL, usual_samples
 from canon.study.errors import StudyError
 from canon.study.kept.keep_choice import keep_from
-from canon.study.motion.hamiltonian_text import Formula, formula_from, formula_of
+from canon.study.motion.hamiltonian_text import Formula, formula_of
+from canon.study.motion.system_table import system_from
 from canon.study.motion.system_text import SystemText, system_text
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ def read_study(path: str | Path) -> Study:
     """Return the study that a TOML file describes.
 
     Every ``[[study]]`` table is a product of its lists; a study may have several. A ``[system.NAME]`` table
-    is a Hamiltonian of one's own, as :func:`canon.study.motion.hamiltonian_text.formula_from` reads it.
+    is a Hamiltonian or Lagrangian of one's own, as :func:`canon.study.motion.system_table.system_from` reads it.
 
     Raises
     ------
@@ -141,7 +142,7 @@ def read_study(path: str | Path) -> Study:
             f"{file}: a study file holds [[study]] tables, [system.NAME] tables and nothing else"
         )
     try:
-        own = {name: formula_from(name, table) for name, table in systems.items()}
+        own = {name: system_from(name, table) for name, table in systems.items()}
     except StudyError as error:
         raise StudyError(f"{file}, {error}") from error
     found: dict[Case, Case] = {}

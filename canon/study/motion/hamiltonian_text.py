@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
-__all__ = ["Formula", "check_declared", "formula_from", "formula_of", "hamiltonian_of", "require_labels"]
+__all__ = [
+    "Formula", "check_declared", "entries_of", "formula_from", "formula_of", "hamiltonian_of", "names_of", "number_of",
+    "require_labels",
+]  # fmt: skip
 
 MOST_NAMES = 500
 """Names of coordinates, momenta and parameters that a system of a study file may have."""
@@ -141,21 +144,21 @@ def formula_from(name: str, table: Mapping[str, Any]) -> Formula:
         if key not in table:
             raise StudyError(f"system {name}: {key!r} is missing")
     try:
-        q = _names(table["q"])
+        q = names_of(table["q"])
         period = table.get("period")
         found = Formula(
             name=name,
             H=_text(table["H"]),
             q=q,
-            p=_names(table["p"]) if "p" in table else tuple(f"p_{x}" for x in q),
+            p=names_of(table["p"]) if "p" in table else tuple(f"p_{x}" for x in q),
             parameters=tuple(
-                (key, _number(value))
-                for key, value in _table(table.get("parameters", {}), "parameters").items()
+                (key, number_of(value))
+                for key, value in entries_of(table.get("parameters", {}), "parameters").items()
             ),
             starts=tuple(
-                (key, _numbers(state)) for key, state in _table(table.get("starts", {}), "starts").items()
+                (key, _numbers(state)) for key, state in entries_of(table.get("starts", {}), "starts").items()
             ),
-            period=None if period is None else _number(period),
+            period=None if period is None else number_of(period),
         )
     except (TypeError, OverflowError) as error:
         raise StudyError(f"system {name[:LONGEST_NAME]}: {str(error)[:500]}") from error
@@ -277,7 +280,8 @@ def _by_name(f: Any) -> Any:
     return f.xreplace({symbol: sp.Symbol(str(symbol), real=True) for symbol in f.free_symbols})
 
 
-def _names(written: Any) -> tuple[str, ...]:
+def names_of(written: Any) -> tuple[str, ...]:
+    """Return names from a list, or from text with spaces or commas between them."""
     names = written.replace(",", " ").split() if isinstance(written, str) else list(written)
     if not all(isinstance(name, str) and name.isidentifier() for name in names):
         raise TypeError(f"names are words, such as theta or x_1, not {reprlib.repr(written)}")
@@ -290,13 +294,15 @@ def _text(written: Any) -> str:
     return written
 
 
-def _number(written: Any) -> float:
+def number_of(written: Any) -> float:
+    """Return what is written as a number."""
     if isinstance(written, bool) or not isinstance(written, int | float):
         raise TypeError(f"{reprlib.repr(written)} is no number")
     return float(written)
 
 
-def _table(written: Any, key: str) -> Mapping[str, Any]:
+def entries_of(written: Any, key: str) -> Mapping[str, Any]:
+    """Return what is written as a table of names and values."""
     if not isinstance(written, Mapping):
         raise TypeError(f"{key} is a table of names and values, not {reprlib.repr(written)}")
     return written
@@ -305,7 +311,7 @@ def _table(written: Any, key: str) -> Mapping[str, Any]:
 def _numbers(written: Any) -> tuple[float, ...]:
     if not isinstance(written, list | tuple):
         raise TypeError(f"a start is a list of numbers (q, p), not {reprlib.repr(written)}")
-    return tuple(map(_number, written))
+    return tuple(map(number_of, written))
 
 
 def require_labels(*names: str) -> None:
