@@ -73,9 +73,9 @@ def set_chunks_aside(store: Store) -> tuple[DamagedFile, ...]:
     tuple of DamagedFile
         What was wrong, and where.
     """
-    folder = ChunkFolder(store.path)
+    folder, damaged = ChunkFolder(store.path), damaged_chunks(store)  # reading all of them may take long
     with store.while_nobody_writes():
-        damaged, orphaned = damaged_chunks(store), orphaned_chunks(store)
+        orphaned = orphaned_chunks(store)
         for each in (*damaged, *orphaned):
             if each.file.exists():
                 folder.set_aside(each.file)
