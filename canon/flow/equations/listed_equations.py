@@ -61,7 +61,8 @@ def heyoka_field(pairs: Sequence[tuple[Any, Any]]) -> VectorField:
 
     def taken(expression: Any) -> sp.Expr:
         try:
-            found: sp.Expr = hy.to_sympy(hy.expression(expression))
+            own = expression if isinstance(expression, hy.expression) else hy.expression(expression)
+            found: sp.Expr = hy.to_sympy(own)
         except TypeError as unknown:
             raise ValueError(f"{unknown}: write that right-hand side with SymPy's functions") from unknown
         exact = {x: sp.Rational(Fraction(float(x))) for x in found.atoms(sp.Float)}
