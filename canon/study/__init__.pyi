@@ -21,6 +21,8 @@ from .energy_drift.drift_study import DriftStudy as DriftStudy
 from .energy_drift.drift_study import drift_study as drift_study
 from .energy_drift.integral_drift import IntegralDrift as IntegralDrift
 from .energy_drift.integral_drift import integral_drift as integral_drift
+from .energy_drift.orbit_frequencies import OrbitFrequencies as OrbitFrequencies
+from .energy_drift.orbit_frequencies import orbit_frequencies as orbit_frequencies
 from .errors import StudyError as StudyError
 from .kept.chunk_file import DamagedChunk as DamagedChunk
 from .kept.kept_arrays import Kept as Kept

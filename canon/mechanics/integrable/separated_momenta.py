@@ -249,6 +249,5 @@ def _solved(equation: Expr, q: Symbol, p: Symbol) -> SeparatedMomentum | None:
     if a == 0:
         return None if b == 0 else SeparatedMomentum(q, p, -c / b, None)
     shift = -b / (2 * a)
-    return SeparatedMomentum(
-        q, p, shift, sp.expand(shift**2) - sp.expand(c / a) if b != 0 else -sp.expand(c / a)
-    )
+    over_a = sp.Add(*(term / a for term in cast("Sequence[Expr]", sp.Add.make_args(c))))
+    return SeparatedMomentum(q, p, shift, shift**2 - over_a)
