@@ -69,6 +69,8 @@ from .integrable.action_variables import angles as angles
 from .integrable.action_variables import frequencies as frequencies
 from .integrable.ball_function import NotHolomorphicError as NotHolomorphicError
 from .integrable.classical_coordinates import Chart as Chart
+from .integrable.closed_actions import ClosedAction as ClosedAction
+from .integrable.closed_actions import closed_actions as closed_actions
 from .integrable.cycles import Cycle as Cycle
 from .integrable.cycles import CycleKind as CycleKind
 from .integrable.hamilton_jacobi import CompleteIntegral as CompleteIntegral

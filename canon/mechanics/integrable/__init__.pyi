@@ -4,6 +4,8 @@ from .action_variables import angles as angles
 from .action_variables import frequencies as frequencies
 from .ball_function import NotHolomorphicError as NotHolomorphicError
 from .classical_coordinates import Chart as Chart
+from .closed_actions import ClosedAction as ClosedAction
+from .closed_actions import closed_actions as closed_actions
 from .cycles import Cycle as Cycle
 from .cycles import CycleKind as CycleKind
 from .hamilton_jacobi import CompleteIntegral as CompleteIntegral

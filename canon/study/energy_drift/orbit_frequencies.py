@@ -84,7 +84,9 @@ def orbit_frequencies(torus: ActionVariables, periods: float = 200.0) -> OrbitFr
     offsets = np.linspace(0.0, FIRST / 4, CANDIDATES) * shortest
     times = np.concatenate([centre + offsets for centre in centres])
     start = np.array([float(torus.values[z]) for z in variables])
-    known = {s: float(v) for s, v in torus.values.items() if s in H.H.free_symbols and s not in variables}
+    known: dict[Symbol | str, float] = {
+        s: float(v) for s, v in torus.values.items() if s in H.H.free_symbols and s not in variables
+    }
     run: Any = propagate(H, (0.0, float(times[-1])), start, method=Taylor(), times=times, parameters=known)
     states: npt.NDArray[np.float64] = run.y
     chosen = [
@@ -92,7 +94,7 @@ def orbit_frequencies(torus: ActionVariables, periods: float = 200.0) -> OrbitFr
         for i in range(len(centres))
     ]
     reduced = [_angles(torus, variables, states[:, k]) for k in chosen]
-    found = np.zeros(len(expected))
+    found, span = np.zeros(len(expected)), 0.0
     for k, theta in zip(chosen[1:], reduced[1:], strict=True):
         span = float(times[k] - times[chosen[0]])
         gone = theta - reduced[0]

@@ -1,0 +1,224 @@
+"""Actions in closed form: integrals that are known, recognised term by term and certified against quadrature.
+
+The loop integrals of roots of A + B f(q) + C g(q) that are sums of residues (A. Sommerfeld, Atombau und Spektrallinien,
+supplement 6; M. Born, Vorlesungen über Atommechanik, appendix), and the pendulum's complete elliptic integrals. None is
+returned on recognition alone: see :func:`closed_actions`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
+from flint import arb
+from sympy import Expr, Rational, Symbol, sqrt
+
+from canon.expression.symbols.user_input import given_kind
+from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.integrable.action_variables import ActionVariables, action_variables
+from canon.mechanics.integrable.cycles import CycleKind, ball_of
+from canon.mechanics.integrable.turning_points import NoCycleError
+from canon.proof.domain.balls import precision
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from canon.mechanics.integrable.cycles import Cycle
+    from canon.mechanics.integrable.separated_momenta import SeparatedMomentum
+
+__all__ = ["ClosedAction", "closed_actions"]
+
+NEIGHBOURS = (sp.S.Zero, Rational(1, 64), Rational(-1, 64), Rational(1, 1024), Rational(-1, 1024))
+"""By how much momenta are enlarged for the tori that a formula is compared on."""
+TORI = 3
+GUARD_BITS = 64
+
+
+@dataclass(frozen=True)
+class ClosedAction:
+    """An action as a function of the constants.
+
+    Parameters
+    ----------
+    J
+        The formula, in the constants α and the parameters.
+    name
+        What the integral is known as.
+    tori
+        On how many tori the formula and its derivatives by all constants lie in the certified balls.
+    digits
+        The digits of those balls.
+    """
+
+    J: Expr
+    name: str
+    tori: int
+    digits: int
+
+
+def closed_actions(torus: ActionVariables) -> tuple[ClosedAction | None, ...]:
+    """Return the actions in closed form where the integral is a known one; None for the others.
+
+    A formula is returned where p² has exactly the terms of the known integral, and where on three tori, that of the
+    motion and two with other momenta, J and all ∂J/∂α agree with the certified balls of the quadrature. It holds for
+    motions of the same kind, such as libration.
+
+    Parameters
+    ----------
+    torus
+        What :func:`action_variables` returned.
+
+    Examples
+    --------
+    >>> from canon.mechanics import Hamiltonian, hamilton_jacobi
+    >>> r, m, k = sp.symbols("r m k", positive=True)
+    >>> phi, p_r, p_phi = sp.symbols("phi p_r p_phi", real=True)
+    >>> kepler = hamilton_jacobi(Hamiltonian(p_r**2/(2*m) + p_phi**2/(2*m*r**2) - k/r, [r, phi], [p_r, p_phi]))
+    >>> torus = action_variables(kepler, {r: 1, phi: 0, p_r: sp.Rational(1, 4), p_phi: 1}, {m: 1, k: 1})
+    >>> [action.J for action in closed_actions(torus)]
+    [sqrt(2)*k*sqrt(m)/(2*sqrt(-E)) - Abs(alpha_phi), alpha_phi]
+    """
+    given_kind(torus, ActionVariables, "what closed_actions() takes", "action_variables() returns it")
+    recognised = [_recognised(m, c) for m, c in zip(torus.integral.momenta, torus.cycles, strict=True)]
+    if not any(found is not None for found in recognised):
+        return tuple(None for _ in recognised)
+    tori = _neighbours(torus)
+    if len(tori) < TORI:
+        return tuple(None for _ in recognised)
+    return tuple(
+        ClosedAction(found[0], found[1], len(tori), torus.digits)
+        if found is not None and all(_agrees(found[0], i, other) for other in tori)
+        else None
+        for i, found in enumerate(recognised)
+    )
+
+
+def _neighbours(torus: ActionVariables) -> list[ActionVariables]:
+    """Return three tori of the same kind: that of the motion, and two with other momenta."""
+    H = torus.integral.H
+    starts = {*H.q, *H.p}
+    parameters = {s: v for s, v in torus.values.items() if s not in starts | {*torus.integral.constants}}
+    found: list[ActionVariables] = []
+    for change in NEIGHBOURS:
+        start = {z: torus.values[z] * (1 + change if z in H.p else 1) for z in starts}
+        if change != 0 and start == {z: torus.values[z] for z in starts}:
+            start = {z: torus.values[z] * (1 + change) for z in starts}
+        periods = {c.q: c.period for c in torus.cycles if c.period is not None}
+        try:
+            other = action_variables(torus.integral, start, parameters, torus.digits, periods)
+        except NoCycleError:  # a neighbour across a separatrix: the next one is nearer
+            continue
+        if [c.kind for c in other.cycles] == [c.kind for c in torus.cycles]:
+            found.append(other)
+        if len(found) == TORI:
+            break
+    return found
+
+
+def _agrees(J: Expr, i: int, torus: ActionVariables) -> bool:
+    """Whether a formula and its derivatives by the constants lie in the balls of one torus."""
+    due = [(J, torus.J[i])]
+    due += [(J.diff(c), torus.slopes[i][j]) for j, c in enumerate(torus.integral.constants)]
+    with precision(int(torus.digits * 3.33) + GUARD_BITS):
+        return all(_value(f, torus.values).overlaps(ball) for f, ball in due)
+
+
+def _value(f: Expr, values: Mapping[Symbol, Expr]) -> arb:
+    ball = ball_of(substitute(f, values))
+    return ball.real if ball.imag.contains(0) else arb("nan")
+
+
+def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] | None:
+    """Return a known integral whose terms are those of p², and its name."""
+    q, square = momentum.q, momentum.square
+    if cycle.kind is CycleKind.IGNORABLE:
+        ratio = cast("Expr", cycle.period) / (2 * sp.pi)
+        return ratio * momentum.shift, "a constant momentum"
+    if square is None or momentum.shift != 0:
+        return None
+    terms = _terms(square, q)
+    A = terms.pop(sp.S.One, sp.S.Zero)
+    if cycle.kind is CycleKind.ROTATION:
+        return _pendulum(A, terms, q, cycle)
+    for known in (_powers, _trigonometric, _exponentials, _isochrone):
+        found = known(A, terms, q)
+        if found is not None:
+            return found
+    return _pendulum(A, terms, q, cycle)
+
+
+def _terms(f: Expr, q: Symbol) -> dict[Expr, Expr]:
+    """Return the coefficient of each function of q in f."""
+    terms: dict[Expr, Expr] = {}
+    for term in sp.Add.make_args(sp.expand(f)):
+        coefficient, function = term.as_independent(q, as_Add=False)
+        terms[function] = terms.get(function, sp.S.Zero) + coefficient
+    return terms
+
+
+def _powers(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] | None:
+    names = set(terms)
+    if q**2 in names and names <= {q, q**2}:
+        B, C = terms.get(q, sp.S.Zero), terms[q**2]
+        return (A - B**2 / (4 * C)) / (2 * sqrt(-C)), "oscillator"
+    if names == {1 / q, q**-2}:
+        return terms[1 / q] / (2 * sqrt(-A)) - sqrt(-terms[q**-2]), "Kepler"
+    if names == {q**2, q**-2}:
+        return A / (4 * sqrt(-terms[q**2])) - sqrt(-terms[q**-2]) / 2, "radial oscillator"
+    return None
+
+
+def _trigonometric(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] | None:
+    if len(terms) != 1:
+        return None
+    ((f, C),) = terms.items()
+    base, exponent = f.as_base_exp()
+    if exponent != -2 or not isinstance(base, sp.sin | sp.cos | sp.cosh):
+        return None
+    a = cast("Expr", base.args[0]).diff(q)
+    if a.has(q):
+        return None
+    if isinstance(base, sp.cosh):
+        return (sqrt(C) - sqrt(-A)) / sp.Abs(a), "Pöschl–Teller"
+    return (sqrt(A) - sqrt(-C)) / sp.Abs(a), "polar angle"
+
+
+def _exponentials(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] | None:
+    exponents = {cast("Expr", f.args[0]): c for f, c in terms.items() if isinstance(f, sp.exp)}
+    rates = {u.diff(q): c for u, c in exponents.items()}
+    if len(terms) != 2 or len(rates) != 2:
+        return None
+    for rate, B in rates.items():
+        if 2 * rate in rates and not rate.has(q):
+            if {*exponents} != {rate * q, 2 * rate * q}:
+                return None
+            return (B / (2 * sqrt(-rates[2 * rate])) - sqrt(-A)) / sp.Abs(rate), "Morse"
+    return None
+
+
+def _isochrone(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] | None:
+    C = terms.get(q**-2)
+    others = [f for f in terms if f != q**-2]
+    if C is None or len(others) != 1:
+        return None
+    (f,) = others
+    b = (1 / f).subs(q, 0) / 2
+    if not b.is_positive or 1 / f != b + sqrt(b**2 + q**2):
+        return None
+    B, L = terms[f], sqrt(-C)
+    return B / (2 * sqrt(-A)) - (L + sqrt(L**2 + 2 * B * b)) / 2, "isochrone"
+
+
+def _pendulum(A: Expr, terms: Mapping[Expr, Expr], q: Symbol, cycle: Cycle) -> tuple[Expr, str] | None:
+    """Return Legendre's form of the integrals over √(A + B cos q)."""
+    if set(terms) != {sp.cos(q)}:
+        return None
+    beta = sp.Abs(terms[sp.cos(q)])
+    modulus = (A + beta) / (2 * beta)
+    if cycle.kind is CycleKind.LIBRATION:
+        complete = sp.elliptic_e(modulus) - (1 - modulus) * sp.elliptic_k(modulus)
+        return 4 * sqrt(2 * beta) / sp.pi * complete, "pendulum, libration"
+    if cycle.period != 2 * sp.pi:
+        return None
+    return cycle.sign * 2 / sp.pi * sqrt(A + beta) * sp.elliptic_e(1 / modulus), "pendulum, rotation"

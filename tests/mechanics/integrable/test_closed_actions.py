@@ -1,0 +1,102 @@
+"""Closed actions: published formulas come out, each is compared with quadrature, and a changed one is not returned."""
+
+import pytest
+import sympy as sp
+
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.integrable import closed_actions as module
+from canon.mechanics.integrable.action_variables import action_variables
+from canon.mechanics.integrable.closed_actions import closed_actions
+from canon.mechanics.integrable.hamilton_jacobi import hamilton_jacobi
+from canon.proof.domain.domain import Domain
+from canon.proof.vanish import vanishes
+
+q, p = sp.symbols("q p", real=True)
+r, theta, m, k, w, D, a, b = sp.symbols("r theta m k omega D a b", positive=True)
+phi, p_r, p_theta, p_phi = sp.symbols("phi p_r p_theta p_phi", real=True)
+E, L = sp.symbols("E alpha_phi", real=True)
+half, third = sp.Rational(1, 2), sp.Rational(1, 3)
+PLANE = ([r, phi], [p_r, p_phi])
+CENTRAL = p_r**2 / (2 * m) + p_phi**2 / (2 * m * r**2)
+ORBIT = {r: 1, phi: 0, p_r: third, p_phi: half}
+LINE = {q: 0, p: 1}
+BOUND = Domain((E < 0, L > 0))
+
+CASES = {
+    "oscillator": (Hamiltonian(p**2 / (2 * m) + m * w**2 * q**2 / 2, q, p), LINE, E / w, Domain((E > 0,))),
+    "Kepler": (Hamiltonian(CENTRAL - k / r, *PLANE), ORBIT, k * sp.sqrt(m / (-2 * E)) - L, BOUND),
+    "radial oscillator": (
+        Hamiltonian(CENTRAL + m * w**2 * r**2 / 2, *PLANE),
+        ORBIT,
+        E / (2 * w) - L / 2,
+        Domain((E > 0, L > 0)),
+    ),
+    "Morse": (
+        Hamiltonian(p**2 / (2 * m) + D * (1 - sp.exp(-a * q)) ** 2, q, p),
+        LINE,
+        (sp.sqrt(2 * m * D) - sp.sqrt(2 * m * (D - E))) / a,
+        Domain((E > 0, E < D)),
+    ),
+    "Pöschl–Teller": (
+        Hamiltonian(p**2 / (2 * m) - D / sp.cosh(a * q) ** 2, q, p),
+        LINE,
+        (sp.sqrt(2 * m * D) - sp.sqrt(-2 * m * E)) / a,
+        Domain((E < 0,)),
+    ),
+    "isochrone": (
+        Hamiltonian(CENTRAL - k / (b + sp.sqrt(b**2 + r**2)), *PLANE),
+        ORBIT,
+        k * sp.sqrt(m / (-2 * E)) - (L + sp.sqrt(L**2 + 4 * k * m * b)) / 2,
+        BOUND,
+    ),
+}
+VALUES = {m: sp.Rational(3, 2), k: 2, w: 2, D: 3, a: half, b: third}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_published_formulas_come_out(name):
+    H, start, formula, domain = CASES[name]
+    values = {s: v for s, v in VALUES.items() if H.H.has(s)}
+    found = closed_actions(action_variables(hamilton_jacobi(H), start, values, digits=20))
+    assert found[0] is not None
+    assert (found[0].name, found[0].tori) == (name, 3)
+    assert vanishes(found[0].J - formula, domain).holds
+    assert vanishes(found[0].J - 2 * formula, domain).fails
+    if len(found) == 2:
+        assert found[1].J == L
+
+
+@pytest.mark.parametrize(("momentum", "name"), [(1, "pendulum, libration"), (-3, "pendulum, rotation")])
+def test_the_pendulum_has_complete_elliptic_integrals(momentum, name):
+    H = Hamiltonian(p**2 / (2 * m) - k * sp.cos(q), q, p)
+    (found,) = closed_actions(action_variables(hamilton_jacobi(H), {q: 0, p: momentum}, {m: 1, k: 1}, 20))
+    assert found.name == name
+    assert found.J.has(sp.elliptic_e)
+
+
+def test_the_polar_angle_has_the_whole_less_the_component():
+    H = Hamiltonian((p_theta**2 + p_phi**2 / sp.sin(theta) ** 2) / 2, [theta, phi], [p_theta, p_phi])
+    start = {theta: 1, phi: 0, p_theta: half, p_phi: third}
+    found = closed_actions(action_variables(hamilton_jacobi(H), start, digits=20))
+    assert vanishes(found[0].J - sp.sqrt(2 * E) + L, Domain((E > 0, L > 0))).holds
+
+
+@pytest.mark.parametrize(("name", "factor"), [("oscillator", 1 + sp.Rational(1, 10**15)), ("Kepler", -1)])
+def test_a_wrong_formula_is_not_returned(monkeypatch, name, factor):
+    H, start, _, _ = CASES[name]
+    right = module._powers
+
+    def wrong(*given):
+        found = right(*given)
+        return None if found is None else (factor * found[0], found[1])
+
+    monkeypatch.setattr(module, "_powers", wrong)
+    values = {s: v for s, v in VALUES.items() if H.H.has(s)}
+    assert closed_actions(action_variables(hamilton_jacobi(H), start, values, digits=20))[0] is None
+
+
+def test_what_has_no_known_integral_is_left_open():
+    quartic = hamilton_jacobi(Hamiltonian(p**2 / 2 + q**4, q, p))
+    assert closed_actions(action_variables(quartic, {q: 0, p: 1}, digits=20)) == (None,)
+    shifted = hamilton_jacobi(Hamiltonian(p**2 / 2 + sp.exp(-3 * q) - 2 * sp.exp(-q), q, p))
+    assert closed_actions(action_variables(shifted, {q: 0, p: half}, digits=20))[0] is None
