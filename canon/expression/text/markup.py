@@ -88,16 +88,54 @@ def unmarked(text: str) -> str:
 
 
 def _rows_of_a_drawing(text: str) -> re.Match[str] | None:
-    """Return two lines that never stand one under the other, as an exponent above its base; None if there are none."""
-    if "\\" in text or "<" in text or text.count("\n") > MAX_NESTING:
+    """Return the second of two lines that are rows of a drawing; None if there are none.
+
+    Such lines never stand one under the other, as an exponent above its base, or have a bracket in common.
+    """
+    if "<" in text or not 0 < text.count("\n") <= MAX_NESTING:
         return None
+    if "\\" not in text and (line := re.search("--", text)):
+        return line
     lines = list(re.finditer(r"[^\n]+", text))
+    for above, middle, below in zip(lines, lines[1:], lines[2:], strict=False):
+        if _have_a_short_fraction(*(f" {line.group()}  " for line in (above, middle, below))):
+            return middle
     for above, below in pairwise(lines):
+        if _have_a_bracket(above.group(), below.group()):
+            return below
         taken = [{i for i, c in enumerate(line.group()) if not c.isspace()} for line in (above, below)]
+        taken = [columns - (taken[0] & taken[1] & _bars(above.group(), below.group())) for columns in taken]
         written = all(any(map(str.isalnum, line.group())) for line in (above, below))
-        if written and not taken[0] & taken[1]:
+        if written and "\\" not in text and not taken[0] & taken[1]:
             return below
     return None
+
+
+def _bars(above: str, below: str) -> set[int]:
+    """Return the columns in which bars go through two lines."""
+    return {i for i, pair in enumerate(zip(above, below, strict=False)) if pair == ("|", "|")}
+
+
+def _have_a_short_fraction(above: str, middle: str, below: str) -> bool:
+    """Tell whether a lone minus stands between two lone letters or figures."""
+    return any(
+        line[1] == "-" and a[1:2].isalnum() and b[1:2].isalnum() and _lone(a) and _lone(line) and _lone(b)
+        for a, line, b in (
+            (above[i : i + 3], middle[i : i + 3], below[i : i + 3]) for i in range(len(middle) - 2)
+        )
+    )
+
+
+def _lone(three: str) -> bool:
+    """Tell whether one character stands between blanks."""
+    return len(three) == 3 and three[0] + three[2] == "  " and not three[1].isspace()
+
+
+def _have_a_bracket(above: str, below: str) -> bool:
+    """Tell whether the upper half of a large bracket of slashes stands over its lower half, or over bars."""
+    columns = list(zip(above, below, strict=False))
+    left = next((i for i, pair in enumerate(columns) if pair in (("/", "\\"), ("/", "|"))), None)
+    return left is not None and any(pair in (("\\", "/"), ("\\", "|")) for pair in columns[left + 1 :])
 
 
 def _blank(found: re.Match[str]) -> str:
