@@ -11,7 +11,7 @@ import numpy as np
 from canon.flow.request import Request
 from canon.flow.run.compiled_nodes import CompiledNodes, compiled_nodes
 from canon.flow.system.named_values import variables_of
-from canon.flow.system_request import any_task
+from canon.flow.system_request import any_task, refuse_contacts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -106,7 +106,8 @@ def right_hand_side(
     >>> bool(abs(root(lambda y: rates(0.0, y), [3.0, 0.1]).x - [3.14159265, 0]).max() < 1e-8)
     True
     """
-    task, _ = any_task(Request(system, (0.0, 1.0), y0, parameters=parameters, samples=1))
+    task, moving = any_task(Request(system, (0.0, 1.0), y0, parameters=parameters, samples=1))
+    refuse_contacts(moving, "a right-hand side")
     if not task.single:
         raise ValueError(
             "a right-hand side is that of one motion: give one state, and one number for a parameter"

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from sympy import Expr, Symbol
@@ -17,6 +18,7 @@ from canon.flow.equations.bounce import with_bounces
 from canon.flow.equations.first_order_motion import moving_system
 from canon.flow.equations.lagrangian_motion import SPAN
 from canon.flow.method.method_text import method_of
+from canon.flow.run.event import Event
 from canon.flow.system.parameter_values import check_given, check_parameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_as_system import is_scene, opened
@@ -35,16 +37,41 @@ if TYPE_CHECKING:
     from canon.flow.equations.first_order_motion import FirstOrderMotion, MovingSystem
     from canon.flow.method.method import Method
     from canon.flow.request import Request
-    from canon.flow.run.event import Event
     from canon.flow.system.recognised_system import RecognisedSystem
     from canon.flow.task import Task
 
-__all__ = ["any_task", "is_hamiltonian", "needs_hamiltonian"]
+__all__ = ["any_task", "is_hamiltonian", "needs_hamiltonian", "refuse_contacts"]
 
 
 def is_hamiltonian(system: Any) -> bool:
     """Tell whether a system has H, q, p and t, as :class:`canon.flow.run.hamiltonian_system.HamiltonianSystem` says."""
     return all(hasattr(system, name) for name in ("H", "q", "p", "t"))
+
+
+def refuse_contacts(moving: MovingSystem | None, what: str) -> None:
+    """Refuse systems whose contacts open and close for what knows no events.
+
+    Raises
+    ------
+    ValueError
+        The system has contacts.
+    """
+    if moving is not None and moving.contacts is not None:
+        raise ValueError(
+            f"{what} knows no events, by which contacts open and close: take the system in one regime, "
+            "UnilateralLagrangian.closed(…)"
+        )
+
+
+def _check_events(events: Any) -> None:
+    if isinstance(events, list | tuple) and all(
+        isinstance(each, Event) for each in cast("Sequence[Any]", events)
+    ):
+        return
+    raise TypeError(
+        f"events={reprlib.repr(events)}: give a list of canon.Event(g), g being an expression that crosses zero; a "
+        "function event(t, y) of SciPy is written as such an expression"
+    )
 
 
 def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
@@ -55,6 +82,7 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
     TypeError, KeyError, ValueError
         As :func:`canon.flow.propagation.propagate` documents them.
     """
+    _check_events(request.events)
     scene = is_scene(request.system)
     if is_rates_function(request.system):
         begin, _ = two_ends(request.t_span, request.y0)

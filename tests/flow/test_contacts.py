@@ -17,7 +17,7 @@ from canon import (
     parameters,
     propagate,
 )
-from canon.flow import AccuracyWarning
+from canon.flow import AccuracyWarning, flow_jacobian, right_hand_side
 from canon.flow.equations.contact_regimes import ContactRegime
 from canon.flow.run.non_finite_state import PiledUpError
 from canon.mechanics import UnilateralLagrangian
@@ -255,3 +255,18 @@ def test_ensembles_and_wide_numbers_say_what_to_do() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         propagate(ball, (0, 0.5), [1, 0], parameters={g: 2}, precision="extended")
+
+
+def test_what_knows_no_events_refuses_contacts() -> None:
+    ball = UnilateralLagrangian(falling, y, 1)
+    with pytest.raises(ValueError, match="knows no events"):
+        flow_jacobian(ball, (0, 3), [1, 0], parameters={g: 2})
+    with pytest.raises(ValueError, match="knows no events"):
+        right_hand_side(ball, [1, 0], {g: 2})
+    assert right_hand_side(ball.closed(), [1, 0], {g: 2})(0, [1, 0])[1] == -2
+
+
+@pytest.mark.parametrize("events", [y, [y], lambda t, y: y[0], [lambda t, y: y[0]]])
+def test_events_that_are_none_are_refused_with_what_to_write(events: Any) -> None:
+    with pytest.raises(TypeError, match="give a list of"):
+        propagate(falling, (0, 1), [1, 0], parameters={g: 2}, events=events)

@@ -18,7 +18,7 @@ from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import Plan, fixed_plan
 from canon.flow.run_record import recorded
 from canon.flow.system.scene_as_system import is_scene, opened
-from canon.flow.system_request import any_task
+from canon.flow.system_request import any_task, refuse_contacts
 from canon.flow.trajectory import finished
 from canon.kernel.program.variational import variational
 
@@ -160,6 +160,7 @@ def flow_jacobian(
         parameters=parameters, samples=samples, times=times,
     )  # fmt: skip
     task, moving = any_task(request)
+    refuse_contacts(moving, "the Jacobian of a flow")
     if not task.single:
         raise ValueError(
             "the Jacobian is made of one orbit at a time: give one state and one set of parameters"
