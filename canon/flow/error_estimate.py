@@ -12,19 +12,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from canon.display import preformatted
-from canon.expression.graph.number_systems import LONGDOUBLE
 from canon.flow.integrate import integrate
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.number_formats import FIXED
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.observables_along import energy_rounding, jumped
 from canon.flow.run.passed_terms import may_have_passed
-from canon.flow.run.running_error import rounding_of_rates
+from canon.flow.run.running_error import rounding_of_rates, sizes_of_rates
 from canon.flow.run.sampling_plan import Plan
 from canon.kernel.llvm.number_types import EXTENDED
 
@@ -199,7 +198,7 @@ def error_estimate(
         )
         away = np.where(np.maximum.accumulate(deluded, axis=0), np.inf, away)
     if task.plan.h is not None:  # its states are those of exact times, which t has rounded
-        rates = _rates(task.system, samples.t, samples.y[:, :, chosen])
+        rates = sizes_of_rates(task.system, samples.t, samples.y[:, :, chosen])
         away = (away + rates * np.spacing(abs(samples.t))[:, np.newaxis]).astype(np.float64)
     relative = (away / scale).max(axis=0)
     condition = _growth(apart / scale)
@@ -218,7 +217,7 @@ def _contradicted_by_energy(
     more than ε Σ |∂H/∂y| · size, to first order; beside that stands the rounding of H itself, which is large where slow
     bodies have rest energies.
     """
-    slopes = np.roll(_rates(system, samples.t, samples.y), len(scale) // 2, axis=0)
+    slopes = np.roll(sizes_of_rates(system, samples.t, samples.y), len(scale) // 2, axis=0)
     reach = (slopes * scale).sum(axis=0)
     unseen = energy_rounding(system, samples, precision)
     return jumped(system, samples, change) | (abs(change) > relative.max(axis=0) * reach + unseen)
@@ -236,18 +235,6 @@ def _cancelled(system: HamiltonEquations, samples: Samples, scale: Array) -> Arr
     with np.errstate(all="ignore"):
         more = (rounding * step / scale).max(axis=(0, 1))
     return np.where(np.isfinite(more), np.maximum(more, 1.0), 1.0)
-
-
-def _rates(system: HamiltonEquations, t: Array, y: Array) -> npt.NDArray[Any]:
-    """Return the sizes of q̇ and ṗ, shape (2n, times, orbits)."""
-    nodes = (*system.velocity, *system.force)
-    wide = (part.astype(np.longdouble) for part in (*y, t[:, np.newaxis]))
-    state = dict(zip(system.inputs, wide, strict=True))
-    found = system.graph.evaluate([nodes[row] for row in system.rows], state, LONGDOUBLE)
-    sizes = np.empty(y[system.rows].shape, dtype=np.longdouble)
-    for each, x in zip(sizes, found, strict=True):
-        each[:] = np.abs(np.broadcast_to(np.asarray(x), y.shape[1:]))
-    return sizes
 
 
 def _compared(own: Array, y: Array, rest: Array) -> tuple[Array, list[Array]]:

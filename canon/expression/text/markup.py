@@ -100,15 +100,20 @@ def _rows_of_a_drawing(text: str) -> re.Match[str] | None:
     for above, middle, below in zip(lines, lines[1:], lines[2:], strict=False):
         if _have_a_short_fraction(*(f" {line.group()}  " for line in (above, middle, below))):
             return middle
-    for above, below in pairwise(lines):
-        if _have_a_bracket(above.group(), below.group()):
-            return below
-        taken = [{i for i, c in enumerate(line.group()) if not c.isspace()} for line in (above, below)]
-        taken = [columns - (taken[0] & taken[1] & _bars(above.group(), below.group())) for columns in taken]
-        written = all(any(map(str.isalnum, line.group())) for line in (above, below))
-        if written and "\\" not in text and not taken[0] & taken[1]:
-            return below
-    return None
+    latex = "\\" in text
+    return next(
+        (below for above, below in pairwise(lines) if _are_drawn(above.group(), below.group(), latex)), None
+    )
+
+
+def _are_drawn(above: str, below: str, latex: bool) -> bool:
+    """Tell whether two lines have a large bracket in common, or never stand one under the other."""
+    if _have_a_bracket(above, below):
+        return True
+    if latex or not all(any(map(str.isalnum, line)) for line in (above, below)):
+        return False
+    first, second = ({i for i, c in enumerate(line) if not c.isspace()} for line in (above, below))
+    return first & second <= _bars(above, below)
 
 
 def _bars(above: str, below: str) -> set[int]:

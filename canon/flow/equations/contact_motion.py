@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
+    from canon.expression.graph.graph import Graph
     from canon.flow.equations.contact_walls import Wall
     from canon.flow.equations.first_order_motion import FirstOrderMotion
     from canon.mechanics.lagrange.unilateral import UnilateralLagrangian
@@ -104,6 +105,32 @@ def _speed(free: FirstOrderMotion, wall: Wall, start: Mapping[Symbol, float]) ->
     return float(slopes @ np.abs([float(start[s]) for s in free.second]) + rest)
 
 
+def _touching(free: FirstOrderMotion, walls: Sequence[Wall], start: Mapping[Symbol, float]) -> list[int]:
+    """Return which contacts are touched at rest, f = ḟ = 0."""
+    return [
+        i
+        for i, wall in enumerate(walls)
+        if is_touched(free, wall, start)
+        and abs(float(values_of(free.graph, [wall.rate], start)[0])) <= NEAR * _speed(free, wall, start)
+    ]
+
+
+def _is_consistent(
+    graph: Graph,
+    walls: Sequence[Wall],
+    nodes: tuple[Sequence[int], Sequence[int]],
+    touching: Sequence[int],
+    closed: Sequence[int],
+    start: Mapping[Symbol, float],
+) -> bool:
+    """Tell whether with some contacts closed those push, and the others that are touched do not close."""
+    point = {**start, **{w.switch: float(i in closed) for i, w in enumerate(walls)}}
+    forces, opening = (values_of(graph, each, point) for each in nodes)
+    if not np.isfinite(forces).all():
+        return False
+    return all(forces[i] >= 0 for i in closed) and all(opening[i] >= 0 for i in touching if i not in closed)
+
+
 def _regime_at_start(
     free: FirstOrderMotion, walls: Sequence[Wall], start: Mapping[Symbol, float]
 ) -> tuple[list[bool], float]:
@@ -112,29 +139,18 @@ def _regime_at_start(
     Of the contacts with f = ḟ = 0 those are closed that push, where the others do not close by themselves.
     """
     graph = free.graph
-    touching = [
-        i
-        for i, wall in enumerate(walls)
-        if is_touched(free, wall, start)
-        and abs(float(values_of(graph, [wall.rate], start)[0])) <= NEAR * _speed(free, wall, start)
-    ]
     equations = Regimes(free, walls, Fraction(1), Fraction(0))
     lam, bent = equations.multipliers, equations.accelerations
     rates = (*free.rates[: len(free.q)], *bent)
     falls = [graph.add((dot(graph, w.normal, bent), w.curvature)) for w in walls]
-    chosen = None
-    for count in range(len(touching), -1, -1):
-        for closed in itertools.combinations(touching, count):
-            point = {**start, **{w.switch: float(i in closed) for i, w in enumerate(walls)}}
-            forces, opening = values_of(graph, lam, point), values_of(graph, falls, point)
-            if not np.isfinite(forces).all():
-                continue
-            pushes = all(forces[i] >= 0 for i in closed)
-            if pushes and all(opening[i] >= 0 for i in touching if i not in closed):
-                chosen = closed
-                break
-        if chosen is not None:
-            break
+    touching = _touching(free, walls, start)
+    subsets = (
+        closed
+        for count in range(len(touching), -1, -1)
+        for closed in itertools.combinations(touching, count)
+        if _is_consistent(graph, walls, (lam, falls), touching, closed, start)
+    )
+    chosen = next(subsets, None)
     if chosen is None:
         names = ", ".join(f"{walls[i].f} = 0" for i in touching)
         raise ValueError(

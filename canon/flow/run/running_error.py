@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.expression.graph.number_systems import FLOAT64, Arithmetic
+from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE, Arithmetic
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from fractions import Fraction
 
+    import numpy.typing as npt
+
     from canon.array import Array
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["rounding_of_rates"]
+__all__ = ["rounding_of_rates", "sizes_of_rates"]
 
 _BESIDE = 2.0**-20
 """So far beside its argument, in parts of it, a function is evaluated once more for its slope."""
@@ -46,6 +48,18 @@ def rounding_of_rates(system: HamiltonEquations, t: Array, y: Array) -> Array:
     state = dict(zip(system.inputs, map(_exact, (*y, t[:, np.newaxis])), strict=True))
     found = system.graph.evaluate([nodes[row] for row in system.rows], state, _RUNNING)
     return np.array([np.broadcast_to(each.error, y.shape[1:]) for each in found])
+
+
+def sizes_of_rates(system: HamiltonEquations, t: Array, y: Array) -> npt.NDArray[Any]:
+    """Return the sizes of q̇ and ṗ, shape (2n, times, orbits)."""
+    nodes = (*system.velocity, *system.force)
+    wide = (part.astype(np.longdouble) for part in (*y, t[:, np.newaxis]))
+    state = dict(zip(system.inputs, wide, strict=True))
+    found = system.graph.evaluate([nodes[row] for row in system.rows], state, LONGDOUBLE)
+    sizes = np.empty(y[system.rows].shape, dtype=np.longdouble)
+    for each, x in zip(sizes, found, strict=True):
+        each[:] = np.abs(np.broadcast_to(np.asarray(x), y.shape[1:]))
+    return sizes
 
 
 @dataclass(frozen=True, eq=False)

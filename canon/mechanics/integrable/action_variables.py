@@ -209,7 +209,10 @@ def _values(
 
 
 def _exact(number: Expr | float, name: Symbol) -> Expr:
-    exact = sp.sympify(number)
+    try:
+        exact = sp.sympify(number, strict=True)
+    except sp.SympifyError:
+        raise ValueError(f"{name} should have a real number for its value, not {number!r}") from None
     if exact.is_Float:
         exact = sp.Rational(float(exact))
     if not exact.is_number or exact.is_real is False:

@@ -96,17 +96,13 @@ def closed_actions(torus: ActionVariables) -> tuple[ClosedAction | None, ...]:
 
 def _neighbours(torus: ActionVariables) -> list[ActionVariables]:
     """Return three tori of the same kind: that of the motion, and two with other momenta."""
-    H = torus.integral.H
-    starts = {*H.q, *H.p}
+    starts = {*torus.integral.H.q, *torus.integral.H.p}
     parameters = {s: v for s, v in torus.values.items() if s not in starts | {*torus.integral.constants}}
+    periods = {c.q: c.period for c in torus.cycles if c.period is not None}
     found: list[ActionVariables] = []
     for change in NEIGHBOURS:
-        start = {z: torus.values[z] * (1 + change if z in H.p else 1) for z in starts}
-        if change != 0 and start == {z: torus.values[z] for z in starts}:
-            start = {z: torus.values[z] * (1 + change) for z in starts}
-        periods = {c.q: c.period for c in torus.cycles if c.period is not None}
         try:
-            other = action_variables(torus.integral, start, parameters, torus.digits, periods)
+            other = action_variables(torus.integral, _moved(torus, change), parameters, torus.digits, periods)
         except NoCycleError:  # a neighbour across a separatrix: the next one is nearer
             continue
         if [c.kind for c in other.cycles] == [c.kind for c in torus.cycles]:
@@ -114,6 +110,15 @@ def _neighbours(torus: ActionVariables) -> list[ActionVariables]:
         if len(found) == TORI:
             break
     return found
+
+
+def _moved(torus: ActionVariables, change: Expr) -> dict[Symbol, Expr]:
+    """Return the start with its momenta changed in proportion, or where all of them are zero with all of it."""
+    H, values = torus.integral.H, torus.values
+    start = {z: values[z] * (1 + change if z in H.p else 1) for z in (*H.q, *H.p)}
+    if change != 0 and all(start[z] == values[z] for z in start):
+        return {z: values[z] * (1 + change) for z in start}
+    return start
 
 
 def _agrees(J: Expr, i: int, torus: ActionVariables) -> bool:
