@@ -41,7 +41,8 @@ ADD_TAG = "INSERT OR IGNORE INTO tags VALUES (?, ?, ?)"
 ADD_RECORD = "INSERT OR IGNORE INTO records VALUES (?, ?, ?, ?, ?, ?)"
 
 FURTHER = """
-INSERT INTO checkpoints SELECT ?1, ?2, ?3, ?4 WHERE ?1 NOT IN (SELECT key FROM records)
+INSERT INTO checkpoints SELECT * FROM (SELECT ? AS key, ? AS part, ? AS point, ? AS checksum) AS new
+WHERE new.key NOT IN (SELECT key FROM records)
 ON CONFLICT (key) DO UPDATE SET part = excluded.part, point = excluded.point, checksum = excluded.checksum
 WHERE excluded.part > part
 """
