@@ -59,6 +59,7 @@ def places_of_change(sides: Anatomy, domain: Domain) -> list[Expr]:
 
     Examples
     --------
+    >>> from canon.proof import Domain
     >>> x = sp.Symbol("x", real=True)
     >>> places_of_change(anatomy([sp.asin(x) + abs(x - 3)]), Domain((x < 1,)))
     [x - 1, x - 3, x + 1]
@@ -82,6 +83,7 @@ def corner_points(
 
     Examples
     --------
+    >>> from canon.proof import Domain
     >>> x = sp.Symbol("x", positive=True)
     >>> any(x_there[x] < sp.Rational(1, 10**7) for x_there in corner_points(anatomy([abs(x - 1)]), Domain()))
     True
