@@ -242,6 +242,12 @@ def test_dense_output_and_error_estimate():
     assert motion.error_estimate().digits.min() > 12
 
 
+def test_no_speed_across_a_jump_of_h_is_told():
+    with pytest.raises(NonFiniteStateError, match=r"not determined: H jumps at x - 1.* = 0, where"):
+        propagate(one(x * sp.Heaviside(x - 1)), (0, 1), [1, 0])
+    assert np.isfinite(propagate(one(x * sp.Heaviside(x - 1)), (0, 1), [0.5, 0]).y).all()
+
+
 def test_what_is_not_determined_is_told():
     with pytest.raises(NonFiniteStateError, match="not determined"):
         propagate(one(-sp.Abs(x)), (0, 1), [0, 0])

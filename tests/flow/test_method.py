@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 
 
@@ -46,6 +46,13 @@ def test_own_coefficients_are_measured_and_completed():
 def test_wrong_splittings_are_refused(arguments, message):
     with pytest.raises(ValueError, match=message):
         Splitting(**arguments)
+
+
+@pytest.mark.parametrize("inner", ["verlet", 3, None, RK4(), Taylor(), Splitting])
+def test_what_time_is_transformed_for_is_a_splitting_or_a_gauss_method(inner):
+    with pytest.raises(TypeError, match=r"TimeTransformed\(Splitting\('verlet'\)\)"):
+        TimeTransformed(inner)
+    assert str(TimeTransformed(Splitting("verlet"))) == "verlet, time-transformed"
 
 
 def test_tolerances_are_checked_and_shown():

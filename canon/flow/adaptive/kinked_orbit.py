@@ -249,6 +249,11 @@ class KinkedOrbit:
         regime = self.regimes.kinks.regime(self.signs)
         at, system, g = self._place(), regime.system, regime.functions[k]
         speed, *rates = at.values(system, [regime.rate(g), *system.velocity, *system.force])
+        if not speed:
+            where: Any = system.graph.to_sympy(g)
+            raise self._error(
+                f"the motion is not determined: H jumps at {where} = 0, where it has no speed across"
+            )
         wanted = self.signs[k] * _BEYOND * at.size(system, g)
         self._move(self.state.copy(), self.dtime, np.array(rates), (wanted - at.value(system, g)) / speed)
 

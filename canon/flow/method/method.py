@@ -262,6 +262,8 @@ class TimeTransformed:
 
     Raises
     ------
+    TypeError
+        The method is neither a splitting nor a Gauss method, such as a name alone.
     ValueError
         A splitting with g, or a Gauss method without.
 
@@ -292,7 +294,13 @@ class TimeTransformed:
     tolerance = None
 
     def __post_init__(self) -> None:
-        implicit = self.method.family == "gauss"
+        given: Any = self.method
+        if not isinstance(given, Splitting | Gauss):
+            raise TypeError(
+                f"TimeTransformed({given!r}): give a splitting or a Gauss method as a value, such as "
+                "TimeTransformed(Splitting('verlet')) or TimeTransformed(Gauss(6), g=…)"
+            )
+        implicit = isinstance(given, Gauss)
         if not implicit and (self.g is not None or self.method.solvable is not None):
             raise ValueError(
                 "g(q, p)(H − E0) does not split: give a Gauss method with g, or a splitting without g and parts"
