@@ -35,7 +35,7 @@ STEPPED: dict[str, dict[str, Any]] = {
 }
 METHODS = ADAPTIVE | STEPPED
 FOR_SEPARABLE = ("verlet", "kahan-li-8", "blanes-moan-6")
-WIDER = {"extended": "quad", "quad": "more", "blanes-moan-6": "quad"}
+WIDER = {"extended": "quad", "quad": "more", "blanes-moan-6": "quad", "tolerance": "quad"}
 
 
 def usual(examples: int) -> settings:
