@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet import field_texts
+from canon.exercise.sheet.equation_numbers import without_numbers
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.left_sides import OTHER_SPELLINGS, Label, Quantity, is_definition, label_of
@@ -350,7 +351,7 @@ class _Plain:
 
     def equations(self, place: str, value: Any) -> list[Any]:
         """Return a list of equations, chains taken apart."""
-        texts: list[Any] = value if isinstance(value, list) else [value]
+        texts: list[Any] = self.unnumbered(place, value if isinstance(value, list) else [value])
         if len(texts) == 1 and isinstance(texts[0], str):
             texts = vector_equations(texts[0]) or field_texts.equations_listed(texts[0]) or texts
         found: list[Any] = []
@@ -368,6 +369,15 @@ class _Plain:
             for statement in statements:
                 found += self.chain(where, text, statement)
         return found
+
+    def unnumbered(self, place: str, texts: list[Any]) -> list[Any]:
+        """Return equations without the numbers before or behind them."""
+        if not all(type(text) is str for text in texts):
+            return texts
+        try:
+            return without_numbers(texts)
+        except LanguageError as error:
+            raise self.fault(f"{place}[{texts.index(error.text)}]", error) from None
 
     def chain(self, place: str, text: str, statement: Statement) -> list[str]:
         """Return the equations that a chain says, definitions in it passed over."""

@@ -1,0 +1,73 @@
+"""Numbers of equations, ``(1) … ; (2) …`` or ``1. …``: no factors where all equations have them in order."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from canon.expression.parse import LanguageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["without_numbers"]
+
+_BEFORE = re.compile(r"\s*(?P<label>\((?P<a>\d{1,2})\)|(?P<b>\d{1,2})[.)])(?=\s)")
+_BEHIND = re.compile(r"(?<=\s)(?P<label>\((?P<a>\d{1,2})\))(?=\s*\$?\s*[.,]?\s*$)")
+_END = re.compile(r"[;\n]")
+
+
+def without_numbers(texts: Sequence[str]) -> list[str]:
+    """Return equations with their numbers blanked, where each has one and they count up.
+
+    Raises
+    ------
+    LanguageError
+        A single number may be a factor as well; its text is that of the error.
+
+    Examples
+    --------
+    >>> without_numbers(["(1) x'' = -x", "(2) y'' = -y"])
+    ["    x'' = -x", "    y'' = -y"]
+    >>> without_numbers(["1. x'' = -x; 2. y'' = -y"])
+    ["   x'' = -x;    y'' = -y"]
+    >>> without_numbers(["2 x'' = -x"])
+    ["2 x'' = -x"]
+    """
+    for pattern in (_BEFORE, _BEHIND):
+        places = [found for text in texts for found in _labels(pattern, text)]
+        numbers = [int(found["a"] or found.groupdict().get("b") or 0) for found in places if found]
+        if len(places) == len(numbers) > 1 and numbers == [numbers[0] + i for i in range(len(numbers))]:
+            return [_blanked(pattern, text) for text in texts]
+    for text in texts:
+        _refuse_a_single_number(text)
+    return list(texts)
+
+
+def _refuse_a_single_number(text: str) -> None:
+    for found in (_BEFORE.match(text), _BEHIND.search(text)):
+        if found is None or not found["a"] or int(found["a"]) < 2:
+            continue
+        if not text[: found.start()].rstrip().endswith("= 0"):
+            label = found["label"]
+            reason = f"{label} may be a factor, or the number of the equation"
+            remedy = f"write {label}* for a factor, or leave it out"
+            raise LanguageError(text, found.start("label") + 1, reason, remedy)
+
+
+def _labels(pattern: re.Pattern[str], text: str) -> list[re.Match[str] | None]:
+    """Return the number of each equation in a text; None where one has none."""
+    return [pattern.search(part) if pattern is _BEHIND else pattern.match(part) for part in _parts(text)]
+
+
+def _parts(text: str) -> list[str]:
+    return [part for part in _END.split(text) if part.strip()]
+
+
+def _blanked(pattern: re.Pattern[str], text: str) -> str:
+    """Return a text with blanks for its numbers: columns stay what they are."""
+    pieces = re.split(f"({_END.pattern})", text)
+    return "".join(
+        pattern.sub(lambda found: " " * len(found.group()), piece, count=1) if piece.strip(";\n") else piece
+        for piece in pieces
+    )
