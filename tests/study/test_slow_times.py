@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from canon import RK4, Gauss, Splitting, Taylor, choose, drift
 from canon.flow.run.observables_along import AccuracyWarning
@@ -17,14 +18,24 @@ from canon.study.method_choice import confirm, slow_times
 from canon.study.method_choice.choice_question import Question
 from canon.study.method_choice.pilot_run import natural_step, pilot
 from canon.study.method_choice.slow_times import Outlook, with_outlook
-from tests.study.slow_systems import SYSTEMS, SlowSystem
+from tests.study.slow_systems import SYSTEMS, SlowSystem, moving_in
+from tests.study.unseen_slow_systems import UNSEEN_SYSTEMS
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
 
 FEW = (Splitting("kahan-li-8"), Splitting("blanes-moan-6"), Taylor())
 NOT_SPLIT = (Gauss(4), Gauss(6), Taylor())
-NOT_SEPARABLE = ("foucault", "magnetic drift", "double pendulum")
+NOT_SEPARABLE = (
+    "foucault",
+    "magnetic drift",
+    "double pendulum",
+    "bar that turns",
+    "anisotropic trap that turns",
+    "spherical pendulum, pulled",
+    "swinging atwood",
+)
+EVERY = SYSTEMS | UNSEEN_SYSTEMS
 
 QUICK: dict[str, tuple[Method, ...]] = {
     "kozai 86": (Taylor(),),
@@ -37,7 +48,7 @@ QUICK: dict[str, tuple[Method, ...]] = {
 
 
 def chosen_for(name: str, **options):
-    of = SYSTEMS[name]
+    of = EVERY[name]
     methods = NOT_SPLIT if name in NOT_SEPARABLE else FEW
     return choose(
         of.hamiltonian, of.span, np.array(of.y0), accuracy=of.accuracy, **{"methods": methods, **options}
@@ -63,16 +74,16 @@ def test_the_accuracy_is_kept_over_slow_times(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in SYSTEMS if name not in QUICK])
+@pytest.mark.parametrize("name", [name for name in EVERY if name not in QUICK])
 def test_the_accuracy_is_kept_or_not_known(name):
     is_kept_or_not_known(name)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", EVERY)
 def test_so_it_is_where_nothing_is_looked_at_for_long(name, monkeypatch):
     """What a run too long to be looked at whole leaves: a glimpse ahead of four pilots."""
-    monkeypatch.setattr(slow_times, "AHEAD_SECONDS", 0.0)
+    monkeypatch.setattr(slow_times, "AHEAD", 0)
     monkeypatch.setattr(confirm, "WHOLE_SECONDS", 0.0)
     monkeypatch.setattr(confirm, "CONFIRMING", 2.0)
     is_kept_or_not_known(name)
@@ -112,7 +123,7 @@ def test_what_is_kept_is_run_in_silence():
 
 
 def test_what_is_still_changing_where_the_look_ahead_ends_is_not_known(monkeypatch):
-    monkeypatch.setattr(slow_times, "AHEAD_SECONDS", 0.0)
+    monkeypatch.setattr(slow_times, "AHEAD", 0)
     monkeypatch.setattr(confirm, "WHOLE_SECONDS", 0.0)
     monkeypatch.setattr(confirm, "CONFIRMING", 1.0)
     choice = chosen_for("slow gravity", methods=[Taylor()])
@@ -148,6 +159,15 @@ def test_a_motion_that_does_the_same_for_ever_has_no_slow_times():
     assert found.seen < 1e6
     assert found.elsewhere == ()
     assert found.unsettled == ""
+
+
+def test_what_is_far_longer_than_what_was_followed_is_not_known():
+    """What moves in a plane can change slowly; one degree of freedom repeats itself."""
+    found = outlook_of(replace(SYSTEMS["relativistic"], span=3e7))
+    assert found.unsettled.startswith("it was followed ahead to t = ")
+    assert found.unsettled.endswith("of the span: a slower change was not seen")
+    pendulum = moving_in(lambda x: -sp.cos(x), (1.0, 0.0), 1e8)
+    assert outlook_of(pendulum).unsettled == ""
 
 
 def test_energy_less_the_work_of_a_drive_is_kept():
