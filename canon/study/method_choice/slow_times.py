@@ -183,7 +183,8 @@ def _unseen(question: Question, seen: float) -> str:
     repeats = is_hamiltonian(system) and len(system.q) == 1 and system.t not in system.H.free_symbols
     if repeats or question.span <= UNSEEN * seen:
         return ""
-    return f"it was followed ahead to t = {seen:.3g}, {seen / question.span:.1g} of the span: a slower change was not seen"
+    share = f"{seen / question.span:.1g} of the span"
+    return f"it was followed ahead to t = {seen:.3g}, {share}: a slower change was not seen"
 
 
 def _goes_on(values: Array, settled: float, ratio: float) -> bool:
