@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.cached_property import cached_property
 from canon.flow.request import Request
 from canon.flow.run.compiled_nodes import CompiledNodes, compiled_nodes
 from canon.flow.system.named_values import variables_of

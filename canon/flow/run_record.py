@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import momentum, velocity
 from canon.expression.symbols.user_input import counted
 from canon.flow.equations.contact_regimes import check_contacts, impacts_pile_up, regimes_of

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import counted
 from canon.flow.equations.contact_regimes import seen_by_people
 from canon.flow.error_estimate import ErrorEstimate, error_estimate

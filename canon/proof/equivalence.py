@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_expression, given_kind, given_seconds, given_symbols
 from canon.proof.analytic import is_analytic, proved_sign
 from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, NoReturn
 
+from canon.cached_property import cached_property
 from canon.scene.parts import Condition, Integral, Parameter, SceneError, Solution, Start, near
 
 if TYPE_CHECKING:

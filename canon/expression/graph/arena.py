@@ -7,8 +7,9 @@ a reverse sweep, and nothing recurses.
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from canon.cached_property import cached_property
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

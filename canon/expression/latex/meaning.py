@@ -7,10 +7,10 @@ stays linear in the text.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, NoReturn
 
+from canon.cached_property import cached_property
 from canon.expression.latex.argument_end import ArgumentEnd, bare_argument
 from canon.expression.latex.derivatives import Derivatives, derivative
 from canon.expression.latex.names import Applied, Function, Mark

@@ -7,10 +7,10 @@ product of declared names (``mgl`` is m g l), and a run that splits in two ways 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import islice, product
 from typing import TYPE_CHECKING, NoReturn, TypeAlias
 
+from canon.cached_property import cached_property
 from canon.expression.text.syntax import LanguageError, Name, Number
 
 if TYPE_CHECKING:

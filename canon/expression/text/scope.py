@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from sympy import Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, acceleration, time, velocity
 from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES, WRITTEN_OUT
 

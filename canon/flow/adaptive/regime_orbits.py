@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import functools
 import threading
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from canon.cached_property import cached_property
 from canon.flow.adaptive.held_steps import spacing
 from canon.flow.adaptive.taylor_events import TaylorEvents
 from canon.flow.adaptive.taylor_orbit import TaylorOrbit, orbits_of
@@ -45,7 +45,7 @@ class RegimeOrbits:
     settings: tuple[Any, ...]
     lock: Any = field(default_factory=threading.Lock)
 
-    @functools.cached_property
+    @cached_property
     def _kept(self) -> dict[Signs, RegimeOrbit]:
         return {}
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from canon.cached_property import cached_property
 from canon.expression.graph.algebra import factored
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class Regime:
         rates = (*system.velocity, *system.force, graph.one)
         return graph.add([graph.mul(pair) for pair in zip(slopes, rates, strict=True)])
 
-    @functools.cached_property
+    @cached_property
     def weak(self) -> frozenset[int]:
         """The switching functions at whose zeros the rates have no Taylor series, as g^(3/2) of Hertz's contact."""
         graph = self.system.graph

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.cached_property import cached_property
 from canon.expression.graph.graph import Graph
 from canon.expression.graph.piecewise_form import without_pieces
 from canon.frozen_mapping import FrozenMapping

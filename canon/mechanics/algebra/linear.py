@@ -6,12 +6,12 @@ Entries stay as they are built; only pivots are asked whether they vanish, and t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import exchanged, size
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict

@@ -8,11 +8,11 @@ f(q, t) = 0 by what a numerical method does wrong; projection in the metric of M
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.cached_property import cached_property
 from canon.expression.graph.python_source import python_function
 from canon.mechanics.algebra.dynamicsymbols import plain
 from canon.mechanics.at_scale.numeric_functions import solved

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.cached_property import cached_property
 from canon.expression.graph.graph import Graph
 from canon.expression.graph.python_source import python_function
 from canon.expression.symbols.symbol import momentum, time, velocity

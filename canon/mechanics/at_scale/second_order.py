@@ -8,11 +8,11 @@ slopes a are put together first, so a chain of n links has n terms in f and not 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.cached_property import cached_property
 from canon.expression.graph.common_subexpressions import shared_to_sympy
 from canon.expression.graph.graph import Graph
 from canon.expression.graph.sums import opposite, signed_product

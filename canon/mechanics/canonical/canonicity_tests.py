@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Literal, Protocol
 
 import sympy as sp
 from sympy import Expr
 
+from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import entry
 from canon.mechanics.hamilton.bracket import symplectic_unit
 from canon.mechanics.hamilton.pfaffian_form import canonical_covariant, curl, displacements

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.branch_point import branch_points, far_from_principal
 from canon.mechanics.algebra.linear import is_regular

@@ -15,12 +15,12 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression, given_kind, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values

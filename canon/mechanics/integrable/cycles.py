@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from flint import acb, arb
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.integrable.ball_function import BallFunction
 from canon.mechanics.integrable.cycle_quadrature import Libration, integral_along

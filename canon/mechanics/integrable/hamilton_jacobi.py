@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.substitution import substitute

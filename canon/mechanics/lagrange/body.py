@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time, velocity
 from canon.expression.symbols.user_input import counted, given_expression, given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish

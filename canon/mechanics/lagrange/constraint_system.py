@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time_derivative, velocity
 from canon.mechanics.algebra.all_vanish import vanish_together
 from canon.mechanics.algebra.constraint_manifold import (

@@ -8,13 +8,13 @@ Constraints ωₐ = aₐ·dq + a₀ₐ dt are integrable together exactly where 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.linear import eliminate
 from canon.mechanics.algebra.potential import potential

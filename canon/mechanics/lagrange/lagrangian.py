@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import acceleration, time, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain

@@ -7,12 +7,12 @@ positions and orientations as functions of q they are linear in q̈ and in the u
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import acceleration, time
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.all_vanish import all_vanish

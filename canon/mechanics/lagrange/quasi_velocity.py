@@ -8,13 +8,13 @@ Nonholonomic Systems, ch. III).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import Rate, acceleration, time, velocity
 from canon.expression.symbols.user_input import counted, given_expression
 from canon.mechanics.algebra.all_vanish import all_vanish

@@ -7,12 +7,12 @@ the two differ in sign, the motions do not. A holonomic constraint stays f(q, t)
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast, overload
 
 import sympy as sp
 from sympy import Expr
 
+from canon.cached_property import cached_property
 from canon.mechanics.algebra.dynamicsymbols import coordinate, plain
 from canon.mechanics.algebra.linear import solve_affine
 from canon.mechanics.algebra.substitution import entry

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from math import comb, factorial
 from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_kind, given_symbols
 from canon.mechanics.canonical.generating_function import GeneratingFunction
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian

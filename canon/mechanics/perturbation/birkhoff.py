@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass, field
-from functools import cached_property
 from math import comb
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_expression, given_kind
 from canon.mechanics.algebra.substitution import entry, substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian

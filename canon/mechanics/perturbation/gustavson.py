@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.perturbation.lie_transform import bracket_parts
 from canon.proof.domain.verdict import Evidence, Status, Verdict

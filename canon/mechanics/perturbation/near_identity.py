@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
+from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.perturbation.lie_transform import added, bracket_parts, truncated_product

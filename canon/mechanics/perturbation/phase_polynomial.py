@@ -8,12 +8,13 @@ is zero in the variables z = q + i p, z̄ = q − i p, and costs nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 from sympy import Expr, Symbol
+
+from canon.cached_property import cached_property
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Sequence

@@ -8,12 +8,12 @@ quadrature, q = −∫ ∂R/∂p dt (E. J. Routh 1877; H. Goldstein, Classical M
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Literal, cast, get_args
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import momentum, time, velocity
 from canon.expression.symbols.user_input import counted, given_kind
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_places

@@ -10,13 +10,13 @@ import random
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
 from sympy import Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
+from canon.cached_property import cached_property
 from canon.frozen_mapping import FrozenMapping
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision
 from canon.proof.domain.declarations import allows, declared_complex, said_of

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.cached_property import cached_property
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, SCIPY
 from canon.flow.method.setting import Setting

@@ -108,7 +108,9 @@ def with_outlook(question: Question, span: float, natural: float) -> tuple[Quest
     places = _places(parts, seen / len(parts), span)
     elsewhere = tuple((place.since, place.y0) for place in places)
     begin = question.run(Setting(Taylor(), precision="double"), natural, 1)
-    unsettled = "" if seen >= question.span else _unsettled(parts, seen, question.span) or _unseen(question, seen)
+    unsettled = (
+        "" if seen >= question.span else _unsettled(parts, seen, question.span) or _unseen(question, seen)
+    )
     return replace(question, elsewhere=elsewhere, unit=unit_of(begin, question)), Outlook(
         seen, elsewhere, unsettled
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -12,6 +11,7 @@ from flint import acb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import symbols_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 

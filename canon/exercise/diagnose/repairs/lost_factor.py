@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -16,6 +15,7 @@ from flint import acb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import Rate
 from canon.mechanics.algebra.substitution import symbols_of
 from canon.proof.continuity.smooth import PIECED
