@@ -17,6 +17,7 @@ from canon import (
     WisdomHolman,
     coordinates,
     propagate,
+    time,
 )
 from canon.flow import NonFiniteStateError
 
@@ -216,3 +217,22 @@ def test_an_exponential_that_is_small_is_rounded_by_its_exponent_and_blamed_for_
     estimate = motion.error_estimate()
     assert estimate.relative.max() < 1e-13
     assert (abs(motion.y - wider.y) <= estimate.error).all()
+
+
+@pytest.mark.parametrize("method", [DOP853(), Taylor()])
+def test_a_small_coordinate_beside_a_large_momentum(method):
+    """Taylor's tolerance is relative to the largest number of a state, the companion's too: y by its integral."""
+    x, y = q = coordinates("x y")
+    mass = 2**40
+    kick = sp.exp(-((8 * time - sp.Rational(3, 2)) ** 2)) / 32
+    kinetic = x.momentum**2 / (2 * mass) + y.momentum**2 / 2
+    pushed = Hamiltonian(kinetic + (x**2 + y**2) / 8 + y * kick, q, [x.momentum, y.momentum])
+    motion = propagate(pushed, (0.0, 3.0), [1.5, 0.0, 2.0**20, 0.0], method=method, samples=8)
+    with mp.workdps(40):
+        for t, found, stated in zip(motion.t, motion["y"], motion.error_estimate().error[1], strict=True):
+            end = mpf(float(t))
+            true = -mp.quad(
+                lambda s, end=end: 2 * mp.sin((end - s) / 2) * mp.exp(-((8 * s - mpf(3) / 2) ** 2)) / 32,
+                [0, *(place for place in (mpf(3) / 16, mpf(1)) if place < end), end],
+            )
+            assert abs(found - true) <= stated
