@@ -224,6 +224,8 @@ MEANINGS = {
     "x^2": "x**2",
     "x**2": "x**2",
     "x²": "x**2",
+    "p²/2mr²": "p**2/(2*m*r**2)",
+    "D(D(x))(t)": "x_ddot",
     r"\[Theta]''[t] == -(g/l) Sin[\[Theta][t]]": "theta_ddot + g*sin(theta)/l",
     "Eq(a, b)": "a - b",
     "V'(r - a)": "",

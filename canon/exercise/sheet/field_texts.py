@@ -16,6 +16,7 @@ __all__ = [
     "entries_of",
     "equation_between",
     "equations_listed",
+    "is_name_of_matrix",
     "of_matrix",
     "whole_statement",
 ]
@@ -78,7 +79,7 @@ def of_matrix(text: str) -> list[str]:
     if before := _BEFORE_MATRIX.match(text):
         right = of_matrix(" " * before.end() + text[before.end() :])
         left = text[: before.end() - 1]
-        if not right or _NAME_OF_MATRIX.fullmatch(left):
+        if not right or is_name_of_matrix(left):
             return right
         named = of_matrix(left)
         if len(named) != len(right):
@@ -89,6 +90,11 @@ def of_matrix(text: str) -> list[str]:
     if found := _PLAIN_MATRIX.fullmatch(text):
         return _of_plain_matrix(text, *found.span("inside" if found["inside"] is not None else "rows"))
     return []
+
+
+def is_name_of_matrix(left: str) -> bool:
+    """Tell whether what stands before ``=`` is the name of a vector or matrix."""
+    return _NAME_OF_MATRIX.fullmatch(left) is not None
 
 
 def _equation(left: str, right: str, sign: int) -> str:

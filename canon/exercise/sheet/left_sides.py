@@ -9,8 +9,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from canon.expression.parse import parse_expression
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.tokens import LanguageError, Token, tokens
 
@@ -19,7 +20,15 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["OTHER_SPELLINGS", "Label", "Quantity", "is_definition", "label_of"]
+__all__ = [
+    "OTHER_SPELLINGS",
+    "Label",
+    "Quantity",
+    "components_asked",
+    "is_asked",
+    "is_definition",
+    "label_of",
+]
 
 OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -27,12 +36,20 @@ OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "L1": ("L_1",),
         "L2": ("L_2", "L'"),
         "I": ("I", "C"),
+        "H": ("H_total", "H_tot", "H_system", "H_sys", "H_ges"),
+        "L": ("L_total", "L_tot", "L_system", "L_sys", "L_ges"),
         "energy_rate": (),
         "rhs": (),
         "lhs": (),
     }
 )
 """Other names that people give to what a key holds."""
+_COMPONENTS: Mapping[str, tuple[str, int]] = {
+    "q_dot": ("q", 1), "p_dot": ("p", 1), "X": ("x", 1), "map.Q": ("new_q", 0), "map.P": ("new_p", 0),
+    "inverse_map.q": ("q", 0), "inverse_map.p": ("p", 0), "Q": ("q", 0), "P": ("p", 0), "force": ("q", 0),
+    "Qnc": ("q", 0),
+}  # fmt: skip
+"""The key that names the components of a list, and the dots on these names."""
 _PAIRS = {"{": "}", "[": "]", "(": ")", "<": ">"}
 _DEFINITIONS: Mapping[str, str] = {
     "L": r"[TK]-[VU]",
@@ -95,6 +112,39 @@ class Quantity:
         return any(key_of(name) == key_of(label.name) and rates == label.rates for name, rates in self.names)
 
 
+def components_asked(place: str, keys: Mapping[str, Any], scope: Scope) -> tuple[Quantity, ...]:
+    """Return what each component of a list is called.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> first, second = components_asked("p_dot", {"q": ["x", "y"], "p": ["p_x", "p_y"]}, Scope())
+    >>> second.named_by(label_of("p_y'")), second.named_by(label_of("F_y")), second.named_by(label_of("F_x"))
+    (True, True, False)
+    """
+    of, rates = _COMPONENTS.get(place, ("", 0))
+    listed: Any = keys.get(of, [])
+    names, found = (listed if isinstance(listed, list) else [listed]), list[Quantity]()
+    for i, name in enumerate(names, 1):
+        if place in ("Q", "P", "force", "Qnc"):
+            letter = "Q" if place in ("force", "Qnc") else place
+            spelled = [f"{letter}_{i}", f"{letter}_{name}"] + [letter] * (len(names) == 1)
+            shown = spelled[-1] if len(names) == 1 else spelled[0]
+            found.append(Quantity(shown, tuple((s, 0) for s in spelled)))
+        else:
+            also = ((s, 0) for s in _by_letter(place, i, name, keys.get("q", [])) if not scope.declares(s))
+            rate = f"{name}{'_dot' * rates}"
+            found.append(Quantity(f"{name}{chr(39) * rates}", ((name, rates), (rate, 0), *also)))
+    return tuple(found)
+
+
+def _by_letter(place: str, number: int, name: str, q: list[str]) -> list[str]:
+    """Return the names of a rate by its letter: the force ``F_x`` for p_x', the velocity ``v_x`` for x'."""
+    letter = {"q_dot": "v", "p_dot": "F", "X": "X"}.get(place)
+    index = name if place != "p_dot" else q[number - 1] if number <= len(q) else number
+    return [f"{letter}_{index}", f"{letter}_{number}"] if letter else []
+
+
 def label_of(said: str) -> Label | None:
     """Return the name that a left side is, None where it is none.
 
@@ -122,6 +172,37 @@ def label_of(said: str) -> Label | None:
         return Label(first.text[1:], first.primes + 1)
     arguments = _arguments(rest)
     return None if arguments is None else Label(first.text, first.primes, arguments)
+
+
+def is_asked(label: Label | None, asked: Quantity, scope: Scope) -> bool:
+    """Tell whether a left side is a name of what is asked, its arguments being declared."""
+    if label is None:
+        return False
+    if not label.name:
+        return asked.bracket is not None and _same_bracket(label, asked.bracket, scope)
+    known = {key_of(name) for name in scope.spelled}
+    return all(key_of(argument) in known for argument in label.arguments) and asked.named_by(label)
+
+
+def _same_bracket(label: Label, asked: tuple[str, str], scope: Scope) -> bool:
+    """Tell whether a bracket is the one that is asked: what can be read of it agrees, and one entry can be."""
+    agree = [_same_entry(entry, wanted, scope) for entry, wanted in zip(label.arguments, asked, strict=True)]
+    return False not in agree and True in agree
+
+
+def _same_entry(entry: str, wanted: str, scope: Scope) -> bool | None:
+    """Tell whether an entry is what is wanted; None where it is a name of the reader's own."""
+    if entry.replace(" ", "") == wanted.replace(" ", ""):
+        return True
+    try:
+        right = parse_expression(wanted, scope)
+    except LanguageError:
+        return None
+    try:
+        said = parse_expression(entry, scope)
+    except LanguageError:
+        return None if label_of(entry) is not None and not right.is_Symbol else False
+    return bool(said == right)
 
 
 def _arguments(bracket: Sequence[Token]) -> tuple[str, ...] | None:

@@ -16,11 +16,18 @@ from canon.exercise.sheet import field_texts
 from canon.exercise.sheet.equation_numbers import without_numbers
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
-from canon.exercise.sheet.left_sides import OTHER_SPELLINGS, Label, Quantity, is_definition, label_of
+from canon.exercise.sheet.left_sides import (
+    OTHER_SPELLINGS,
+    Quantity,
+    components_asked,
+    is_asked,
+    is_definition,
+    label_of,
+)
+from canon.exercise.sheet.matrix_products import components_of_products, equations_of_products
 from canon.exercise.sheet.typed_values import both_signs, typed_values
 from canon.exercise.sheet.vector_equations import vector_equations
 from canon.expression.parse import LanguageError, parse_expression, statements_of
-from canon.expression.text.declared_names import key_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -171,6 +178,8 @@ class _Plain:
         names = [key, *OTHER_SPELLINGS.get(key, ())]
         if key == "F" and (number := self.kind.implied.get("type")):
             names += [f"F_{number}", f"G_{number}"]
+        if key == "H" and not self.scope.declares("E"):
+            names.append("E")
         if key == "energy_rate":
             return Quantity("dE/dt", (("E", 1), ("H", 1), ("W", 1)))
         return Quantity(key, tuple((name, 0) for name in names))
@@ -195,6 +204,8 @@ class _Plain:
         if len(sides) == 1:
             return text
         if self.is_asked(sides[0], asked):
+            if place == "H" and sides[0].said.startswith("E"):
+                self.found.passed.append("E in H is read as H, which is asked for")
             sides = sides[1:]
         else:
             self.refuse_other_names(place, text, sides[0], asked)
@@ -249,37 +260,7 @@ class _Plain:
 
     def is_asked(self, side: Side, asked: Quantity) -> bool:
         """Tell whether a side is a name of what is asked."""
-        label = label_of(side.said)
-        if label is None:
-            return False
-        if not label.name:
-            return asked.bracket is not None and self.same_bracket(label, asked.bracket)
-        if not all(self.known(argument) for argument in label.arguments):
-            return False
-        return asked.named_by(label)
-
-    def known(self, name: str) -> bool:
-        """Tell whether the argument of a left side is declared."""
-        return any(key_of(name) == key_of(known) for known in self.scope.spelled)
-
-    def same_bracket(self, label: Label, asked: tuple[str, str]) -> bool:
-        """Tell whether a bracket is the one that is asked: what can be read of it agrees, and one entry can be."""
-        agree = [self.same_entry(entry, wanted) for entry, wanted in zip(label.arguments, asked, strict=True)]
-        return False not in agree and True in agree
-
-    def same_entry(self, entry: str, wanted: str) -> bool | None:
-        """Tell whether an entry is what is wanted; None where it is a name of the reader's own."""
-        if entry.replace(" ", "") == wanted.replace(" ", ""):
-            return True
-        try:
-            right = parse_expression(wanted, self.scope)
-        except LanguageError:
-            return None
-        try:
-            said = parse_expression(entry, self.scope)
-        except LanguageError:
-            return None if label_of(entry) is not None and not right.is_Symbol else False
-        return bool(said == right)
+        return is_asked(label_of(side.said), asked, self.scope)
 
     def bracket(self, place: str, pair: Any) -> Any:
         """Return a bracket whose value is in plain form."""
@@ -294,7 +275,7 @@ class _Plain:
     def components(self, place: str, value: Any) -> Any:
         """Return a list of components in plain form, in their order where each says which it is."""
         texts: list[Any] = value if isinstance(value, list) else [value]
-        names = self.names_of(place)
+        names = components_asked(place, self.of.keys, self.scope)
         if len(texts) == 1 and isinstance(texts[0], str):
             texts = self.apart(place, texts[0])
         if len(texts) == len(names) > 1 and all(type(text) is str for text in texts):
@@ -305,31 +286,10 @@ class _Plain:
             found.append(self.expression(f"{place}[{i}]", text, asked) if isinstance(text, str) else text)
         return found if isinstance(value, list) or len(found) > 1 else found[0]
 
-    def names_of(self, place: str) -> tuple[Quantity, ...]:
-        """Return what each component of a list is called."""
-        of, rates = {
-            "q_dot": ("q", 1), "p_dot": ("p", 1), "X": ("x", 1), "map.Q": ("new_q", 0), "map.P": ("new_p", 0),
-            "inverse_map.q": ("q", 0), "inverse_map.p": ("p", 0), "Q": ("q", 0), "P": ("p", 0), "force": ("q", 0),
-            "Qnc": ("q", 0),
-        }.get(place, ("", 0))  # fmt: skip
-        listed: Any = self.of.keys.get(of, [])
-        names, found = (listed if isinstance(listed, list) else [listed]), list[Quantity]()
-        for i, name in enumerate(names, 1):
-            if place in ("Q", "P", "force", "Qnc"):
-                letter = "Q" if place in ("force", "Qnc") else place
-                spelled = [f"{letter}_{i}", f"{letter}_{name}"] + [letter] * (len(names) == 1)
-                found.append(
-                    Quantity(spelled[-1] if len(names) == 1 else spelled[0], tuple((s, 0) for s in spelled))
-                )
-            else:
-                found.append(
-                    Quantity(f"{name}{chr(39) * rates}", ((name, rates), (f"{name}{'_dot' * rates}", 0)))
-                )
-        return tuple(found)
-
     def apart(self, place: str, text: str) -> list[str]:
         """Return the components that stand in one text: in one bracket, or as several equations."""
-        if entries := field_texts.of_matrix(text):
+        entries = field_texts.of_matrix(text) or components_of_products(text, self.reads(place, text))
+        if entries:
             return entries
         statements = self.statements(place, text)
         if len(statements) > 1:
@@ -353,7 +313,8 @@ class _Plain:
         """Return a list of equations, chains taken apart."""
         texts: list[Any] = self.unnumbered(place, value if isinstance(value, list) else [value])
         if len(texts) == 1 and isinstance(texts[0], str):
-            texts = vector_equations(texts[0]) or field_texts.equations_listed(texts[0]) or texts
+            text = texts[0]
+            texts = vector_equations(text) or field_texts.equations_listed(text) or self.products(place, text)
         found: list[Any] = []
         for i, text in enumerate(texts):
             where = f"{place}[{i}]"
@@ -369,6 +330,21 @@ class _Plain:
             for statement in statements:
                 found += self.chain(where, text, statement)
         return found
+
+    def products(self, place: str, text: str) -> list[str]:
+        """Return the equations of the components where the sides are sums and products of matrices."""
+        return equations_of_products(text, self.reads(place, text)) or [text]
+
+    def reads(self, place: str, text: str) -> Callable[[str], object]:
+        """Return what reads one piece of a text and raises its error."""
+
+        def read(piece: str) -> object:
+            try:
+                return parse_expression(piece, self.scope)
+            except LanguageError as error:
+                raise self.fault(place, error.at_home_in(text)) from None
+
+        return read
 
     def unnumbered(self, place: str, texts: list[Any]) -> list[Any]:
         """Return equations without the numbers before or behind them."""

@@ -20,6 +20,7 @@ SIGNS: Mapping[str, str] = MappingProxyType(
         **dict.fromkeys(("*", "·", "×", "⋅", "∙", "∗", "•", "\\cdot", "\\times", "\\ast", "\\bullet"), "TIMES"),
         **dict.fromkeys(("/", "∕", "⁄"), "SLASH"),
         "^": "CARET", "_": "UNDER", ",": "COMMA", "\\over": "OVER",
+        **dict.fromkeys(("\\binom", "\\tbinom", "\\dbinom"), "FRAC"),
         **dict.fromkeys(("\\frac", "\\tfrac", "\\dfrac", "\\cfrac", "\\nicefrac", "\\sfrac"), "FRAC"),
         **dict.fromkeys(("\\sqrt", "√"), "SQRT"),
         **dict.fromkeys(("=", "<", ">", "≤", "≥", "≠", "\\lt", "\\gt", "\\le", "\\leq", "\\leqslant", "\\ge", "\\geq",

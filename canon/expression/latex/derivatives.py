@@ -62,6 +62,13 @@ class Derivatives:
             self._refuse(column, "this is neither a quotient nor a derivative", remedy)
         return Operator(mark == "d", variables, column)
 
+    def along_the_motion(self, operator: Operator) -> Operator | None:
+        r"""Return d/dt in place of ``\partial_t`` or ``\partial_t^2`` before a coordinate; None for other variables."""
+        if any(name.text != self.scope.time.name for name, _ in operator.variables):
+            return None
+        order = sum(order for _, order in operator.variables)
+        return Operator(total=True, variables=((operator.variables[0][0], order),), column=operator.column)
+
     def of(self, operator: Operator, operand: Node) -> Node:
         """Return the derivative of an operand.
 

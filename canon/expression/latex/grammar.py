@@ -21,6 +21,7 @@ Conventions
 from __future__ import annotations
 
 from functools import cache
+from math import comb
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from lark import Lark, Token, Transformer_NonRecursive, UnexpectedToken
@@ -29,7 +30,7 @@ from lark.exceptions import VisitError
 from canon.expression.latex.argument_end import bare_argument
 from canon.expression.latex.latex_statement import spans
 from canon.expression.latex.meaning import Meaning
-from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered, mark_of
+from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered, mark_of, whole
 from canon.expression.latex.quotient import dividing, shown
 from canon.expression.latex.words import Word, Words, words_of
 from canon.expression.ranges.latex_ranges import with_ranges
@@ -83,6 +84,8 @@ _RELATIONS = {
     **dict.fromkeys(("\\le", "\\leq", "\\leqslant", "≤"), "<="),
     **dict.fromkeys(("\\ge", "\\geq", "\\geqslant", "≥"), ">="), **dict.fromkeys(("\\ne", "\\neq", "≠"), "!="),
 }  # fmt: skip
+_MOST_CHOSEN = 100
+"""Largest upper number of a binomial coefficient."""
 _SILENT = (
     "UNDER", "COMMA", "RPAR", "RBRACE", "RBAR", "LINDEX", "RINDEX", "RCASES", "CROW", "CCOLUMN", "CAND",
     "COR", "LCLAUSE", "RCLAUSE",
@@ -92,22 +95,9 @@ _SILENT = (
 @cache
 def _parser() -> Lark:
     terminals = (
-        "ATOM",
-        "HEAD",
-        "SIGN",
-        "TIMES",
-        "SLASH",
-        "RELATION",
-        "CARET",
-        "LPAR",
-        "LBRACE",
-        "LBAR",
-        "FRAC",
-        "SQRT",
-        "OVER",
-        "LCASES",
-        "COTHERWISE",
-    )
+        "ATOM", "HEAD", "SIGN", "TIMES", "SLASH", "RELATION", "CARET", "LPAR", "LBRACE", "LBAR", "FRAC", "SQRT",
+        "OVER", "LCASES", "COTHERWISE",
+    )  # fmt: skip
     declared = " ".join((*terminals, *(f"_{kind}" for kind in _SILENT)))
     return Lark(f"{_GRAMMAR}\n%declare {declared}\n", parser="lalr", lexer="basic")
 
@@ -231,15 +221,23 @@ class _Build(Transformer_NonRecursive[Token, Any]):
                 factors += [(False, node) for node in found]
             else:
                 above = [node for _, node in factors]
-                last = dividing(above, items, found, self.meaning.ends)
+                last = dividing(above, items, found, self.meaning)
                 if last is None:
                     self.open_quotient(before, above, found)
                 factors += [(number < last, node) for number, node in enumerate(found)]
             if after and after.kind == "SLASH" and bare_argument(items):
-                self.meaning.refuse(
-                    after.column, "does this divide the function or its argument?", r"write \frac{a}{b}"
-                )
+                self.open_slash(after, found[-1], children)
         return Product(tuple(factors), children[0].column)
+
+    def open_slash(self, slash: Word, function: Node, children: list[Any]) -> NoReturn:
+        r"""Refuse a slash behind a function without brackets, ``g\sin\theta / l``, with both readings."""
+        behind = next((c for c in children[1:] if not isinstance(c, Word) and c.column > slash.column), None)
+        below = shown(self.meaning.factors(_items(behind))[:1]) if behind else "…"
+        over = shown([function])
+        name, _, inside = over.partition("(")
+        readings = f"{over}/{below} or {name}({inside.removesuffix(')')}/{below})"
+        told = f"does this divide the function or its argument? {readings}"
+        self.meaning.refuse(slash.column, told, r"write \frac{a}{b} or brackets, whichever is meant")
 
     def _refuse_open_end(self, items: tuple[Piece, ...], after: Word | None) -> None:
         if after and after.kind == "TIMES" and self.meaning.leaves_open(items):
@@ -336,7 +334,18 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return Call("Abs", (self.meaning.node(children[1]),), children[0].column)
 
     def fraction(self, children: list[Any]) -> Piece:
-        return self.meaning.fraction(children[1], children[2], children[0].column)
+        word, above, below = children
+        if word.shown.endswith("binom"):
+            return Group(self.binomial(word, above, below), braces=False, column=word.column)
+        return self.meaning.fraction(above, below, word.column)
+
+    def binomial(self, word: Word, above: Piece, below: Piece) -> Node:
+        """Return the number that a binomial coefficient of two whole numbers is."""
+        n, k = whole(self.meaning.node(above)), whole(self.meaning.node(below))
+        if n is None or k is None or n > _MOST_CHOSEN:
+            reason = f"binomial coefficients are read of whole numbers up to {_MOST_CHOSEN}"
+            self.meaning.refuse(word.column, reason, "write it out")
+        return Number(comb(n, k), 1, word.column)
 
     def root(self, children: list[Any]) -> Node:
         column = children[0].column

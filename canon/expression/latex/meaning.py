@@ -204,14 +204,10 @@ class Meaning:
         if isinstance(last, Powered) and not isinstance(last.base, Number | Mark):
             self._ambiguous_power(last, function)
         if numeric and end < len(items):
-            self.refuse(
-                items[end].column,
-                f"does this still belong to the argument of {function.name}?",
-                "write brackets",
-            )
-        if len(taken) == 1:
-            return taken[0], end
-        return Product(tuple((False, node) for node in taken), taken[0].column), end
+            told = f"does this still belong to the argument of {function.name}?"
+            self.refuse(items[end].column, told, "write brackets")
+        whole = Product(tuple((False, node) for node in taken), taken[0].column)
+        return (whole if taken[1:] else taken[0]), end
 
     def _of_argument(self, items: tuple[Piece, ...], at: int) -> tuple[Node, int]:
         """Return one factor of an argument without brackets, and where it ends."""
@@ -261,9 +257,9 @@ class Meaning:
             else:
                 self.refuse(head.column, f"{name} takes no subscript")
         exponent = head.exponent
-        if exponent is not None and after is not None:
-            self.refuse(after.column, f"two exponents of {name}", "write one")
         inverse = is_minus_one(exponent)
+        if exponent is not None and after is not None and not inverse:
+            self.refuse(after.column, f"two exponents of {name}", "write one")
         if inverse and name not in _INVERSE:
             self.refuse(
                 column,
@@ -271,7 +267,7 @@ class Meaning:
                 f"write the inverse out, or \\frac{{1}}{{{name}}}",
             )
         if inverse:
-            return Call(_INVERSE[name], arguments, column)
+            return raised(Call(_INVERSE[name], arguments, column), after)
         node: Node = Call("tanh" if name == "coth" else name, arguments, column)
         if name == "coth":
             node = Product(((False, Number(1, 1, column)), (True, node)), column)
@@ -334,8 +330,11 @@ class Meaning:
                 return self.derivatives.of(operator, operand), end
         if isinstance(following, Group):
             return self.derivatives.of(operator, self.node(following)), at + 2
-        if isinstance(following, Name) and operator.total and has_rate_or_is_momentum(following, self.scope):
-            return self.derivatives.of(operator, following), at + 2
+        name = following and unbraced(following)
+        along = operator if operator.total else self.derivatives.along_the_motion(operator)
+        whole = operator.total or at + 2 == len(items)
+        if isinstance(name, Name) and along and whole and has_rate_or_is_momentum(name, self.scope):
+            return self.derivatives.of(along, name), at + 2
         if isinstance(following, Head) and isinstance(following.function, Function):
             operand, end = self._application(items, at + 1, following, following.function)
             if end == len(items):

@@ -67,7 +67,7 @@ def applied(reader: FactorParser, token: Token, chain: int = 1) -> Node | None:
         node = reader.root(token)
     elif reader.starts(following):
         node = Call(name, (_bare(reader, name, chain),), token.column)
-        reader.bare_end = reader.at
+        reader.bare_end, reader.bare_start = reader.at, (token, following)
     elif following.text in ("+", "-"):
         raise reader.fault(f"{name} needs its argument in brackets here", f"write {name}(-x)")
     else:

@@ -5,6 +5,7 @@ d/dt is the derivative along the motion, ∂ the partial one. Where ``d`` is dec
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from canon.expression.text.syntax import Call, Name, Node, Number, children
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
     from canon.expression.text.tokens import Token
 
-__all__ = ["PARTIAL", "PRIMED", "TOTAL", "derivative", "names_outside_functions"]
+__all__ = ["PARTIAL", "PRIMED", "TOTAL", "derivative", "names_outside_functions", "of_operator"]
 
 TOTAL, PARTIAL, PRIMED = "d/dt", "∂", "f'"
 """Functions of the syntax tree that no name can spell."""
@@ -126,6 +127,30 @@ def _made(
     orders = [Number(n, 1, token.column) for _, n in variables]
     name = PARTIAL if sign == "∂" else "d/dx"
     return Call(name, (operand, *(v for v, _ in variables), *orders), token.column)
+
+
+def of_operator(reader: FactorParser) -> Token | None:
+    """Return the name in Maple's ``D(D(x))(t)`` with as many primes, None where there is none; ``D`` has been read.
+
+    Behind a coordinate ``(t)`` is read as well, behind a function its argument comes next.
+    """
+    texts = [token.text for token in reader.tokens[reader.at : reader.at + 10]]
+    order = 1
+    while texts[2 * order - 1 : 2 * order + 1] == ["D", "("]:
+        order += 1
+    end = reader.at + 2 * order
+    name = reader.tokens[min(end - 1, len(reader.tokens) - 1)]
+    if name.kind != "name" or texts[0] != "(" or texts[2 * order : 3 * order + 1] != [")"] * order + ["("]:
+        return None
+    rate = replace(name, primes=name.primes + order)
+    if name.text in reader.scope.functions and not name.primes:
+        reader.at = end + order
+        return rate
+    clock = [token.text for token in reader.tokens[end + order + 1 : end + order + 3]]
+    if rate.primes > 2 or not reader.scope.moves(name.text) or clock != [reader.scope.time.name, ")"]:
+        return None
+    reader.at = end + order + 3
+    return rate
 
 
 def names_outside_functions(node: Node, scope: Scope) -> Iterator[Name]:

@@ -39,6 +39,8 @@ class FactorParser(Parser):
         self.bars = 0
         self.bare_end = -1
         """Where the last argument without brackets ended."""
+        self.bare_start: tuple[Token, ...] = ()
+        """Its function, and where it began."""
 
     def starts(self, token: Token) -> bool:
         """Tell whether a factor can begin with a token."""

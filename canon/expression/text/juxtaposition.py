@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from unicodedata import numeric
 
 from canon.expression.text.applied_functions import applied, constructed, is_function, with_brackets
-from canon.expression.text.differentials import PARTIAL, PRIMED, derivative
+from canon.expression.text.differentials import PARTIAL, PRIMED, derivative, of_operator
 from canon.expression.text.factor_parser import CLOSING, FactorParser
 from canon.expression.text.quotients import divisor, ended
 from canon.expression.text.syntax import (
@@ -88,9 +88,15 @@ class Reader(FactorParser):
     def after_bare(self, sign: Token) -> None:
         """Refuse a quotient that could belong to an argument without brackets: ``sin x/2``."""
         if sign.text == "/" and self.bare_end == self.at - 1:
-            raise self.fault(
-                "does this divide the function or its argument?", "write sin(x)/2 or sin(x/2)", sign
-            )
+            raise self.fault(*self.open_slash(), sign)
+
+    def open_slash(self) -> tuple[str, str]:
+        """Return the question behind a function without brackets, ``g sin θ / l``, and both its readings."""
+        slash, below = self.tokens[self.at - 1].column - 1, self.token.text
+        head, first = (token.column - 1 for token in self.bare_start)
+        name, argument = self.text[head:first].strip()[:20], self.text[first:slash].strip()[:20]
+        readings = f"{name}({argument})/{below} or {name}({argument}/{below})"
+        return f"does this divide the function or its argument? {readings}", "write the one that is meant"
 
     def beside(self, factors: list[tuple[bool, Node]], starts: list[int]) -> Node:
         """Return the factor that stands directly after another one."""
@@ -208,6 +214,11 @@ class Reader(FactorParser):
             return Name(token.text, token.primes, token.column)
         if token.text == "d" and (node := derivative(self, token)) is not None:
             return node
+        if token.text == "D" and (rate := of_operator(self)) is not None:
+            moves = rate.text not in self.scope.functions
+            return (
+                Name(rate.text, rate.primes, rate.column) if moves else self.of_function(rate, bracket=True)
+            )
         if (node := constructed(self, token)) is not None:
             return node
         if (node := applied(self, token)) is not None:
