@@ -221,7 +221,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
                 factors += [(False, node) for node in found]
             else:
                 above = [node for _, node in factors]
-                last = dividing(above, items, found, self.meaning)
+                last = dividing(above, items, found, self.meaning.ends, self.meaning.text)
                 if last is None:
                     self.open_quotient(before, above, found)
                 factors += [(number < last, node) for number, node in enumerate(found)]

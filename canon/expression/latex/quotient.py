@@ -16,12 +16,14 @@ from canon.expression.symbols.symbol import Momentum, Rate
 from canon.expression.text.syntax import Call, Name, Negative, Node, Number, Power, Product
 
 if TYPE_CHECKING:
-    from canon.expression.latex.meaning import Meaning
+    from canon.expression.latex.argument_end import ArgumentEnd
 
 __all__ = ["dividing", "shown"]
 
 
-def dividing(above: list[Node], items: tuple[Piece, ...], below: list[Node], meaning: Meaning) -> int | None:
+def dividing(
+    above: list[Node], items: tuple[Piece, ...], below: list[Node], known: ArgumentEnd, text: str
+) -> int | None:
     """Return how many of the factors behind a slash it divides by, None where that is open.
 
     Parameters
@@ -30,16 +32,17 @@ def dividing(above: list[Node], items: tuple[Piece, ...], below: list[Node], mea
         The factors before the slash.
     items, below
         What stands behind it, as pieces and as factors.
-    meaning
-        What is known of the names, and the text.
+    known
+        What is known of the names.
+    text
+        The text in which they stand.
     """
-    known = meaning.ends
     if len(below) == 1:
         return 1
     parameters = all(_is_name(item) for item in items[1:]) and not any(known.moves(node) for node in below)
     if whole(below[0]) is not None and parameters and any(map(known.moves, above)):
         return len(below)
-    if whole(below[0]) is not None and _over_a_word(above, items, meaning):
+    if whole(below[0]) is not None and _over_a_word(above, items, known, text):
         return len(below)
     coefficient = not any(map(known.moves, above)) and not all(map(known.is_numeric, above))
     if coefficient and isinstance(below[0], Name) and not known.moves(below[0]) and is_function(items[1]):
@@ -47,15 +50,15 @@ def dividing(above: list[Node], items: tuple[Piece, ...], below: list[Node], mea
     return None
 
 
-def _over_a_word(above: list[Node], items: tuple[Piece, ...], meaning: Meaning) -> bool:
+def _over_a_word(above: list[Node], items: tuple[Piece, ...], known: ArgumentEnd, text: str) -> bool:
     r"""Tell whether a momentum stands over a number, a parameter and names without a gap, ``p_\phi^2/2mr^2``."""
-    scope, names = meaning.scope, [_base(item) for item in items[1:]]
+    scope, names = known.scope, [_base(item) for item in items[1:]]
     momentum = any(isinstance(scope.symbol(name.text), Momentum) for node in above for name in names_in(node))
     words = [name for name in names if isinstance(name, Name)]
-    if not momentum or not words or len(words) < len(names) or meaning.ends.moves(words[0]):
+    if not momentum or not words or len(words) < len(names) or known.moves(words[0]):
         return False
     rates = any(isinstance(scope.symbol(word.text), Rate) for word in words)
-    between = meaning.text[items[0].column - 1 : items[-1].column - 1]
+    between = text[items[0].column - 1 : items[-1].column - 1]
     return not rates and not re.search(r"\s|\\[,;:!> ]|\\q?quad|~", between)
 
 
