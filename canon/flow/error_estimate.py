@@ -18,6 +18,7 @@ import numpy as np
 
 from canon.display import preformatted
 from canon.flow.integrate import integrate
+from canon.flow.kinked.regimes import kinks_of
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.method.number_formats import FIXED
 from canon.flow.run.non_finite_state import NonFiniteStateError
@@ -172,13 +173,13 @@ def error_estimate(
     task = replace(task, states=states, single=False, cadence=None, dense=False)
     away, apart, found, words = np.full(own.shape, np.inf), np.full(own.shape, np.nan), None, "no companion"
     for better in _companion_tasks(task, samples):
-        made, known = _companions(better, samples, scale)
+        made, known = _companions(better, samples, own, scale)
         if made is None:
             continue
         found, words = made, better.words
         away, (apart, rounded) = _compared(own, made.y[rows][:, :known], made.carried[rows][:, :known])
         its_own = np.where(np.isnan(rounded), scale * better.unit, rounded)
-        its_own = its_own * _cancelled(task.system, made, scale) + better.truncation(scale)
+        its_own = its_own * _cancelled(task.system, made, scale) + better.truncation(scale, made.y[rows])
         at_rest = (own == 0).all(axis=1) & (away[:, -1] <= np.spacing(0.0))
         told = ((its_own[:, -1] <= away[:, -1]) | at_rest).all()
         away = away + its_own
@@ -274,14 +275,17 @@ class _CompanionTask:
     words: str
     unit: float
 
-    def truncation(self, scale: Array) -> Array:
-        """Return what is cut off from series besides rounding, shape (1, 1, orbits).
+    def truncation(self, scale: Array, y: Array) -> Array:
+        """Return what is cut off from the companion's series beside its rounding, shape (2n, 1, orbits).
 
         Taylor's tolerance is relative to the largest number of a state: with momenta of 10⁶ a coordinate of 10⁻³ has
-        nine digits less. Fixed steps are in the ratio of orders.
+        nine digits less. Series of a coordinate that stays zero have nothing to cut off; a method of fixed steps errs
+        by a known part of what it shows.
         """
-        largest = scale.max(axis=0, keepdims=True)
-        return 2.0 * self.unit * largest if self.task.plan.h is None else np.zeros_like(largest)
+        if self.task.plan.h is not None:
+            return np.zeros_like(scale)
+        moves = (y[:, :, : scale.shape[2]] != 0).any(axis=1, keepdims=True)
+        return np.where(moves, 2.0 * self.unit * scale.max(axis=0, keepdims=True), 0.0)
 
 
 def _companion_tasks(task: Task, samples: Samples) -> Iterator[_CompanionTask]:
@@ -325,13 +329,19 @@ def _wider(task: Task) -> list[str]:
     return ["extended", "double-double"] if ready and task.method.family != "gauss" else ["double-double"]
 
 
-def _companions(better: _CompanionTask, samples: Samples, scale: Array) -> tuple[Samples | None, int]:
+def _companions(
+    better: _CompanionTask, samples: Samples, own: Array, scale: Array
+) -> tuple[Samples | None, int]:
     """Return the companion, with two neighbours as further orbits where there can be any, and its samples.
 
     One starts a small part of the motion's size beside it, the other so near that rounding might have put it there.
     """
     task, (high, low) = better.task, better.task.states
     shifts = scale[:, 0] * _directions(len(scale))[:, np.newaxis]
+    if (
+        kinks_of(task.system) is not None
+    ):  # beside a rest in a kink of |x| a neighbour would meet it without end
+        shifts[(own == own[:, :1]).all(axis=1)] = 0.0
     near, far = low.copy(), low.copy()
     near[task.system.rows] += 2 * better.unit * shifts
     far[task.system.rows] += _BESIDE * shifts

@@ -19,6 +19,7 @@ from canon import (
     VectorField,
     coordinates,
     propagate,
+    time,
 )  # fmt: skip
 from canon.flow import NonFiniteStateError, sampled_function
 
@@ -243,9 +244,22 @@ def test_dense_output_and_error_estimate():
 
 
 def test_no_speed_across_a_jump_of_h_is_told():
-    with pytest.raises(NonFiniteStateError, match=r"not determined: H jumps at x - 1.* = 0, where"):
+    with pytest.raises(NonFiniteStateError, match=r"where x - 1 = 0: H jumps where the motion begins"):
         propagate(one(x * sp.Heaviside(x - 1)), (0, 1), [1, 0])
     assert np.isfinite(propagate(one(x * sp.Heaviside(x - 1)), (0, 1), [0.5, 0]).y).all()
+
+
+@pytest.mark.parametrize("speed", [1.0, -0.3, 0.1])
+def test_a_start_on_a_jump_of_h_asks_for_the_side(speed):
+    """Heaviside(0) = ½ would count as energy that is gone at once; a switch in time is no such jump."""
+    step = one(sp.Heaviside(x) / 5)
+    with pytest.raises(NonFiniteStateError, match=r"where x = 0: H jumps where the motion begins: begin a"):
+        propagate(step, (0, 1), [0, speed])
+    beside = propagate(step, (0, 1), [1e-9, speed])
+    assert beside.y[1, -1] == speed or speed < 0
+    assert abs(beside.energy_error).max() < 1e-15
+    switched = propagate(one(x**2 / 2 - x * sp.Heaviside(time) / 5), (0, 1), [0.7, speed])
+    assert switched["x"][-1] == pytest.approx(0.2 + 0.5 * np.cos(1) + speed * np.sin(1), abs=1e-14)
 
 
 def test_what_is_not_determined_is_told():
@@ -293,3 +307,16 @@ def test_samples_that_make_no_spline_are_refused():
             sampled_function(x, at, values)
     with pytest.raises(TypeError, match="no spline"):
         sampled_function(x, math.sin)
+
+
+def test_the_error_of_what_rests_in_a_kink_is_known_at_once():
+    """A neighbour beside it would meet the kink a million times."""
+    y = coordinates("y")
+    both = Hamiltonian(
+        (x.momentum**2 + y.momentum**2) / 2 + sp.Abs(x) - sp.cos(y), [x, y], [x.momentum, y.momentum]
+    )
+    motion = propagate(both, (0, 10), [0, 1, 0, 0])
+    error = motion.error_estimate().error
+    assert not motion["x"].any()
+    assert error[[0, 2]].max() < 1e-300
+    assert 0 < error[1].max() < 1e-14

@@ -77,7 +77,26 @@ def signs_at_start(kinks: Kinks, at: Place, forward: int) -> Signs:
     count = len(kinks.functions)
     signs = _settled(kinks, (1,) * count, set(), at)
     zero = vanishing(kinks, signs, at)
-    return _goes_on(kinks, signs, zero, at, forward) if zero else signs
+    if not zero:
+        return signs
+    found = _goes_on(kinks, signs, zero, at, forward)
+    for k in zero:
+        if _is_wall(kinks, signs, k, at):
+            raise _lost(
+                kinks,
+                [k],
+                at,
+                "H jumps where the motion begins: begin a little beside, on the side that is meant",
+            )
+    return found
+
+
+def _is_wall(kinks: Kinks, signs: Signs, k: int, at: Place) -> bool:
+    """Tell whether H jumps in space, not in time, where a switching function vanishes."""
+    system = kinks.regime(signs).system
+    slopes = system.graph.gradient(kinks.folded(signs, [kinks.functions[k]])[0], system.q)
+    beyond = _settled(kinks, flipped(signs, k), {*kinks.mattering(signs)} - {*kinks.nested} | {k}, at)
+    return any(at.values(system, slopes)) and bool(_jump(kinks, signs, beyond, at))
 
 
 def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Passage:
