@@ -311,7 +311,6 @@ def test_samples_that_make_no_spline_are_refused():
 
 def test_the_error_of_what_rests_in_a_kink_is_known_at_once():
     """A neighbour beside it would meet the kink a million times."""
-    y = coordinates("y")
     both = Hamiltonian(
         (x.momentum**2 + y.momentum**2) / 2 + sp.Abs(x) - sp.cos(y), [x, y], [x.momentum, y.momentum]
     )
