@@ -117,7 +117,7 @@ RETURNED = {
         "mechanics.lagrange.sympy_bridge.QuasiMotion",
     ),
     "flow": (
-        "flow.error_estimate.ErrorEstimate",
+        "flow.estimate.error_estimate.ErrorEstimate",
         "flow.equations.contact_regimes.ContactRegime",
         "flow.run.event.Crossing",
         "flow.geometry.flow_jacobian.FlowJacobian",

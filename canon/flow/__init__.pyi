@@ -1,6 +1,6 @@
 from .compiled_right_hand_side import RightHandSide as RightHandSide
 from .compiled_right_hand_side import right_hand_side as right_hand_side
-from .error_estimate import ErrorEstimate as ErrorEstimate
+from .estimate.error_estimate import ErrorEstimate as ErrorEstimate
 from .geometry.flow_jacobian import FlowJacobian as FlowJacobian
 from .geometry.flow_jacobian import flow_jacobian as flow_jacobian
 from .geometry.flow_jacobian import reversal_error as reversal_error

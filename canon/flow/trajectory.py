@@ -10,7 +10,7 @@ import numpy as np
 from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import counted
 from canon.flow.equations.contact_regimes import seen_by_people
-from canon.flow.error_estimate import ErrorEstimate, error_estimate
+from canon.flow.estimate.error_estimate import ErrorEstimate, error_estimate
 from canon.flow.interpolation import states_at
 from canon.flow.labelled_motion import labelled
 from canon.flow.record_file import write_record
@@ -244,7 +244,8 @@ class Trajectory:
         """Return how far this motion is from the true one, by a companion run that is more exact.
 
         A method of fixed steps is repeated with half the step in wider numbers, which takes many times as long as the
-        motion did; others are compared with Taylor's method in wider numbers: :mod:`canon.flow.error_estimate`.
+        motion did; others are compared with Taylor's method in wider numbers:
+        :mod:`canon.flow.estimate.error_estimate`.
 
         Parameters
         ----------

@@ -66,3 +66,25 @@ def test_small_and_large_oscillations(size):
     motion = propagate(OSCILLATOR, (0, 10), [size, 0.0], method=Splitting("kahan-li-8"), step=0.1, samples=10)
     missed = np.maximum.accumulate(abs(motion.q[0] - size * np.cos(motion.t)))
     assert (missed <= motion.error_estimate().error[0] + np.spacing(size)).all()
+
+
+@pytest.mark.parametrize("height", [1e-38, 1e-100, 1e-300])
+def test_a_fall_from_a_small_height_is_quick_and_its_series_short(height):
+    """Free fall over a floor that it bounces off as |x|: period 4 √(2 h); an oscillator so quick is refused."""
+    well = Hamiltonian(x.momentum**2 / 2 + sp.Abs(x), [x], [x.momentum])
+    period = 4 * np.sqrt(2 * height)
+    motion = propagate(well, (0, 5.25 * period), [height, 0.0], samples=21)
+    at = motion.t / period % 1
+    quarter = np.minimum(at, 1 - at)
+    true = height * np.where(quarter < 0.25, 1 - (4 * quarter) ** 2, (4 * (0.5 - quarter)) ** 2 - 1)
+    assert abs(motion["x"] - true).max() < 1e-13 * height
+    assert motion.error_estimate().relative[-1] < 1e-12
+    stiff = Hamiltonian(x.momentum**2 / 2 + x**2 / (2 * sp.Rational(height)), [x], [x.momentum])
+    with pytest.raises(ValueError, match="time scale of 1e-"):
+        propagate(stiff, (0, period), [1.0, 0.0])
+
+
+def test_rest_where_series_are_beyond_doubles_is_told():
+    stiff = Hamiltonian(x.momentum**2 / 2 + x**2 * 10**40, [x], [x.momentum])
+    with pytest.raises(ArithmeticError, match="can't be continued after t = 0"):
+        propagate(stiff, (0, 1), [0.0, 0.0])

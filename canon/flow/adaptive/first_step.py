@@ -52,7 +52,7 @@ def first_step(integrator: Any, end: Any) -> Any:
     chosen = None
     length, reached = stepped(end - start)
     for _ in range(_MOST):
-        if start + length == start or agree(reached, length):
+        if np.isnan(np.float64(length)) or start + length == start or agree(reached, length):
             break
         length, reached = stepped(length / kind(2))
         chosen = start + length
