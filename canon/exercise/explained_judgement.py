@@ -10,7 +10,7 @@ import sympy as sp
 from canon.exercise.claim_verdict import InvalidClaim, examine
 from canon.exercise.question.deadline import Worked
 from canon.exercise.report.derivation_steps import steps
-from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid
+from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid, without_explanation
 from canon.expression.symbols.magnitude import written
 from canon.proof.rungs.ladder import REFUSALS, refusal
 
@@ -62,16 +62,17 @@ def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Itera
         yield replace(judgement, warnings=(*judgement.warnings, *left)), True
         return
     from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS
+    from canon.exercise.diagnose.effort import BudgetSpent
     from canon.exercise.diagnose.right_answer import corrected
     from canon.exercise.report.sentences import feedback
 
-    left = min(OUTER_SECONDS, claim.budget - start.since(Worked.now()))
-    if left <= 0.1:
-        yield judgement, True
-        return
-    judgement = replace(judgement, corrected=_cut(corrected(finding)))
-    yield judgement, False  # before the diagnosis is looked for, which can be cut off
-    yield replace(judgement, feedback=_cut(feedback(finding, left)) or judgement.feedback), True
+    try:
+        judgement = replace(judgement, corrected=_cut(corrected(finding)))
+        yield judgement, False  # before the diagnosis is looked for, which can be cut off
+        left = min(OUTER_SECONDS, claim.budget - start.since(Worked.now()))
+        yield replace(judgement, feedback=_cut(feedback(finding, left)) or judgement.feedback), True
+    except BudgetSpent:
+        yield without_explanation(judgement, claim.budget), True
 
 
 def _told(claim: Claim, verdict: Verdict) -> Judgement:

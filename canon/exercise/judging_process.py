@@ -16,7 +16,7 @@ from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.question.deadline import PATIENCE
-from canon.exercise.report.judgement import Judgement, invalid
+from canon.exercise.report.judgement import Judgement, invalid, without_explanation
 from canon.exercise.sheet.sheet import Claim
 from canon.frozen_mapping import FrozenMapping
 from canon.process import JUDGING, Child, Ended, Late, serve
@@ -111,6 +111,7 @@ class Worker:
                 allowed = min(allowed, time.monotonic() - start + FEEDBACK)
         except Late:
             why = f"its budget of {claim.budget:g} s was spent"
+            verdict = verdict and without_explanation(verdict, claim.budget)
         except Ended:
             why = BROKE_OFF
         self.stop()

@@ -14,12 +14,12 @@ from sympy import Expr, Symbol
 
 from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis
+from canon.exercise.diagnose.effort import proved_to_vanish
 from canon.expression.symbols.symbol import Coordinate, Rate
 from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import Domain
-from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -152,9 +152,6 @@ def _vanishes_to(f: Expr, epsilon: Symbol, order: int, domain: Domain, effort: E
         coefficient = f.diff(epsilon, k).subs(epsilon, 0)
         if coefficient.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
             return False
-        if (
-            coefficient != 0
-            and not vanishes_off_kinks(coefficient, domain, budget=effort.for_a_proof()).holds
-        ):
+        if coefficient != 0 and not proved_to_vanish(coefficient, domain, effort):
             return False
     return True

@@ -16,12 +16,12 @@ from canon.exercise.diagnose.derived_part import (
     second_lagrangian_part,
 )
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis
+from canon.exercise.diagnose.effort import proved_to_vanish
 from canon.exercise.diagnose.repairs.repair import is_wrong, repairs
 from canon.exercise.question.question import Part, Same, SameEquations
 from canon.mechanics.algebra.linear import SingularMatrixError, solve_affine
 from canon.mechanics.algebra.substitution import exchanged, size, substitute, symbols_of
 from canon.proof.domain.verdict import Undecided
-from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -188,9 +188,7 @@ def _part_by_part(
     wrong = [(part, hint) for part, hint in zip(parts, hints, strict=True) if is_wrong(part, domain)]
     if not wrong:
         if parts and all(
-            part.through
-            and vanishes_off_kinks(part.residual, domain, budget=answer.effort.for_a_proof()).holds
-            for part in parts
+            part.through and proved_to_vanish(part.residual, domain, answer.effort) for part in parts
         ):
             yield Diagnosis.stated(Mistake.EQUATION_MISSING, only_fault=False)
         return

@@ -9,10 +9,10 @@ from sympy.core.function import AppliedUndef
 
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, scaled
+from canon.exercise.diagnose.effort import proved_to_vanish
 from canon.exercise.diagnose.repairs.repair import common_ratio
 from canon.mechanics.canonical.repair_hint import repair_hint
 from canon.mechanics.canonical.transformation import CanonicalTransformation
-from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -86,7 +86,7 @@ def _proved(parts: Sequence[Part], factor: sp.Expr, wrong: WrongAnswer) -> bool:
 
 
 def _vanishes(f: sp.Expr, wrong: WrongAnswer) -> bool:
-    return f == 0 or vanishes_off_kinks(f, wrong.domain, budget=wrong.effort.for_a_proof()).holds
+    return f == 0 or proved_to_vanish(f, wrong.domain, wrong.effort)
 
 
 def rescaled(wrong: WrongAnswer) -> Iterator[Diagnosis]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from canon.exercise.claim_verdict import questions
 from canon.exercise.diagnose.change import Change
+from canon.exercise.diagnose.effort import JUDGEMENT_STEPS
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, decide
 from canon.proof.domain.verdict import Undecided
@@ -128,16 +129,19 @@ def judged_to_hold(reading: Reading, effort: Effort, held: int = 0, but: int | N
     but
         The number of a question that was answered otherwise.
     """
-    deadline = Deadline.after(effort.work_for_a_proof())
-    try:
-        asked = (question for i, question in islice(enumerate(questions(reading)), held, None) if i != but)
-        return all(
-            decide(question, deadline).holds
-            for question in asked
-            if not isinstance(question, Determines) or question.wanted
-        )
-    except (Undecided, *REFUSALS):  # a repair may make no sense: a singular matrix, an empty domain
-        return False
+    with effort.proof(JUDGEMENT_STEPS) as seconds:
+        deadline = Deadline.after(seconds)
+        try:
+            asked = (
+                question for i, question in islice(enumerate(questions(reading)), held, None) if i != but
+            )
+            return all(
+                decide(question, deadline).holds
+                for question in asked
+                if not isinstance(question, Determines) or question.wanted
+            )
+        except (Undecided, *REFUSALS):  # a repair may make no sense: a singular matrix, an empty domain
+            return False
 
 
 def scaled(reading: Reading, parts: Sequence[Part], factor: Expr) -> Reading | None:

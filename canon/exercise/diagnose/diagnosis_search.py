@@ -12,7 +12,7 @@ from canon.exercise.diagnose.change import Mistake
 from canon.exercise.diagnose.changed_claims import another_reading
 from canon.exercise.diagnose.components import on_the_motion
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis, WrongAnswer, judged_to_hold
-from canon.exercise.diagnose.effort import Effort
+from canon.exercise.diagnose.effort import JUDGEMENT_STEPS, Effort
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.equation_systems import AFFINE
 from canon.exercise.question.question import Same, SameEquations
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = ["OUTER_SECONDS", "diagnosis"]
 
-OUTER_SECONDS = 60.0
-"""Outer limit of a search whose steps end it after a second or two on a machine that is not overloaded."""
+OUTER_SECONDS = 120.0
+"""Last safety of a search whose steps end it after a second or two, five at most where this was measured."""
 
 
 def diagnosis(finding: Finding, seconds: float = OUTER_SECONDS) -> Diagnosis | None:
@@ -38,7 +38,12 @@ def diagnosis(finding: Finding, seconds: float = OUTER_SECONDS) -> Diagnosis | N
     finding
         A failed judgement with the question on which it turned.
     seconds
-        The outer limit; what is looked for is limited by a count of steps.
+        The last safety; what is looked for is limited by a count of steps.
+
+    Raises
+    ------
+    BudgetSpent
+        Where the seconds are over before the search came to its own end.
     """
     return _told(finding, Effort(seconds))
 
@@ -58,7 +63,8 @@ def _with_the_next(found: Diagnosis, finding: Finding, effort: Effort, said: int
     if found.repaired is None or effort.spent:
         return None
     try:
-        again = examined(found.repaired, Deadline.after(effort.work_for_a_proof()))
+        with effort.proof(JUDGEMENT_STEPS) as seconds:
+            again = examined(found.repaired, Deadline.after(seconds))
     except (InvalidClaim, *REFUSALS):
         return None
     if not again.verdict.fails or again.held <= finding.held or again.question is None:

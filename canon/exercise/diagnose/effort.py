@@ -1,22 +1,51 @@
 """Effort for a diagnosis: counted in steps, so that a claim gets the same diagnosis on any machine at any time.
 
-A step is about one symbol or operation evaluated at the points of a screen. The seconds are an outer limit only, far
-beyond what the steps take, and are those of the processor, so that a busy machine changes nothing; what a proof costs
-is counted as a fixed number of steps.
+A step is about one symbol or operation evaluated at the points of a screen; a proof counts for a fixed number of them.
+Seconds end nothing silently: they are a last safety, many times beyond what the steps take, and where they are
+spent the search is given up with :class:`BudgetSpent`, which is told. They are those of the processor, so that a busy
+machine changes nothing.
 """
 
 from __future__ import annotations
 
-from canon.exercise.question.deadline import Worked
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
-__all__ = ["PROOF_SECONDS", "PROOF_STEPS", "STEPS", "Effort"]
+from canon.exercise.question.deadline import Worked
+from canon.proof.kinks import vanishes_off_kinks
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from sympy import Expr
+
+    from canon.proof.domain.domain import Domain
+
+__all__ = [
+    "JUDGEMENT_STEPS",
+    "PROOF_SECONDS",
+    "PROOF_STEPS",
+    "STEPS",
+    "BudgetSpent",
+    "Effort",
+    "proved_to_vanish",
+]
 
 STEPS = 600_000
 """Steps for one diagnosis, which take a second or two where nothing is found."""
 PROOF_STEPS = 2_500
-"""Steps that a proof or a judgement on a changed claim counts for."""
-PROOF_SECONDS = 3.0
-"""Outer limit of one proof or judgement, in seconds of the processor; most take some milliseconds."""
+"""Steps that a proof counts for."""
+JUDGEMENT_STEPS = 5_000
+"""Steps that a judgement on a changed claim counts for; some take a tenth of a second."""
+PROOF_SECONDS = 20.0
+"""Last safety of one proof or judgement, in seconds of the processor: most take some hundredths, and a process for
+proofs, which may have to be started, a second or two."""
+_NEAR = 0.9
+"""Share of its seconds after which a proof is taken to have been ended by them."""
+
+
+class BudgetSpent(Exception):
+    """The seconds were spent before the search came to its own end: what it would have found is not known."""
 
 
 class Effort:
@@ -25,7 +54,7 @@ class Effort:
     Parameters
     ----------
     seconds
-        The outer limit from now, in seconds of the processor.
+        The last safety, from now, in seconds of the processor.
     steps
         How many steps.
 
@@ -35,36 +64,74 @@ class Effort:
     >>> half = effort.share(0.5)
     >>> half.spend(30), half.spend(30), effort.steps
     (True, False, 40)
+    >>> Effort(0.0).spend(1)
+    Traceback (most recent call last):
+        ...
+    canon.exercise.diagnose.effort.BudgetSpent
     """
 
     def __init__(self, seconds: float, steps: int = STEPS) -> None:
         self.start, self.seconds = Worked.now(), seconds
         self.steps = steps
-        self._whole: Effort | None = None
+        self.whole: Effort | None = None
 
     def share(self, part: float) -> Effort:
         """Return a share of what is left; what is spent of it is spent of the whole."""
         found = Effort(self.seconds, int(part * self.steps))
-        found.start, found._whole = self.start, self
+        found.start, found.whole = self.start, self
         return found
 
     def spend(self, steps: int) -> bool:
-        """Spend some steps; return whether there were any left."""
-        self.steps -= steps
-        if self._whole is not None:
-            self._whole.spend(steps)
+        """Spend some steps; return whether there were any left.
+
+        Raises
+        ------
+        BudgetSpent
+            Where the seconds are over.
+        """
+        if self._seconds_left <= 0:
+            raise BudgetSpent
+        counting: Effort | None = self
+        while counting is not None:
+            counting.steps -= steps
+            counting = counting.whole
         return not self.spent
 
     @property
     def spent(self) -> bool:
-        """Whether nothing is left."""
-        return self.steps < 0 or self.start.since(Worked.now()) > self.seconds
+        """Whether no steps are left."""
+        return self.steps < 0
 
-    def work_for_a_proof(self) -> float:
-        """Spend the steps of a proof or judgement; return how many seconds of the processor it may take at most."""
-        self.spend(PROOF_STEPS)
-        return max(0.05, min(PROOF_SECONDS, self.seconds - self.start.since(Worked.now())))
+    @contextmanager
+    def proof(self, steps: int = PROOF_STEPS) -> Generator[float]:
+        """Give the seconds of the processor that one proof or judgement may take, and count its steps.
 
-    def for_a_proof(self) -> float:
-        """Spend the steps of a proof; return how many seconds on the clock it may take at most."""
-        return self.work_for_a_proof() * self.start.slowness(Worked.now())
+        Raises
+        ------
+        BudgetSpent
+            Where it took them all, so that its outcome says more of the machine than of the claim.
+        """
+        self.spend(steps)
+        begun, seconds = Worked.now(), min(PROOF_SECONDS, self._seconds_left)
+        on_the_clock = seconds * self.start.slowness(begun)
+        yield seconds
+        now = Worked.now()
+        if begun.since(now) > _NEAR * seconds or now.wall - begun.wall > _NEAR * on_the_clock:
+            raise BudgetSpent
+
+    @property
+    def _seconds_left(self) -> float:
+        return self.seconds - self.start.since(Worked.now())
+
+
+def proved_to_vanish(f: Expr, domain: Domain, effort: Effort) -> bool:
+    """Whether an expression is proved to vanish off the kinks of a domain.
+
+    Raises
+    ------
+    BudgetSpent
+        Where the seconds ended the proof.
+    """
+    with effort.proof() as seconds:
+        slowness = effort.start.slowness(Worked.now())
+        return vanishes_off_kinks(f, domain, budget=seconds * slowness).holds

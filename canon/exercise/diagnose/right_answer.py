@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, judged_to_hold
-from canon.exercise.diagnose.effort import Effort
+from canon.exercise.diagnose.effort import PROOF_SECONDS, Effort
 from canon.exercise.question.question import Same, SameEquations, Stated
 from canon.exercise.sheet.sympy_trees import shown
 from canon.proof.domain.verdict import Undecided
@@ -17,11 +17,15 @@ if TYPE_CHECKING:
 
 __all__ = ["corrected"]
 
-OUTER_SECONDS = 2.0
-
 
 def corrected(finding: Finding) -> str:
-    """Return the right answer as text, where canon has it."""
+    """Return the right answer as text, where canon has it.
+
+    Raises
+    ------
+    BudgetSpent
+        Where its proof was ended by its seconds.
+    """
     question = finding.question
     if not isinstance(question, Same | SameEquations | Stated):
         return ""
@@ -35,7 +39,7 @@ def corrected(finding: Finding) -> str:
         return ""
     if isinstance(question, Same) and question.answers:
         repaired = finding.reading.with_instead(question.answers, cast("Expr", answer))
-        if not judged_to_hold(repaired, Effort(OUTER_SECONDS)):
+        if not judged_to_hold(repaired, Effort(PROOF_SECONDS)):
             return ""
     ending = " = 0" if isinstance(question, SameEquations) else ""
     return "; ".join(f"{shown(e)}{ending}" for e in (answer if isinstance(answer, tuple) else (answer,)))

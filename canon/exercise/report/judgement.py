@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from canon.display import preformatted
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.sheet import Claim
 
-__all__ = ["MARKS", "MAX_SHOWN", "Judged", "Judgement", "invalid"]
+__all__ = ["MARKS", "MAX_SHOWN", "Judged", "Judgement", "invalid", "without_explanation"]
 
 MARKS = {"holds": "✓", "fails": "✗", "undecided": "?", "invalid": "!"}
 MAX_SHOWN = 2_000
@@ -155,6 +155,22 @@ class Judged(Protocol):
     def summary(self) -> str:
         """One line: how many of each."""
         ...
+
+
+def without_explanation(judgement: Judgement, budget: float) -> Judgement:
+    """Return the judgement on a wrong answer that says why it is not explained: its seconds ended the search.
+
+    Examples
+    --------
+    >>> without_explanation(Judgement("a", "equality-only", "fails"), 10).feedback
+    'what is wrong is undecided: the budget of 10 s was spent before the search came to its end'
+    """
+    if judgement.status != "fails":
+        return judgement
+    told = (
+        f"what is wrong is undecided: the budget of {budget:g} s was spent before the search came to its end"
+    )
+    return replace(judgement, feedback=f"{judgement.feedback}; {told}" if judgement.feedback else told)
 
 
 def invalid(claim: Claim, reason: str) -> Judgement:

@@ -16,6 +16,7 @@ import sympy as sp
 from sympy import Expr
 
 from canon.exercise.diagnose.change import Change, Mistake, rank
+from canon.exercise.diagnose.effort import proved_to_vanish
 from canon.exercise.diagnose.repairs.component_screen import PRECISION, Screen
 from canon.exercise.diagnose.repairs.lost_factor import Monomials
 from canon.exercise.diagnose.repairs.lost_inside import in_some_terms, symbol_restored, terms_lost_inside
@@ -30,7 +31,6 @@ from canon.exercise.diagnose.repairs.slips import (
 from canon.expression.symbols.symbol import Momentum, Rate
 from canon.mechanics.algebra.substitution import size, symbols_of
 from canon.proof.domain.balls import precision
-from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -139,7 +139,7 @@ def is_wrong(part: Part, domain: Domain) -> bool:
 
 def _is_right(part: Part, expression: Expr, domain: Domain, effort: Effort) -> bool:
     residual = replace(part, claimed=expression).residual
-    return vanishes_off_kinks(residual, domain, budget=effort.for_a_proof()).holds
+    return proved_to_vanish(residual, domain, effort)
 
 
 def _families(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[tuple[Iterator[Repair], float]]:
