@@ -1,7 +1,9 @@
 """The front door: every public name is there, and ``import canon`` loads nothing heavy."""
 
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -81,3 +83,14 @@ def test_rooms_open_when_they_are_named():
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert done.stdout.split() == ["kepler", "#0072B2"]
+
+
+def test_no_module_has_the_name_of_what_its_room_gives():
+    """It would hide it: ``from room import name`` then gives the module."""
+    stubs = Path(canon.__file__).parent.rglob("__init__.pyi")
+    hidden = [
+        f"{stub.parent.name}: {name}"
+        for stub in stubs
+        for name in re.findall(r"^from \.(\w+) import \1 as", stub.read_text(encoding="utf-8"), re.MULTILINE)
+    ]
+    assert hidden == []

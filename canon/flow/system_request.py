@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from sympy import Expr, Symbol
+from sympy import Expr, Symbol, sympify
 from sympy.core.function import AppliedUndef
 
 from canon.flow.checked_request import functions_by_name, parted_by_orbit, task_of, task_with, two_ends
@@ -19,7 +19,7 @@ from canon.flow.equations.first_order_motion import moving_system
 from canon.flow.equations.lagrangian_motion import SPAN
 from canon.flow.method.method_text import method_of
 from canon.flow.run.event import Event
-from canon.flow.system.parameter_values import check_given, check_parameters
+from canon.flow.system.parameter_values import check_given, check_known, check_parameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system.start_of_motion import check_constraints, state_in_order
@@ -97,7 +97,19 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
         request = replace(request, y0=state_in_order(request.y0, variables))
     if request.parameters:
         check_given(request.parameters, request.system.H.free_symbols, (*variables, request.system.t))
+        if not scene:
+            check_known(request.parameters, _symbols_of(request) - {*variables, request.system.t})
     return task_of(request), None
+
+
+def _symbols_of(request: Request) -> set[Any]:
+    """Return the symbols of a Hamiltonian and of the functions along its motion."""
+    functions = [request.system.H, *functions_by_name(request.observables).values()]
+    for event in request.events:
+        if isinstance(event.action, Mapping):
+            functions += event.action.values()
+        functions.append(event.function)
+    return {symbol for f in functions for symbol in sympify(f).free_symbols}
 
 
 def _unneeded_but_given(

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from canon import coordinates
 from canon.exercise import Claim, InvalidClaim, judge
 from canon.expression.parse import LanguageError, Scope, parse_expression
-from canon.expression.ranges.definite_integral import definite_integral
+from canon.expression.ranges.definite_integrals import definite_integral
 
 theta, x_1, x_2 = coordinates("theta x_1 x_2")
 m_1, m_2, m, a, k, beta = sp.symbols("m_1 m_2 m a k beta", positive=True)

@@ -103,7 +103,7 @@ def test_families_are_resumed_and_read_between_samples():
         ({"parameters": {m: [1, np.nan], k: 1}}, ValueError, r"m\[1\] = nan"),
         ({"parameters": {m: [1, 0], k: 1}}, ValueError, r"m\[1\] = 0, but m was made as a positive"),
         ({"parameters": {m: [1, 2]}}, KeyError, "holds k"),
-        ({"parameters": {m: [1, 2], k: 1, "w": [1, 2]}}, KeyError, "w, which H does not hold"),
+        ({"parameters": {m: [1, 2], k: 1, "w": [1, 2]}}, KeyError, "has no parameter w, it has k, m"),
         ({"y0": [[1, 1, 1], [0, 0, 0]]}, ValueError, r"shape \(orbits,\)"),
         ({"events": [Event(x, action="stop")]}, ValueError, "one by one"),
     ],

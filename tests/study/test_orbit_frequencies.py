@@ -6,8 +6,8 @@ import pytest
 import sympy as sp
 
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-from canon.mechanics.integrable.action_variables import action_variables
-from canon.mechanics.integrable.hamilton_jacobi import hamilton_jacobi
+from canon.mechanics.integrable.actions import action_variables
+from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.study import orbit_frequencies
 
 q, p, x, y, px, py = sp.symbols("q p x y p_x p_y", real=True)

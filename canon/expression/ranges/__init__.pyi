@@ -1,1 +1,1 @@
-from .definite_integral import definite_integral as definite_integral
+from .definite_integrals import definite_integral as definite_integral

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING, NoReturn, Protocol
 
-from canon.expression.ranges.definite_integral import definite_integral
+from canon.expression.ranges.definite_integrals import definite_integral
 from canon.expression.ranges.integrand_values import part_without_value
 from canon.expression.ranges.range_of_call import (
     INTEGRAL,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
-__all__ = ["check_given", "check_parameters"]
+__all__ = ["check_given", "check_known", "check_parameters"]
 
 _KINDS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "integer")
 
@@ -57,16 +57,28 @@ def check_parameters(
     """
     known = {s.name: s for s in (*others, *needed)}
     check_given(parameters, known.values(), variables)
+    check_known(parameters, known.values())
     seen = {str(key) for key in parameters}
+    missing = sorted(name for name in known if name not in seen)
+    if missing:
+        raise KeyError(f"no number for {', '.join(missing)}: give each one, parameters={{symbol: value}}")
+
+
+def check_known(parameters: Mapping[Symbol | str, Any], symbols: Iterable[Any]) -> None:
+    """Refuse numbers for parameters that a system has not.
+
+    Raises
+    ------
+    KeyError
+        A number is for no parameter.
+    """
+    known = {symbol.name for symbol in symbols}
     for name in (str(key) for key in parameters):
         if name not in known:
             near = get_close_matches(name, known, 1)
             has = f"it has {', '.join(sorted(known))}" if known else "it has none"
             meant = f"; is {near[0]} meant?" if near else ""
             raise KeyError(f"the system has no parameter {name}, {has}{meant}")
-    missing = sorted(name for name in known if name not in seen)
-    if missing:
-        raise KeyError(f"no number for {', '.join(missing)}: give each one, parameters={{symbol: value}}")
 
 
 def check_given(
@@ -74,7 +86,7 @@ def check_given(
 ) -> None:
     """Refuse parameters that are given twice, that move, or that are against what a symbol of their name says.
 
-    Those of other names are passed over: what a Hamiltonian was made from may have had parameters that it lost.
+    Those of other names are passed over: a scene may have parameters that do not matter.
 
     Raises
     ------

@@ -10,14 +10,14 @@ import numpy as np
 
 from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.propagation import propagate
-from canon.mechanics.integrable.action_variables import angles
+from canon.mechanics.integrable.actions import angles
 from canon.mechanics.integrable.cycles import CycleKind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from sympy import Symbol
 
-    from canon.mechanics.integrable.action_variables import ActionVariables
+    from canon.mechanics.integrable.actions import ActionVariables
 
 __all__ = ["OrbitFrequencies", "orbit_frequencies"]
 

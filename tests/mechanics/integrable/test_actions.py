@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-from canon.mechanics.integrable.action_variables import action_variables, angles, frequencies
+from canon.mechanics.integrable.actions import action_variables, angles, frequencies
 from canon.mechanics.integrable.ball_function import NotHolomorphicError
+from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.mechanics.integrable.cycles import CycleKind
-from canon.mechanics.integrable.hamilton_jacobi import hamilton_jacobi
 from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.balls import precision, value
 

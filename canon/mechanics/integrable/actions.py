@@ -11,8 +11,8 @@ from sympy import Expr, Symbol
 
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.integrable.complete_integral import CompleteIntegral
 from canon.mechanics.integrable.cycles import Cycle, CycleIntegrals, ball_of, cycle_of
-from canon.mechanics.integrable.hamilton_jacobi import CompleteIntegral
 from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.balls import precision
 

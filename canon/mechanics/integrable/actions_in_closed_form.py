@@ -16,7 +16,7 @@ from sympy import Expr, Rational, Symbol, sqrt
 
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.substitution import substitute
-from canon.mechanics.integrable.action_variables import ActionVariables, action_variables
+from canon.mechanics.integrable.actions import ActionVariables, action_variables
 from canon.mechanics.integrable.cycles import CycleKind, ball_of
 from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.balls import precision

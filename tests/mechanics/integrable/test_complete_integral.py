@@ -11,8 +11,8 @@ from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.bracket import poisson_bracket
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.classical_coordinates import NAMES, charts_for
+from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.mechanics.integrable.function_splitting import product_parts, sum_parts
-from canon.mechanics.integrable.hamilton_jacobi import hamilton_jacobi
 from canon.mechanics.integrable.separability import is_separable
 from canon.mechanics.integrable.separated_momenta import NotSeparatedError
 from canon.proof.domain.domain import EVERYWHERE, Domain

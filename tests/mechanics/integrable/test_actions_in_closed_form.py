@@ -4,10 +4,10 @@ import pytest
 import sympy as sp
 
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-from canon.mechanics.integrable import closed_actions as module
-from canon.mechanics.integrable.action_variables import action_variables
-from canon.mechanics.integrable.closed_actions import closed_actions
-from canon.mechanics.integrable.hamilton_jacobi import hamilton_jacobi
+from canon.mechanics.integrable import actions_in_closed_form as module
+from canon.mechanics.integrable.actions import action_variables
+from canon.mechanics.integrable.actions_in_closed_form import closed_actions
+from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
