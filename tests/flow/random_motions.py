@@ -121,7 +121,8 @@ def reference(case: RandomMotion, times: np.ndarray, width: str = "extended", sh
     passes over what the coefficients of its series do not know; beside zeros of high powers they know nothing at all.
     """
     kind = KINDS[width]
-    shorter *= 64 if highest_power(case.tree) > 8 else 1
+    if highest_power(case.tree) > 8:
+        shorter *= 8 if width == "more" else 64  # with 57 coefficients much more is known
     q, p = ([hy.expression(f"{letter}{i}") for i in range(case.n)] for letter in "qp")
     units = [hy.expression(kind(each)) for each in case.units]
     H = in_heyoka(case.tree, q, [unit * each for unit, each in zip(units, p, strict=True)], kind)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from canon import Hamiltonian
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagation import propagate
 from canon.flow.run.event import Event
@@ -193,15 +194,22 @@ NAN, INF = float("nan"), float("inf")
         ({"cadence": -1}, ValueError, "1 or more"),
         ({"precision": "half"}, ValueError, "compensated"),
         ({"dense": True}, ValueError, "no polynomials"),
-        ({"parameters": {"w": NAN}}, ValueError, "w = nan"),
-        ({"parameters": {"w": None}}, ValueError, "w = None"),
-        ({"parameters": {"w": True}}, ValueError, "w = True"),
     ],
 )
 def test_wrong_words_are_refused_at_once(wrong, error, message):
     right = {"y0": [1.0, 0.0], "t_span": (0, 1), "method": Splitting("verlet"), "step": 0.1}
     with pytest.raises(error, match=message):
         propagate(PENDULUM, **{**right, **wrong})
+
+
+@pytest.mark.parametrize("value", [NAN, None, True])
+def test_parameters_that_are_no_numbers(value):
+    w = sp.Symbol("w", real=True)
+    swinging = Hamiltonian(x.momentum**2 / 2 - w * sp.cos(x), [x], [x.momentum])
+    with pytest.raises(ValueError, match=f"w = {value!s}"):
+        propagate(swinging, (0, 1), [1.0, 0.0], method=Splitting("verlet"), step=0.1, parameters={"w": value})
+    with pytest.raises(KeyError, match="the system has no parameter w, it has none"):
+        propagate(PENDULUM, (0, 1), [1.0, 0.0], method=Splitting("verlet"), step=0.1, parameters={"w": value})
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1e-3, 1.5, NAN])
