@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from flint import arb, arb_mat
@@ -17,7 +18,11 @@ from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.balls import precision
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable
+
+    from canon.array import Array
+
+    State = Mapping[Any, Expr | float] | Iterable[Expr | float] | Array
 
 __all__ = ["ActionVariables", "action_variables", "angles", "frequencies"]
 
@@ -66,8 +71,8 @@ class ActionVariables:
 
 def action_variables(
     integral: CompleteIntegral,
-    start: Mapping[Symbol, Expr | float],
-    parameters: Mapping[Symbol, Expr | float] | None = None,
+    start: State,
+    parameters: Mapping[Any, Expr | float] | None = None,
     digits: int = 30,
     periods: Mapping[Symbol, Expr] | None = None,
 ) -> ActionVariables:
@@ -83,10 +88,10 @@ def action_variables(
     integral
         What :func:`hamilton_jacobi` returned.
     start
-        (q, p) of one point of the motion, in the coordinates of ``integral.H``. Floats are taken as the binary numbers
-        that they are.
+        (q, p) of one point of the motion, in the coordinates of ``integral.H``, in their order or by symbol or name.
+        Floats are taken as the binary numbers that they are.
     parameters
-        The values of all other symbols.
+        The values of all other symbols, by symbol or name.
     digits
         How many digits the result should have at least.
     periods
@@ -132,8 +137,8 @@ def action_variables(
 
 def frequencies(
     integral: CompleteIntegral,
-    start: Mapping[Symbol, Expr | float],
-    parameters: Mapping[Symbol, Expr | float] | None = None,
+    start: State,
+    parameters: Mapping[Any, Expr | float] | None = None,
     digits: int = 30,
     periods: Mapping[Symbol, Expr] | None = None,
 ) -> tuple[arb, ...]:
@@ -150,7 +155,7 @@ def frequencies(
     return action_variables(integral, start, parameters, digits, periods).frequencies
 
 
-def angles(actions: ActionVariables, state: Mapping[Symbol, Expr | float]) -> tuple[arb, ...]:
+def angles(actions: ActionVariables, state: State) -> tuple[arb, ...]:
     """Return the angles θ = ∂W/∂J of a state on the torus, zero where each libration is at its lower turning point.
 
     Rotating and ignorable coordinates are counted from q = 0. The state should be on the torus: its constants are not
@@ -170,14 +175,15 @@ def angles(actions: ActionVariables, state: Mapping[Symbol, Expr | float]) -> tu
     >>> [round(float(angles(torus, {q: 1, p: sign})[0] * 4 / arb.pi()), 12) for sign in (1, -1)]
     [3.0, 5.0]
     """
-    n = len(actions.cycles)
+    n, H = len(actions.cycles), actions.integral.H
+    at = _by_symbol(state, (*H.q, *H.p))
     with precision(int(actions.digits * 3.33) + GUARD_BITS):
         balls = {s: ball_of(v) for s, v in actions.values.items()}
         by_alpha = [arb(0)] * n
         for momentum, cycle in zip(actions.integral.momenta, actions.cycles, strict=True):
-            place = _exact(state[momentum.q], momentum.q)
+            place = _exact(at[momentum.q], momentum.q)
             at_place = substitute(momentum.shift, {**actions.values, momentum.q: place})
-            outward = ball_of(_exact(state[momentum.p], momentum.p) - at_place)
+            outward = ball_of(_exact(at[momentum.p], momentum.p) - at_place)
             integrals = CycleIntegrals(momentum, cycle, balls)
             for j, constant in enumerate(actions.integral.constants):
                 by_alpha[j] += integrals.up_to(constant, place, outward.real)
@@ -185,18 +191,34 @@ def angles(actions: ActionVariables, state: Mapping[Symbol, Expr | float]) -> tu
         return tuple(sum((inverse[j, i] * by_alpha[j] for j in range(n)), arb(0)) for i in range(n))
 
 
-def _values(
-    integral: CompleteIntegral,
-    start: Mapping[Symbol, Expr | float],
-    parameters: Mapping[Symbol, Expr | float],
-) -> dict[Symbol, Expr]:
-    """Return exact values of parameters, the start and the constants."""
-    known = {s: _exact(v, s) for s, v in (*parameters.items(), *start.items())}
-    missing = [str(z) for z in (*integral.H.q, *integral.H.p) if z not in start]
+def _by_symbol(state: State, symbols: tuple[Symbol, ...]) -> dict[Symbol, Expr | float]:
+    """Return the numbers of a state by symbol."""
+    names = ", ".join(str(symbol) for symbol in symbols)
+    if not isinstance(state, Mapping):
+        numbers = list(state)
+        if len(numbers) != len(symbols):
+            raise ValueError(f"the state has {len(numbers)} numbers; give {names} in this order, or by name")
+        return dict(zip(symbols, numbers, strict=True))
+    given = {str(key): number for key, number in state.items()}
+    unknown = sorted(given.keys() - {str(symbol) for symbol in symbols})
+    if unknown:
+        raise ValueError(f"the state is ({names}), and {', '.join(unknown)} is none of them")
+    missing = [str(symbol) for symbol in symbols if str(symbol) not in given]
     if missing:
         raise ValueError(
             f"the start does not say what {', '.join(missing)} is; give every coordinate and momentum"
         )
+    return {symbol: given[str(symbol)] for symbol in symbols}
+
+
+def _values(
+    integral: CompleteIntegral, state: State, parameters: Mapping[Any, Expr | float]
+) -> dict[Symbol, Expr]:
+    """Return exact values of parameters, the start and the constants."""
+    start = _by_symbol(state, (*integral.H.q, *integral.H.p))
+    named = {s.name: s for s in integral.H.H.free_symbols if isinstance(s, Symbol)}
+    given = {named.get(str(key), sp.Symbol(str(key))): number for key, number in parameters.items()}
+    known = {s: _exact(v, s) for s, v in (*given.items(), *start.items())}
     below = next((z for z in start if z.is_positive and known[z].is_positive is False), None)
     if below is not None:
         raise ValueError(f"{below} is declared positive, but starts at {known[below]}")

@@ -1,6 +1,7 @@
 """Actions and frequencies: balls that hold published formulas, both routes of a derivative, and what has no cycle."""
 
 import mpmath as mp
+import numpy as np
 import pytest
 import sympy as sp
 from flint import arb, ctx
@@ -221,3 +222,17 @@ def test_the_working_precision_is_as_it_was():
     before = ctx.prec
     frequencies(OSCILLATOR, {q: 1, p: 1}, {m: 1, w: 1})
     assert ctx.prec == before
+
+
+def test_a_start_is_given_as_to_propagate():
+    oscillator = hamilton_jacobi(Hamiltonian(p**2 / 2 + k * q**2 / 2, q, p))
+    ways = ({q: 1, p: 2}, {"q": 1, "p": 2}, [1, 2], (1.0, 2), np.array([1.0, 2.0]))
+    for start in ways:
+        for number in ({k: 9}, {"k": 9}):
+            torus = action_variables(oscillator, start, number)
+            assert float(torus.J[0]) == pytest.approx((4 + 9) / 6, abs=1e-15)
+            assert float(angles(torus, start)[0]) == float(angles(torus, ways[0])[0])
+    with pytest.raises(ValueError, match="3 numbers; give q, p in this order, or by name"):
+        action_variables(oscillator, [1, 2, 3], {k: 9})
+    with pytest.raises(ValueError, match=r"the state is \(q, p\), and r is none of them"):
+        action_variables(oscillator, {"q": 1, "r": 2}, {k: 9})
