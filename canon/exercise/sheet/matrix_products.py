@@ -135,20 +135,13 @@ def _term(
     text: str, begin: int, end: int, matrices: Sequence[_Matrix], check: _Check
 ) -> tuple[list[str], tuple[int, int]] | None:
     """Return the entries of one term and its shape, None where it is no product of matrices."""
-    if not matrices or not _BLANK.fullmatch(text[matrices[-1].end : end]):
+    if not matrices or not _BLANK.fullmatch(text[matrices[-1].end : end]) or not _fit(text, matrices):
         return None
     sign, factor = _factor(text, begin, matrices[0].begin)
-    for m, after in pairwise(matrices):
-        between = text[m.end : after.begin]
-        elementwise = (m.elementwise or after.elementwise) and between.strip() != "@"
-        if not _TIMES.fullmatch(between) or m.shape[1] != after.shape[0] or elementwise:
-            return None
     if factor.strip():
         check(factor)
-    for m in matrices:
-        for row in m.rows:
-            for entry in row:
-                check(entry)
+    for entry in (entry for m in matrices for row in m.rows for entry in row):
+        check(entry)
     rows = [list(row) for row in matrices[0].rows]
     for m in matrices[1:]:
         columns = [*zip(*m.rows, strict=True)]
@@ -156,6 +149,16 @@ def _term(
     scaled = f"{sign}({_bare(factor)}){_dot(text)}" if factor.strip() else sign
     entries = [f"{scaled}({_bare(entry)})" if scaled else _bare(entry) for row in rows for entry in row]
     return entries, (len(rows), len(rows[0]))
+
+
+def _fit(text: str, matrices: Sequence[_Matrix]) -> bool:
+    """Tell whether matrices side by side have a product: NumPy's ``*`` between arrays goes entry by entry."""
+    for m, after in pairwise(matrices):
+        between = text[m.end : after.begin]
+        elementwise = (m.elementwise or after.elementwise) and between.strip() != "@"
+        if not _TIMES.fullmatch(between) or m.shape[1] != after.shape[0] or elementwise:
+            return False
+    return True
 
 
 def _factor(text: str, begin: int, end: int) -> tuple[str, str]:

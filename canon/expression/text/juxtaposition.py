@@ -204,14 +204,7 @@ class Reader(FactorParser):
         if token.text in self.scope.functions:
             return self.of_function(token, bracket)
         if self.scope.declares(token.text):
-            if bracket and opening.tight and self.at_time(token):
-                self.at += 3
-                if token.primes:
-                    return Name(token.text, token.primes, token.column)
-                return Call(token.text, (Name(self.scope.time.name, 0, opening.column),), token.column)
-            if opening.text == "[" and opening.tight and self.closes_after(2):
-                raise self.fault("there is no indexing", "write ( ) for grouping, * for a product")
-            return Name(token.text, token.primes, token.column)
+            return self.declared(token, opening)
         if token.text == "d" and (node := derivative(self, token)) is not None:
             return node
         if token.text == "D" and (rate := of_operator(self)) is not None:
@@ -225,6 +218,17 @@ class Reader(FactorParser):
             return node
         if bracket and opening.tight:
             return self.called(token)
+        return Name(token.text, token.primes, token.column)
+
+    def declared(self, token: Token, opening: Token) -> Node:
+        """Read a declared name, with ``(t)`` behind it where it is of a coordinate."""
+        tight = opening.text in ("(", "[") and opening.tight
+        if tight and self.at_time(token):
+            self.at += 3
+            if not token.primes:
+                return Call(token.text, (Name(self.scope.time.name, 0, opening.column),), token.column)
+        elif tight and opening.text == "[" and self.closes_after(2):
+            raise self.fault("there is no indexing", "write ( ) for grouping, * for a product")
         return Name(token.text, token.primes, token.column)
 
     def closes_after(self, tokens: int) -> bool:
