@@ -206,3 +206,13 @@ def test_none_of_many_wells_is_silently_wrong(name: str, shape: str) -> None:
 @pytest.mark.parametrize("first", range(4))
 def test_nor_are_fields_and_ensembles(first: int) -> None:
     in_a_child(f"scan_fields_and_ensembles({first}, 4)")
+
+
+def test_a_trial_step_beyond_doubles_is_gone_back_from_in_silence():
+    """Quad holds what doubles do not; no warning of NumPy's comes out (they are errors in tests)."""
+    x, y = coordinates("x y")
+    turning = sp.Rational(17, 16) * (x.momentum * y - y.momentum * x)
+    kinetic = x.momentum**2 / 2 + sp.sqrt(1 + y.momentum**2)
+    steep = Hamiltonian(kinetic + turning + x**2 / 8 + y**16 / 8, [x, y], [x.momentum, y.momentum])
+    with pytest.raises(NonFiniteStateError, match=r"can't be continued after t = 2\.74418365"):
+        propagate(steep, (0, 3), [np.pi / 2, 0, 0, 0], precision="quad", samples=4)

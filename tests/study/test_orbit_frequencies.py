@@ -90,3 +90,15 @@ def test_a_time_too_short_is_told():
     torus = action_variables(hamilton_jacobi(PENDULUM), {q: 0.25, p: 1.0}, digits=17)
     with pytest.raises(ValueError, match="more than"):
         orbit_frequencies(torus, 0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "start", [[0.318, -0.123, 0.393, -0.109], [0.331, 0.461, -0.236, -0.056], [0.625, -0.351, -0.018, 0.577]]
+)
+def test_a_satellite_that_nearly_meets_its_centre_has_113_bits(start):
+    """Doubles are off by a hundredth after 200 periods, on other tori; the actions are right."""
+    integral = hamilton_jacobi(TWO_CENTRES, "elliptic", focal=sp.S.One)
+    seen = orbit_frequencies(action_variables(integral, start, digits=17), 30)
+    assert seen.energy_error < 1e-12
+    assert seen.difference < 1e-12

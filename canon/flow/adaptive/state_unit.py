@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["state_unit"]
+__all__ = ["is_finite", "state_unit"]
 
 _ORDINARY = 2.0**-4
 """A state whose largest number is above this part of 1 is integrated as it is."""
@@ -47,3 +47,9 @@ def state_unit(system: HamiltonEquations, states: Array, plan: Plan) -> Fraction
         sizes = np.where(sizes == 0, fastest * span * 2.0**-_BELOW, sizes)
     sizes = sizes[(sizes > 0) & (sizes < _ORDINARY)]
     return Fraction(2) ** (math.frexp(float(sizes.min()))[1] - 1) if sizes.size else Fraction(1)
+
+
+def is_finite(state: Any) -> bool:
+    """Tell whether doubles hold a state of any numbers: wider ones may be beyond them after a step that is too long."""
+    with np.errstate(all="ignore"):
+        return bool(np.isfinite(state.astype(np.float64)).all())

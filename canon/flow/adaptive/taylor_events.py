@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.adaptive.state_unit import is_finite
 from canon.flow.run.event import Crossing
 from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, time_and_state
 from canon.flow.run.observables_along import values_in
@@ -229,7 +230,7 @@ class TaylorEvents:
     def _changed(self, jump: tuple[int, ...], t: float, state: Any) -> Any:
         high, low = self._parts(state)
         found = values_in(self.wide, self.system, jump, t, high[:, np.newaxis], low[:, np.newaxis])[:, 0]
-        if not np.isfinite(found.astype(np.float64)).all():
+        if not is_finite(found):
             y = high[self.system.rows]
             raise NonFiniteStateError(
                 f"the new state of an event is not finite at {time_and_state(t, y)}", t, y

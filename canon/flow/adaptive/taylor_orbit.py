@@ -13,6 +13,7 @@ import numpy as np
 
 from canon.flow.adaptive.first_step import first_step
 from canon.flow.adaptive.held_steps import HeldSteps, LocalisedTerms, finer
+from canon.flow.adaptive.state_unit import is_finite
 from canon.flow.adaptive.tested_steps import TestedSteps
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.kernel.heyoka_bridge import taylor_integrator
@@ -125,7 +126,7 @@ class TaylorOrbit:
             rows += found
             left = left[len(found) :]
         made = np.array(rows).reshape(len(rows), len(self.integrator.state))
-        if not left and not np.isfinite(made.astype(np.float64)).all():
+        if not left and not is_finite(made):
             failure = "the state is not finite"
         if stopped or (not left and not isinstance(failure, str)):
             failure = None
@@ -255,7 +256,7 @@ class TaylorOrbit:
         t, state = own.time, own.state.copy()
         for _ in range(_MANY_STEPS):
             own.step(self.span)
-            if not np.isfinite(own.state.astype(np.float64)).all() or own.time == t:
+            if not is_finite(own.state) or own.time == t:
                 break
             t, state = own.time, own.state.copy()
         y = (state * self.taylor_events.size).astype(np.float64)[list(rows)]

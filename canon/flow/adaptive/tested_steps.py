@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.adaptive.state_unit import is_finite
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -111,7 +113,7 @@ class TestedSteps:
             made, good, missed = 0, 0, math.inf
             if piece is not None:
                 made, (good, missed) = len(piece.times) - 1, good_steps(piece, self.plain())
-            if np.isfinite(own.state.astype(np.float64)).all() and (trial.trusting or good == made):
+            if is_finite(own.state) and (trial.trusting or good == made):
                 self._accept(steps, piece)
                 if outcome != taylor_outcome.step_limit or self.steps >= most:
                     return outcome
@@ -192,7 +194,7 @@ def good_steps(piece: Any, plain: Any) -> tuple[int, float]:
     """
     series = piece.tcs
     state, clock = plain.state.copy(), plain.dtime
-    known = bool(np.isfinite(state.astype(np.float64)).all())
+    known = is_finite(state)
     if known:
         plain.step(max_delta_t=type(plain.time)(0), write_tc=True)
         plain.state[:], plain.dtime = state, clock

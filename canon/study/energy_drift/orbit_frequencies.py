@@ -25,6 +25,8 @@ FIRST = 0.05
 """The first time, in shortest periods: so early that no angle has gone half round."""
 RATIO = 4.0
 """From one time to the next; each is told from its neighbours a turn away by the frequencies found before."""
+KEPT = 1e-12
+"""Relative change of the energy above which the orbit has more digits: close passes of a centre take them."""
 CANDIDATES = 9
 """Samples about each time, of which one far from the turning points is taken."""
 
@@ -41,11 +43,14 @@ class OrbitFrequencies:
         The growth of the angles along the orbit over the time.
     span
         Over which time.
+    energy_error
+        The largest relative change of the energy on the way: an orbit that does not keep it is on other tori.
     """
 
     expected: tuple[float, ...]
     found: tuple[float, ...]
     span: float
+    energy_error: float = 0.0
 
     @property
     def difference(self) -> float:
@@ -58,7 +63,8 @@ def orbit_frequencies(torus: ActionVariables, periods: float = 200.0) -> OrbitFr
     """Propagate the start of a torus with heyoka's Taylor method, and return the frequencies of that orbit.
 
     The angles θ = ∂W/∂J of states along the orbit grow as ω t on the right torus. Frequencies are read from them over
-    longer and longer times, without the frequencies that were expected.
+    longer and longer times, without the frequencies that were expected. Where doubles do not keep the energy, as past
+    a centre of force that is nearly met, the orbit has 113 bits.
 
     Parameters
     ----------
@@ -87,7 +93,19 @@ def orbit_frequencies(torus: ActionVariables, periods: float = 200.0) -> OrbitFr
     known: dict[Symbol | str, float] = {
         s: float(v) for s, v in torus.values.items() if s in H.H.free_symbols and s not in variables
     }
-    run: Any = propagate(H, (0.0, float(times[-1])), start, method=Taylor(), times=times, parameters=known)
+    for precision in ("double", "quad"):
+        run: Any = propagate(
+            H,
+            (0.0, float(times[-1])),
+            start,
+            method=Taylor(),
+            times=times,
+            parameters=known,
+            precision=precision,
+        )
+        kept = float(np.abs(run.energy_error).max())
+        if kept < KEPT:
+            break
     states: npt.NDArray[np.float64] = run.y
     chosen = [
         _farthest_from_rest(torus, states, range(i * CANDIDATES, (i + 1) * CANDIDATES))
@@ -100,7 +118,7 @@ def orbit_frequencies(torus: ActionVariables, periods: float = 200.0) -> OrbitFr
         gone = theta - reduced[0]
         turns = np.round((found * span - gone) / tau)
         found = (gone + tau * turns) / span
-    return OrbitFrequencies(expected, tuple(float(w) for w in found), span)
+    return OrbitFrequencies(expected, tuple(float(w) for w in found), span, kept)
 
 
 def _times(shortest: float, periods: float) -> list[float]:
