@@ -109,7 +109,7 @@ def _symbols_of(request: Request) -> set[Any]:
         if isinstance(event.action, Mapping):
             functions += event.action.values()
         functions.append(event.function)
-    return {symbol for f in functions for symbol in sympify(f).free_symbols}
+    return {symbol for f in functions for symbol in sympify(f, strict=True).free_symbols}
 
 
 def _unneeded_but_given(

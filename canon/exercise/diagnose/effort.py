@@ -35,8 +35,8 @@ STEPS = 600_000
 """Steps for one diagnosis, which take a second or two where nothing is found."""
 PROOF_STEPS = 2_500
 """Steps that a proof counts for."""
-JUDGEMENT_STEPS = 5_000
-"""Steps that a judgement on a changed claim counts for; some take a tenth of a second."""
+JUDGEMENT_STEPS = 2_500
+"""Steps that a judgement on a changed claim counts for, of which a search needs up to some two hundred."""
 PROOF_SECONDS = 20.0
 """Last safety of one proof or judgement, in seconds of the processor: most take some hundredths, and a process for
 proofs, which may have to be started, a second or two."""
