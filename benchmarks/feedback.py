@@ -23,6 +23,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from canon.exercise.claim_verdict import examined
 from canon.exercise.diagnose.diagnosis_search import diagnosis
+from canon.exercise.diagnose.effort import BudgetSpent
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.report.sentences import sentence
 from tests.exercise.slips_of_students import half_of, is_named, of_a_question, questions
@@ -38,6 +39,7 @@ RESULTS = Path(__file__).parent / "results" / "feedback.txt"
 OUTCOMES = ("named", "placed", "silent", "false")
 HALVES = ("open", "closed")
 PATIENCE = 120.0
+BUDGET_SPENT = "(the seconds ended the search)"
 
 
 def outcome(answer: WrongAnswer, found: Diagnosis | None) -> str:
@@ -59,13 +61,16 @@ def tried(question: Question, each: int) -> Iterator[dict[str, Any]]:
     """Yield for each wrong answer to a question what is said of it and what that is worth."""
     for answer in of_a_question(question, each):
         finding = answer.finding
-        start = time.process_time()
-        found = diagnosis(finding)
+        start, spent = time.process_time(), False
+        try:
+            found = diagnosis(finding)
+        except BudgetSpent:
+            found, spent = None, True
         seconds = time.process_time() - start
         yield {
             "slip": answer.slip,
             "outcome": outcome(answer, found),
-            "said": sentence(found) if found else "",
+            "said": sentence(found) if found else BUDGET_SPENT if spent else "",
             "wrong": "; ".join(
                 f"{k}: {v}  (right: {answer.question.answer(k)})" for k, v in answer.wrong.items()
             ),
@@ -112,7 +117,8 @@ def table(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     for title, counted in (("slip", slips), ("kind of claim", kinds)):
         yield f"\n{title:<32}{'':>6}  {head}"
         yield from (row(name, counted[name]) for name in sorted(counted))
-    yield f"\nslowest diagnosis: {slowest:.1f} s of processor time"
+    spent = sum(answer["said"] == BUDGET_SPENT for line in found for answer in line["answers"])
+    yield f"\nslowest diagnosis: {slowest:.1f} s of processor time; searches that their seconds ended: {spent}"
 
 
 def show(found: Sequence[dict[str, Any]]) -> None:

@@ -241,7 +241,7 @@ def test_gradescope_marks_a_submission_as_its_container_does(tmp_path):
     subprocess.run(command, check=True, timeout=120)
     pendulum, energy = json.loads((tmp_path / "results.json").read_text())["tests"]
     assert (pendulum["score"], pendulum["status"]) == (1.0, "passed")
-    assert (energy["score"], energy["status"]) == (0.0, "failed")
+    assert (energy["score"], energy["status"]) == (0.5, "failed")  # one of its two terms
 
 
 def test_the_page_about_grading_tells_what_its_program_prints(capsys):

@@ -10,7 +10,7 @@ import sympy as sp
 from canon.exercise.claim_verdict import InvalidClaim, examine
 from canon.exercise.question.deadline import Worked
 from canon.exercise.report.derivation_steps import steps
-from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid, without_explanation
+from canon.exercise.report.judgement import MAX_SHOWN, Judgement, invalid, points_of, without_explanation
 from canon.expression.symbols.magnitude import written
 from canon.proof.rungs.ladder import REFUSALS, refusal
 
@@ -61,16 +61,22 @@ def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Itera
         left = finding.left_open() if finding.verdict.holds else ()
         yield replace(judgement, warnings=(*judgement.warnings, *left)), True
         return
-    from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS
+    from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS, diagnosis
     from canon.exercise.diagnose.effort import BudgetSpent
+    from canon.exercise.diagnose.proved_share import proved_share
     from canon.exercise.diagnose.right_answer import corrected
-    from canon.exercise.report.sentences import feedback
+    from canon.exercise.report.sentences import sentence
 
     try:
         judgement = replace(judgement, corrected=_cut(corrected(finding)))
         yield judgement, False  # before the diagnosis is looked for, which can be cut off
         left = min(OUTER_SECONDS, claim.budget - start.since(Worked.now()))
-        yield replace(judgement, feedback=_cut(feedback(finding, left)) or judgement.feedback), True
+        found = diagnosis(finding, left)
+        told = (_cut(sentence(found)) if found else "") or judgement.feedback
+        judgement = replace(judgement, feedback=told)
+        if claim.keys.get("partial"):
+            judgement = replace(judgement, share=float(proved_share(finding, found)))
+        yield judgement, True
     except BudgetSpent:
         yield without_explanation(judgement, claim.budget), True
 
@@ -92,7 +98,18 @@ def _told(claim: Claim, verdict: Verdict) -> Judgement:
         known=_cut(known),
         title=str(claim.keys.get("title", "")),
         expect=claim.expect,
+        points=points_of(claim),
+        share=_share(claim, verdict),
     )
+
+
+def _share(claim: Claim, verdict: Verdict) -> float | None:
+    """Return the share of an answer as far as the verdict alone tells it."""
+    if points_of(claim) is None or verdict.undecided:
+        return None
+    if verdict.holds:
+        return 1.0
+    return None if claim.keys.get("partial") else 0.0
 
 
 def _short(residual: sp.Basic | sp.MatrixBase | None) -> str:

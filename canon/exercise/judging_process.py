@@ -154,8 +154,7 @@ def _received(child: Child, deadline: float, before: float | None, allowed: floa
 
 
 def _open(claim: Claim, why: str, seconds: float) -> Judgement:
-    title = str(claim.keys.get("title", ""))
-    return Judgement(claim.id, claim.kind, "undecided", seconds, known=why, title=title, expect=claim.expect)
+    return replace(invalid(claim, why), status="undecided", seconds=seconds)
 
 
 def _encoded(claim: Claim) -> bytes:

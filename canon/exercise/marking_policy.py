@@ -63,7 +63,8 @@ class MarkingPolicy:
     """Marks from verdicts: right and wrong have points; unreadable is asked again, undecided is for a person.
 
     What can't be read is asked again only where it is the answer that can't be: a mistake in the question is for a
-    person too.
+    person too. An answer that fails is worth the share of it that is proved to be right, where the claim says
+    ``partial = true``.
 
     Parameters
     ----------
@@ -110,7 +111,9 @@ class MarkingPolicy:
                 return Mark(Outcome.RIGHT, self.right, "; ".join(("right", *judgement.warnings)))
             case "fails":
                 why = judgement.feedback or judgement.question or "this is not right"
-                return Mark(Outcome.WRONG, self.wrong, why)
+                share = judgement.share or 0.0
+                partly = f"; {share:.0%} of it is proved to be right" if share else ""
+                return Mark(Outcome.WRONG, self.wrong + share * (self.right - self.wrong), why + partly)
             case "invalid" if _answer_alone_is_at_fault(judgement, answer):
                 told = f"this could not be read, please write it again: {judgement.known}"
                 return Mark(Outcome.UNREADABLE, None, told)

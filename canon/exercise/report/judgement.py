@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, fields, replace
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Protocol
 
 from canon.display import preformatted
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.sheet import Claim
 
-__all__ = ["MARKS", "MAX_SHOWN", "Judged", "Judgement", "invalid", "without_explanation"]
+__all__ = ["MARKS", "MAX_SHOWN", "Judged", "Judgement", "invalid", "points_of", "without_explanation"]
 
 MARKS = {"holds": "✓", "fails": "✗", "undecided": "?", "invalid": "!"}
 MAX_SHOWN = 2_000
@@ -51,6 +52,11 @@ class Judgement:
         How it was judged: pairs of a sentence and a formula, either of which may be empty.
     warnings
         What was passed over in reading the claim, such as units, and what a claim that holds leaves open.
+    points
+        What the claim is worth, where its sheet says so.
+    share
+        The share of the answer that is proved to be right, where points or a share are asked for; None where
+        nobody can say yet.
     """
 
     id: str
@@ -69,6 +75,8 @@ class Judgement:
     file: str = ""
     steps: tuple[tuple[str, str], ...] = ()
     warnings: tuple[str, ...] = ()
+    points: float | None = None
+    share: float | None = None
 
     def __repr__(self) -> str:
         return f"<Judgement {self.id!r}: {self.kind}, {self.status}>"
@@ -77,13 +85,18 @@ class Judgement:
         return preformatted("\n".join(self.lines()))
 
     @property
+    def earned(self) -> float | None:
+        """The points of the share that is proved; None where there are none or nobody can say yet."""
+        return None if self.points is None or self.share is None else self.points * self.share
+
+    @property
     def as_expected(self) -> bool:
         """Whether the verdict is the one the author expects, or none is expected."""
         return self.expect in ("", self.status)
 
     def to_dict(self) -> dict[str, Any]:
         """Return what one JSON line says."""
-        return {**asdict(self), "seconds": round(self.seconds, 4)}
+        return {**asdict(self), "seconds": round(self.seconds, 4), "earned": self.earned}
 
     @classmethod
     def from_dict(cls, found: Mapping[str, Any]) -> Judgement:
@@ -107,7 +120,16 @@ class Judgement:
         shown = [f"{head[: width - 10]:<{width - 10}} {self.seconds:6.2f} s{unexpected}"]
         told = (line for each in (*self.reasons, *self.warnings) for line in each.split("\n"))
         shown += [f"    {line}" for line in told]
+        shown += [f"    {self._points_in_words}"] if self.points is not None else []
         return [printable(line) for line in shown]
+
+    @property
+    def _points_in_words(self) -> str:
+        if self.earned is None:
+            return f"of {self.points:g} points, not known how many"
+        partly = self.share not in (0, 1)
+        told = f": {self.share:.0%} of the answer is proved to be right" if partly else ""
+        return f"{self.earned:.3g} of {self.points:g} points{told}"
 
     @property
     def reasons(self) -> list[str]:
@@ -182,4 +204,12 @@ def invalid(claim: Claim, reason: str) -> Judgement:
         known=reason,
         title=str(claim.keys.get("title", "")),
         expect=claim.expect,
+        points=points_of(claim),
     )
+
+
+def points_of(claim: Claim) -> float | None:
+    """Return what a claim is worth; one that has a share, but no points of its own, is worth one."""
+    points = claim.keys.get("points", 1 if claim.keys.get("partial") is True else None)
+    usable = isinstance(points, int | float | Decimal) and not isinstance(points, bool)
+    return float(points) if usable else None

@@ -76,7 +76,24 @@ class Report:
         """One line: how many of each."""
         counts = ", ".join(f"{number} {status}" for status, number in self.counts.items())
         seconds = sum(judgement.seconds for judgement in self.judgements)
-        return f"{counted(len(self.judgements), 'claim')}: {counts or 'none'} ({seconds:.1f} s)"
+        points = f", {self.points_in_words}" if self.out_of else ""
+        return f"{counted(len(self.judgements), 'claim')}: {counts or 'none'}{points} ({seconds:.1f} s)"
+
+    @property
+    def earned(self) -> float:
+        """The points of all claims together, as far as they are known."""
+        return sum(judgement.earned or 0.0 for judgement in self.judgements)
+
+    @property
+    def out_of(self) -> float:
+        """What all claims together are worth."""
+        return sum(judgement.points or 0.0 for judgement in self.judgements)
+
+    @property
+    def points_in_words(self) -> str:
+        """How many points there are, and of how many that is not known."""
+        open_ = sum(j.points for j in self.judgements if j.points is not None and j.share is None)
+        return f"{self.earned:.4g} of {self.out_of:g} points" + (f", {open_:g} of them open" if open_ else "")
 
     def json_lines(self) -> str:
         """Return one JSON object a line."""
@@ -86,7 +103,8 @@ class Report:
         """Return the whole report as one JSON object: title, counts, exit status and the claims in their order."""
         claims = [judgement.to_dict() for judgement in self.judgements]
         said = {"title": self.title, "counts": self.counts, "exit_status": self.exit_status, "claims": claims}
-        return json.dumps(said, indent=1)
+        points = {"earned": self.earned, "out_of": self.out_of} if self.out_of else {}
+        return json.dumps({**said, **points}, indent=1)
 
     def to_html(self) -> str:
         """Return the report as a page: formulas set, everything in one file, no script, nothing fetched."""

@@ -52,6 +52,8 @@ COMMON: Mapping[str, Shape] = MappingProxyType(
         "implicit_multiplication": Shape.TRUE,
         "complete": Shape.SWITCH,
         "in": Shape.NAMES,
+        "points": Shape.NUMBER,
+        "partial": Shape.SWITCH,
     }
 )
 """Keys that every claim may have."""

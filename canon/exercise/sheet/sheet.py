@@ -38,9 +38,10 @@ MAX_CLAIMS = 10_000
 MAX_REASON = 2_000
 """Characters of what is told against a claim; only a stranger's name in it can make it longer."""
 MIN_BUDGET = Decimal("0.01")
-_FOR_ALL = ("implicit_multiplication", "complete", "in")
+_FOR_ALL = ("implicit_multiplication", "complete", "in", "points", "partial")
 """Keys that may stand beside the claims and are meant for each of them."""
 DEFAULT_BUDGET = 10.0
+MOST_POINTS = 1_000_000
 
 
 class SheetError(ValueError):
@@ -353,6 +354,9 @@ def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
     )
     if not usable:
         found.append(("budget", f"write a number of seconds from {MIN_BUDGET} to 3600"))
+    points = keys.get("points", 1)
+    if isinstance(points, (int, Decimal)) and not 0 < points <= MOST_POINTS:
+        found.append(("points", f"write a number of points above 0, at most {MOST_POINTS}"))
     return Claim(
         id_,
         kind,
