@@ -22,6 +22,9 @@ _VERDICT = {
     "counterexample": {"type": ["object", "null"]},
     "steps": {"type": "array", "items": _STRINGS},
     "warnings": _STRINGS,
+    "points": {"type": ["number", "null"]},
+    "share": {"type": ["number", "null"]},
+    "earned": {"type": ["number", "null"]},
 }
 _EXAMPLE = {
     "id": "pendulum",
@@ -101,7 +104,9 @@ def _read(limits: Limits) -> dict[str, Any]:
 def _schemas() -> dict[str, Any]:
     kind = {"type": "string", "enum": list(KINDS)}
     claim = {"id": _TEXT, "kind": kind, "parameters": {"type": "object"}, "domain": _STRINGS}
-    verdict = {field.name: _VERDICT.get(field.name, _TEXT) for field in fields(Judgement)}
+    verdict = {
+        name: _VERDICT.get(name, _TEXT) for name in (*(field.name for field in fields(Judgement)), "earned")
+    }
     place = {"place": _TEXT, "column": _INTEGER, "reason": _TEXT, "caret": _TEXT}
     statement = {"place": _TEXT, "mathml": _TEXT, "plain": _TEXT}
     text = {"text": {}, "kind": kind, "key": _TEXT, "q": _STRINGS, "parameters": {"type": "object"}}

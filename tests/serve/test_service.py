@@ -52,7 +52,7 @@ def test_verdicts_are_those_of_the_command(client, tmp_path, capsys):
     assert [said_without_time(json.loads(line)) for line in lines] == printed
     alone = [client.post("/check", json=claim).json() for claim in (RIGHT, WRONG)]
     assert [said_without_time(one) for one in alone] == printed[:2]
-    assert set(alone[0]) == {field.name for field in fields(Judgement)}
+    assert set(alone[0]) == {*(field.name for field in fields(Judgement)), "earned"}
 
 
 def test_a_claim_with_the_key_claim_is_no_sheet(client):
