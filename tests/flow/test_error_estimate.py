@@ -99,6 +99,16 @@ def test_bounds_it_where_the_motion_nearly_collides(gap):
     assert estimate.relative[-1] < 1e-5
 
 
+@pytest.mark.slow
+def test_forces_of_one_instant_do_not_round_the_steps_of_all_others():
+    """At this pericentre the force is 1e24 for 1e-18 units of time; the average step is 1e16 times longer."""
+    start = kepler_start(1e-12)
+    motion = propagate(KEPLER, (0, 6.5), start, precision="extended", samples=20)
+    estimate, error = motion.error_estimate(), true_error(motion, kepler_truth(start, motion.t))
+    assert (error <= estimate.error).all()
+    assert (estimate.error[:, -1] <= 4 * error[:, -1] + 1e-14).all()
+
+
 @pytest.mark.parametrize("gap", [1e-6, 1e-12])
 @pytest.mark.filterwarnings("ignore::canon.AccuracyWarning")
 def test_a_run_that_jumped_over_a_collision_is_not_held_against_another_that_did(gap):

@@ -48,6 +48,9 @@ _CHAOTIC = math.log(100.0)
 _OFTEN = 4
 """Of the latter six eighths of the time so many have growth where it is chaotic; it may pause in the others."""
 
+_RADIANS = 100.0
+"""More than a step of Taylor's method passes: about 5 in doubles, 20 in numbers of 50 digits."""
+
 _FEWEST = 8
 """Samples from which growth is judged."""
 
@@ -211,12 +214,16 @@ def _cancelled(system: HamiltonEquations, samples: Samples, scale: Array) -> Arr
     """Return how many times more a step's rates are rounded than its states, shape (orbits,); 1 where they are not.
 
     What rounding does to states is known from a neighbour that starts so far beside the motion. Rates whose terms
-    cancel are rounded by more, in parts of the motion's size.
+    cancel are rounded by more, in parts of the motion's size. Steps are as long as on average, or shorter where rates
+    are large: there a step passes no more than some radians of the fastest motion.
     """
     orbits = scale.shape[2]
-    rounding = rounding_of_rates(system, samples.t, samples.y[:, :, :orbits])
-    step = abs(samples.t[-1] - samples.t[0]) * samples.y.shape[2] / max(1, samples.steps)
+    y = samples.y[:, :, :orbits]
+    rounding = rounding_of_rates(system, samples.t, y)
+    average = abs(samples.t[-1] - samples.t[0]) * samples.y.shape[2] / max(1, samples.steps)
     with np.errstate(all="ignore"):
+        fastest = sizes_of_rates(system, samples.t, y).max(axis=0) / scale.max(axis=0)
+        step = np.fmin(average, _RADIANS / fastest)
         more = (rounding * step / scale).max(axis=(0, 1))
     return np.where(np.isfinite(more), np.maximum(more, 1.0), 1.0)
 
