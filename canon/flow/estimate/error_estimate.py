@@ -222,7 +222,8 @@ def _cancelled(system: HamiltonEquations, samples: Samples, scale: Array) -> Arr
     rounding = rounding_of_rates(system, samples.t, y)
     average = abs(samples.t[-1] - samples.t[0]) * samples.y.shape[2] / max(1, samples.steps)
     with np.errstate(all="ignore"):
-        fastest = sizes_of_rates(system, samples.t, y).max(axis=0) / scale.max(axis=0)
+        sizes = np.asarray(sizes_of_rates(system, samples.t, y).max(axis=0), dtype=float)
+        fastest = sizes / scale.max(axis=0)
         step = np.fmin(average, _RADIANS / fastest)
         more = (rounding * step / scale).max(axis=(0, 1))
     return np.where(np.isfinite(more), np.maximum(more, 1.0), 1.0)
