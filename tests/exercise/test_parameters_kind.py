@@ -155,7 +155,7 @@ def test_planted_solutions_are_all_found(seed):
         assert all(sp.expand(r.subs(family)) == 0 for r in residuals)
     for r in first:
         point = {a: sp.Integer(r), b: sp.Integer(second[r])}
-        assert any(covers(family, point, Domain()) for family in found)
+        assert any(covers(family, point, Domain(), Deadline.after(5.0)) for family in found)
     assert any(line.subs(family) == 0 for family in found)
     assert len(found) <= len(first) + 1
 

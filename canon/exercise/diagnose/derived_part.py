@@ -6,16 +6,17 @@ claimed one can be compared with it term by term.
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
-from canon.exercise.diagnose.effort import PROOF_SECONDS
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.judges.lagrangian import appell_system
+from canon.exercise.question.deadline import PROOF_SECONDS, unless_spent
 from canon.exercise.question.question import Part, Same
 from canon.expression.symbols.symbol import time_derivative, velocity
 from canon.mechanics.algebra.linear import SingularMatrixError, solve_affine
@@ -80,7 +81,10 @@ def _all(reading: Reading) -> list[Symbol]:
 
 def _integrated(form: Sequence[Expr], z: Sequence[Symbol], domain: Domain) -> Expr | None:
     found = _of_polynomials(form, z)
-    return potential(form, z, domain, budget=PROOF_SECONDS) if found is None else found
+    if found is not None:
+        return found
+    start = time.monotonic()
+    return unless_spent(potential(form, z, domain, budget=PROOF_SECONDS), start, PROOF_SECONDS)
 
 
 def _of_polynomials(form: Sequence[Expr], z: Sequence[Symbol]) -> Expr | None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from canon.exercise.question.deadline import Worked
+from canon.exercise.question.deadline import NEAR, PROOF_SECONDS, BudgetSpent, Worked
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
@@ -37,15 +37,6 @@ PROOF_STEPS = 2_500
 """Steps that a proof counts for."""
 JUDGEMENT_STEPS = 2_500
 """Steps that a judgement on a changed claim counts for, of which a search needs up to some two hundred."""
-PROOF_SECONDS = 20.0
-"""Last safety of one proof or judgement, in seconds of the processor: most take some hundredths, and a process for
-proofs, which may have to be started, a second or two."""
-_NEAR = 0.9
-"""Share of its seconds after which a proof is taken to have been ended by them."""
-
-
-class BudgetSpent(Exception):
-    """The seconds were spent before the search came to its own end: what it would have found is not known."""
 
 
 class Effort:
@@ -116,7 +107,7 @@ class Effort:
         on_the_clock = seconds * self.start.slowness(begun)
         yield seconds
         now = Worked.now()
-        if begun.since(now) > _NEAR * seconds or now.wall - begun.wall > _NEAR * on_the_clock:
+        if begun.since(now) > NEAR * seconds or now.wall - begun.wall > NEAR * on_the_clock:
             raise BudgetSpent
 
     @property

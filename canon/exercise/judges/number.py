@@ -30,16 +30,18 @@ __all__ = ["number", "sign_of"]
 
 _BITS = (64, 256, 1024, 4096)
 _DIGITS = 15
-_SECONDS = 2.0
+_SHARE = 0.2
+"""Part of the budget for one zero test, which numbers that people mean need hundredths of a second for."""
 _FAR = 0.1
 """How far from the right value, as part of it, a value is that a slip is looked for in."""
 
 
 @dataclass(frozen=True)
 class _Tolerance:
-    """How far a value may be from the right one: absolutely, or as a part of it."""
+    """How far a value may be from the right one: absolutely, or as a part of it; seconds for telling whether it is."""
 
     amount: Expr
+    seconds: float
     relative: bool = False
 
     def allows(self, claimed: Expr, right: Expr) -> bool:
@@ -51,7 +53,7 @@ class _Tolerance:
             Where that was not decided.
         """
         reach = self.amount**2 * (_square(right) if self.relative else 1)
-        return sign_of(_square(claimed - right) - reach) <= 0
+        return sign_of(_square(claimed - right) - reach, self.seconds) <= 0
 
 
 def number(reading: Reading) -> Iterator[Question]:
@@ -75,8 +77,15 @@ def number(reading: Reading) -> Iterator[Question]:
     yield Determines(lambda: stay_open([f"{len(missing)} of {len(right)} values"]) if missing else ())
 
 
-def sign_of(f: Expr) -> int:
+def sign_of(f: Expr, seconds: float) -> int:
     """Return the sign of a real number that is written out: −1, 0 or 1.
+
+    Parameters
+    ----------
+    f
+        The number.
+    seconds
+        The last safety of its zero test.
 
     Raises
     ------
@@ -85,7 +94,7 @@ def sign_of(f: Expr) -> int:
 
     Examples
     --------
-    >>> sign_of(sp.sqrt(2) + sp.sqrt(3) - sp.sqrt(5 + 2 * sp.sqrt(6))), sign_of(sp.pi - sp.Rational(22, 7))
+    >>> sign_of(sp.sqrt(2) + sp.sqrt(3) - sp.sqrt(5 + 2 * sp.sqrt(6)), 10.0), sign_of(sp.pi - sp.Rational(22, 7), 10.0)
     (0, -1)
     """
     if isinstance(f, Rational):
@@ -100,7 +109,7 @@ def sign_of(f: Expr) -> int:
                 return 1
             if ball.real < 0:
                 return -1
-    if vanishes(f, budget=_SECONDS).holds:
+    if vanishes(f, budget=seconds).holds:
         return 0
     raise Undecided("whether a value is within the tolerance was not decided: it is too near to its end")
 
@@ -115,16 +124,17 @@ def _square(f: Expr) -> Expr:
 
 def _tolerance(reading: Reading) -> _Tolerance:
     """Return the tolerance of the sheet, 0 where it says none."""
+    seconds = _SHARE * reading.claim.budget
     if not reading.has("tolerance"):
-        return _Tolerance(sp.S.Zero)
+        return _Tolerance(sp.S.Zero, seconds)
     (text,) = reading.words("tolerance")
     relative = text.rstrip().endswith("%")
     (amount,) = reading.inside("tolerance", [text.rstrip().removesuffix("%")])
-    if not amount.is_number or amount.is_real is False or sign_of(amount) < 0:
+    if not amount.is_number or amount.is_real is False or sign_of(amount, seconds) < 0:
         reading.fault(
             "tolerance", "should be a number ≥ 0 such as 0.001, or a part of the value such as 0.5 %"
         )
-    return _Tolerance(amount / 100 if relative else amount, relative)
+    return _Tolerance(amount / 100 if relative else amount, seconds, relative)
 
 
 def _asked_unit(reading: Reading) -> Measure | None:
@@ -178,20 +188,25 @@ def _wrong(shown: str, a: Expr, right: Sequence[Expr], tolerance: _Tolerance) ->
     nearest = min(right, key=lambda v: abs(complex(sp.N(v - a))))
     example = Counterexample({}, _decimal(a), _decimal(nearest), _DIGITS)
     far = abs(complex(sp.N(a - nearest))) > _FAR * abs(complex(sp.N(nearest)))
-    slips = _slips(a) if far else ()
-    why = next((told for told, b in slips if any(_allows(tolerance, b, v) for v in right)), "")
-    if not why and tolerance.amount == 0 and a.is_Rational and _rounded(a, shown, right):
-        why = f"{shown} is the right value rounded; the exact one is asked for"
+    try:
+        why = _slip_of(a, right, tolerance) if far else ""
+        if (
+            not why
+            and tolerance.amount == 0
+            and a.is_Rational
+            and _rounded(a, shown, right, tolerance.seconds)
+        ):
+            why = f"{shown} is the right value rounded; the exact one is asked for"
+    except Undecided as reason:
+        why = f"what is wrong is undecided: {reason}"
     if not why and tolerance.amount != 0:
         why = f"{shown} is further from the right value than the tolerance allows: {_short(abs(a - nearest))}"
     return Verdict(Status.FAILS, shown, _certificate([a, nearest]), counterexample=example, feedback=why)
 
 
-def _allows(tolerance: _Tolerance, claimed: Expr, right: Expr) -> bool:
-    try:
-        return tolerance.allows(claimed, right)
-    except Undecided:
-        return False
+def _slip_of(a: Expr, right: Sequence[Expr], tolerance: _Tolerance) -> str:
+    """Return the slip that would explain a value, nothing where there is none."""
+    return next((told for told, b in _slips(a) if any(tolerance.allows(b, v) for v in right)), "")
 
 
 def _slips(a: Expr) -> Iterator[tuple[str, Expr]]:
@@ -208,13 +223,13 @@ def _slips(a: Expr) -> Iterator[tuple[str, Expr]]:
         yield f"the value is wrong by the factor 10^{ten * up}", a / Rational(10) ** (ten * up)
 
 
-def _rounded(a: Expr, shown: str, right: Sequence[Expr]) -> bool:
+def _rounded(a: Expr, shown: str, right: Sequence[Expr], seconds: float) -> bool:
     """Tell whether a decimal is a right value, rounded to as many digits as it has."""
     digits = (
         len(shown.partition(".")[2]) if "." in shown and shown.strip("+-").replace(".", "").isdigit() else 0
     )
     unit = Rational(1, 2) / Rational(10) ** digits
-    return digits > 1 and any(_allows(_Tolerance(unit), a, v) for v in right)
+    return digits > 1 and any(_Tolerance(unit, seconds).allows(a, v) for v in right)
 
 
 def _certificate(values: Sequence[Expr]) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.deadline import BudgetSpent, Deadline
 from canon.exercise.question.parameter_system import Family, covers, families
 from canon.exercise.question.question import (
     Determines,
@@ -36,8 +36,6 @@ __all__ = ["parameters"]
 
 SHARE = 0.4
 """Part of the budget for the values that are claimed, and for finding all of them."""
-ANSWER_SECONDS = 1.4
-"""Time for the right values where wrong ones were claimed."""
 _OWN = ("of", "find", "values", "in", "complete")
 
 
@@ -53,9 +51,10 @@ def parameters(reading: Reading, ask: Ask) -> Iterator[Question]:
     found: list[list[Family]] = []
 
     def all_of_them() -> tuple[str, ...] | None:
-        known = found or _found(
-            ask, reading, inner, wanted, Deadline.after(min(SHARE * budget, ANSWER_SECONDS))
-        )
+        deadline = Deadline.after(SHARE * budget)
+        known = found or _found(ask, reading, inner, wanted, deadline)
+        if not known and deadline.over:
+            raise BudgetSpent
         return _told(known[0]) if known else None
 
     held: list[Verdict] = []
@@ -66,26 +65,31 @@ def parameters(reading: Reading, ask: Ask) -> Iterator[Question]:
             return
         held.append(verdict)
     whole = all_hold(held) if held else Verdict(Status.HOLDS, certificate="exact")
-    found += _found(ask, reading, inner, wanted, Deadline.after(SHARE * budget))
+    deadline = Deadline.after(SHARE * budget)
+    found += _found(ask, reading, inner, wanted, deadline)
     if not found:
+        more = f"whether there are more was not decided{_in_time(deadline)}"
         yield Stated(
-            _left_open(
-                whole,
-                "the values that are claimed are right, as far as was decided; whether there are more was not decided",
-            )
+            _left_open(whole, f"the values that are claimed are right, as far as was decided; {more}")
         )
         return
-    missing = [f for f in found[0] if not any(covers(c, f, inner.domain) for c in claimed)]
-    lost = next((f for f in missing if all(_certainly_beyond(f, c, inner) for c in claimed)), None)
+    missing = [f for f in found[0] if not any(covers(c, f, inner.domain, deadline) for c in claimed)]
+    lost = next((f for f in missing if all(_certainly_beyond(f, c, inner, deadline) for c in claimed)), None)
     if lost is not None:
         why = f"{'a solution is missing' if claimed else 'there is a solution'}: {_written(lost)}"
         yield Stated(Verdict(Status.FAILS, "all values", "exact", feedback=why), all_of_them)
         return
     if missing:
         among = f"whether {_written(missing[0])} is among the values that are claimed was not decided"
+        among += _in_time(deadline)
         whole = _left_open(whole, among)
     certificate = " + ".join(dict.fromkeys([*(v.certificate for v in held), "exact"]))
     yield Stated(replace(whole, question="all values", certificate=certificate) if whole.holds else whole)
+
+
+def _in_time(deadline: Deadline) -> str:
+    """Say in how many seconds something was not decided, where they may have ended it."""
+    return f" in {deadline.seconds:g} s" if deadline.over else ""
 
 
 def _no_solution(family: Family, verdict: Verdict) -> Verdict:
@@ -241,11 +245,11 @@ def _found(
     return [[family for family, verdict in zip(candidates, verdicts, strict=True) if verdict.holds]]
 
 
-def _certainly_beyond(family: Family, claimed: Family, inner: Reading) -> bool:
+def _certainly_beyond(family: Family, claimed: Family, inner: Reading, deadline: Deadline) -> bool:
     """Whether a family certainly has points that are none of another one."""
     for s, value in claimed.items():
         part = Part(str(s), exchanged(value, family), family.get(s, s))
-        if decide(Differ(part, inner.domain, ""), Deadline.after(1.0)).holds:
+        if decide(Differ(part, inner.domain, ""), deadline).holds:
             return True
     return False
 

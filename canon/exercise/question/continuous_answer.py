@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from canon.exercise.question.deadline import PROOF_SECONDS
 from canon.exercise.question.question import fails
 from canon.proof.continuity.continuity import continuity, is_locally_constant
 
@@ -20,15 +21,12 @@ if TYPE_CHECKING:
 
 __all__ = ["constants_are_continuous", "is_continuous"]
 
-SECONDS = 2.0
-"""Time for one function."""
-
 
 def is_continuous(
     f: Expr, variables: Iterable[Symbol], domain: Domain, name: str, given: Iterable[Expr] = ()
 ) -> Verdict:
     """Return whether a function that is known by its derivatives is continuous where what is given is so."""
-    return continuity(f, variables, domain, SECONDS, name, given)
+    return continuity(f, variables, domain, PROOF_SECONDS, name, given)
 
 
 def constants_are_continuous(

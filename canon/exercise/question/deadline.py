@@ -2,21 +2,36 @@
 
 Proofs are given seconds on the clock. Where other programs take turns on the processor, a second of work takes more of
 them, and a proof is given as many more.
+
+What a person is told depends on no seconds: searches end by counts of steps. Seconds are a last safety, and where they
+ended a search that found nothing, :class:`BudgetSpent` says so.
 """
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import TypeVar
 
 from canon.proof.worker.budget import seconds_in_worker
 
-__all__ = ["PATIENCE", "Deadline", "Worked"]
+__all__ = ["NEAR", "PATIENCE", "PROOF_SECONDS", "BudgetSpent", "Deadline", "Worked", "unless_spent"]
+
+T = TypeVar("T")
+PROOF_SECONDS = 20.0
+"""Last safety of one proof or judgement, in seconds of the processor: most take some hundredths, and a process for
+proofs, which may have to be started, a second or two."""
+NEAR = 0.9
+"""Share of its seconds after which a proof is taken to have been ended by them."""
 
 PATIENCE = 5.0
 """Seconds on the clock for one of the processor at most."""
 LEAST = 0.05
 """Seconds after which work and clock are compared; before, they differ by chance."""
+
+
+class BudgetSpent(Exception):
+    """The seconds were spent before the search came to its own end: what it would have found is not known."""
 
 
 @dataclass(frozen=True)
@@ -79,3 +94,32 @@ class Deadline:
         """Seconds on the clock that are left, at least a few hundredths, so that every question is looked at."""
         now = Worked.now()
         return max(LEAST, (self.seconds - self.start.since(now)) * self.start.slowness(now))
+
+    @property
+    def over(self) -> bool:
+        """Whether what found nothing until now may have been ended by the seconds, those of a busy clock included.
+
+        Examples
+        --------
+        >>> Deadline.after(10.0).over, Deadline(Worked(0.0, 0.0), 0.0).over
+        (False, True)
+        """
+        return time.monotonic() - self.start.wall > NEAR * self.seconds
+
+
+def unless_spent(found: T | None, start: float, seconds: float) -> T | None:
+    """Return what was found since a moment of :func:`time.monotonic`, or None where the search ended by itself.
+
+    Raises
+    ------
+    BudgetSpent
+        Where nothing was found, and the seconds may have ended the search.
+
+    Examples
+    --------
+    >>> unless_spent("found", 0.0, 1e-9), unless_spent(None, time.monotonic(), 1e9)
+    ('found', None)
+    """
+    if found is None and time.monotonic() - start > NEAR * seconds:
+        raise BudgetSpent
+    return found

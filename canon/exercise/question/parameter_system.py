@@ -43,8 +43,8 @@ FEW_CONDITIONS, MOST_CONDITIONS = 8, 60
 """Conditions that are looked at, and that are looked at where the few are not solved."""
 MOST_ROUNDS = 8
 LONGEST = 300
-SECONDS, LAST = 0.7, 0.1
-"""Time for one zero test, and what must be left for another round."""
+LAST = 0.1
+"""Seconds that must be left for another round."""
 NICE = tuple(rational(sp.Rational(*n)) for n in ((0, 1), (1, 1), (2, 1), (-1, 1), (1, 2), (3, 1)))
 """Values of states at which logarithms, powers and sines are simple."""
 _TOTAL = (
@@ -100,22 +100,25 @@ def families(
     found = list(_completed(search, {}, MOST_ROUNDS))
     unique: list[Family] = []
     for family in found:
-        if not any(covers(other, family, domain) for other in unique):
-            unique = [other for other in unique if not covers(family, other, domain)] + [family]
+        if not any(covers(other, family, domain, deadline) for other in unique):
+            unique = [other for other in unique if not covers(family, other, domain, deadline)] + [family]
     return unique
 
 
-def covers(larger: Mapping[Symbol, Expr], smaller: Mapping[Symbol, Expr], domain: Domain) -> bool:
+def covers(
+    larger: Mapping[Symbol, Expr], smaller: Mapping[Symbol, Expr], domain: Domain, deadline: Deadline
+) -> bool:
     """Tell whether it is proved that every point of one family is one of another.
 
     Examples
     --------
+    >>> from canon.exercise.question.deadline import Deadline
     >>> a, b = sp.symbols("a b", real=True)
-    >>> covers({b: 2 - a}, {a: sp.Integer(1), b: sp.Integer(1)}, Domain())
+    >>> covers({b: 2 - a}, {a: sp.Integer(1), b: sp.Integer(1)}, Domain(), Deadline.after(5.0))
     True
     """
     gaps = [substitute(s - value, smaller) for s, value in larger.items()]
-    return all(gap == 0 or vanishes(gap, domain, budget=SECONDS).holds for gap in gaps)
+    return all(gap == 0 or vanishes(gap, domain, budget=deadline.left).holds for gap in gaps)
 
 
 def _completed(search: _Search, family: Family, rounds: int) -> Iterator[Family]:
@@ -124,8 +127,7 @@ def _completed(search: _Search, family: Family, rounds: int) -> Iterator[Family]
         return
     domain = _narrowed(search.domain, family)
     left = [r for r in (substitute(r, family) for r in search.residuals) if r != 0]
-    seconds = min(SECONDS, search.deadline.left)
-    left = [r for r in left if not vanishes(r, domain, budget=seconds).holds]
+    left = [r for r in left if not vanishes(r, domain, budget=search.deadline.left).holds]
     if not left:
         yield family
         return
@@ -147,9 +149,8 @@ def _next_step(
     why = "the conditions on the parameters were not found"
     for most in (FEW_CONDITIONS, MOST_CONDITIONS):
         found = sorted(set(_conditions(left, free, search.given, domain, most)), key=_simplicity)
-        seconds = min(SECONDS, search.deadline.left)
         conditions = [c for c in found if c.has(*free)]
-        of_given = [vanishes(c, domain, budget=seconds) for c in found if not c.has(*free)]
+        of_given = [vanishes(c, domain, budget=search.deadline.left) for c in found if not c.has(*free)]
         if any(verdict.fails for verdict in of_given):
             return []
         if any(verdict.undecided for verdict in of_given) or not conditions:

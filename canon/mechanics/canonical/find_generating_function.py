@@ -38,7 +38,10 @@ if TYPE_CHECKING:
     from canon.mechanics.canonical.transformation import CanonicalTransformation
     from canon.proof.domain.verdict import Verdict
 
-__all__ = ["GeneratingFunctionSearch", "generating_function"]
+__all__ = ["SOLVING_SHARE", "GeneratingFunctionSearch", "generating_function"]
+
+SOLVING_SHARE = 0.3
+"""Part of the seconds in which the map is solved for the variables of the type; the others are for proofs."""
 
 
 @dataclass(frozen=True)
@@ -209,7 +212,7 @@ def generating_function(
         )
     T = transformation
     end = clock.monotonic() + budget
-    for F, conditions in recovery.closed_forms(clock.monotonic() + 0.3 * budget):
+    for F, conditions in recovery.closed_forms(clock.monotonic() + SOLVING_SHARE * budget):
         for domain in _narrowed(T.domain, conditions):
             found = GeneratingFunction(kinds, F, T.q, T.p, Q, P, domain, T.t)
             left = end - clock.monotonic()

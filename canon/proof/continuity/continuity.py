@@ -64,7 +64,7 @@ def continuity(
     f: Expr,
     variables: Iterable[Symbol],
     domain: Domain = EVERYWHERE,
-    budget: float = 2.0,
+    budget: float = 20.0,
     name: str = "",
     given: Iterable[Expr] = (),
 ) -> Verdict:
@@ -114,6 +114,9 @@ def continuity(
         step = _step(part, moving, domain, deadline)
         if step is not None:
             return _failed(name, step)
+    if found.holds and rough and time.monotonic() > deadline:
+        why = f"whether {name} jumps was not decided in {budget:g} s"
+        return Verdict(Status.UNDECIDED, found.question, evidence=(Evidence("open", why),), feedback=why)
     return found
 
 
@@ -372,7 +375,7 @@ def _meets(f: Expr, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline
     kept = (c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne))
     on_gap = (*kept, cast("Boolean", sp.Eq(cut.gap, 0, evaluate=False)))
     there = Domain(tuple(cast("Boolean", c.xreplace(plain)) for c in on_gap))
-    return vanishes_where_defined(cast("Expr", change.xreplace(plain)), there, min(1.0, left)).holds
+    return vanishes_where_defined(cast("Expr", change.xreplace(plain)), there, left).holds
 
 
 def _centre(cut: Cut, moving: Sequence[Symbol], domain: Domain) -> str | None:
