@@ -18,14 +18,23 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from canon.exercise.claim_verdict import Finding
+    from canon.exercise.diagnose.kept_explanations import Explanation, KeptExplanations
     from canon.exercise.sheet.sheet import Claim
     from canon.proof.domain.verdict import Verdict
 
 __all__ = ["judgements"]
 
 
-def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
-    """Yield the judgement on a claim, then the same with its steps, then with feedback; the flag marks the last."""
+def judgements(claim: Claim, kept: KeptExplanations | None = None) -> Iterator[tuple[Judgement, bool]]:
+    """Yield the judgement on a claim, then the same with its steps, then with feedback; the flag marks the last.
+
+    Parameters
+    ----------
+    claim
+        The claim.
+    kept
+        What was said of wrong answers before, which is said again of the same ones.
+    """
     try:
         finding = examine(claim)
     except InvalidClaim as error:
@@ -42,43 +51,64 @@ def judgements(claim: Claim) -> Iterator[tuple[Judgement, bool]]:
         return
     judgement = replace(_told(claim, finding.verdict), warnings=finding.reading.warnings)
     yield judgement, False
-    yield from _explained(claim, finding, judgement)
+    yield from _explained(claim, finding, judgement, kept)
 
 
-def _explained(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator[tuple[Judgement, bool]]:
+def _explained(
+    claim: Claim, finding: Finding, judgement: Judgement, kept: KeptExplanations | None
+) -> Iterator[tuple[Judgement, bool]]:
     """Yield the judgement with what explains it; where that can't be built, as it stands."""
     try:
-        for step in _explanations(claim, finding, judgement):
+        for step in _explanations(claim, finding, judgement, kept):
             judgement = step[0]
             yield step
     except REFUSALS:
         yield judgement, True
 
 
-def _explanations(claim: Claim, finding: Finding, judgement: Judgement) -> Iterator[tuple[Judgement, bool]]:
-    judgement, start = replace(judgement, steps=steps(finding)), finding.start
+def _explanations(
+    claim: Claim, finding: Finding, judgement: Judgement, kept: KeptExplanations | None
+) -> Iterator[tuple[Judgement, bool]]:
+    judgement = replace(judgement, steps=steps(finding))
     if not finding.verdict.fails:
         left = finding.left_open() if finding.verdict.holds else ()
         yield replace(judgement, warnings=(*judgement.warnings, *left)), True
         return
-    from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS, diagnosis
     from canon.exercise.diagnose.effort import BudgetSpent
-    from canon.exercise.diagnose.proved_share import proved_share
+    from canon.exercise.diagnose.kept_explanations import meaning
     from canon.exercise.diagnose.right_answer import corrected
-    from canon.exercise.report.sentences import sentence
 
+    meant = None if kept is None else meaning(finding)
+    said = None if kept is None else kept.of(meant)
     try:
-        judgement = replace(judgement, corrected=_cut(corrected(finding)))
-        yield judgement, False  # before the diagnosis is looked for, which can be cut off
-        left = min(OUTER_SECONDS, claim.budget - start.since(Worked.now()))
-        found = diagnosis(finding, left)
-        told = (_cut(sentence(found)) if found else "") or judgement.feedback
-        judgement = replace(judgement, feedback=told)
-        if claim.keys.get("partial"):
-            judgement = replace(judgement, share=float(proved_share(finding, found)))
-        yield judgement, True
+        if said is None:
+            judgement = replace(judgement, corrected=_cut(corrected(finding)))
+            yield judgement, False  # before the diagnosis is looked for, which can be cut off
+            said = _explanation(claim, finding, judgement)
+            if kept is not None:
+                kept.keep(meant, said)
+        yield _with(said, judgement), True
     except BudgetSpent:
         yield without_explanation(judgement, claim.budget), True
+
+
+def _explanation(claim: Claim, finding: Finding, judgement: Judgement) -> Explanation:
+    """Return what is said of a wrong answer, with the share of it that is proved to be right where that is asked."""
+    from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS, diagnosis
+    from canon.exercise.diagnose.kept_explanations import Explanation
+    from canon.exercise.diagnose.proved_share import proved_share
+    from canon.exercise.report.sentences import sentence
+
+    found = diagnosis(finding, min(OUTER_SECONDS, claim.budget - finding.start.since(Worked.now())))
+    share = float(proved_share(finding, found)) if claim.keys.get("partial") else None
+    return Explanation(judgement.corrected, _cut(sentence(found)) if found else "", share)
+
+
+def _with(said: Explanation, judgement: Judgement) -> Judgement:
+    """Return a judgement with an explanation; what the judge said stays where nothing better is found."""
+    share = judgement.share if said.share is None else said.share
+    feedback = said.feedback or judgement.feedback
+    return replace(judgement, corrected=said.corrected, feedback=feedback, share=share)
 
 
 def _told(claim: Claim, verdict: Verdict) -> Judgement:

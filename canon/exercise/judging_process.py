@@ -8,6 +8,7 @@ lets proofs run, so that nothing goes on computing what nobody waits for.
 
 from __future__ import annotations
 
+import gc
 import json
 import sys
 import time
@@ -186,10 +187,16 @@ def _restored(found: dict[str, Any]) -> Any:
 
 def main() -> None:
     """Judge what comes in until the parent closes the pipe."""
+    gc.disable()  # a tenth of the time of the imports goes into looking at what is made to stay
+    from canon.exercise.diagnose.kept_explanations import KeptExplanations
     from canon.exercise.explained_judgement import judgements
 
+    gc.freeze()
+    gc.enable()
+    kept = KeptExplanations()
+
     def answers(message: bytes) -> Iterator[bytes]:
-        for judgement, last in judgements(_decoded(message)):
+        for judgement, last in judgements(_decoded(message), kept):
             yield json.dumps({**judgement.to_dict(), "last": last}).encode()
 
     sys.set_int_max_str_digits(0)  # what follows from long numbers is longer; here its time is limited anyway

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -59,6 +60,9 @@ NAME_KEYS = (
 
 _MOVING = ("q", "p", "x", "variables", "new_q", "new_p", "quasi")
 """Keys of names that stand for what changes in time."""
+
+_LONGEST_KEPT = 600
+"""Characters of a text whose expression is kept, so that what is kept stays small."""
 
 
 class InvalidClaim(ValueError):
@@ -362,10 +366,22 @@ class Reading:
         if key in self.instead:
             return self.instead[key]
         try:
-            parsed = parse(str(text), self.scope)
+            parsed = _parsed(parse, str(text), self.scope)
             return substitute(parsed, self.at) if self.at else parsed
         except LanguageError as error:
             raise self.error(key, error) from error
+
+
+def _parsed(parse: Callable[[str, Scope], Any], text: str, scope: Scope) -> Any:
+    """Return what a text says; what is given is read once for all that is tried on an answer, and for a whole class."""
+    return (_kept_parse if len(text) <= _LONGEST_KEPT else _parse_anew)(parse, text, scope)
+
+
+def _parse_anew(parse: Callable[[str, Scope], Any], text: str, scope: Scope) -> Any:
+    return parse(text, scope)
+
+
+_kept_parse = functools.lru_cache(maxsize=512)(_parse_anew)
 
 
 def _is_rate(name: str, names: Mapping[str, Symbol]) -> bool:

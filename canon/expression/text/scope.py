@@ -62,6 +62,17 @@ class Scope:
     implicit: bool = False
     moving: frozenset[str] = frozenset()
 
+    def __hash__(self) -> int:
+        return hash(
+            (
+                frozenset(self.names.items()),
+                frozenset(self.functions.items()),
+                self.time,
+                self.implicit,
+                self.moving,
+            )
+        )
+
     @cached_property
     def spelled(self) -> tuple[str, ...]:
         """All names that may be typed: declared ones, functions, and rates as ``theta_dot_1`` or ``theta_1_dot``."""

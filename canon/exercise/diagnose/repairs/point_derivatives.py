@@ -36,6 +36,7 @@ class Examples:
             a.func: _polynomial(a, number) for number, a in enumerate(sorted(applied, key=str), 1)
         }
         self._known: dict[sp.Basic, Expr] = {}
+        self._symbols: dict[sp.Basic, frozenset[sp.Basic]] = {}
 
     def unknowns(self, f: Expr) -> list[Expr]:
         """Return the arbitrary functions and derivatives of an expression, not those inside others."""
@@ -46,6 +47,15 @@ class Examples:
             if isinstance(node, AppliedUndef | Derivative | Subs):
                 walk.skip()
                 found.append(node)
+        return found
+
+    def symbols(self, f: sp.Basic) -> frozenset[sp.Basic]:
+        """Return the free symbols of an expression; those of a part that several candidates share are found once."""
+        found = self._symbols.get(f)
+        if found is None:
+            plain = bool(f.args) and isinstance(f, sp.Add | sp.Mul | sp.Pow)
+            found = frozenset().union(*map(self.symbols, f.args)) if plain else frozenset(f.free_symbols)
+            self._symbols[f] = found
         return found
 
     def __getitem__(self, unknown: Expr) -> Expr:
@@ -128,7 +138,7 @@ class Neighbourhood:
 
     def slope(self, f: Expr, by: Symbol) -> acb:
         """Return ∂f/∂s, to about thirty digits."""
-        if by not in f.free_symbols:
+        if by not in self.examples.symbols(f):
             return acb(0)
         return (self.value(f, by) - self.value(f)) / STEP
 
