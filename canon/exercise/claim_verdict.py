@@ -109,7 +109,12 @@ def examine(claim: Claim) -> Finding:
         raise InvalidClaim(claim.errors[0])
     for key, reason in faults(claim.kind, claim.keys):  # a claim made by hand was not looked at before
         raise InvalidClaim(ClaimError(claim.id, key, reason, file=claim.file))
-    return examined(Reading.of(claim), Deadline.after(claim.budget))
+    deadline, reading = Deadline.after(claim.budget), Reading.of(claim)
+    if reading.has("dimensions"):
+        from canon.exercise.question.declared_dimensions import declared_dimensions
+
+        declared_dimensions(reading)  # refused before anything is judged, whatever the answer
+    return examined(reading, deadline)
 
 
 def examined(reading: Reading, deadline: Deadline) -> Finding:

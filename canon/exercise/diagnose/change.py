@@ -41,6 +41,12 @@ class Mistake(enum.Enum):
     BRANCH = enum.auto()
     SIGN_OF = enum.auto()  # a symbol or function whose sign is wrong
     SYMBOLS_EXCHANGED = enum.auto()  # where, one, the other
+    # dimensional analysis
+    TERMS_OF_OTHER_DIMENSION = (
+        enum.auto()
+    )  # whether these are all, pairs of terms and a dimension, fewest first
+    NO_NUMBER = enum.auto()  # where, the argument, its dimension
+    DIMENSION_OF_ANSWER = enum.auto()  # its dimension, that of the right one
     # how the answer was derived
     DERIVATIVE_NOT_TOTAL = enum.auto()  # the terms that are missing
     DERIVATIVE_NOT_TOTAL_IN = enum.auto()  # the term whose number is wrong for it, what to multiply it with

@@ -5,10 +5,11 @@ A diagnosis is told only when the claim, with the repair it names put in, was ju
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from canon.exercise.claim_verdict import InvalidClaim, examined
-from canon.exercise.diagnose.change import Mistake
+from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.changed_claims import another_reading
 from canon.exercise.diagnose.components import on_the_motion
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis, WrongAnswer, judged_to_hold
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from canon.exercise.claim_verdict import Finding
+    from canon.exercise.question.question import Part
+    from canon.proof.domain.domain import Domain
 
 __all__ = ["OUTER_SECONDS", "diagnosis"]
 
@@ -45,7 +48,39 @@ def diagnosis(finding: Finding, seconds: float = OUTER_SECONDS) -> Diagnosis | N
     BudgetSpent
         Where the seconds are over before the search came to its own end.
     """
-    return _told(finding, Effort(seconds))
+    found = _told(finding, Effort(seconds))
+    return _with_dimensions(found, finding) if finding.reading.has("dimensions") else found
+
+
+def _with_dimensions(found: Diagnosis | None, finding: Finding) -> Diagnosis | None:
+    """Return a diagnosis with what is dimensionally impossible besides, or that alone."""
+    from canon.exercise.diagnose.repairs.impossible_dimension import impossible_dimensions
+
+    if found is not None and found.instead is not None:
+        return found
+    if not _was_compared(finding):
+        return found
+    parts, domain = _compared(finding)
+    impossible = impossible_dimensions(finding.reading, parts, domain, MOST_SENTENCES)
+    if not impossible:
+        return found
+    told = finding.verdict.feedback
+    as_judged = (Change.of(Mistake.AS_JUDGED, told),) if told else ()
+    found = found or Diagnosis(as_judged)
+    return replace(found, changes=(*found.changes, *impossible))
+
+
+def _compared(finding: Finding) -> tuple[tuple[Part, ...], Domain]:
+    """Return the components on which a judgement turned, as they were compared."""
+    question = finding.question
+    if isinstance(question, SameEquations):
+        return on_the_motion(question), question.domain
+    return (question.parts, question.domain) if isinstance(question, Same) else ((), finding.reading.domain)
+
+
+def _was_compared(finding: Finding) -> bool:
+    """Whether a claim failed because an answer was compared with what is right, not for its form."""
+    return isinstance(finding.question, Same | SameEquations) and finding.verdict.question != AFFINE
 
 
 def _told(finding: Finding, effort: Effort, said: int = 0) -> Diagnosis | None:
@@ -84,20 +119,13 @@ def _confirmed(found: Diagnosis, finding: Finding, effort: Effort) -> bool:
 
 def _diagnoses(finding: Finding, effort: Effort) -> Iterator[Diagnosis]:
     question, told = finding.question, finding.verdict.feedback
-    as_judged = Diagnosis.stated(Mistake.AS_JUDGED, told, only_fault=False)
-    if isinstance(question, SameEquations):
-        if finding.verdict.question == AFFINE:
-            yield as_judged
-            return
-        parts, domain = on_the_motion(question), question.domain
-    elif isinstance(question, Same):
-        parts, domain = question.parts, question.domain
-    else:
-        if told:
-            yield as_judged
+    if not _was_compared(finding):
+        if told or isinstance(question, SameEquations):
+            yield Diagnosis.stated(Mistake.AS_JUDGED, told, only_fault=False)
         else:
             yield from another_reading(WrongAnswer(finding, (), finding.reading.domain, effort))
         return
+    parts, domain = _compared(finding)
     for name in finding.reading.kind.diagnoses:
         tried = named_function("canon.exercise.diagnose", name)
         yield from tried(WrongAnswer(finding, parts, domain, effort))

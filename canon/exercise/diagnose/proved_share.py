@@ -46,7 +46,7 @@ def proved_share(finding: Finding, found: Diagnosis | None) -> Fraction:
     BudgetSpent
         Where a proof was ended by its seconds.
     """
-    answers = dict(_answers(finding.reading))
+    answers = dict(components_of(finding.reading))
     if not answers or not _as_many_as_asked(finding, answers):
         return Fraction(0)
     if found is None or found.repaired is None:
@@ -79,7 +79,7 @@ def _repaired(reading: Reading, repaired: Reading) -> dict[str, Expr]:
     return dict(repaired.instead) if same else {}
 
 
-def _answers(reading: Reading) -> Iterator[tuple[str, Expr]]:
+def components_of(reading: Reading) -> Iterator[tuple[str, Expr]]:
     """Yield the components of the answer, by the keys that a repair gives them."""
     for key in reading.kind.answer:
         if not reading.has(key):

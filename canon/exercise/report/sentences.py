@@ -12,9 +12,12 @@ from canon.exercise.sheet.sympy_trees import shown as written
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
+    from sympy import Expr
+
     from canon.exercise.claim_verdict import Finding
     from canon.exercise.diagnose.change import Change
     from canon.exercise.diagnose.diagnosis import Diagnosis
+    from canon.exercise.sheet.dimension_texts import Dimension
 
 __all__ = ["SENTENCES", "feedback", "sentence", "times"]
 
@@ -57,10 +60,41 @@ def _only_where(item: object, relation: str) -> str:
     return f"right {word} {shown(item)} {relation} 0, but not on the whole domain"
 
 
+def _measured(dimension: Dimension, subject: str = "") -> str:
+    """Say which dimension something has, or that it is a number.
+
+    Examples
+    --------
+    >>> from canon.exercise.sheet.dimension_texts import dimension_from
+    >>> [_measured(dimension_from(text), "x") for text in ("force", "mass*length^3", "1")]
+    ['x has the dimension of force', 'x has the dimension length^3*mass', 'x is a pure number']
+    """
+    if dimension.is_number:
+        return f"{subject} is a pure number"
+    return f"{subject} has the dimension {'of ' if dimension.name else ''}{dimension}"
+
+
+def _of_other_dimension(all_told: bool, *groups: tuple[tuple[Expr, ...], Dimension]) -> str:
+    """Say which terms of a sum differ in dimension."""
+    (few, of_few), (many, of_many), *more = groups
+    if len(few) == 1 and len(many) > 1 and not more:
+        others = f"{'the ' if all_told else ''}other terms"
+        measured = (
+            "are pure numbers" if of_many.is_number else _measured(of_many)[1:].replace("has", "have", 1)
+        )
+        return f"{_measured(of_few, shown(few[0]))}, {others} {measured}: one of them is wrong"
+    *told, last = (_measured(dimension, shown(terms[0])) for terms, dimension in groups)
+    ending = "not all of them can be right" if more else "one of them is wrong"
+    return f"{', '.join(told)}, and {last}: {ending}"
+
+
 OF_A_COMPONENT: Mapping[Mistake, Pattern] = MappingProxyType(
     {
         Mistake.WRONG_SIGN: "{place} has the wrong sign",
         Mistake.WRONG_FACTOR: lambda factor: f"{{place}} should be {times(factor)} what it is",
+        Mistake.DIMENSION_OF_ANSWER: lambda here, there: (
+            f"{_measured(here, '{place}')}, and {_measured(there, 'the right one')}"
+        ),
         Mistake.TIME_TERM_MISSING: "{place} grows at the constant rate {}: in {place} the term {} is missing",
     }
 )
@@ -132,11 +166,17 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
         Mistake.BRACKET_OPPOSITE: "{} = {}, not {}: exchange Q and P, or change the sign of one of them",
         Mistake.VALENCE: "canonical with valence {1}, not {2}: {0} = {1}; multiply P by {3}",
         Mistake.MAP_MENDED: str,
+        Mistake.TERMS_OF_OTHER_DIMENSION: _of_other_dimension,
+        Mistake.NO_NUMBER: lambda node, argument, dimension: (
+            f"{_measured(dimension, shown(argument))}, and in {shown(node)} only a pure number makes sense"
+        ),
         Mistake.MORE_WRONG: "{} more components are wrong",
         Mistake.AS_JUDGED: str,
     }
 )
 """What is said of a mistake; where it is in a component, ``in equation 1`` stands before it."""
+OF_DIMENSIONS = (Mistake.TERMS_OF_OTHER_DIMENSION, Mistake.NO_NUMBER)
+"""What dimensional analysis says, beside another sentence or alone."""
 
 
 def sentence(found: Diagnosis) -> str:
@@ -155,7 +195,7 @@ def sentence(found: Diagnosis) -> str:
     places: list[str] = []
     for change in found.changes:
         if said and change.place and places[-1] == change.place and change.mistake in SENTENCES:
-            said[-1] += f", and {_said(change)}"
+            said[-1] += f"{';' if change.mistake in OF_DIMENSIONS else ', and'} {_said(change)}"
             continue
         said.append(_of_a_place(change))
         places.append(change.place)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.kind import Kind
 
-__all__ = ["ASSUMPTIONS", "MAX_NAMES", "faults"]
+__all__ = ["ASSUMPTIONS", "MAX_NAMES", "declared_names", "faults"]
 
 ASSUMPTIONS = ("positive", "negative", "nonzero", "real", "integer")
 MAX_FAULTS = 20
@@ -42,6 +42,23 @@ def faults(kind: str, keys: Mapping[str, Any]) -> list[tuple[str, str]]:
     [('rhs', 'missing (an expression)'), ('rsh', 'unknown key for the kind equality-only; is rhs meant?')]
     """
     return list(islice(_faults(kind, keys), MAX_FAULTS))
+
+
+def declared_names(kind: str, keys: Mapping[str, Any]) -> set[str]:
+    """Return the names that a claim declares, whatever stands in it.
+
+    Examples
+    --------
+    >>> sorted(declared_names("euler-lagrange", {"q": ["x"], "parameters": {"m": "positive"}, "L": "k"}))
+    ['m', 't', 'x']
+    """
+    shapes = kind_of(kind, keys).shapes if kind in KINDS else {}
+    listed = (keys.get(key) for key, shape in shapes.items() if shape is Shape.NAMES)
+    tables = (keys.get(key) for key in ("parameters", "functions"))
+    found = [keys.get("t", "t")]
+    for value in (*listed, *tables):
+        found += value if isinstance(value, list | Mapping) else [value]
+    return {name for name in found if isinstance(name, str)}
 
 
 def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -113,7 +130,7 @@ def _remedy_of_name(wrong: str) -> str:
     return f"; write {plain} for {wrong[:60]}" if _name(plain) else f"; {wrong[:60]!r} is not a name"
 
 
-_OF_NAMES = (Shape.NAMES, Shape.ASSUMPTIONS, Shape.FUNCTIONS, Shape.BOX, Shape.EXPRESSIONS)
+_OF_NAMES = (Shape.NAMES, Shape.ASSUMPTIONS, Shape.DIMENSIONS, Shape.FUNCTIONS, Shape.BOX, Shape.EXPRESSIONS)
 
 
 def _number(value: Any) -> bool:
@@ -167,6 +184,8 @@ def _fits(value: Any, shape: Shape) -> bool:
             return _number(value)
         case Shape.ASSUMPTIONS:
             return _table(value) and all(item in ASSUMPTIONS for item in value.values())
+        case Shape.DIMENSIONS:
+            return _table(value) and all(_text(item) for item in value.values())
         case Shape.FUNCTIONS:
             return _table(value) and all(_names(item) and item != [] for item in value.values())
         case Shape.BOX:

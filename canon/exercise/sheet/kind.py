@@ -25,6 +25,7 @@ class Shape(enum.Enum):
     SWITCH = "true or false"
     NUMBER = "a number"
     ASSUMPTIONS = "a table {name = assumption}"
+    DIMENSIONS = "a table {name = dimension}"
     FUNCTIONS = "a table {function = [arguments]}"
     BOX = "a table {name = [lo, hi]}"
     EXPRESSIONS = "a table {name = expression}"
@@ -54,6 +55,7 @@ COMMON: Mapping[str, Shape] = MappingProxyType(
         "in": Shape.NAMES,
         "points": Shape.NUMBER,
         "partial": Shape.SWITCH,
+        "dimensions": Shape.DIMENSIONS,
     }
 )
 """Keys that every claim may have."""

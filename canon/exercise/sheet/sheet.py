@@ -15,7 +15,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, NoReturn
 
-from canon.exercise.sheet.key_shapes import MAX_DIGITS, faults
+from canon.exercise.sheet.key_shapes import MAX_DIGITS, declared_names, faults
 from canon.expression.symbols.input_in_words import counted, given_kind
 from canon.frozen_mapping import FrozenMapping
 from canon.given_file import UnreadableFile, bytes_of, tables_of
@@ -38,7 +38,7 @@ MAX_CLAIMS = 10_000
 MAX_REASON = 2_000
 """Characters of what is told against a claim; only a stranger's name in it can make it longer."""
 MIN_BUDGET = Decimal("0.01")
-_FOR_ALL = ("implicit_multiplication", "complete", "in", "points", "partial")
+_FOR_ALL = ("implicit_multiplication", "complete", "in", "points", "partial", "dimensions")
 """Keys that may stand beside the claims and are meant for each of them."""
 DEFAULT_BUDGET = 10.0
 MOST_POINTS = 1_000_000
@@ -303,10 +303,11 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
     if len(raw) > MAX_CLAIMS:
         raise SheetError(f"{shown}: {len(raw)} claims, and at most {MAX_CLAIMS} are read; split the sheet")
     for_all = {key: found[key] for key in _FOR_ALL if key in found} if isinstance(found, dict) else {}
+    _refuse_idle_dimensions(for_all.get("dimensions"), raw, shown)
     seen: set[str] = set()
     claims: list[Claim] = []
     for number, keys in enumerate(raw, 1):
-        claim = claim_from({**for_all, **keys} if isinstance(keys, dict) else keys, number, file)
+        claim = claim_from(_beside(keys, for_all) if isinstance(keys, dict) else keys, number, file)
         if claim.id in seen:
             error = ClaimError(
                 claim.id, "id", "another claim before it has the same id; rename one", file=file
@@ -316,6 +317,29 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
         claims.append(claim)
     title = found.get("title", "") if isinstance(found, dict) else ""
     return Sheet(str(title), tuple(claims), file)
+
+
+def _beside(keys: dict[str, Any], for_all: dict[str, Any]) -> dict[str, Any]:
+    """Return a claim with what stands beside all claims: of dimensions those of the names that it declares."""
+    dimensions = for_all.get("dimensions")
+    if isinstance(dimensions, dict):
+        declared = declared_names(str(keys.get("kind", "")), keys)
+        own = {name: said for name, said in dimensions.items() if name in declared}
+        return {**for_all, "dimensions": own, **keys}
+    return {**for_all, **keys}
+
+
+def _refuse_idle_dimensions(dimensions: Any, claims: list[Any], shown: str) -> None:
+    """Refuse a dimension of a name that no claim declares, or a table that is none."""
+    if not isinstance(dimensions, dict):
+        return
+    tables = [keys for keys in claims if isinstance(keys, dict)]
+    declared = {name for keys in tables for name in declared_names(str(keys.get("kind", "")), keys)}
+    idle = next((name for name in dimensions if name not in declared), None)
+    if idle is not None:
+        raise SheetError(
+            f"{shown}: dimensions: {idle[:60]!r} is declared by no claim; mend it or leave it out"
+        )
 
 
 def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
