@@ -79,7 +79,7 @@ def test_no_other_module_knows_a_kind_by_its_name():
     answers = ("positive-real", "hamilton-equations")  # kinds without a dash are keys and English words, too
     names = {name for name in KINDS if "-" in name and name not in answers}
     for path, source in SOURCES.items():
-        if path == "sheet/kinds.py":
+        if path in ("sheet/kinds.py", "sheet/perturbed_kinds.py"):
             continue
         texts = {
             node.value for node in ast.walk(ast.parse(source))

@@ -33,6 +33,8 @@ def up(u):
     return UP.format(u)
 
 
+SMALL = {"small": "e", "parameters": {"e": "real"}}
+
 CLAIMS = [
     ("euler-lagrange", FALLING | {"domain": ["y >= 0"]}, "claim", "y_ddot + g", "y_ddot - g"),
     ("euler-lagrange", FALLING, "claim", f"y_ddot + g*{up('y')}", "y_ddot + g"),
@@ -180,6 +182,21 @@ CLAIMS = [
     ("variation", {"q": "x", "L": "x_dot**2/2 - Abs(x)", "boundary": "x_dot*delta_x"}, "integrand",
      f"-(x_ddot + {up('x')})*delta_x", "-(x_ddot + 1)*delta_x"),
     ("differential", {"x": "x", "f": "Abs(x)"}, "claim", f"{up('x')}*d_x", "d_x"),
+    ("hamilton-jacobi", PHASE | {"H": "p**2/2 + Abs(q)", "constants": "E"}, "gradient",
+     "sqrt(2*E - 2*Max(q, -q))", "sqrt(2*E - 2*q)"),
+    ("separable", {"q": ["x", "y"], "p": ["a", "b"], "H": "a**2 + b**2 + Abs(x) + Abs(y)"}, "is",
+     ["separable"], ["not separable"]),
+    ("action-angle", PHASE | {"H": "p**2/2 + c**2*q**2/2", "parameters": {"c": "nonzero", "E": "positive"}}, "J",
+     "E/Abs(c)", "E/c"),
+    ("frequency", PHASE | {"H": "p**2/2 + c**2*q**2/2", "parameters": {"c": "nonzero"}}, "omega", "Abs(c)", "c"),
+    ("lie-series", PHASE | SMALL | {"f": "Abs(q)", "W": "p"}, "claim", f"Abs(q) + e*{up('q')}", "Abs(q) + e"),
+    ("normal-form", PHASE | {"H": "p**2/2 + q**2/2 + c*q**4", "parameters": {"c": "nonzero"}, "actions": "J",
+                             "degree": 4}, "K", "J + 3*c*sign(c)**2*J**2/2", "J + 3*Abs(c)*J**2/2"),
+    ("averaged-hamiltonian", PHASE | SMALL | {"H": "p + e*Abs(p)*cos(q)**2", "angles": "q"}, "K",
+     "p + e*Max(p, -p)/2", "p + e*p/2"),
+    ("generating-first-order", PHASE | SMALL | {"H": "p + e*Abs(p)*cos(q)"}, "W", "Abs(p)*sin(q)", "p*sin(q)"),
+    ("adiabatic-invariant", PHASE | SMALL | {"H": "p + e*Abs(p)*cos(q)"}, "I",
+     "p + e*Max(p, -p)*cos(q)", "p + e*p*cos(q)"),
 ]  # fmt: skip
 
 

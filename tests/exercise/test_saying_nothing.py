@@ -59,6 +59,8 @@ SPACE = {"q": ["x", "y", "z"], "p": ["px", "py", "pz"]}
 LX, LY, LZ = "y*pz - z*py", "z*px - x*pz", "x*py - y*px"
 XY, YZ, ZX = ({"f": f, "g": g, "value": v} for f, g, v in ((LX, LY, LZ), (LY, LZ, LX), (LZ, LX, LY)))
 
+SMALL = {"small": ["e"], "parameters": {"e": "real"}}
+
 COMPLETE = {
     "euler-lagrange": ({**PENDULUM, "claim": ["l*theta_ddot + g*sin(theta)"]}, ["theta", "theta_ddot"]),
     "dissipative": ({**DAMPED, "claim": ["m*x_ddot + c*x_dot + k*x"], "energy_rate": "-c*x_dot**2"},
@@ -111,6 +113,15 @@ COMPLETE = {
     "variation": ({**SPRING, "boundary": "m*x_dot*delta_x", "integrand": "-(m*x_ddot + k*x)*delta_x"},
                   ["x", "x_dot", "x_ddot"]),
     "differential": ({"x": ["q", "p"], "f": "q**2*p", "claim": "2*q*p*d_q + q**2*d_p"}, ["q", "p"]),
+    "hamilton-jacobi": ({**OSCILLATOR, "constants": ["h"], "gradient": ["sqrt(2*m*h - k*m*q**2)"]}, ["q"]),
+    "separable": ({"q": ["x", "y"], "p": ["a", "b"], "H": "a**2 + b**2 + x*y", "is": ["not separable"]}, []),
+    "action-angle": ({**QP, "H": "p**2/2 + 2*q**2", "parameters": {"E": "positive"}, "J": ["E/2"]}, []),
+    "frequency": ({**QP, "H": "p**2/2 + 2*q**2", "omega": ["2"]}, []),
+    "lie-series": ({**QP, **SMALL, "f": "q", "W": "p*q", "claim": "q*(1 + e)"}, ["q"]),
+    "normal-form": ({**QP, "H": "(p**2 + q**2 + q**4)/2", "actions": ["J"], "degree": 4, "K": "J + 3*J**2/4"}, ["J"]),
+    "averaged-hamiltonian": ({**QP, **SMALL, "H": "p + e*p*cos(q)**2", "angles": ["q"], "K": "p + e*p/2"}, ["p"]),
+    "generating-first-order": ({**QP, **SMALL, "H": "p + e*p*cos(q)", "W": "p*sin(q)"}, ["q", "p"]),
+    "adiabatic-invariant": ({**QP, **SMALL, "H": "p + e*p*cos(q)", "I": "p + e*p*cos(q)"}, ["q", "p"]),
 }  # fmt: skip
 """Of each kind a right and complete answer, and the variables in which it is written."""
 

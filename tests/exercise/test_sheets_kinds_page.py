@@ -1,4 +1,4 @@
-"""docs/sheets_kinds.md: every example on the page is judged, and what it says is refused is refused."""
+"""docs/sheets_kinds.md, sheets_perturbation.md: every example is judged, and what is said to be refused is refused."""
 
 import re
 from pathlib import Path
@@ -9,7 +9,8 @@ from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.sheet import Claim, sheet_from
 from canon.exercise.sheet_check import judged
 
-PAGE = (Path(__file__).parents[2] / "docs" / "sheets_kinds.md").read_text("utf-8")
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = "".join((DOCS / f"{name}.md").read_text("utf-8") for name in ("sheets_kinds", "sheets_perturbation"))
 
 
 SAID = re.findall(r"^# (holds|fails)(?:: (.*))?\n\[\[claim\]\]\nid = \"(.*)\"", PAGE, re.MULTILINE)
@@ -35,7 +36,11 @@ def test_the_page_names_every_key_of_its_kinds_and_has_a_true_and_a_false_claim_
             assert re.search(rf"`{key}`|\(`?{key}`?[,)]|`{key} ", section), (kind, key)
         said = re.findall(r"^# (holds|fails)", section, re.MULTILINE)
         assert {"holds", "fails"} <= set(said), kind
-    assert len(SECTIONS) == 17
+    assert len(SECTIONS) == 26
+
+
+PHASE = {"q": ["q"], "p": ["p"]}
+SMALL = {"small": ["e"], "parameters": {"e": "real"}}
 
 
 @pytest.mark.parametrize(
@@ -71,6 +76,42 @@ def test_the_page_names_every_key_of_its_kinds_and_has_a_true_and_a_false_claim_
                         "pairs": [{"f": "q", "g": "p", "value": "1"}]}, "invalid", "q is no parameter"),
         ("positive-real", {"variables": ["s"], "H": "1/(s**13 + 1)", "is": ["passive"]},
          "invalid", "a degree above 12"),
+        ("hamilton-jacobi", {**PHASE, "H": "p**2/2 + c*q", "constants": ["c"], "W": "c*q"}, "invalid", "c stands in H"),
+        ("hamilton-jacobi", {**PHASE, "H": "p**2/2 + t*q", "constants": ["E"], "W": "E*q"},
+         "invalid", "H depends on t"),
+        ("hamilton-jacobi", {"q": ["x", "y"], "p": ["a", "b"], "H": "a + b", "constants": ["c", "d"], "W": "c*x + d*y"},
+         "invalid", "which of them is the energy"),
+        ("separable", {**PHASE, "H": "p**2/2 + t*q", "is": ["separable"]}, "invalid", "depends on t"),
+        ("separable", {**PHASE, "H": "p**2/2", "is": ["perhaps"]}, "invalid", "separable or not separable"),
+        ("action-angle", {**PHASE, "H": "p**2/2 + q**2/2", "new_q": ["u"], "new_p": ["J"],
+                          "transformation": {"u": "p"}}, "invalid", "should say what u, J are, or what q, p are"),
+        ("action-angle", {**PHASE, "H": "p**2/2 - cos(q)", "parameters": {"E": "real"}, "J": ["E"]},
+         "undecided", "motions of several kinds"),
+        ("action-angle", {**PHASE, "H": "p**2/2 - q**2/2", "J": ["q"]}, "undecided", "bounded motions"),
+        ("frequency", {**PHASE, "H": "p**2/2 + q**4/4", "parameters": {"E": "positive"},
+                       "omega": ["pi*(4*E)**(1/4)/(2*elliptic_k(1/2))"]}, "undecided", "no closed form"),
+        ("frequency", {"q": ["x", "y"], "p": ["a", "b"], "H": "(a**2 + b**2 + x**2 + y**2)/2 + x**2*y",
+                       "omega": ["1", "1"]}, "undecided", "does not separate"),
+        ("frequency", {**PHASE, "H": "p**2/2 + q**2/2 + t", "omega": ["1"]}, "invalid", "depends on t"),
+        ("lie-series", {**PHASE, "f": "q", "W": "p", **SMALL, "order": 9, "claim": "q"},
+         "invalid", "from 1 to 8"),
+        ("lie-series", {**PHASE, "f": "q", "W": "p*Abs(e)", **SMALL, "claim": "q"},
+         "undecided", "not certainly analytic"),
+        ("normal-form", {**PHASE, "H": "p**2/2 + q**2/2", "actions": ["J"], "degree": 5, "K": "J"},
+         "invalid", "an even number"),
+        ("normal-form", {"q": ["x", "y"], "p": ["a", "b"], "H": "(a**2 + b**2 + x**2 + y**2)/2 + x**2*y",
+                         "actions": ["J", "L"], "degree": 4, "K": "J + L"}, "undecided", "resonant terms"),
+        ("averaged-hamiltonian", {**PHASE, "H": "q + e*p", "angles": ["q"], "small": ["e"], "parameters": {"e": "real"},
+                                  "K": "q"}, "undecided", "the average was not found"),
+        ("averaged-hamiltonian", {"q": ["u", "x"], "p": ["J", "y"], **SMALL, "order": 2,
+                                  "H": "J + e*(y**2/2 + x**2/2 + J*x*cos(u))", "angles": ["u"],
+                                  "K": "J + e*(y**2 + x**2)/2 + e**2*x*y"}, "undecided", "which generator is taken"),
+        ("generating-first-order", {**PHASE, "H": "p + e*t", **SMALL, "W": "q"},
+         "invalid", "take the phase as an angle"),
+        ("adiabatic-invariant", {**PHASE, "H": "p**2/2 + e*t", **SMALL, "I": "p"},
+         "invalid", "slow = "),
+        ("adiabatic-invariant", {**PHASE, "H": "p**2/2", **SMALL, "I": "p", "order": 0},
+         "invalid", "one slow time is wanted"),
     ],
 )  # fmt: skip
 def test_what_the_page_says_is_refused(kind, keys, status, told):

@@ -203,7 +203,7 @@ def answers_of(reading: Reading) -> Iterator[tuple[str, Expr]]:
             case Shape.LISTS:
                 items = reading.inside(key, value.get(inner, []))
                 yield from ((f"{key}[{i}]", item) for i, item in enumerate(items))
-            case Shape.TEXTS if isinstance(value, list):
+            case Shape.TEXTS:
                 items = (reading.equations if outer == "implicit" else reading.expressions)(outer)
                 yield from ((f"{key}[{i}]", item) for i, item in enumerate(items))
             case _:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.reading import Reading
 
-__all__ = ["first_order", "linearisation"]
+__all__ = ["first_order", "linearisation", "small_symbols"]
 
 MOST_ORDERS = 8
 _ORDINALS = ("zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
@@ -57,7 +57,7 @@ def first_order(reading: Reading) -> Iterator[Question]:
     order = int(reading.claim.keys.get("order", 1))
     if order != reading.claim.keys.get("order", 1) or not -MOST_ORDERS <= order <= MOST_ORDERS:
         reading.fault("order", f"should be a whole number from -{MOST_ORDERS} to {MOST_ORDERS}")
-    small = _small(reading)
+    small = small_symbols(reading)
     names, deadline = ", ".join(map(str, small)), Deadline.after(0.9 * reading.claim.budget)
     said = f"right to {_ordinal(order)} order in {names}"
     verdicts: list[Verdict] = []
@@ -170,7 +170,8 @@ def _linear(
     return sp.Add(*terms)
 
 
-def _small(reading: Reading) -> list[Symbol]:
+def small_symbols(reading: Reading) -> list[Symbol]:
+    """Return the symbols of what is small, which are declared among the parameters."""
     names = reading.claim.keys["small"]
     found: list[Symbol] = []
     for name in names if isinstance(names, list) else [names]:

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet.kind import USUAL, Kind, Shape
+from canon.exercise.sheet.perturbed_kinds import PERTURBED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,8 +25,7 @@ _OF_MAPS = (
     "one_change.anywhere", "components.point_momenta", "changed_claims.only_for", "convention.variable_valence",
     *_AT_LAST,
 )  # fmt: skip
-_PHASE = {"q": _N, "p": _N}
-_NEW = {"new_q": _N, "new_p": _N}
+_PHASE, _NEW = {"q": _N, "p": _N}, {"new_q": _N, "new_p": _N}
 _LAGRANGE = {"q": _N, "L": _T}
 _MAP_EITHER_WAY = {"map": Shape.LISTS, "inverse_map": Shape.LISTS}
 _CANONICITY = Kind(
@@ -373,6 +373,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             answer=("claim",),
             unknowns="the coefficient of each differential",
         ),
+        **PERTURBED,
     }
 )
 """Every kind of claim that can stand in a sheet."""

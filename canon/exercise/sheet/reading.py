@@ -54,6 +54,8 @@ NAME_KEYS = (
     "multipliers",
     "quasi",
     "constants",
+    "actions",
+    "slow",
 )
 """Keys that declare names."""
 

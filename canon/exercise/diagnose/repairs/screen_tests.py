@@ -18,6 +18,7 @@ from canon.exercise.diagnose.repairs.point_derivatives import small
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.question.question import Same
+from canon.exercise.sheet.kind import Shape
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
@@ -374,7 +375,7 @@ def _left_over(
 
 def by_question(reading: Reading) -> Screened | None:
     """What the judge compares first, derived anew for each candidate: for kinds without a law of their own here."""
-    keys = [key for key in reading.kind.repaired if reading.has(key)]
+    keys = [place for key in reading.kind.repaired if reading.has(key) for place in _places(reading, key)]
     first = _compared(reading)
     if first is None:
         return None
@@ -392,6 +393,12 @@ def by_question(reading: Reading) -> Screened | None:
     given = tuple(part.right for part in first.parts)
     names = dict.fromkeys((*reading.scope.names.values(), reading.time, *symbols))
     return Screened(test, tuple(names), first.domain, given, QUESTION_STEPS)
+
+
+def _places(reading: Reading, key: str) -> list[str]:
+    """Return a key, or the places of the list that stands under it."""
+    listed = reading.kind.shapes.get(key) is Shape.TEXTS
+    return [f"{key}[{i}]" for i in range(len(reading.words(key)))] if listed else [key]
 
 
 def _compared(reading: Reading) -> Same | None:
