@@ -47,7 +47,11 @@ def check_analytic(f: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> Non
     canon.proof.domain.verdict.Undecided: elliptic_k(m + 1) is not certainly analytic there, ...
     """
     moving = tuple(place)
-    for part in sp.preorder_traversal(f):
+    pieces = sorted((part for part in f.atoms(*_WITHOUT_END) if part.has(*moving)), key=sp.default_sort_key)
+    for part in (
+        *pieces,
+        *sp.preorder_traversal(f),
+    ):  # pieces first: SymPy may fail to compare their values there
         if isinstance(part, Expr) and part.has(*moving) and not _analytic(part, place, domain):
             raise Undecided(
                 f"{part} is not certainly analytic there, so no expansion of it is proved; narrow the domain"

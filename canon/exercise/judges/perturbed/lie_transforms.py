@@ -85,10 +85,9 @@ def generator_of_first_order(reading: Reading) -> Iterator[Question]:
         reading.fault("H", f"depends on {t}; take the phase as an angle with a momentum of its own")
     H0, H1 = _coefficients(reading, H, small, 1)
     key = "W" if reading.has("W") else "F2"
-    parts: tuple[Part, ...] = ()
     if key == "W":
-        W = reading.expression("W")
-        if W.has(small, t):
+        generator, parts = reading.expression("W"), list[Part]()
+        if generator.has(small, t):
             reading.fault("W", "should be a function of q and p, the coefficient of the first order")
     else:
         new_p = reading.symbols("new_p")
@@ -97,13 +96,13 @@ def generator_of_first_order(reading: Reading) -> Iterator[Question]:
         bare, S = _coefficients(reading, reading.expression("F2"), small, 1)
         yield from wrong_variables(reading.expression("F2"), (*p, t), "F2", "q and P")
         identity = sp.Add(*(x * y for x, y in zip(q, new_p, strict=True)))
-        parts = (Part("F2 without the perturbation", bare, identity),)
-        W = -substitute(S, dict(zip(new_p, p, strict=True)))
-    first_order = H1 + poisson_bracket(H0, W, q, p)
-    rate = poisson_bracket(first_order, H0, q, p)
+        parts = [Part("F2 without the perturbation", bare, identity)]
+        generator = -substitute(S, dict(zip(new_p, p, strict=True)))
+    first_order = H1 + poisson_bracket(H0, generator, q, p)
+    parts.append(Part("{H1 + {H0, W}, H0}", poisson_bracket(first_order, H0, q, p)))
     said = "the generator leaves terms of first order that change along the motion of the unperturbed system"
-    yield Same((*parts, Part("{H1 + {H0, W}, H0}", rate)), reading.domain, None, lambda _: said)
-    yield from _one_function(reading, W, H, key)
+    yield Same(tuple(parts), reading.domain, None, lambda _: said)
+    yield from _one_function(reading, generator, H, key)
 
 
 def _one_function(reading: Reading, f: Expr, H: Expr, key: str) -> Iterator[Question]:
@@ -207,7 +206,7 @@ def _unique_orders(averaged: Averaged, K: Expr, order: int) -> int:
 
 
 def normal_form(reading: Reading) -> Iterator[Question]:
-    """K, as a function of the actions, is the normal form of H at the origin to a degree; constants do not count."""
+    """K, as a function of the actions, is the normal form of H at the origin to a degree, with H there or without."""
     q, p = reading.phase_space("q", "p")
     H, t, actions = reading.expression("H"), reading.time, reading.symbols("actions")
     degree = reading.claim.keys["degree"]
@@ -231,22 +230,27 @@ def normal_form(reading: Reading) -> Iterator[Question]:
 def _same_polynomials(
     reading: Reading, K: Expr, right: Expr, actions: Sequence[Symbol], degree: int
 ) -> Question:
-    """Return whether K has the right coefficients up to a degree; which pair is called the first is free."""
+    """Return whether K has the right coefficients up to a degree; which pair is called the first is free.
+
+    The energy at rest may be left out.
+    """
+    none = (0,) * len(actions)
     exponents = [e for e in product(range(degree + 1), repeat=len(actions)) if 1 <= sum(e) <= degree]
-    claimed, known = (_taylor(reading, f, actions, exponents) for f in (K, right))
+    claimed, known = (_taylor(reading, f, actions, [*exponents, none]) for f in (K, right))
+    rest = known[none]
     turns = [
         {e: known[tuple(e[i] for i in turn)] for e in exponents} for turn in permutations(range(len(actions)))
     ]
     linear = [e for e in exponents if sum(e) == 1]
     fitting = [turn for turn in turns if _agree(reading, linear, claimed, turn)] or turns[:1]
     wanted = next((turn for turn in fitting if _agree(reading, exponents, claimed, turn)), fitting[0])
+    wanted |= {none: sp.S.Zero if _agree(reading, [none], claimed, {none: sp.S.Zero}) else rest}
     truncated, answer = (
         sp.Add(*(c * sp.Mul(*(J**k for J, k in zip(actions, e, strict=True))) for e, c in series.items()))
         for series in (claimed, wanted)
     )
-    written = K if sp.expand(K - truncated).is_number else truncated
-    constant = sp.expand(written - truncated)
-    part = Part(f"K to degree {2 * degree} in q and p", written, sp.expand(answer + constant), key="K")
+    written = K if sp.expand(K - truncated) == 0 else truncated
+    part = Part(f"K to degree {2 * degree} in q and p", written, answer, key="K")
     return Same((part,), reading.domain, lambda: answer)
 
 
@@ -268,11 +272,13 @@ def _taylor(
     place: dict[Symbol, Expr] = dict.fromkeys(actions, sp.S.Zero)
     f = without_kinks(f, place, reading.domain)
     check_analytic(f, place, reading.domain)
-    return {
-        e: substitute(f.diff(*((J, k) for J, k in zip(actions, e, strict=True) if k)), place)
-        / sp.Mul(*map(sp.factorial, e))
-        for e in exponents
-    }
+    found: dict[tuple[int, ...], Expr] = {}
+    for e in exponents:
+        slope = f
+        for J, k in zip(actions, e, strict=True):
+            slope = slope.diff(J, k) if k else slope
+        found[e] = substitute(slope, place) / sp.Mul(*map(sp.factorial, e))
+    return found
 
 
 def adiabatic_invariant(reading: Reading) -> Iterator[Question]:
@@ -299,8 +305,8 @@ def adiabatic_invariant(reading: Reading) -> Iterator[Question]:
     )
     yield from _one_function(reading, I, H, "I")
     if order == 0:
-        at_zero = [_coefficients(reading, f, small, 0)[0] for f in (I, H)]
-        yield from slow_invariant(reading, at_zero[0], slow[0], at_zero[1])
+        (I_0, *_), (H_0, *_) = (_coefficients(reading, f, small, 0) for f in (I, H))
+        yield from (found for tau in slow for found in slow_invariant(reading, I_0, tau, H_0))
 
 
 def _small(reading: Reading) -> Symbol:

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import combinations, islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
+import numpy as np
 import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from flint import arb
+    from sympy.logic.boolalg import Boolean
 
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
@@ -178,18 +180,16 @@ def _integer_matrix(
     unit = sp.eye(len(right))
     symbols = {s for f in (*right, *momenta) for s in f.free_symbols if isinstance(s, Symbol)} | {*z}
     for point in domain.points(symbols, 6):
-        slopes = [
-            sp.Matrix([[sp.N(substitute(f.diff(s), point), 20) for s in z] for f in functions])
+        due, given = (
+            np.array([[complex(sp.N(substitute(f.diff(s), point))) for s in z] for f in functions])
             for functions in (right, momenta)
-        ]
-        numbers = [x for side in slopes for x in side]
-        if not all(x.is_Float or x.is_Rational for x in numbers):
+        )
+        if not (np.isfinite(due).all() and np.isfinite(given).all()):
             continue
-        gram = slopes[1] * slopes[1].T
-        if abs(gram.det()) < sp.Rational(1, 10**12):
-            continue
-        A = (slopes[0] * slopes[1].T * gram.inv()).applyfunc(lambda x: sp.Integer(round(x)))
-        return A if abs(A.det()) == 1 else unit
+        if np.linalg.matrix_rank(given) == len(right):
+            found = np.linalg.lstsq(given.T, due.T, rcond=None)[0].T.real
+            A = sp.Matrix(np.rint(found).astype(int).tolist())
+            return A if abs(A.det()) == 1 else unit
     return unit
 
 
@@ -265,7 +265,7 @@ def _tori(H: Hamiltonian, domain: Domain) -> _Tori:
     """
     frozen = _frozen(H)
     still = Hamiltonian(exchanged(H.H, frozen), H.q, H.p, H.t)
-    there = replace(domain, conditions=tuple(exchanged(c, frozen) for c in domain.conditions))
+    there = replace(domain, conditions=tuple(cast("Boolean", c.xreplace(frozen)) for c in domain.conditions))
     try:
         integral = hamilton_jacobi(still, domain=there, energy=Symbol("E_0", real=True))
     except NotSeparatedError as reason:
