@@ -189,7 +189,7 @@ def _integer_matrix(
         if np.linalg.matrix_rank(given) == len(right):
             found = np.linalg.lstsq(given.T, due.T, rcond=None)[0].T.real
             A = sp.Matrix(np.rint(found).astype(int).tolist())
-            return A if abs(A.det()) == 1 else unit
+            return A if A.det() in (1, -1) else unit
     return unit
 
 
