@@ -151,8 +151,9 @@ def test_three_thousand_slips_in_the_worker(first):
 
 def test_a_claim_whose_answer_stands_in_a_list_is_named():
     """It once met the screen of gauges, which looks for F, although its relation has none."""
-    claim = confused_claim(2740)
-    assert claim.keys["F"] == ["x"]
+    written = (json.loads(text) for text in WRITTEN)
+    other = next(keys for keys in written if keys.get("relation") == "equations" and "F" not in keys)
+    (claim,) = sheet_from(json.dumps({"claims": [{**other, "F": ["x"]}]}).encode()).claims
     (told,) = (judgement for judgement, last in judgements(claim) if last)
     assert told.status == "invalid"
     assert told.known.startswith("key F: stands beside the relation gauge only")

@@ -14,7 +14,7 @@ from canon.exercise.sheet.reading import Reading
 from canon.exercise.sheet.sheet import sheet_from
 
 DATA = Path(__file__).parents[1] / "data" / "claims"
-WITHOUT_EXPRESSION = {"constraint-class", "parameters"}
+WITHOUT_EXPRESSION = {"constraint-class", "parameters", "separable"}
 ANSWERS = {kind: said.answer for kind, said in KINDS.items()} | {
     "positive-real": ("H",),
     "linearisation": ("claim",),

@@ -19,9 +19,11 @@ from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.question.question import Same
 from canon.exercise.sheet.kind import Shape
+from canon.exercise.sheet.reading import InvalidClaim
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -402,4 +404,8 @@ def _places(reading: Reading, key: str) -> list[str]:
 
 
 def _compared(reading: Reading) -> Same | None:
-    return next((q for q in questions(reading) if isinstance(q, Same)), None)
+    """Return what a judge compares first; None where it does not come to compare anything."""
+    try:
+        return next((q for q in questions(reading) if isinstance(q, Same)), None)
+    except (InvalidClaim, Undecided):
+        return None

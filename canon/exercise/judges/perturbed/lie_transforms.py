@@ -119,8 +119,6 @@ def _one_function(reading: Reading, f: Expr, H: Expr, key: str) -> Iterator[Ques
     variables = (*q, *p)
     yield is_continuous(f, variables, reading.domain, key, (H,))
     slopes = {f"∂{key}/∂{z}": f.diff(z) for z in variables}
-    for name, slope in slopes.items():
-        yield is_continuous(slope, variables, reading.domain, name, (H,))
     windings = [_winding(slope, variables, reading.domain, name) for name, slope in slopes.items()]
     wound = [verdict for verdict in windings if verdict is not None]
     if wound:
