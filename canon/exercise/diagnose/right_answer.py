@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from sympy import Expr
+
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, judged_to_hold
-from canon.exercise.diagnose.effort import PROOF_SECONDS, Effort
+from canon.exercise.diagnose.effort import PROOF_SECONDS, PROOF_STEPS, Effort, proved_to_vanish
+from canon.exercise.question.book_form import book_forms
 from canon.exercise.question.question import Same, SameEquations, Stated
 from canon.exercise.sheet.sympy_trees import shown
 from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
-    from sympy import Expr
-
     from canon.exercise.claim_verdict import Finding
+    from canon.proof.domain.domain import Domain
 
 __all__ = ["corrected"]
+
+MOST_PROOFS = 12
+"""Proofs of forms in which a right answer is shown."""
 
 
 def corrected(finding: Finding) -> str:
@@ -42,12 +47,33 @@ def corrected(finding: Finding) -> str:
         if not judged_to_hold(repaired, Effort(PROOF_SECONDS)):
             return ""
     ending = " = 0" if isinstance(question, SameEquations) else ""
-    return "; ".join(f"{shown(e)}{ending}" for e in (answer if isinstance(answer, tuple) else (answer,)))
+    domain = finding.reading.domain if isinstance(question, Stated) else question.domain
+    forms = _Forms(domain)
+    return "; ".join(
+        f"{shown(forms.best(e))}{ending}" for e in (answer if isinstance(answer, tuple) else (answer,))
+    )
 
 
 def _right_parts(finding: Finding, question: Same) -> str:
     """Return what the wrong components should be, where a claim writes them as they are compared."""
     if finding.reading.kind.derived or finding.reading.has("solution") or question.said:
         return ""
+    forms = _Forms(question.domain)
     parts = [p for p in question.parts if not p.through and p.residual != 0]
-    return "; ".join(f"{p.name} = {shown(p.right)}" for p in parts[:MOST_SENTENCES])
+    return "; ".join(f"{p.name} = {shown(forms.best(p.right))}" for p in parts[:MOST_SENTENCES])
+
+
+class _Forms:
+    """The choice among plain forms of right answers, all of them together limited by a count of steps."""
+
+    def __init__(self, domain: Domain) -> None:
+        self.domain, self.effort = domain, Effort(PROOF_SECONDS, MOST_PROOFS * PROOF_STEPS)
+
+    def best(self, item: object) -> object:
+        """Return the shortest form that is proved to be the same, or what is given as it stands."""
+        for form in book_forms(item) if isinstance(item, Expr) and not self.effort.spent else ():
+            if self.effort.spent:
+                break
+            if proved_to_vanish(form - item, self.domain, self.effort):
+                return form
+        return item

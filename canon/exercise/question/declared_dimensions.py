@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.exercise.question.dimension_texts import TIME, Dimension, DimensionError, dimension_from
 from canon.exercise.question.expression_dimension import analysed, dimension_of
-from canon.exercise.sheet.dimension_texts import TIME, Dimension, DimensionError, dimension_from
 from canon.exercise.sheet.kind import Shape
 from canon.expression.symbols.symbol import Coordinate
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from canon.exercise.claim_verdict import Finding
     from canon.exercise.diagnose.change import Change
     from canon.exercise.diagnose.diagnosis import Diagnosis
-    from canon.exercise.sheet.dimension_texts import Dimension
+    from canon.exercise.question.dimension_texts import Dimension
 
 __all__ = ["SENTENCES", "feedback", "sentence", "times"]
 
@@ -65,7 +65,7 @@ def _measured(dimension: Dimension, subject: str = "") -> str:
 
     Examples
     --------
-    >>> from canon.exercise.sheet.dimension_texts import dimension_from
+    >>> from canon.exercise.question.dimension_texts import dimension_from
     >>> [_measured(dimension_from(text), "x") for text in ("force", "mass*length^3", "1")]
     ['x has the dimension of force', 'x has the dimension length^3*mass', 'x is a pure number']
     """
