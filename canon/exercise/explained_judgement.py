@@ -97,11 +97,13 @@ def _explanation(claim: Claim, finding: Finding, judgement: Judgement) -> Explan
     from canon.exercise.diagnose.diagnosis_search import OUTER_SECONDS, diagnosis
     from canon.exercise.diagnose.kept_explanations import Explanation
     from canon.exercise.diagnose.proved_share import proved_share
+    from canon.exercise.diagnose.right_answer import repaired_answer
     from canon.exercise.report.sentences import sentence
 
     found = diagnosis(finding, min(OUTER_SECONDS, claim.budget - finding.start.since(Worked.now())))
     share = float(proved_share(finding, found)) if claim.keys.get("partial") else None
-    return Explanation(judgement.corrected, _cut(sentence(found)) if found else "", share)
+    right = judgement.corrected or _cut(repaired_answer(finding, found))
+    return Explanation(right, _cut(sentence(found)) if found else "", share)
 
 
 def _with(said: Explanation, judgement: Judgement) -> Judgement:

@@ -10,7 +10,11 @@ from hypothesis import strategies as st
 
 from canon.exercise.claim_verdict import examine
 from canon.exercise.diagnose import right_answer
+from canon.exercise.diagnose.diagnosis import judged_to_hold
+from canon.exercise.diagnose.diagnosis_search import diagnosis
+from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.right_answer import corrected
+from canon.exercise.explained_judgement import judgements
 from canon.exercise.question.book_form import CLEARLY, book_forms
 from canon.exercise.sheet.sheet import read_sheet
 from canon.mechanics.algebra.substitution import size
@@ -95,3 +99,28 @@ def test_short_answers_keep_their_style():
     m, g, z = sp.symbols("m g z")
     assert book_forms(m * g + m * z) == []
     assert book_forms(a * (x + y)) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("CT-01a", "Q = -p*sin(t*w) - q*cos(t*w)"),
+        ("CA-06b", "P1 = -pf*sin(phi)/r + pr*cos(phi); P2 = pf*cos(phi)/r + pr*sin(phi)"),
+        ("CA-09a", "Q + h**2*Derivative(V(q), q)/m - h*p/m - q = 0"),
+        ("SL-04a", "x = m*v0*(1 - exp(-c*t/m))/c"),
+        ("LE-01a", "L2 = m*x_dot**2/2"),
+        ("CA-13a", ""),
+    ],
+)
+def test_a_repaired_answer_is_shown_where_canon_has_no_other(name, said):
+    *_, (judgement, _) = judgements(EVERY[name])
+    assert judgement.corrected == said
+    if said:
+        repaired = diagnosis(examine(EVERY[name])).repaired
+        assert judged_to_hold(repaired, Effort(60.0))
+        assert set(said.replace(" = 0", "").split("; ")) & {
+            part for f in repaired.instead.values() for part in (str(f), *(f"{k} = {f}" for k in NAMES))
+        }
+
+
+NAMES = ("Q", "P1", "P2", "x", "L2")

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from canon.exercise.diagnose.diagnosis import Diagnosis
     from canon.exercise.sheet.reading import Reading
 
-__all__ = ["proved_share", "share_of_terms"]
+__all__ = ["EQUATIONS", "components_of", "proved_share", "repaired_components", "share_of_terms"]
 
-_EQUATIONS = ("claim", "implicit", "equations")
+EQUATIONS = ("claim", "implicit", "equations")
 """Keys of lists whose equations need not be as many as what is asked."""
 
 
@@ -51,7 +51,7 @@ def proved_share(finding: Finding, found: Diagnosis | None) -> Fraction:
         return Fraction(0)
     if found is None or found.repaired is None:
         return _compared_one_by_one(finding, answers)
-    repaired = _repaired(finding.reading, found.repaired)
+    repaired = repaired_components(finding.reading, found.repaired)
     if not repaired or not repaired.keys() <= answers.keys():
         return Fraction(0)
     shares = (
@@ -73,7 +73,7 @@ def share_of_terms(claimed: Expr, right: Expr) -> Fraction:
     return Fraction((here & there).total(), max(here.total(), there.total()))
 
 
-def _repaired(reading: Reading, repaired: Reading) -> dict[str, Expr]:
+def repaired_components(reading: Reading, repaired: Reading) -> dict[str, Expr]:
     """Return the components of a repaired answer that were changed; none where something else was changed."""
     same = repaired.claim == reading.claim and repaired.at == reading.at and repaired.names == reading.names
     return dict(repaired.instead) if same else {}
@@ -89,7 +89,7 @@ def components_of(reading: Reading) -> Iterator[tuple[str, Expr]]:
             case Shape.TEXT:
                 yield key, reading.expression(key)
             case Shape.TEXTS:
-                equations = key in _EQUATIONS and key not in reading.kind.components
+                equations = key in EQUATIONS and key not in reading.kind.components
                 items = reading.equations(key) if equations else reading.expressions(key)
                 alone = not isinstance(value, list) and not equations
                 yield from ((key if alone else f"{key}[{i}]", f) for i, f in enumerate(items))
@@ -104,7 +104,7 @@ def components_of(reading: Reading) -> Iterator[tuple[str, Expr]]:
 
 def _as_many_as_asked(finding: Finding, answers: dict[str, Expr]) -> bool:
     """Tell whether no component can be there for nothing: equations are as many as what they determine."""
-    equations = [key for key in answers if key.partition("[")[0] in _EQUATIONS and "[" in key]
+    equations = [key for key in answers if key.partition("[")[0] in EQUATIONS and "[" in key]
     listed = [key for key in equations if key.partition("[")[0] not in finding.reading.kind.components]
     if len(listed) < 2:
         return True

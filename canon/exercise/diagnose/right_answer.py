@@ -8,6 +8,7 @@ from sympy import Expr
 
 from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, judged_to_hold
 from canon.exercise.diagnose.effort import PROOF_SECONDS, PROOF_STEPS, Effort, proved_to_vanish
+from canon.exercise.diagnose.proved_share import EQUATIONS, repaired_components
 from canon.exercise.question.book_form import book_forms
 from canon.exercise.question.question import Same, SameEquations, Stated
 from canon.exercise.sheet.sympy_trees import shown
@@ -15,9 +16,11 @@ from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
     from canon.exercise.claim_verdict import Finding
+    from canon.exercise.diagnose.diagnosis import Diagnosis
+    from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
-__all__ = ["corrected"]
+__all__ = ["corrected", "repaired_answer"]
 
 MOST_PROOFS = 12
 """Proofs of forms in which a right answer is shown."""
@@ -61,6 +64,30 @@ def _right_parts(finding: Finding, question: Same) -> str:
     forms = _Forms(question.domain)
     parts = [p for p in question.parts if not p.through and p.residual != 0]
     return "; ".join(f"{p.name} = {shown(forms.best(p.right))}" for p in parts[:MOST_SENTENCES])
+
+
+def repaired_answer(finding: Finding, found: Diagnosis | None) -> str:
+    """Return what was repaired in an answer as text, which was judged to hold; nothing where another claim was meant.
+
+    Raises
+    ------
+    BudgetSpent
+        Where the proof of a form was ended by its seconds.
+    """
+    if found is None or found.repaired is None:
+        return ""
+    changed, forms = repaired_components(finding.reading, found.repaired), _Forms(finding.reading.domain)
+    return "; ".join(_of_component(key, shown(forms.best(f)), finding.reading) for key, f in changed.items())
+
+
+def _of_component(key: str, text: str, reading: Reading) -> str:
+    """Return a component with its name: ``P2 = …`` for P[1], an equation for what should vanish."""
+    whole, _, number = key.removesuffix("]").partition("[")
+    if whole in EQUATIONS and whole not in reading.kind.components:
+        return f"{text} = 0"
+    name = whole.rpartition(".")[2]
+    alone = not number or (reading.has(whole) and len(reading.words(whole)) == 1)
+    return f"{name if alone else f'{name}{int(number) + 1}'} = {text}"
 
 
 class _Forms:
