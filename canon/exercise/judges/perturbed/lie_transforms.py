@@ -294,7 +294,8 @@ def adiabatic_invariant(reading: Reading) -> Iterator[Question]:
             reading.fault(key, f'depends on {t}; write the slow time as a name of its own, slow = "tau"')
     if len(slow) > 1 or (order == 0 and not slow):
         reading.fault("slow", "one slow time is wanted; without one, claim an order from 1")
-    yield Tells((same_everywhere((I,), (*q, *p), reading.domain),), NOT_OF_THE_STATE)
+    (I_0, *_), (H_0, *_) = (_coefficients(reading, f, small, 0) for f in (I, H))
+    yield Tells((same_everywhere((I_0,), (*q, *p), reading.domain),), NOT_OF_THE_STATE)
     rate = sp.Add(poisson_bracket(I, H, q, p), *(small * I.diff(tau) for tau in slow))
     coefficients = _coefficients(reading, rate, small, order)
     parts = _parts("dI/dt", coefficients, [sp.S.Zero] * (order + 1), small)
@@ -303,7 +304,6 @@ def adiabatic_invariant(reading: Reading) -> Iterator[Question]:
     )
     yield from _one_function(reading, I, H, "I")
     if order == 0:
-        (I_0, *_), (H_0, *_) = (_coefficients(reading, f, small, 0) for f in (I, H))
         yield from (found for tau in slow for found in slow_invariant(reading, I_0, tau, H_0))
 
 

@@ -8,7 +8,8 @@ such as the librations and rotations of a pendulum, it must be narrowed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, cast
 
@@ -32,7 +33,9 @@ from canon.mechanics.integrable.cycles import ball_of
 from canon.mechanics.integrable.separated_momenta import NotSeparatedError
 from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.balls import precision
+from canon.proof.domain.domain import EVERYWHERE, Domain
 from canon.proof.domain.verdict import Counterexample, Status, Undecided, Verdict
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -41,7 +44,6 @@ if TYPE_CHECKING:
     from sympy.logic.boolalg import Boolean
 
     from canon.exercise.sheet.reading import Reading
-    from canon.proof.domain.domain import Domain
 
 __all__ = ["action_angle", "frequency", "slow_invariant"]
 
@@ -51,6 +53,8 @@ TORI = 3
 POINTS = 24
 """Points of the domain that are tried for these tori; through some of them no bounded motion goes."""
 BITS = 128
+KEPT = 8
+"""Systems whose tori are kept."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +128,12 @@ def action_angle(reading: Reading) -> Iterator[Question]:
             yield Stated(refuted)
             return
     right = tuple(map(tori.of_state, tori.known()))
-    yield Same(_components("the action", "J", H.q, claimed, right, at_energy), reading.domain, tori.shown)
+    yield Same(
+        _components("the action", "J", H.q, claimed, right, at_energy),
+        reading.domain,
+        tori.shown,
+        _whole_loop,
+    )
 
 
 def _components(
@@ -139,6 +148,20 @@ def _components(
         Part(f"{name} of {x}", f, due, FrozenMapping(through), key=f"{key}[{i}]")
         for i, (x, f, due) in enumerate(zip(q, claimed, right, strict=True))
     )
+
+
+def _whole_loop(part: Part) -> str:
+    """Say whether 1/2π was forgotten, as where ∮ p dq itself is called the action."""
+    return f"this is ∮ p dq; {part.name} is that divided by 2π" if _is_times(part, 2 * sp.pi) else ""
+
+
+def _turns_alone(part: Part) -> str:
+    """Say whether turns are counted, not radians."""
+    return f"this counts turns; {part.name} is 2π times that" if _is_times(part, 1 / (2 * sp.pi)) else ""
+
+
+def _is_times(part: Part, factor: Expr) -> bool:
+    return vanishes_off_kinks(part.seen(part.claimed) - factor * part.right, EVERYWHERE, budget=0.5).holds
 
 
 def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
@@ -216,7 +239,10 @@ def frequency(reading: Reading) -> Iterator[Question]:
     right = tuple(map(tori.of_state, omega))
     answer = tuple(substitute(f, {tori.integral.energy: Symbol("E", real=True)}) for f in omega)
     yield Same(
-        _components("the frequency", "omega", H.q, claimed, right, through), reading.domain, lambda: answer
+        _components("the frequency", "omega", H.q, claimed, right, through),
+        reading.domain,
+        lambda: answer,
+        _turns_alone,
     )
 
 
@@ -256,6 +282,19 @@ def _at_energy(reading: Reading, H: Hamiltonian) -> dict[Symbol, Expr]:
 
 
 def _tori(H: Hamiltonian, domain: Domain) -> _Tori:
+    """Return the tori of a system; those of the last few are kept, as each repair of an answer asks for them anew."""
+    return _kept_tori(H.H, H.q, H.p, H.t, domain.conditions, tuple(domain.box.items()))
+
+
+@lru_cache(maxsize=KEPT)
+def _kept_tori(
+    energy: Expr,
+    q: tuple[Symbol, ...],
+    p: tuple[Symbol, ...],
+    t: Symbol,
+    conditions: tuple[Boolean, ...],
+    box: tuple[tuple[Symbol, tuple[sp.Rational, sp.Rational]], ...],
+) -> _Tori:
     """Return tori through points of the domain, and the actions that are one formula on all of them.
 
     Raises
@@ -263,9 +302,9 @@ def _tori(H: Hamiltonian, domain: Domain) -> _Tori:
     Undecided
         Where H does not separate, no bounded motions were found, or the formula is another one in parts of the domain.
     """
-    frozen = _frozen(H)
-    still = Hamiltonian(exchanged(H.H, frozen), H.q, H.p, H.t)
-    there = replace(domain, conditions=tuple(cast("Boolean", c.xreplace(frozen)) for c in domain.conditions))
+    frozen = _frozen(energy, (*q, *p))
+    still = Hamiltonian(exchanged(energy, frozen), q, p, t)
+    there = Domain(tuple(cast("Boolean", c.xreplace(frozen)) for c in conditions), FrozenMapping(dict(box)))
     try:
         integral = hamilton_jacobi(still, domain=there, energy=Symbol("E_0", real=True))
     except NotSeparatedError as reason:
@@ -289,10 +328,10 @@ def _tori(H: Hamiltonian, domain: Domain) -> _Tori:
     return _Tori(integral, tuple(found), tuple(J if J is None else exchanged(J, back) for J in known), back)
 
 
-def _frozen(H: Hamiltonian) -> dict[Expr, Expr]:
+def _frozen(H: Expr, state: Sequence[Symbol]) -> dict[Expr, Expr]:
     """Return symbols for the functions of parameters that H holds."""
-    functions = sorted(H.H.atoms(AppliedUndef), key=str)
-    if any(f.has(*H.q, *H.p) for f in functions):
+    functions = sorted(H.atoms(AppliedUndef), key=str)
+    if any(f.has(*state) for f in functions):
         raise Undecided(
             "H holds a function of the coordinates that is not given, so its actions are not known"
         )

@@ -1,0 +1,81 @@
+"""Claims of Hamilton–Jacobi theory and perturbation theory: what is told, and generators that would remove the mean."""
+
+import pytest
+
+from canon.exercise.claim_verdict import examine
+from canon.exercise.sheet.sheet import Claim, read_sheet
+from canon.exercise.sheet_check import judged
+from tests.exercise.test_diagnosis import ROOT
+
+CLAIMS = {
+    c.id: c
+    for kind in ("action-angle", "frequency", "generating-first-order", "adiabatic-invariant", "normal-form")
+    for c in read_sheet(ROOT / f"tests/data/claims/{kind}.json").claims
+}
+QUARTIC = {
+    "q": ["q"], "p": ["p"], "H": "(p**2 + q**2)/2 + eps*q**4", "parameters": {"eps": "real"}, "small": ["eps"],
+}  # fmt: skip
+RIGHT = "-5*p*q**3/8 - 3*p**3*q/8"
+ANGLES = (
+    "atan(q/p)",
+    "atan2(q, p)",
+    "acos(p/sqrt(p**2 + q**2))*sign(q)",
+    "asin(q/sqrt(p**2 + q**2))*sign(p)",
+    "2*atan(q/(p + sqrt(p**2 + q**2)))",
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("AA-01a", "this is ∮ p dq; the action of q is that divided by 2π"),
+        ("FR-01a", "this counts turns; the frequency of q is 2π times that"),
+        ("FR-06a", "in the frequency of x v should be w; in the frequency of y w should be v"),
+        ("G1-01c", "in W the term I**2*theta/(2*w) does not belong"),
+        ("AD-01a", "in I w(tau)**(-2) should be 1/w(tau)"),
+        ("AD-06a", "I has not the period 2π in u: it changes with every turn"),
+        ("NF-01a", "in K to degree 6 in q and p the term -J**2/8 should be half that"),
+    ],
+)
+def test_what_is_told(name, told):
+    (judgement,) = judged([CLAIMS[name]])
+    assert (judgement.status, judgement.feedback) == ("fails", told)
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_a_generator_with_an_angle_in_it_removes_the_mean_and_does_not_hold(angle):
+    claim = Claim("a", "generating-first-order", {**QUARTIC, "W": f"{RIGHT} + 3*(p**2 + q**2)**2*{angle}/8"})
+    assert not examine(claim).verdict.holds
+
+
+@pytest.mark.parametrize("free", ["(p**2 + q**2)**3", "7", "sin(p**2 + q**2)"])
+def test_what_commutes_with_the_unperturbed_hamiltonian_is_free(free):
+    claim = Claim("a", "generating-first-order", {**QUARTIC, "W": f"{RIGHT} + {free}"})
+    assert examine(claim).verdict.holds
+
+
+@pytest.mark.parametrize(
+    ("theta", "J", "holds"),
+    [
+        ("atan2(2*q, p)", "p**2/4 + q**2", True),
+        ("-atan2(2*q, p)", "-p**2/4 - q**2", True),
+        ("atan2(2*q, p) + p**2/4 + q**2", "p**2/4 + q**2", True),
+        ("atan2(2*q, p)", "p**2/4 + q**2 + 5", True),
+        ("3*atan2(2*q, p)", "p**2/12 + q**2/3", False),
+        ("atan2(2*q, p)/2", "p**2/2 + 2*q**2", False),
+        ("atan2(2*q, p) + q", "p**2/4 + q**2", False),
+    ],
+)
+def test_angles_are_free_up_to_their_origin_and_sense_but_grow_by_a_turn(theta, J, holds):
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + 2*q**2", "new_q": ["u"], "new_p": ["J"]}
+    claim = Claim("a", "action-angle", {**keys, "transformation": {"u": theta, "J": J}})
+    assert examine(claim).verdict.holds == holds
+
+
+def test_an_action_without_a_closed_form_is_refuted_by_quadrature():
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + q**4", "parameters": {"E": "positive"}}
+    verdict = examine(Claim("a", "action-angle", {**keys, "J": ["E**(3/4)"]})).verdict
+    assert verdict.fails
+    assert verdict.certificate == "ball"
+    area = "4*elliptic_k(1/2)*E**(3/4)/(3*pi)"
+    assert examine(Claim("a", "action-angle", {**keys, "J": [area]})).verdict.undecided
