@@ -11,6 +11,7 @@ from canon.exercise.claim_verdict import examine
 from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.repairs.repair import repair
 from canon.exercise.diagnose.repairs.slips import variants
+from canon.exercise.diagnose.repairs.unbuilt import built
 from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.question.question import Part
 from canon.exercise.report.sentences import feedback
@@ -94,7 +95,7 @@ def test_a_repair_is_always_right(number):
     """Whatever slip was made, what is proposed equals the right expression; signs and factors are always found."""
     slips = [
         slip
-        for slip in variants(RIGHT, (x, y, m))
+        for slip in ((built(new), change) for new, change in variants(RIGHT, (x, y, m)))
         if slip[0].free_symbols and not slip[0].has(sp.zoo, sp.nan)
     ]
     wrong, change = slips[number * 7 % len(slips)]
@@ -127,7 +128,7 @@ def test_slips_that_say_nothing_are_left_out(expression):
     """The twins of an elliptic integral take another number of arguments; an imaginary symbol has no order."""
     found = list(variants(expression, [x, y, k]))
     assert len(found) > 5
-    assert all(isinstance(new, sp.Expr) for new, _ in found)
+    assert all(isinstance(built(new), sp.Expr) for new, _ in found)
 
 
 @pytest.mark.parametrize(

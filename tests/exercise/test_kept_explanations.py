@@ -27,6 +27,7 @@ SAME = (
     "m*l**2*theta_ddot - m*g*l*sin(theta)",
     "-sin(theta)*l*g*m + theta_ddot*m*l**2",
     "l*m*(l*theta_ddot) - g*(l*m)*sin(theta)",
+    r"$m l^2 \ddot\theta - m g l \sin\theta$",
 )
 OTHERS = (
     "m*l**2*theta_ddot - 2*m*g*l*sin(theta)",

@@ -12,7 +12,10 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
+from canon.exercise.diagnose.changed_claims import answers_of
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
+from canon.exercise.diagnose.effort import JUDGEMENT_STEPS
+from canon.exercise.diagnose.repairs.screening import screening
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.judges.lagrangian import appell_system
@@ -181,12 +184,18 @@ def time_term(wrong: WrongAnswer) -> Iterator[Diagnosis]:
         return
     rates = motion_of(reading)
     rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()))
+    screen = screening(reading, dict(answers_of(reading)))
     somewhere = {x: sp.Integer(i) for i, x in enumerate(rates, 1)}
     for growth in (
         substitute(rate, somewhere),
         rate,
     ):  # the same in every state, or a constant of the motion itself
         if growth.has(t, sp.nan, sp.zoo, sp.oo) or growth == 0 or sp.count_ops(growth) > MOST_OPERATIONS:
+            continue
+        if screen is not None and not any(
+            screen.passes({"I": f}) for f in (I - growth * t, I + growth - growth * t)
+        ):
+            wrong.effort.spend(JUDGEMENT_STEPS)  # of the judgement on it, which values tell to be needless
             continue
         growth = sp.cancel(growth)
         if -growth in sp.Add.make_args(I):  # it stands there, without t
@@ -196,5 +205,5 @@ def time_term(wrong: WrongAnswer) -> Iterator[Diagnosis]:
             repaired = reading.with_instead("I", I - growth * t)
             change = Change.of(Mistake.TIME_TERM_MISSING, growth, -growth * t, place="I")
         if judged_to_hold(repaired, wrong.effort):
-            yield Diagnosis((change,), repaired)
+            yield Diagnosis((change,), repaired, judged=True)
             return

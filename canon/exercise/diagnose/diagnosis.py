@@ -59,12 +59,15 @@ class Diagnosis:
         Whether they are to be told only where all other questions of the claim hold.
     instead
         What may be wrong in another component in place of this: nothing in the claim tells which of them is meant.
+    judged
+        Whether the whole of the claim repaired was judged to hold when this was found.
     """
 
     changes: tuple[Change, ...]
     repaired: Reading | None = None
     only_fault: bool = False
     instead: Diagnosis | None = None
+    judged: bool = False
 
     @classmethod
     def of(

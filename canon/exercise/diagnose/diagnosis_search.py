@@ -112,6 +112,9 @@ def _with_the_next(found: Diagnosis, finding: Finding, effort: Effort, said: int
 
 def _confirmed(found: Diagnosis, finding: Finding, effort: Effort) -> bool:
     """Whether the repaired claim holds; where nothing is repaired, whether all else in the claim does."""
+    if found.judged:
+        effort.spend(JUDGEMENT_STEPS)
+        return True
     if found.repaired is not None:
         return judged_to_hold(found.repaired, effort)
     return not found.only_fault or judged_to_hold(finding.reading, effort, but=finding.held)

@@ -38,6 +38,9 @@ PROOF_STEPS = 2_500
 JUDGEMENT_STEPS = 2_500
 """Steps that a judgement on a changed claim counts for, of which a search needs up to some two hundred."""
 
+LOOK_STEPS = 1_000
+"""Steps after which the clock is looked at again: some milliseconds. A look takes as long as several steps."""
+
 
 class Effort:
     """What may still be spent on the search for a diagnosis.
@@ -65,6 +68,7 @@ class Effort:
         self.start, self.seconds = Worked.now(), seconds
         self.steps = steps
         self.whole: Effort | None = None
+        self._unlooked = LOOK_STEPS
 
     def share(self, part: float) -> Effort:
         """Return a share of what is left; what is spent of it is spent of the whole."""
@@ -80,8 +84,11 @@ class Effort:
         BudgetSpent
             Where the seconds are over.
         """
-        if self._seconds_left <= 0:
-            raise BudgetSpent
+        self._unlooked += steps
+        if self._unlooked >= LOOK_STEPS:
+            self._unlooked = 0
+            if self._seconds_left <= 0:
+                raise BudgetSpent
         counting: Effort | None = self
         while counting is not None:
             counting.steps -= steps

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 from canon.exercise.question.equation_systems import AFFINE
 from canon.exercise.sheet.kind import COMMON
 from canon.exercise.sheet.reading import InvalidClaim
+from canon.expression.text.vocabulary import FUNCTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
     from canon.exercise.claim_verdict import Finding
     from canon.exercise.sheet.reading import Reading
+    from canon.expression.text.scope import Scope
 
 __all__ = ["Explanation", "KeptExplanations", "meaning"]
 
@@ -100,7 +102,7 @@ def _read(value: Any, reading: Reading) -> Hashable:
     """Return an answer with its texts as expressions; a text that can't be read alone stays a text."""
     if isinstance(value, str):
         try:
-            return reading.equation("", value), value.count("="), _words(value)
+            return reading.equation("", value), value.count("="), _words(value, reading.scope)
         except InvalidClaim:
             return value
     if isinstance(value, dict):
@@ -110,7 +112,11 @@ def _read(value: Any, reading: Reading) -> Hashable:
     return repr(value)
 
 
-def _words(text: str) -> frozenset[str]:
-    """Return the words of a text without its numbers, of which an expression says all."""
-    words = "".join(letter if letter.isalnum() or letter == "_" else " " for letter in text).split()
-    return frozenset(word for word in words if not word.isdigit())
+def _words(text: str, scope: Scope) -> frozenset[str]:
+    """Return the words of a text that are no declared names or functions, of which an expression says all."""
+    plain = text.replace("_{\\", "_").replace("_{", "_")
+    spelled = "".join(letter if letter.isalnum() or letter in "_\\" else " " for letter in plain)
+    words = spelled.replace("\\", " \\").split()
+    return frozenset(
+        w for w in words if not (w.isdigit() or w.startswith("\\") or w in FUNCTIONS or scope.declares(w))
+    )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.cached_property import cached_property
 from canon.exercise.diagnose.change import Change, Mistake, rank
 from canon.exercise.diagnose.changed_claims import answers_of, called
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
@@ -24,6 +25,7 @@ from canon.exercise.diagnose.repairs.slips import (
     rarer_variants,
 )
 from canon.exercise.diagnose.repairs.symbol_slips import slipped
+from canon.exercise.diagnose.repairs.unbuilt import built
 from canon.expression.symbols.symbol import Coordinate, velocity
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     from canon.exercise.diagnose.diagnosis import WrongAnswer
     from canon.exercise.diagnose.effort import Effort
     from canon.exercise.diagnose.repairs.screening import Screening
+    from canon.exercise.diagnose.repairs.unbuilt import Form
     from canon.exercise.sheet.reading import Reading
 
 __all__ = ["anywhere", "in_one_of_two"]
@@ -46,9 +49,9 @@ SHARE = 0.75
 
 @dataclass(frozen=True)
 class _Candidate:
-    """Answers with one change."""
+    """Answers with one change, not built yet."""
 
-    answers: Mapping[str, Expr]
+    forms: Mapping[str, Form]
     change: Change
     suspicion: int
 
@@ -56,6 +59,14 @@ class _Candidate:
     def order(self) -> tuple[int, int]:
         """What is tried first: likely mistakes, and among these the suspected components."""
         return rank(self.change), self.suspicion
+
+    @cached_property
+    def answers(self) -> Mapping[str, Expr]:
+        """The answers themselves, none where SymPy has no such expression."""
+        try:
+            return {key: built(form) for key, form in self.forms.items()}
+        except (TypeError, ValueError):
+            return {}
 
 
 def anywhere(wrong: WrongAnswer) -> Iterator[Diagnosis]:
@@ -74,14 +85,17 @@ def _one_change(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     screen = screening(reading, answers)
     passing: list[_Candidate] = []
     for groups, least_to_come in _tiers(wrong, answers):
-        passing = sorted((*passing, *_passing(groups, screen, effort)), key=lambda candidate: candidate.order)
+        found = (
+            candidate for candidate in _passing(groups, screen, effort) if _says_something(candidate, reading)
+        )
+        passing = sorted((*passing, *found), key=lambda candidate: candidate.order)
         while passing and rank(passing[0].change) < least_to_come:
             if effort.spent:
                 return
             candidate = passing.pop(0)
-            found = _judged(candidate, wrong)
-            if found is not None:
-                yield replace(found, instead=_elsewhere(candidate, passing, wrong))
+            diagnosis = _judged(candidate, wrong)
+            if diagnosis is not None:
+                yield replace(diagnosis, instead=_elsewhere(candidate, passing, wrong))
 
 
 def _tiers(
@@ -93,16 +107,16 @@ def _tiers(
     """
     symbols = _symbols(wrong)
 
-    def plain(key: str) -> Iterable[tuple[Expr, Change]]:
+    def plain(key: str) -> Iterable[tuple[Form, Change]]:
         return chain(_rescaled(answers[key]), plain_variants(answers[key]))
 
-    def factors(key: str) -> Iterable[tuple[Expr, Change]]:
+    def factors(key: str) -> Iterable[tuple[Form, Change]]:
         return lost_factors(answers[key], symbols)
 
-    def terms(key: str) -> Iterable[tuple[Expr, Change]]:
+    def terms(key: str) -> Iterable[tuple[Form, Change]]:
         return terms_lost(wrong.reading, key, answers)
 
-    def rarer(key: str) -> Iterable[tuple[Expr, Change]]:
+    def rarer(key: str) -> Iterable[tuple[Form, Change]]:
         return rarer_variants(answers[key], symbols)
 
     yield _of_components(wrong, answers, plain), math.inf
@@ -120,7 +134,9 @@ def _judged(candidate: _Candidate, wrong: WrongAnswer) -> Diagnosis | None:
     for key, new in candidate.answers.items():
         trial = trial.with_instead(key, new)
     held = wrong.finding.held if "K" in candidate.answers else 0
-    return Diagnosis((candidate.change,), trial) if judged_to_hold(trial, wrong.effort, held) else None
+    if not judged_to_hold(trial, wrong.effort, held):
+        return None
+    return Diagnosis((candidate.change,), trial, judged=held == 0)
 
 
 def _elsewhere(first: _Candidate, others: Sequence[_Candidate], wrong: WrongAnswer) -> Diagnosis | None:
@@ -154,7 +170,7 @@ def _passing(
         for candidate in candidates:
             if screen is not None and not share.spend(screen.steps):
                 break
-            if screen is None or screen.passes(candidate.answers):
+            if screen is None or screen.passes(candidate.forms):
                 found.append(candidate)
     return found
 
@@ -175,15 +191,14 @@ def _in_all(answers: Mapping[str, Expr], symbols: Sequence[sp.Symbol]) -> list[I
 def _of_components(
     wrong: WrongAnswer,
     answers: Mapping[str, Expr],
-    *changes: Callable[[str], Iterable[tuple[Expr, Change]]],
+    *changes: Callable[[str], Iterable[tuple[Form, Change]]],
 ) -> list[Iterable[_Candidate]]:
     """Return the candidates of each component, those suspected first."""
     suspects = _suspects(wrong) or _following(wrong.reading)
 
     def candidates(key: str) -> Iterator[_Candidate]:
         for new, change in chain.from_iterable(make(key) for make in changes):
-            if not _trivial(key, new, wrong.reading):
-                yield _Candidate({key: new}, change.at(called(key, answers)), _suspicion(key, suspects))
+            yield _Candidate({key: new}, change.at(called(key, answers)), _suspicion(key, suspects))
 
     return [candidates(key) for key in sorted(answers, key=lambda key: _suspicion(key, suspects))]
 
@@ -234,6 +249,11 @@ def _rescaled(f: Expr) -> Iterator[tuple[Expr, Change]]:
     simple = map(sp.Rational, ("1/2", "2", "1/3", "3", "1/4", "4", "2/3", "3/2"))
     for factor in (*simple, 2 * sp.pi, 1 / (2 * sp.pi)):
         yield factor * f, Change.of(Mistake.WRONG_FACTOR, factor)
+
+
+def _says_something(candidate: _Candidate, reading: Reading) -> bool:
+    answers = candidate.answers
+    return bool(answers) and not any(_trivial(key, answer, reading) for key, answer in answers.items())
 
 
 def _trivial(key: str, answer: Expr, reading: Reading) -> bool:

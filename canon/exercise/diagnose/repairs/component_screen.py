@@ -12,10 +12,12 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.cached_property import cached_property
+from canon.exercise.diagnose.repairs.unbuilt import Values
 from canon.mechanics.algebra.substitution import symbols_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 
 if TYPE_CHECKING:
+    from canon.exercise.diagnose.repairs.unbuilt import Form
     from canon.exercise.question.question import Part
     from canon.proof.domain.domain import Domain
 
@@ -79,15 +81,19 @@ class Screen:
         with precision(PRECISION):
             return [a - b for a, b in zip(claimed, self.right, strict=True)]
 
-    def passes(self, expression: Expr) -> bool:
+    @cached_property
+    def _at(self) -> list[Values]:
+        """The values at the points, of what is not built as well."""
+        return [Values(lambda f, memo=memo: value(f, {}, memo)) for memo in self.points]
+
+    def passes(self, expression: Form) -> bool:
         """Whether an expression could be right as far as its values tell."""
         if self.right is None:
             return False
         try:
             with precision(PRECISION):  # the next point is looked at only where this one leaves it open
                 return all(
-                    (value(expression, {}, memo) - b).contains(0)
-                    for memo, b in zip(self.points, self.right, strict=True)
+                    (at(expression) - b).contains(0) for at, b in zip(self._at, self.right, strict=True)
                 )
         except (Undefined, NotDecided, Unmodelled):
             return False

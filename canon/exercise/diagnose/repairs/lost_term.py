@@ -14,6 +14,7 @@ import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
 from canon.exercise.diagnose.repairs.symbol_slips import slipped
+from canon.exercise.diagnose.repairs.unbuilt import Joined
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.sympy_trees import shown
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, velocity
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
+    from canon.exercise.diagnose.repairs.unbuilt import Form
     from canon.exercise.sheet.reading import Reading
 
 __all__ = ["terms_lost"]
@@ -38,7 +40,7 @@ _COEFFICIENTS = tuple(map(sp.Rational, ("1", "-1", "1/2", "-1/2", "2", "-2", "1/
 _TWINS = {sp.sin: sp.cos, sp.cos: sp.sin}
 
 
-def terms_lost(reading: Reading, key: str, answers: Mapping[str, Expr]) -> Iterator[tuple[Expr, Change]]:
+def terms_lost(reading: Reading, key: str, answers: Mapping[str, Expr]) -> Iterator[tuple[Form, Change]]:
     """Yield an answer with one term more.
 
     Parameters
@@ -59,7 +61,7 @@ def terms_lost(reading: Reading, key: str, answers: Mapping[str, Expr]) -> Itera
             continue
         for coefficient in _COEFFICIENTS:
             missing = coefficient * term
-            yield answer + missing, Change.of(Mistake.TERM_MISSING, missing)
+            yield Joined(sp.Add, (answer, missing)), Change.of(Mistake.TERM_MISSING, missing)
 
 
 def _vocabulary(reading: Reading, answers: Mapping[str, Expr]) -> list[Expr]:

@@ -13,12 +13,15 @@ from flint import acb, arb
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef, Derivative, Subs
 
+from canon.exercise.diagnose.repairs.unbuilt import Joined, Values, Within
 from canon.mechanics.algebra.substitution import exchanged
 from canon.proof.domain.balls import value
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+    from canon.exercise.diagnose.repairs.unbuilt import Form
 
 __all__ = ["BITS", "Examples", "Neighbourhood", "small"]
 
@@ -118,31 +121,55 @@ class Neighbourhood:
         self.point = dict(point)
         self.examples = examples
         self._memos: dict[Symbol | None, dict[sp.Basic, acb]] = {}
+        self._values: dict[Symbol | None, Values] = {}
+        self._last: dict[Symbol | None, tuple[Form, acb]] = {}
 
     def beyond(self, values: Mapping[Symbol, acb]) -> Neighbourhood:
         """Return the neighbourhood of the point with more or other values."""
         return Neighbourhood({**self.point, **values}, self.examples)
 
-    def value(self, f: Expr, along: Symbol | None = None) -> acb:
+    def value(self, f: Form, along: Symbol | None = None) -> acb:
         """Return the value of an expression, a step along a symbol away if one is given."""
+        if isinstance(f, Expr):
+            return self._value(f, along)
+        last = self._last.get(along)
+        if last is None or last[0] is not f:
+            values = self._values.get(along)
+            if values is None:
+                values = self._values[along] = Values(lambda part: self._value(part, along))
+            last = self._last[along] = (f, values(f))
+        return last[1]
+
+    def _value(self, f: Expr, along: Symbol | None) -> acb:
         memo = self._memos.get(along)
         if memo is None:
             memo = dict[sp.Basic, acb](self.point.items())
             self._memos[along] = memo
             if along is not None:
                 memo[along] = self.point[along] + STEP
+        found = memo.get(f)
+        if found is not None:
+            return found
         for unknown in self.examples.unknowns(f):
             if unknown not in memo:
-                memo[unknown] = self.value(self.examples[unknown], along)
+                memo[unknown] = self._value(self.examples[unknown], along)
         return value(f, {}, memo)
 
-    def slope(self, f: Expr, by: Symbol) -> acb:
+    def slope(self, f: Form, by: Symbol) -> acb:
         """Return ∂f/∂s, to about thirty digits."""
-        if by not in self.examples.symbols(f):
+        if not self._holds(f, by):
             return acb(0)
         return (self.value(f, by) - self.value(f)) / STEP
 
-    def slopes(self, f: Expr, by: Sequence[Symbol]) -> list[acb]:
+    def _holds(self, f: Form, symbol: Symbol) -> bool:
+        """Whether a symbol stands in an expression, or stood there before a change."""
+        if isinstance(f, Within):
+            return symbol in self.examples.symbols(f.place.node) or self._holds(f.new, symbol)
+        if isinstance(f, Joined):
+            return any(self._holds(part, symbol) for part in f.parts)
+        return symbol in self.examples.symbols(f)
+
+    def slopes(self, f: Form, by: Sequence[Symbol]) -> list[acb]:
         """Return the slopes along several symbols."""
         return [self.slope(f, s) for s in by]
 

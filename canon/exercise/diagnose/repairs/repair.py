@@ -28,6 +28,7 @@ from canon.exercise.diagnose.repairs.slips import (
     rarer_variants,
     variants,
 )
+from canon.exercise.diagnose.repairs.unbuilt import Joined, built
 from canon.expression.symbols.symbol import Momentum, Rate
 from canon.mechanics.algebra.substitution import size, symbols_of
 from canon.proof.domain.balls import precision
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from canon.exercise.diagnose.effort import Effort
+    from canon.exercise.diagnose.repairs.unbuilt import Form
     from canon.exercise.question.question import Part
     from canon.proof.domain.domain import Domain
 
@@ -75,6 +77,23 @@ class Repair:
         return (self.change,) if self.besides is None else (self.change, self.besides)
 
 
+@dataclass(frozen=True, slots=True)
+class _Trial:
+    """A candidate: what may be right, not built yet, and what would be changed."""
+
+    form: Form
+    change: Change
+    besides: Change | None = None
+
+    def built(self, place: str) -> Repair | None:
+        """Return the repair of a component, None where SymPy has no such expression."""
+        try:
+            right = built(self.form)
+        except (TypeError, ValueError):
+            return None
+        return Repair(right, self.change.at(place), self.besides and self.besides.at(place))
+
+
 def repair(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = ()) -> Repair | None:
     """Return the simplest change that makes one component of an answer right, if one is found and proved."""
     return next(repairs(part, domain, effort, hints), None)
@@ -106,12 +125,9 @@ def repairs(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = 
         for candidate in family:
             if not effort.spend(cost):
                 break
-            if (
-                _says_something(part, candidate.right)
-                and screen.passes(candidate.right)
-                and not _says_only_zeros(part, candidate.right, screen)
-            ):
-                passing.append(candidate)
+            found = _left_open(candidate, part, screen)
+            if found is not None:
+                passing.append(found)
         passing.sort(key=lambda candidate: (candidate.rank, candidate.length))
         while passing and (effort.spent or passing[0].rank < least_to_come):
             candidate = passing.pop(0)
@@ -119,6 +135,14 @@ def repairs(part: Part, domain: Domain, effort: Effort, hints: Sequence[Expr] = 
                 yield candidate
         if effort.spent:
             return
+
+
+def _left_open(candidate: _Trial, part: Part, screen: Screen) -> Repair | None:
+    """Return a candidate, built, where its values leave open that it is right and it says something."""
+    found = candidate.built(part.name) if screen.passes(candidate.form) else None
+    if found is None or not _says_something(part, found.right) or _says_only_zeros(part, found.right, screen):
+        return None
+    return found
 
 
 def common_ratio(parts: Sequence[Part], domain: Domain) -> Fraction | None:
@@ -142,33 +166,33 @@ def _is_right(part: Part, expression: Expr, domain: Domain, effort: Effort) -> b
     return proved_to_vanish(residual, domain, effort)
 
 
-def _families(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[tuple[Iterator[Repair], float]]:
+def _families(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[tuple[Iterator[_Trial], float]]:
     """Yield the candidates in groups, each with the rank below which one that passes is told before those to come."""
     likely = chain(
         _of_all(part, screen),
         _terms_rescaled(part, screen),
         _terms_missing(part, screen, hints),
-        starmap(Repair, symbol_restored(part, screen)),
+        starmap(_Trial, symbol_restored(part, screen)),
         _monomials(part, screen),
-        _slips(part, plain_variants(part.claimed)),
-        _slips(part, lost_factors(part.claimed, _symbols(part))),
+        _slips(plain_variants(part.claimed)),
+        _slips(lost_factors(part.claimed, _symbols(part))),
     )
     yield likely, RARER
-    yield _slips(part, rarer_variants(part.claimed, _symbols(part))), math.inf
+    yield _slips(rarer_variants(part.claimed, _symbols(part))), math.inf
     yield _inside(part, screen), math.inf
     yield _two_slips(part, hints), math.inf
 
 
-def _of_all(part: Part, screen: Screen) -> Iterator[Repair]:
+def _of_all(part: Part, screen: Screen) -> Iterator[_Trial]:
     """The component as a whole: its sign, or a factor."""
     claimed, name = part.claimed, part.name
     if part.right != 0:
         factor = screen.ratio(part.right, claimed)
         if factor == -1:
-            yield Repair(-claimed, Change.of(Mistake.WRONG_SIGN, place=name))
+            yield _Trial(-claimed, Change.of(Mistake.WRONG_SIGN, place=name))
         elif factor is not None and factor != 0:
             right = sp.Rational(factor.numerator, factor.denominator) * claimed
-            yield Repair(right, Change.of(Mistake.WRONG_FACTOR, factor, place=name))
+            yield _Trial(right, Change.of(Mistake.WRONG_FACTOR, factor, place=name))
 
 
 def _symbols(part: Part) -> list[sp.Symbol]:
@@ -176,20 +200,20 @@ def _symbols(part: Part) -> list[sp.Symbol]:
     return symbols_of(part.claimed, part.right, *part.through, *part.through.values())
 
 
-def _slips(part: Part, changed: Iterator[tuple[Expr, Change]]) -> Iterator[Repair]:
+def _slips(changed: Iterator[tuple[Form, Change]]) -> Iterator[_Trial]:
     """One slip at one place, or the same one everywhere."""
     for new, change in islice(changed, MOST_VARIANTS):
-        yield Repair(new, change.at(part.name))
+        yield _Trial(new, change)
 
 
-def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[Repair]:
+def _two_slips(part: Part, hints: Sequence[Expr]) -> Iterator[_Trial]:
     """A slip, and a term is missing besides."""
     for term in (term for term in hints if not term.is_Add):
-        for slip in _slips(part, variants(part.claimed, _symbols(part))):
-            yield Repair(slip.right + term, _missing(term, part), slip.change)
+        for slip in _slips(variants(part.claimed, _symbols(part))):
+            yield _Trial(Joined(sp.Add, (slip.form, term)), _missing(term, part), slip.change)
 
 
-def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
+def _terms_rescaled(part: Part, screen: Screen) -> Iterator[_Trial]:
     """One term with a wrong coefficient: the residual is a constant multiple of it.
 
     It is rather blamed on another term than on that of the acceleration or multiplier.
@@ -202,24 +226,24 @@ def _terms_rescaled(part: Part, screen: Screen) -> Iterator[Repair]:
                 continue
             factor, right = 1 - share, claimed - sp.Rational(share.numerator, share.denominator) * term
             if factor == 0:
-                yield Repair(right, Change.of(Mistake.TERM_SUPERFLUOUS, term, place=name))
+                yield _Trial(right, Change.of(Mistake.TERM_SUPERFLUOUS, term, place=name))
             elif factor == -1:
-                yield Repair(right, Change.of(Mistake.TERM_SIGN, term, place=name))
+                yield _Trial(right, Change.of(Mistake.TERM_SIGN, term, place=name))
             else:
-                yield Repair(right, Change.of(Mistake.TERM_FACTOR, term, factor, place=name))
+                yield _Trial(right, Change.of(Mistake.TERM_FACTOR, term, factor, place=name))
 
 
-def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[Repair]:
+def _terms_missing(part: Part, screen: Screen, hints: Sequence[Expr]) -> Iterator[_Trial]:
     """One term of the right answer is not there; its coefficient is found from the residual."""
     known = () if part.through else [term for terms in _as_sums(part.right) for term in terms]
     for term in (*known, *hints):
         share = screen.share_of_residual(term)
         if share is not None and share != 0:
             missing = -sp.Rational(share.numerator, share.denominator) * term
-            yield Repair(part.claimed + missing, _missing(missing, part))
+            yield _Trial(part.claimed + missing, _missing(missing, part))
 
 
-def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
+def _monomials(part: Part, screen: Screen) -> Iterator[_Trial]:
     """A term or a factor lost that is a product of powers, found from how the residual scales."""
     claimed, name = part.claimed, part.name
     found = Monomials(part, screen.first, screen.memo)
@@ -231,22 +255,22 @@ def _monomials(part: Part, screen: Screen) -> Iterator[Repair]:
             (t, s, list(found.of_bracket(t / s))) for t in terms for s in sp.Mul.make_args(t) if s.is_Add
         ]
     for term in missing:
-        yield Repair(claimed - term, _missing(-term, part))
+        yield _Trial(claimed - term, _missing(-term, part))
     for term, bracket, lost in brackets:
         for inner in lost:
             change = Change.of(Mistake.TERM_MISSING_IN, bracket, -inner, place=name)
-            yield Repair(claimed - term + term / bracket * (bracket - inner), change)
+            yield _Trial(claimed - term + term / bracket * (bracket - inner), change)
     for term, products in factors:
         for factor in products:
-            yield Repair(claimed - term + factor * term, lacking(term, factor).at(name))
+            yield _Trial(claimed - term + factor * term, lacking(term, factor).at(name))
 
 
-def _inside(part: Part, screen: Screen) -> Iterator[Repair]:
+def _inside(part: Part, screen: Screen) -> Iterator[_Trial]:
     """A term lost in a bracket, a denominator or under a root; a factor that only some terms have."""
-    yield from starmap(Repair, in_some_terms(part, screen))
+    yield from starmap(_Trial, in_some_terms(part, screen))
     with precision(PRECISION):
         lost = list(terms_lost_inside(part, Monomials(part, screen.first, screen.memo)))
-    yield from starmap(Repair, lost)
+    yield from starmap(_Trial, lost)
 
 
 def _missing(term: Expr, part: Part) -> Change:

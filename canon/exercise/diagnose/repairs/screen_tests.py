@@ -15,6 +15,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.claim_verdict import questions
 from canon.exercise.diagnose.repairs.point_derivatives import small
+from canon.exercise.diagnose.repairs.unbuilt import built
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.question.question import Same
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from canon.exercise.diagnose.repairs.point_derivatives import Neighbourhood
+    from canon.exercise.diagnose.repairs.unbuilt import Form
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
@@ -53,7 +55,7 @@ MOST_KNOWN = 4
 QUESTION_STEPS = 2_000
 """Steps to derive anew what a judge compares."""
 
-Answers: TypeAlias = "Callable[[str], Expr]"
+Answers: TypeAlias = "Callable[[str], Form]"
 """Gives the answer under a key."""
 Test: TypeAlias = "Callable[[Answers, Neighbourhood], bool]"
 
@@ -228,7 +230,7 @@ def _mapping(reading: Reading) -> Callable[[Answers, Neighbourhood], Neighbourho
     """Return what adds to a place the values of the dependent variables."""
     which = ("map.Q", "map.P") if reading.has("map") else ("inverse_map.q", "inverse_map.p")
     keys, names = _keys(*which, like=reading.symbols("q")), _dependent(reading)
-    known: dict[tuple[int, tuple[Expr, ...]], Neighbourhood] = {}
+    known: dict[tuple[int, tuple[Form, ...]], Neighbourhood] = {}
 
     def there(answer: Answers, place: Neighbourhood) -> Neighbourhood:
         images = tuple(answer(key) for key in keys)
@@ -331,7 +333,7 @@ def motion(reading: Reading) -> Screened | None:
     known: dict[tuple[Expr, ...], list[Expr]] = {}
 
     def test(answer: Answers, place: Neighbourhood) -> bool:
-        claimed = tuple(answer(name) for name in given.values())
+        claimed = tuple(built(answer(name)) for name in given.values())
         if claimed not in known:
             known.clear()
             known[claimed] = _left_over(laws, dict(zip(given, claimed, strict=True)), reading, key == "rates")
@@ -385,7 +387,7 @@ def by_question(reading: Reading) -> Screened | None:
     def test(answer: Answers, place: Neighbourhood) -> bool:
         trial = reading
         for key in keys:
-            trial = trial.with_instead(key, answer(key))
+            trial = trial.with_instead(key, built(answer(key)))
         here = _compared(trial)
         return here is not None and all(
             small([place.value(part.seen(part.claimed)), -place.value(part.right)]) for part in here.parts

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from sympy import Expr
 
     from canon.exercise.diagnose.repairs.screen_tests import Screened, Test
+    from canon.exercise.diagnose.repairs.unbuilt import Form
     from canon.exercise.sheet.reading import Reading
 
 __all__ = ["Screening", "screening"]
@@ -45,10 +46,10 @@ class Screening:
     places: Sequence[Neighbourhood]
     steps: int = 0
 
-    def passes(self, changed: Mapping[str, Expr]) -> bool:
+    def passes(self, changed: Mapping[str, Form]) -> bool:
         """Whether the claim could be right with some answers changed."""
 
-        def answer(key: str) -> Expr:
+        def answer(key: str) -> Form:
             return changed[key] if key in changed else self.answers[key]
 
         try:

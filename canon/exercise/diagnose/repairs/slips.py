@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
-from itertools import chain, combinations, permutations, product
-from typing import TYPE_CHECKING, cast
+from itertools import chain, combinations, permutations
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -18,12 +19,15 @@ from canon.exercise.diagnose.repairs.symbol_slips import (
     slipped,
     swapped,
 )
+from canon.exercise.diagnose.repairs.unbuilt import Place, Within, built, places, product
 from canon.expression.symbols.symbol import Coordinate
 from canon.mechanics.algebra.substitution import exchanged, symbols_of
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from canon.exercise.diagnose.repairs.unbuilt import Form
 
 __all__ = [
     "RARER",
@@ -34,6 +38,9 @@ __all__ = [
     "rarer_variants",
     "variants",
 ]
+
+Slip: TypeAlias = "tuple[Form, Change]"
+"""An expression with a slip, and which one."""
 
 _FACTORS: tuple[Expr, ...] = tuple(map(sp.Rational, ("2", "1/2", "4", "1/4", "3", "1/3")))
 _FAMILIES = (
@@ -59,7 +66,7 @@ def _everywhere_of(mistake: Mistake, *items: object) -> Change:
     return Change(mistake, items, everywhere=True)
 
 
-def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple[Expr, Change]]:
+def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[Slip]:
     """Yield expressions that differ in one place, likely slips first, with the change in words.
 
     Parameters
@@ -72,7 +79,7 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     Examples
     --------
     >>> x, y = sp.symbols("x y")
-    >>> [(str(new), change.mistake.name) for new, change in variants(sp.sin(x) - y)][:3]
+    >>> [(str(built(new)), change.mistake.name) for new, change in variants(sp.sin(x) - y)][:3]
     [('y + sin(x)', 'TERM_SIGN'), ('-y - sin(x)', 'TERM_SIGN'), ('-y + cos(x)', 'FUNCTION')]
     """
     yield from plain_variants(expression)
@@ -80,34 +87,34 @@ def variants(expression: Expr, symbols: Sequence[Symbol] = ()) -> Iterator[tuple
     yield from rarer_variants(expression, symbols)
 
 
-def lost_factors(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+def lost_factors(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[Slip]:
     """Yield expressions in which a symbol stands before one term more, or below it."""
 
-    def multiplied(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    def multiplied(node: Expr) -> Iterator[Slip]:
         return _multiplied(node, symbols)
 
     yield from _one_place(expression, multiplied)
     for symbol in symbols:
-        yield expression * symbol, _of(Mistake.FACTOR_MISSING, expression, symbol)
+        yield product(expression, symbol), _of(Mistake.FACTOR_MISSING, expression, symbol)
         if not expression.is_Add:
-            yield expression / symbol, _of(Mistake.DIVISOR_MISSING, expression, symbol)
+            yield product(expression, 1 / symbol), _of(Mistake.DIVISOR_MISSING, expression, symbol)
 
 
-def rarer_variants(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+def rarer_variants(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[Slip]:
     """Yield expressions with slips of rank :data:`RARER` or above: other symbols, arguments, fractions, brackets."""
 
-    def another_symbol(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    def another_symbol(node: Expr) -> Iterator[Slip]:
         return exchanged_symbol(node, symbols)
 
-    def another_factor(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    def another_factor(node: Expr) -> Iterator[Slip]:
         return in_one_factor(node, symbols)
 
-    def another_argument(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    def another_argument(node: Expr) -> Iterator[Slip]:
         return in_one_argument(node, symbols)
 
     functions = sorted((f for f in expression.atoms(sp.Function) if _twins(f)), key=str)[:MOST_FUNCTIONS]
 
-    def multiplied_by_functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
+    def multiplied_by_functions(node: Expr) -> Iterator[Slip]:
         return _multiplied(node, functions)
 
     rest = (
@@ -130,7 +137,7 @@ def rarer_variants(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tupl
     yield from _everywhere(expression, symbols)
 
 
-def plain_variants(expression: Expr) -> Iterator[tuple[Expr, Change]]:
+def plain_variants(expression: Expr) -> Iterator[Slip]:
     """Yield expressions that differ in a sign, a function, a number in front of a term or an exponent."""
     for edits in (_signs, _functions, _factors, _together, _exponents):
         yield from _one_place(expression, edits)
@@ -153,7 +160,7 @@ def common_slips(
         yield {a: b, b: a}, _everywhere_of(Mistake.SYMBOLS_EXCHANGED, None, a, b)
     for node in _repeated(expressions):
         for new, change in chain(_signs(node), _factors(node)):
-            yield {node: new}, replace(change, everywhere=True, inside=node)
+            yield {node: built(new)}, replace(change, everywhere=True, inside=node)
     for symbol in own:
         for factor in (*_FACTORS[:2], *(power for s in symbols if s != symbol for power in (s, 1 / s))):
             yield {symbol: factor * symbol}, _everywhere_of(Mistake.SYMBOL, symbol, factor * symbol)
@@ -166,41 +173,53 @@ def _twins(f: Expr) -> tuple[Callable[..., Expr], ...]:
     return cast("dict[object, tuple[Callable[..., Expr], ...]]", _TWINS).get(f.func, ())
 
 
-def _one_place(
-    expression: Expr, edits: Callable[[Expr], Iterator[tuple[Expr, Change]]]
-) -> Iterator[tuple[Expr, Change]]:
+def _one_place(expression: Expr, edits: Callable[[Expr], Iterator[Slip]]) -> Iterator[Slip]:
     """Apply an edit at one place of the tree at a time, equal subexpressions elsewhere left alone."""
     yield from edits(expression)
-    branches = expression.args
-    for i, argument in enumerate(branches):
-        if isinstance(argument, Expr) and not argument.is_Number:
-            for new, change in _one_place(argument, edits):
-                try:
-                    whole = expression.func(*branches[:i], new, *branches[i + 1 :])
-                except (TypeError, ValueError):  # such as a derivative by a number, or a comparison with i
-                    continue
-                yield whole, change
+    for i, operand in enumerate(expression.args):
+        if isinstance(operand, Expr) and not operand.is_Number:
+            place = Place(expression, i)
+            put = _put if place.is_valued else _put_at_once
+            for new, change in _one_place(operand, edits):
+                whole = put(place, new)
+                if whole is not None:
+                    yield whole, change
 
 
-def _each_term(node: Expr) -> Iterator[tuple[Expr, tuple[Expr, ...]]]:
-    """Yield each term of a sum, and the others: put together anew, these cost less than what is subtracted again."""
-    terms = arguments(node) if node.is_Add else ()
-    for i, term in enumerate(terms):
-        yield term, (*terms[:i], *terms[i + 1 :])
+def _put(place: Place, new: Form) -> Form:
+    return Within(place, new)
 
 
-def _signs(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    for term, others in _each_term(node):
-        yield sp.Add(*others, -term), _of(Mistake.TERM_SIGN, term)
+def _put_at_once(place: Place, new: Form) -> Form | None:
+    """Return a node whose value says nothing without its tree, None where SymPy has none: a derivative by a number."""
+    try:
+        return built(Within(place, new))
+    except (TypeError, ValueError):
+        return None
 
 
-def _factors(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    for term, others in _each_term(node):
+def _each_term(node: Expr) -> Iterator[Place]:
+    """Yield the place of each term of a sum."""
+    return places(node) if node.is_Add else iter(())
+
+
+def _times(place: Place, factor: Expr) -> Form:
+    """Return a node with one operand multiplied."""
+    return Within(place, product(place.operand, factor))
+
+
+def _signs(node: Expr) -> Iterator[Slip]:
+    for place in _each_term(node):
+        yield _times(place, sp.S.NegativeOne), _of(Mistake.TERM_SIGN, place.operand)
+
+
+def _factors(node: Expr) -> Iterator[Slip]:
+    for place in _each_term(node):
         for factor in _FACTORS:
-            yield sp.Add(*others, factor * term), _of(Mistake.TERM_FACTOR, term, factor)
+            yield _times(place, factor), _of(Mistake.TERM_FACTOR, place.operand, factor)
 
 
-def _together(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _together(node: Expr) -> Iterator[Slip]:
     """The terms that share a coefficient, which were one bracket: SymPy distributes numbers over sums."""
     for terms in of_one_coefficient(node):
         yield node - 2 * terms, _of(Mistake.TERM_SIGN, terms)
@@ -227,7 +246,7 @@ def of_one_coefficient(f: Expr) -> Iterator[Expr]:
             yield from (a + b for a, b in combinations(group, 2))
 
 
-def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _functions(node: Expr) -> Iterator[Slip]:
     for twin in _twins(node):
         yield twin(*arguments(node)), _of(Mistake.FUNCTION, node, twin(*arguments(node)))
     if _twins(node) or isinstance(node, sp.exp):
@@ -236,7 +255,7 @@ def _functions(node: Expr) -> Iterator[tuple[Expr, Change]]:
             yield new, _of(Mistake.ARGUMENT, node, new)
 
 
-def _upside_down(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _upside_down(node: Expr) -> Iterator[Slip]:
     """A fraction of two symbols written as its inverse."""
     powers = node.as_powers_dict() if node.is_Mul else {}
     for (a, up), (b, down) in permutations(powers.items(), 2):
@@ -245,7 +264,7 @@ def _upside_down(node: Expr) -> Iterator[tuple[Expr, Change]]:
             yield new, _of(Mistake.UPSIDE_DOWN, node, new)
 
 
-def _unwrapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _unwrapped(node: Expr) -> Iterator[Slip]:
     """An angle that stands for its sine or tangent."""
     places = arguments(node) if node.is_Mul or node.is_Add else ()
     for angle in places:
@@ -255,7 +274,7 @@ def _unwrapped(node: Expr) -> Iterator[tuple[Expr, Change]]:
                 yield rest, _of(Mistake.FUNCTION_MISSING, angle, function(angle))
 
 
-def _exponents(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _exponents(node: Expr) -> Iterator[Slip]:
     if node.is_Add or node.is_Mul or node.is_Number:
         if node.is_Add:
             yield node**2, _of(Mistake.SQUARE, node)
@@ -271,7 +290,7 @@ def _exponents(node: Expr) -> Iterator[tuple[Expr, Change]]:
         yield sp.Abs(node), _of(Mistake.FUNCTION, node, sp.Abs(node))
 
 
-def _other_branch(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _other_branch(node: Expr) -> Iterator[Slip]:
     """Another angle with the same sine, cosine or tangent."""
     if isinstance(node, sp.asin):
         others: tuple[Expr, ...] = (sp.pi - node,)
@@ -284,43 +303,45 @@ def _other_branch(node: Expr) -> Iterator[tuple[Expr, Change]]:
     yield from ((other, _of(Mistake.BRANCH, node, other)) for other in others)
 
 
-def _out_of_a_bracket(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _out_of_a_bracket(node: Expr) -> Iterator[Slip]:
     """A term that lacks what another one is multiplied with: a(b + c) written as ab + c."""
-    terms = arguments(node) if node.is_Add and len(arguments(node)) <= MOST_TERMS else ()
-    for other, term in permutations(terms, 2):
-        factors = sp.Mul.make_args(other)
+    terms = places(node) if node.is_Add and len(arguments(node)) <= MOST_TERMS else ()
+    for other, place in permutations(terms, 2):
+        factors = sp.Mul.make_args(other.operand)
         if not 2 <= len(factors) <= MOST_IN_FRONT:
             continue
         for count in range(2, len(factors) + 1):
             for some in combinations(factors, count):
-                product = sp.Mul(*some)
-                yield node - term + term * product, _of(Mistake.FACTOR_MISSING, term, product)
-        yield from _divided_by_a_bracket(node, term, other)
+                yield _lacking(place, sp.Mul(*some))
+        yield from _divided_by_a_bracket(place, other.operand)
 
 
-def _divided_by_a_bracket(node: Expr, term: Expr, other: Expr) -> Iterator[tuple[Expr, Change]]:
+def _divided_by_a_bracket(place: Place, other: Expr) -> Iterator[Slip]:
     """A term that lacks a divisor which another one was reduced by: (a²b² + c)/(2a) written as a b²/2 + c."""
     number, rest = other.as_coeff_Mul()
     symbols = [f for f in sp.Mul.make_args(rest) if f.is_Symbol and f.is_positive]
     for count in range(1, len(symbols) + 1):
         for some in combinations(symbols, count):
-            factor = number / sp.Mul(*some)
-            yield node - term + term * factor, _of(Mistake.FACTOR_MISSING, term, factor)
+            yield _lacking(place, number / sp.Mul(*some))
 
 
-def _superfluous(node: Expr) -> Iterator[tuple[Expr, Change]]:
-    for term, others in _each_term(node):
-        yield sp.Add(*others), _of(Mistake.TERM_SUPERFLUOUS, term)
+def _lacking(place: Place, factor: Expr) -> Slip:
+    return _times(place, factor), _of(Mistake.FACTOR_MISSING, place.operand, factor)
 
 
-def _dropped(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _superfluous(node: Expr) -> Iterator[Slip]:
+    for place in _each_term(node):
+        yield Within(place, sp.S.Zero), _of(Mistake.TERM_SUPERFLUOUS, place.operand)
+
+
+def _dropped(node: Expr) -> Iterator[Slip]:
     if node.is_Mul:
         for factor in arguments(node):
             if not factor.is_Number:
                 yield node / factor, _of(Mistake.FACTOR_SUPERFLUOUS, factor, node)
 
 
-def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:
+def _shifted(node: Expr) -> Iterator[Slip]:
     """A number lost in the argument of a function, or beside one."""
     if node.is_Function and len(arguments(node)) == 1:
         for number in _SHIFTS:
@@ -329,16 +350,16 @@ def _shifted(node: Expr) -> Iterator[tuple[Expr, Change]]:
             yield node + number, _of(Mistake.TERM_MISSING_IN, node, number)
 
 
-def _multiplied(node: Expr, symbols: Sequence[Expr]) -> Iterator[tuple[Expr, Change]]:
-    for term, others in _each_term(node):
+def _multiplied(node: Expr, symbols: Sequence[Expr]) -> Iterator[Slip]:
+    for place in _each_term(node):
         for symbol in symbols:
-            yield sp.Add(*others, term * symbol), _of(Mistake.FACTOR_MISSING, term, symbol)
-            yield sp.Add(*others, term / symbol), _of(Mistake.DIVISOR_MISSING, term, symbol)
+            yield _lacking(place, symbol)
+            yield _times(place, 1 / symbol), _of(Mistake.DIVISOR_MISSING, place.operand, symbol)
             if symbol.is_Symbol:
-                yield sp.Add(*others, term * symbol**2), _of(Mistake.FACTOR_MISSING, term, symbol**2)
+                yield _lacking(place, symbol**2)
 
 
-def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[Slip]:
     """The same slip in all places at once, two symbols exchanged, a constant angle lost."""
     for slip, change in common_slips([expression], ()):
         new = slipped(expression, slip)
@@ -353,14 +374,14 @@ def _everywhere(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[E
             yield expression + angle, _of(Mistake.TERM_MISSING, angle)
 
 
-def _renamed(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+def _renamed(expression: Expr, symbols: Sequence[Symbol]) -> Iterator[Slip]:
     """Two symbols exchanged in all places, one symbol for another in all places."""
     own = symbols_of(expression)
     for a, b in combinations(own, 2):
         other = slipped(expression, {a: b, b: a})
         if other is not None:
             yield other, _of(Mistake.SYMBOLS_EXCHANGED, None, a, b)
-    for old, new in product(own, symbols):
+    for old, new in itertools.product(own, symbols):
         renamed = slipped(expression, {old: new}) if new != old else None
         if renamed is not None:
             yield renamed, _everywhere_of(Mistake.SYMBOL, old, new)

@@ -10,11 +10,14 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.diagnose.change import Change, Mistake
+from canon.exercise.diagnose.repairs.unbuilt import Within, places
 from canon.mechanics.algebra.substitution import exchanged, symbols_of
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+
+    from canon.exercise.diagnose.repairs.unbuilt import Form
 
 __all__ = ["by_another", "exchanged_symbol", "in_one_argument", "in_one_factor", "slipped", "swapped"]
 
@@ -37,17 +40,19 @@ def slipped(expression: Expr, slip: Mapping[Expr, Expr]) -> Expr | None:
         return None
 
 
-def exchanged_symbol(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Expr, Change]]:
+def exchanged_symbol(node: Expr, symbols: Sequence[Symbol]) -> Iterator[tuple[Form, Change]]:
     """One symbol for another in one function, or as one factor."""
     if node.is_Function:
         for changed in _with_another_symbol(node, symbols):
             yield changed, _of(Mistake.SYMBOL, node, changed)
     if not (node.is_Mul or node.is_Add):
         return
-    for place in (a for a in arguments(node) if a.is_Function or a.is_Pow or a.is_Symbol):
-        for changed in _with_another_symbol(place, symbols):
-            whole = node.func(*(changed if a == place else a for a in arguments(node)))
-            yield whole, _of(Mistake.SYMBOL, place, changed)
+    for place in places(node):
+        old = place.operand
+        for changed in (
+            _with_another_symbol(old, symbols) if old.is_Function or old.is_Pow or old.is_Symbol else ()
+        ):
+            yield Within(place, changed), _of(Mistake.SYMBOL, old, changed)
 
 
 def _with_another_symbol(f: Expr, symbols: Sequence[Symbol]) -> Iterator[Expr]:
