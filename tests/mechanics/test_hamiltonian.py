@@ -161,3 +161,42 @@ def test_conserved_quantities_have_no_rate():
 def test_refusals_say_what_is_wrong(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+v, p_x = x.dot, x.momentum
+TRANSCENDENTAL = {
+    "exponential": (sp.exp(v), p_x * sp.log(p_x) - p_x),
+    "hyperbolic": (sp.cosh(v), p_x * sp.asinh(p_x) - sp.sqrt(p_x**2 + 1)),
+    "relativistic": (
+        -m * c**2 * sp.sqrt(1 - v**2 / c**2) - k * x**2 / 2,
+        c * sp.sqrt(m**2 * c**2 + p_x**2) + k * x**2 / 2,
+    ),
+    "of units": (-sp.sqrt(1 - v**2), sp.sqrt(1 + p_x**2)),
+    "length": (sp.sqrt(1 + v**2), -sp.sqrt(1 - p_x**2)),
+    "quartic": (v**4 / 4, sp.Rational(3, 4) * abs(p_x) ** sp.Rational(4, 3)),
+    "sixth power": (
+        m * v**6 / 6 - x**2,
+        x**2 + 5 * abs(p_x) ** sp.Rational(6, 5) / (6 * m ** sp.Rational(1, 5)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TRANSCENDENTAL)
+def test_velocities_that_are_eliminated_by_inverse_functions_stay_real(name):
+    """H is that of the textbook, without √−1 (c √(m²c² + p²), not −c² √(−…)); with another sign it is not that of L."""
+    L, right = TRANSCENDENTAL[name]
+    found = hamiltonian(Lagrangian(L, [x])).H
+    assert sp.expand(found - right) == 0
+    assert not found.has(sp.I)
+    real = Domain((abs(v) < c,) if L.has(c) else (abs(v) < 1,) if name == "of units" else ())
+    assert is_hamiltonian_of(Lagrangian(L, [x]), right, [p_x], real).holds
+    assert is_hamiltonian_of(Lagrangian(L, [x]), right + p_x, [p_x], real).fails
+
+
+def test_relativistic_motion_in_space_is_real():
+    L = -m * c**2 * sp.sqrt(1 - (x.dot**2 + y.dot**2) / c**2)
+    found = hamiltonian(Lagrangian(L, [x, y])).H
+    squared = sp.expand(found**2 - c**2 * (m**2 * c**2 + x.momentum**2 + y.momentum**2))
+    assert squared == 0
+    assert not found.has(sp.I)
+    assert found.subs({x.momentum: 0, y.momentum: 0}) == m * c**2

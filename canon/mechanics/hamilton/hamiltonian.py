@@ -205,6 +205,13 @@ def hamiltonian(
     >>> m = parameters("m", positive=True)
     >>> hamiltonian(Lagrangian(m*(r.dot**2 + r**2*phi.dot**2)/2, [r, phi])).H
     p_phi**2/(2*m*r**2) + p_r**2/(2*m)
+
+    A Lagrangian is meant where it is real, here below the speed of light:
+
+    >>> from sympy import sqrt
+    >>> x, c = coordinates("x"), parameters("c", positive=True)
+    >>> hamiltonian(Lagrangian(-m*c**2*sqrt(1 - x.dot**2/c**2), [x])).H
+    c*sqrt(c**2*m**2 + p_x**2)
     """
     given_kind(lagrangian, Lagrangian, "what hamiltonian() transforms", "lagrangian() goes the other way")
     if any(Q != 0 for Q in lagrangian.forces):

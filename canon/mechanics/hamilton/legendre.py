@@ -7,17 +7,23 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.mechanics.algebra.branch_point import branch_points
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, is_regular, solve
+from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import entry, exchanged, size, substitute
+from canon.proof.domain.domain import Domain
 from canon.proof.kinks import vanishes_off_kinks
-from canon.proof.trees.polynomial_roots import low_degree_roots
+from canon.proof.trees.polynomial_roots import is_binomial, low_degree_roots, polynomial_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from canon.proof.domain.domain import Domain
+    from canon.mechanics.algebra.branch_point import BranchPoint
 
 __all__ = ["LegendreError", "eliminate_velocities", "legendre_residual"]
+
+WITNESSES = 4
+"""Points that show a branch."""
 
 
 class LegendreError(ValueError):
@@ -135,7 +141,9 @@ def _of_nonlinear(
     if is_regular(hessian, domain).fails:
         solve(hessian, sp.zeros(len(old), 1), domain)
     there = dict(zip(new, gradient, strict=True))
-    for values, transformed in _candidates(f, gradient, old, new):
+    domain = _where_real(f, old, domain)
+    witnesses = tuple(branch_points({*f.atoms(Symbol), *old}, there, domain, WITNESSES))
+    for values, transformed in _candidates(f, gradient, old, new, witnesses):
         if all(
             vanishes_off_kinks(substitute(value, there) - x, domain).holds
             for value, x in zip(values, old, strict=True)
@@ -144,21 +152,67 @@ def _of_nonlinear(
     return None
 
 
+def _where_real(f: Expr, old: Sequence[Symbol], domain: Domain) -> Domain:
+    """Return the domain where roots in f are real, as √(1 − v²/c²) is below the speed of light."""
+    radicands = [e.base for e in f.atoms(sp.Pow) if e.has(*old) and _exponent(e).is_Rational and _is_even(e)]
+    above = (sp.Gt(radicand, 0) for radicand in dict.fromkeys(radicands) if not radicand.is_nonnegative)
+    return Domain((*domain.conditions, *(c for c in above if c is not sp.true)), domain.box)
+
+
+def _is_even(power: sp.Pow) -> bool:
+    return bool(sp.fraction(_exponent(power))[1] % 2 == 0)
+
+
 def _candidates(
-    f: Expr, gradient: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol]
+    f: Expr,
+    gradient: Sequence[Expr],
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    witnesses: Sequence[BranchPoint],
 ) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
     """Yield x(y) that may solve y = ∂f/∂x, each with Σ x y − f in terms of y."""
     radicals = {e for e in f.atoms(sp.Pow) if not _exponent(e).is_Integer and e.has(*old)}
     if not radicals and len(old) == 1:
-        for root, _ in low_degree_roots(sp.numer(sp.together(gradient[0] - new[0])), old[0]):
+        equation = sp.numer(sp.together(gradient[0] - new[0]))
+        yield from _of_odd_power(f, equation, old[0], new[0])
+        for root, _ in low_degree_roots(equation, old[0]):
             yield (root,), sp.factor_terms(root * new[0] - substitute(f, {old[0]: root}))
     bases = {e.as_base_exp()[0] for e in radicals}
     if len(bases) == 1 and all((2 * _exponent(e)).is_Integer for e in radicals):
-        yield from _of_one_radical(bases.pop(), f, gradient, old, new)
+        yield from _of_one_radical(bases.pop(), f, gradient, old, new, witnesses)
+    for witness in witnesses:
+        solved = solve_system(list(zip(gradient, new, strict=True)), old, Inversion(witness))
+        if solved is not None:
+            values = tuple(solved[x] for x in old)
+            products = (x * y for x, y in zip(values, new, strict=True))
+            yield values, sp.Add(*products, -substitute(f, dict(zip(old, values, strict=True))))
+
+
+def _of_odd_power(f: Expr, equation: Expr, x: Symbol, y: Symbol) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
+    """Yield the real root x = s r of xⁿ = c with an odd n from 3, where s = sign(c) and r = |c|^(1/n).
+
+    In f and in x y, which holds c = s rⁿ, powers of s are 1 or s, so that no |c| stands beside sign(c).
+    """
+    poly = polynomial_in(equation, x)
+    if poly is None or not is_binomial(poly) or poly.degree() % 2 == 0 or poly.degree() < 3:
+        return
+    n, c = poly.degree(), -poly.eval(0) / poly.LC()
+    s, r = sp.Dummy(), sp.Dummy(positive=True)
+    slope = c.diff(y)
+    through_c = (s * r**n - exchanged(c, {y: sp.S.Zero})) / slope
+    total = sp.expand(s * r * through_c - substitute(f, {x: s * r}))
+    reduced = sp.Add(*(term.subs(s, 1) * s ** (sp.Poly(term, s).degree() % 2) for term in sp.Add.make_args(total)))
+    values = {s: sp.sign(c), r: sp.Abs(c) ** sp.Rational(1, n)}
+    yield (sp.sign(c) * sp.Abs(c) ** sp.Rational(1, n),), exchanged(reduced, values)
 
 
 def _of_one_radical(
-    base: Expr, f: Expr, gradient: Sequence[Expr], old: Sequence[Symbol], new: Sequence[Symbol]
+    base: Expr,
+    f: Expr,
+    gradient: Sequence[Expr],
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    witnesses: Sequence[BranchPoint],
 ) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
     """Yield candidates with the common radical r(x) = √base as an unknown of its own.
 
@@ -183,6 +237,11 @@ def _of_one_radical(
     equation = sp.numer(sp.together(r**2 - exchanged(base, in_r)))
     for square in _squares(equation, r):
         numerator, denominator = sp.fraction(square)
+        if any((value := witness.number(denominator)) is not None and value < 0 for witness in witnesses):
+            numerator, denominator = (
+                -numerator,
+                -denominator,
+            )  # of r² > 0 both are positive, and the root real
         root = sp.sqrt(numerator) / sp.sqrt(denominator)
         yield (
             tuple(exchanged(value, {r: root}) for value in in_r.values()),
