@@ -45,6 +45,8 @@ STATEMENTS = (
     "no point transformation",
     "the general solution has",
     "the constants are not independent",
+    "which its derivatives do not show",
+    "it is not one function",
 )
 """What is told without anything to put into the claim, nor an answer in it."""
 
@@ -167,6 +169,9 @@ def is_so(claim, sentence):
             return holds(changed(claim, **{"is": ["positive-real"]}))
         case "positive-real":
             return is_not_positive_real_somewhere(claim)
+        case "separable":
+            other = {"separable": "not separable", "not separable": "separable"}[claim.keys["is"][0]]
+            return holds(changed(claim, **{"is": [other]}))
         case "parameters":
             return is_a_solution(claim, sentence) == ("is no solution" not in sentence)
         case "first-order":
