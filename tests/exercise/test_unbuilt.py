@@ -58,8 +58,7 @@ def test_values_are_those_of_the_trees(f):
             assert (here is None) == (there is None), (f, change)
             if here is not None:
                 assert (here - there).contains(0), (f, change)
-                wide = float(there.rad()) + 2.0**-120 * (1 + float(abs(there).upper()))
-                assert float(here.rad()) < 2.0**20 * wide, (f, change)
+                assert here.rad() < 2.0**20 * (there.rad() + 2.0**-120 * (1 + abs(there))), (f, change)
 
 
 @given(expressions())

@@ -201,7 +201,9 @@ def _of_odd_power(f: Expr, equation: Expr, x: Symbol, y: Symbol) -> Iterator[tup
     slope = c.diff(y)
     through_c = (s * r**n - exchanged(c, {y: sp.S.Zero})) / slope
     total = sp.expand(s * r * through_c - substitute(f, {x: s * r}))
-    reduced = sp.Add(*(term.subs(s, 1) * s ** (sp.Poly(term, s).degree() % 2) for term in sp.Add.make_args(total)))
+    reduced = sp.Add(
+        *(term.subs(s, 1) * s ** (sp.Poly(term, s).degree() % 2) for term in sp.Add.make_args(total))
+    )
     values = {s: sp.sign(c), r: sp.Abs(c) ** sp.Rational(1, n)}
     yield (sp.sign(c) * sp.Abs(c) ** sp.Rational(1, n),), exchanged(reduced, values)
 
