@@ -79,3 +79,39 @@ def test_an_action_without_a_closed_form_is_refuted_by_quadrature():
     assert verdict.certificate == "ball"
     area = "4*elliptic_k(1/2)*E**(3/4)/(3*pi)"
     assert examine(Claim("a", "action-angle", {**keys, "J": [area]})).verdict.undecided
+
+
+OSCILLATOR = {"q": ["q"], "p": ["p"], "H": "p**2/(2*m) + m*omega**2*q**2/2"}
+OF_IT = {"m": "positive", "omega": "positive", "E": "positive"}
+SINE = {"exact": ["sin(x)"], "small": ["x"], "parameters": {"x": "real"}, "order": 3}
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys", "right", "wrong"),
+    [
+        ("action-angle", {**OSCILLATOR, "parameters": OF_IT}, {"J": "$J = \\frac{E}{\\omega}$"},
+         {"J": "$J = \\frac{\\omega}{E}$"}),
+        ("action-angle", {**OSCILLATOR, "parameters": OF_IT}, {"J": "I = E/ω"}, {"J": "K = E/ω"}),
+        ("frequency", {"q": "q", "p": "p", "H": "p**2/2 + k*q**2/2", "parameters": {"k": "positive"}},
+         {"omega": "\\omega = \\sqrt{k}"}, {"omega": "\\omega = k"}),
+        ("generating-first-order", {"q": "theta", "p": "I", "H": "w*I + eps*I**2*cos(theta)**2", "small": "eps",
+                                    "parameters": {"w": "positive", "eps": "real"}},
+         {"W": "W_1 = I^2 sin(2θ)/(4w)"}, {"W": "W_1 = I^2 sin(2θ)/4w^2"}),
+        ("first-order", SINE, {"claim": "x - x³/6 + O(x^5)"}, {"claim": "x + O(x^5)"}),
+        ("first-order", SINE, {"claim": "$x - \\frac{x^3}{6} + \\mathcal{O}\\left(x^5\\right)$"}, {"claim": "O(x)"}),
+        ("first-order", SINE, {"claim": ["x - x^3/6 + \\dots"]}, {"claim": ["x - x^3/3 + \\dots"]}),
+        ("normal-form", {"q": "q", "p": "p", "H": "p**2/2 - cos(q)", "actions": "J", "degree": 4},
+         {"K": "K(J) = J - J²/16 + O(J^3)"}, {"K": "K(J) = J + O(J^2)"}),
+        ("hamilton-jacobi", {"q": "q", "p": "p", "H": "p**2/(2*m) + m*g*q", "constants": "E",
+                             "parameters": {"m": "positive", "g": "positive"}},
+         {"gradient": "\\partial W/\\partial q = \\sqrt{2m(E - mgq)}"}, {"gradient": "p = \\sqrt{m(E - mgq)}"}),
+    ],
+)  # fmt: skip
+def test_answers_as_people_type_them(kind, keys, right, wrong):
+    told, other = judged([Claim("a", kind, {**keys, **right}), Claim("b", kind, {**keys, **wrong})])
+    assert (told.status, other.status in ("fails", "invalid")) == ("holds", True)
+
+
+def test_a_remainder_is_passed_over_and_told():
+    (told,) = judged([Claim("a", "first-order", {**SINE, "claim": "x - x³/6 + O(x^5)"})])
+    assert told.warnings == ("the remainder O(x^5) in claim is passed over",)

@@ -19,6 +19,7 @@ __all__ = [
     "is_name_of_matrix",
     "of_matrix",
     "whole_statement",
+    "without_remainder",
 ]
 
 MOST_ENTRIES = 100
@@ -210,3 +211,26 @@ def _commas(text: str, set_: bool) -> list[int]:
         if sign in ",;" and depth == int(set_) and text[at - 1 : at] != "\\":
             found.append(at)
     return found
+
+
+_REMAINDER = re.compile(
+    r"[+\-−]\s*(?:(?:\\math(?:cal|rm|scr|bb)\s*\{?\s*[Oo]\s*\}?|\\operatorname\{[Oo]\}|[Oo𝒪])\s*(?:\\[!,;]\s*)*"
+    r"(?:\\left|\\[bB]igg?l?)?\s*\((?:[^()]|\([^()]*\))*\)|\\[lc]?dots\b|\.\.\.|…|⋯)(?=[\s.,$]*(?:\\[)\]])?[\s.,$]*$)"
+)
+
+
+def without_remainder(text: str) -> tuple[str, str]:
+    r"""Return an expansion with its remainder blanked, and the remainder; an empty one where there is none.
+
+    Examples
+    --------
+    >>> without_remainder("x - x^3/6 + O(x^5)")
+    ('x - x^3/6         ', 'O(x^5)')
+    >>> without_remainder(r"$x - \frac{x^3}{6} + \mathcal{O}\left(x^5\right)$")[1], without_remainder("x + y")
+    ('\\mathcal{O}\\left(x^5\\right)', ('x + y', ''))
+    """
+    found = _REMAINDER.search(text)
+    if found is None or not text[: found.start()].strip(" $"):
+        return text, ""
+    blank = " " * (found.end() - found.start())
+    return text[: found.start()] + blank + text[found.end() :], found.group()[1:].strip()

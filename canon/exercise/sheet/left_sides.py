@@ -38,6 +38,8 @@ OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "I": ("I", "C"),
         "H": ("H_total", "H_tot", "H_system", "H_sys", "H_ges"),
         "L": ("L_total", "L_tot", "L_system", "L_sys", "L_ges"),
+        "W": ("W_1", "chi"),
+        "K": ("K_1", "H'", "H_av", "H_new"),
         "energy_rate": (),
         "rhs": (),
         "lhs": (),
@@ -47,9 +49,13 @@ OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 _COMPONENTS: Mapping[str, tuple[str, int]] = {
     "q_dot": ("q", 1), "p_dot": ("p", 1), "X": ("x", 1), "map.Q": ("new_q", 0), "map.P": ("new_p", 0),
     "inverse_map.q": ("q", 0), "inverse_map.p": ("p", 0), "Q": ("q", 0), "P": ("p", 0), "force": ("q", 0),
-    "Qnc": ("q", 0),
+    "Qnc": ("q", 0), "J": ("q", 0), "omega": ("q", 0), "gradient": ("p", 0),
 }  # fmt: skip
 """The key that names the components of a list, and the dots on these names."""
+_LETTERS = {
+    "Q": ("Q",), "P": ("P",), "force": ("Q",), "Qnc": ("Q",), "J": ("J", "I"), "omega": ("omega", "Omega"),
+}  # fmt: skip
+"""Letters that components are called by."""
 _PAIRS = {"{": "}", "[": "]", "(": ")", "<": ">"}
 _DEFINITIONS: Mapping[str, str] = {
     "L": r"[TK]-[VU]",
@@ -126,16 +132,24 @@ def components_asked(place: str, keys: Mapping[str, Any], scope: Scope) -> tuple
     listed: Any = keys.get(of, [])
     names, found = (listed if isinstance(listed, list) else [listed]), list[Quantity]()
     for i, name in enumerate(names, 1):
-        if place in ("Q", "P", "force", "Qnc"):
-            letter = "Q" if place in ("force", "Qnc") else place
-            spelled = [f"{letter}_{i}", f"{letter}_{name}"] + [letter] * (len(names) == 1)
-            shown = spelled[-1] if len(names) == 1 else spelled[0]
-            found.append(Quantity(shown, tuple((s, 0) for s in spelled)))
+        if place in _LETTERS:
+            spelled = [s for letter in _LETTERS[place] for s in _numbered(letter, i, name, len(names) == 1)]
+            known = (
+                spelled
+                if place in ("Q", "P", "force", "Qnc")
+                else [s for s in spelled if not scope.declares(s)]
+            )
+            found.append(Quantity(spelled[0], tuple((s, 0) for s in known)))
         else:
             also = ((s, 0) for s in _by_letter(place, i, name, keys.get("q", [])) if not scope.declares(s))
             rate = f"{name}{'_dot' * rates}"
             found.append(Quantity(f"{name}{chr(39) * rates}", ((name, rates), (rate, 0), *also)))
     return tuple(found)
+
+
+def _numbered(letter: str, number: int, name: str, alone: bool) -> list[str]:
+    """Return how a component is called: ``Q`` where there is one, ``Q_1`` or ``Q_x``."""
+    return [letter] * alone + [f"{letter}_{number}", f"{letter}_{name}"]
 
 
 def _by_letter(place: str, number: int, name: str, q: list[str]) -> list[str]:

@@ -42,6 +42,8 @@ __all__ = ["TypedAnswers", "typed_answers"]
 
 _EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
 _UNTOUCHED = ("domain", "class")
+_EXPANSIONS = {"small", "degree"}
+"""Keys of kinds whose answers are right to an order."""
 
 
 @dataclass
@@ -106,6 +108,8 @@ class _Plain:
         """Return what stands under a key in plain form."""
         if key in _UNTOUCHED:
             return value
+        if key in self.kind.answer and _EXPANSIONS & self.kind.shapes.keys() and not self.scope.declares("O"):
+            value = self.without_remainders(key, value)
         if key in self.kind.several:
             return self.several(key, value)
         match self.kind.shapes.get(key):
@@ -126,6 +130,15 @@ class _Plain:
                 return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(value)]
             case _:
                 return value
+
+    def without_remainders(self, key: str, value: Any) -> Any:
+        """Return expansions without ``+ O(x^5)`` and ``+ …``, which is told."""
+        if isinstance(value, list):
+            return [self.without_remainders(key, text) for text in value]
+        text, remainder = field_texts.without_remainder(value) if isinstance(value, str) else (value, "")
+        if remainder:
+            self.found.passed.append(f"the remainder {remainder} in {key} is passed over")
+        return text
 
     def several(self, key: str, value: Any) -> list[Any]:
         """Return values one by one, each with the unit behind it kept apart."""
