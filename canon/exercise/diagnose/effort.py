@@ -61,7 +61,7 @@ class Effort:
     >>> Effort(0.0).spend(1)
     Traceback (most recent call last):
         ...
-    canon.exercise.diagnose.effort.BudgetSpent
+    canon.exercise.question.deadline.BudgetSpent
     """
 
     def __init__(self, seconds: float, steps: int = STEPS) -> None:
