@@ -128,23 +128,26 @@ def components_asked(place: str, keys: Mapping[str, Any], scope: Scope) -> tuple
     >>> second.named_by(label_of("p_y'")), second.named_by(label_of("F_y")), second.named_by(label_of("F_x"))
     (True, True, False)
     """
-    of, rates = _COMPONENTS.get(place, ("", 0))
+    of, _ = _COMPONENTS.get(place, ("", 0))
     listed: Any = keys.get(of, [])
-    names, found = (listed if isinstance(listed, list) else [listed]), list[Quantity]()
-    for i, name in enumerate(names, 1):
-        if place in _LETTERS:
-            spelled = [s for letter in _LETTERS[place] for s in _numbered(letter, i, name, len(names) == 1)]
-            known = (
-                spelled
-                if place in ("Q", "P", "force", "Qnc")
-                else [s for s in spelled if not scope.declares(s)]
-            )
-            found.append(Quantity(spelled[0], tuple((s, 0) for s in known)))
-        else:
-            also = ((s, 0) for s in _by_letter(place, i, name, keys.get("q", [])) if not scope.declares(s))
-            rate = f"{name}{'_dot' * rates}"
-            found.append(Quantity(f"{name}{chr(39) * rates}", ((name, rates), (rate, 0), *also)))
-    return tuple(found)
+    names = listed if isinstance(listed, list) else [listed]
+    if place in _LETTERS:
+        return tuple(_by_letters(place, i, name, len(names) == 1, scope) for i, name in enumerate(names, 1))
+    return tuple(_by_name(place, i, name, keys, scope) for i, name in enumerate(names, 1))
+
+
+def _by_letters(place: str, number: int, name: str, alone: bool, scope: Scope) -> Quantity:
+    """Return a component that is called by a letter; a declared name is what was declared."""
+    spelled = [s for letter in _LETTERS[place] for s in _numbered(letter, number, name, alone)]
+    free = place in ("J", "omega")
+    return Quantity(spelled[0], tuple((s, 0) for s in spelled if not (free and scope.declares(s))))
+
+
+def _by_name(place: str, number: int, name: str, keys: Mapping[str, Any], scope: Scope) -> Quantity:
+    """Return a component that is called as its variable, with the dots of a rate or by the letter of one."""
+    _, rates = _COMPONENTS[place]
+    also = ((s, 0) for s in _by_letter(place, number, name, keys.get("q", [])) if not scope.declares(s))
+    return Quantity(f"{name}{chr(39) * rates}", ((name, rates), (f"{name}{'_dot' * rates}", 0), *also))
 
 
 def _numbered(letter: str, number: int, name: str, alone: bool) -> list[str]:
