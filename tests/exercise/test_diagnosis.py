@@ -16,7 +16,7 @@ from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.right_answer import corrected
 from canon.exercise.explained_judgement import judgements
 from canon.exercise.report import sentences
-from canon.exercise.sheet.measures import measure_of
+from canon.exercise.sheet.quantities.measures import measure_of
 from canon.exercise.sheet.sheet import Claim, read_sheet
 
 ROOT = Path(__file__).parents[2]

@@ -9,8 +9,8 @@ import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from canon.exercise.question.dimension_texts import NUMBER, Dimension, DimensionError, dimension_from
 from canon.exercise.question.expression_dimension import analysed, dimension_of
+from canon.exercise.sheet.quantities.dimension_texts import NUMBER, Dimension, DimensionError, dimension_from
 from canon.exercise.sheet.sheet import SheetError, read_sheet
 from canon.exercise.sheet_check import check
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from canon.exercise.explained_judgement import judgements
 from canon.exercise.judges.number import sign_of
-from canon.exercise.sheet.measures import measure_of
+from canon.exercise.sheet.quantities.measures import measure_of
 from canon.exercise.sheet.sheet import claim_from
 from canon.proof import Undecided
 

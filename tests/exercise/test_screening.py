@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.exercise.claim_verdict import examine
-from canon.exercise.diagnose.changed_claims import answers_of
 from canon.exercise.diagnose.diagnosis import judged_to_hold
 from canon.exercise.diagnose.diagnosis_search import diagnosis
 from canon.exercise.diagnose.effort import Effort
+from canon.exercise.diagnose.repairs.answer_places import answers_of
 from canon.exercise.diagnose.repairs.point_derivatives import BITS, Examples, Neighbourhood
 from canon.exercise.diagnose.repairs.repair import repair
 from canon.exercise.diagnose.repairs.screening import screening

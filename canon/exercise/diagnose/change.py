@@ -42,9 +42,7 @@ class Mistake(enum.Enum):
     SIGN_OF = enum.auto()  # a symbol or function whose sign is wrong
     SYMBOLS_EXCHANGED = enum.auto()  # where, one, the other
     # dimensional analysis
-    TERMS_OF_OTHER_DIMENSION = (
-        enum.auto()
-    )  # whether these are all, pairs of terms and a dimension, fewest first
+    TERMS_OF_OTHER_DIMENSION = enum.auto()  # whether these are all, terms with their dimension, fewest first
     NO_NUMBER = enum.auto()  # where, the argument, its dimension
     DIMENSION_OF_ANSWER = enum.auto()  # its dimension, that of the right one
     # how the answer was derived

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.exercise.diagnose.change import Change, Mistake
-from canon.exercise.diagnose.changed_claims import answers_of
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
 from canon.exercise.diagnose.effort import JUDGEMENT_STEPS
+from canon.exercise.diagnose.repairs.answer_places import answers_of
 from canon.exercise.diagnose.repairs.screening import screening
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of

@@ -12,8 +12,8 @@ import sympy as sp
 
 from canon.cached_property import cached_property
 from canon.exercise.diagnose.change import Change, Mistake, rank
-from canon.exercise.diagnose.changed_claims import answers_of, called
 from canon.exercise.diagnose.diagnosis import Diagnosis, judged_to_hold
+from canon.exercise.diagnose.repairs.answer_places import answers_of, called
 from canon.exercise.diagnose.repairs.lost_term import terms_lost
 from canon.exercise.diagnose.repairs.repair import is_wrong
 from canon.exercise.diagnose.repairs.screening import screening

@@ -15,7 +15,7 @@ from sympy import Expr, Rational
 
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.question import Determines, Question, Stated
-from canon.exercise.sheet.measures import Measure, measure_of
+from canon.exercise.sheet.quantities.measures import Measure, measure_of
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.verdict import Counterexample, Status, Undecided, Verdict

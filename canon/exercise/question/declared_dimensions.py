@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.exercise.question.dimension_texts import TIME, Dimension, DimensionError, dimension_from
 from canon.exercise.question.expression_dimension import analysed, dimension_of
 from canon.exercise.sheet.kind import Shape
+from canon.exercise.sheet.quantities.dimension_texts import TIME, Dimension, DimensionError, dimension_from
 from canon.expression.symbols.symbol import Coordinate
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.exercise.question.dimension_texts import NUMBER, Dimension
+from canon.exercise.sheet.quantities.dimension_texts import NUMBER, Dimension
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -75,7 +75,7 @@ def dimension_of(f: Expr, known: Mapping[str, Dimension]) -> Dimension | None:
 
     Examples
     --------
-    >>> from canon.exercise.question.dimension_texts import dimension_from
+    >>> from canon.exercise.sheet.quantities.dimension_texts import dimension_from
     >>> m, x, c = sp.symbols("m x c")
     >>> known = {"m": dimension_from("mass"), "x": dimension_from("length")}
     >>> print(dimension_of(3 * m * sp.sqrt(x), known), dimension_of(m + x, known), dimension_of(c * x, known))
@@ -90,7 +90,7 @@ def analysed(f: Expr, known: Mapping[str, Dimension]) -> tuple[Clash, ...]:
 
     Examples
     --------
-    >>> from canon.exercise.question.dimension_texts import dimension_from
+    >>> from canon.exercise.sheet.quantities.dimension_texts import dimension_from
     >>> m, x = sp.symbols("m x")
     >>> known = {"m": dimension_from("mass"), "x": dimension_from("length")}
     >>> [clash.node for clash in analysed(x * (m + x) + sp.sin(x), known)]

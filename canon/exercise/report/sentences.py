@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from canon.exercise.claim_verdict import Finding
     from canon.exercise.diagnose.change import Change
     from canon.exercise.diagnose.diagnosis import Diagnosis
-    from canon.exercise.question.dimension_texts import Dimension
+    from canon.exercise.sheet.quantities.dimension_texts import Dimension
 
 __all__ = ["SENTENCES", "feedback", "sentence", "times"]
 
@@ -60,18 +60,22 @@ def _only_where(item: object, relation: str) -> str:
     return f"right {word} {shown(item)} {relation} 0, but not on the whole domain"
 
 
-def _measured(dimension: Dimension, subject: str = "") -> str:
+def _measured(dimension: Dimension, subject: str) -> str:
     """Say which dimension something has, or that it is a number.
 
     Examples
     --------
-    >>> from canon.exercise.question.dimension_texts import dimension_from
+    >>> from canon.exercise.sheet.quantities.dimension_texts import dimension_from
     >>> [_measured(dimension_from(text), "x") for text in ("force", "mass*length^3", "1")]
     ['x has the dimension of force', 'x has the dimension length^3*mass', 'x is a pure number']
     """
     if dimension.is_number:
         return f"{subject} is a pure number"
-    return f"{subject} has the dimension {'of ' if dimension.name else ''}{dimension}"
+    return f"{subject} has {_called(dimension)}"
+
+
+def _called(dimension: Dimension) -> str:
+    return f"the dimension {'of ' if dimension.name else ''}{dimension}"
 
 
 def _of_other_dimension(all_told: bool, *groups: tuple[tuple[Expr, ...], Dimension]) -> str:
@@ -79,9 +83,7 @@ def _of_other_dimension(all_told: bool, *groups: tuple[tuple[Expr, ...], Dimensi
     (few, of_few), (many, of_many), *more = groups
     if len(few) == 1 and len(many) > 1 and not more:
         others = f"{'the ' if all_told else ''}other terms"
-        measured = (
-            "are pure numbers" if of_many.is_number else _measured(of_many)[1:].replace("has", "have", 1)
-        )
+        measured = "are pure numbers" if of_many.is_number else f"have {_called(of_many)}"
         return f"{_measured(of_few, shown(few[0]))}, {others} {measured}: one of them is wrong"
     *told, last = (_measured(dimension, shown(terms[0])) for terms, dimension in groups)
     ending = "not all of them can be right" if more else "one of them is wrong"

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from canon.expression.text.notation import is_latex
+from canon.frozen_mapping import FrozenMapping
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from canon.expression.text.statement import Side, Statement
 
 __all__ = [
@@ -18,6 +21,7 @@ __all__ = [
     "equations_listed",
     "is_name_of_matrix",
     "of_matrix",
+    "texts_in",
     "whole_statement",
     "without_remainder",
 ]
@@ -234,3 +238,15 @@ def without_remainder(text: str) -> tuple[str, str]:
         return text, ""
     blank = " " * (found.end() - found.start())
     return text[: found.start()] + blank + text[found.end() :], found.group()[1:].strip()
+
+
+def texts_in(value: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every text under some keys, each with the first of the keys that lead to it."""
+    if isinstance(value, str):
+        yield key, value
+    elif isinstance(value, dict | FrozenMapping):
+        for name, item in value.items():
+            yield from texts_in(item, key or str(name))
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from texts_in(item, key)

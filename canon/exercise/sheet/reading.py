@@ -11,6 +11,7 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.cached_property import cached_property
+from canon.exercise.sheet.field_texts import texts_in
 from canon.exercise.sheet.key_shapes import ASSUMPTIONS
 from canon.exercise.sheet.kind import Kind, Shape
 from canon.exercise.sheet.kinds import kind_of
@@ -43,20 +44,9 @@ _MAKERS: Mapping[str, Callable[..., Symbol]] = FrozenMapping(
     {"q": Coordinate, "p": Momentum, "quasi": Coordinate, "new_p": Momentum, "momenta": Momentum}
 )
 NAME_KEYS = (
-    "q",
-    "p",
-    "x",
-    "variables",
-    "new_q",
-    "new_p",
-    "cyclic",
-    "momenta",
-    "multipliers",
-    "quasi",
-    "constants",
-    "actions",
-    "slow",
-)
+    "q", "p", "x", "variables", "new_q", "new_p", "cyclic", "momenta",
+    "multipliers", "quasi", "constants", "actions", "slow",
+)  # fmt: skip
 """Keys that declare names."""
 
 
@@ -221,7 +211,7 @@ class Reading:
             for key, value in self.claim.keys.items()
             if key in shapes and shapes[key] not in (Shape.NAMES, Shape.WORD)
         }
-        found = {(key, unit.text): None for key, text in _texts_in(said) for unit in units(text, self.scope)}
+        found = {(key, unit.text): None for key, text in texts_in(said) for unit in units(text, self.scope)}
         units_passed = (
             f"the unit {unit} in {key} is passed over: numbers are read in any one consistent system of units"
             for key, unit in found
@@ -390,18 +380,6 @@ def _is_rate(name: str, names: Mapping[str, Symbol]) -> bool:
     """Whether a name is that of a declared coordinate's velocity or acceleration."""
     bases = (name.removesuffix(ending) for ending in ("_ddot", "_dot") if name.endswith(ending))
     return any(isinstance(names.get(base), Coordinate) for base in bases)
-
-
-def _texts_in(value: Any, key: str = "") -> Iterator[tuple[str, str]]:
-    """Yield every text under some keys, each with the first of the keys that lead to it."""
-    if isinstance(value, str):
-        yield key, value
-    elif isinstance(value, dict | FrozenMapping):
-        for name, item in value.items():
-            yield from _texts_in(item, key or str(name))
-    elif isinstance(value, list | tuple):
-        for item in value:
-            yield from _texts_in(item, key)
 
 
 def _the_one(value: Any) -> Any:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from canon.exercise.sheet.field_texts import entries_of
 from canon.exercise.sheet.left_sides import label_of
-from canon.exercise.sheet.measures import unit_behind
+from canon.exercise.sheet.quantities.measures import unit_behind
 from canon.expression.parse import parse_expression, statements_of
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.markup import unmarked

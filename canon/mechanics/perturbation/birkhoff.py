@@ -135,7 +135,7 @@ class NormalForm:
 
         Raises
         ------
-        ValueError
+        NormalFormError
             Where the normal form has resonant terms, which depend on angles.
         """
         n = len(self.source.q)
@@ -145,9 +145,10 @@ class NormalForm:
         for part in self.parts.values():
             for exponents, term in part.split(lambda e: tuple(map(int, e))).items():
                 if exponents[:n] != exponents[n:]:
-                    raise ValueError(
+                    raise NormalFormError(
                         "the normal form has resonant terms, so it is no function of the actions alone; "
-                        "read K or in_variables()"
+                        "read K or in_variables()",
+                        self,
                     )
                 powers = ((I / u) ** k for I, u, k in zip(self.actions, units, exponents[:n], strict=True))
                 total += ring.expression(term.coefficient_alone(), [sp.S.One] * 2 * n) * sp.Mul(*powers)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-    from canon.exercise.question.dimension_texts import Dimension
+    from canon.exercise.sheet.quantities.dimension_texts import Dimension
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 

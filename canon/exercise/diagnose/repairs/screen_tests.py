@@ -14,12 +14,12 @@ from flint import acb
 from sympy import Expr, Symbol
 
 from canon.exercise.claim_verdict import questions
+from canon.exercise.diagnose.repairs.answer_places import answers_of
 from canon.exercise.diagnose.repairs.point_derivatives import small
 from canon.exercise.diagnose.repairs.unbuilt import built
 from canon.exercise.judges.canonical import map_values
 from canon.exercise.judges.conserved import motion_of
 from canon.exercise.question.question import Same
-from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.reading import InvalidClaim
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.mechanics.algebra.substitution import substitute, symbols_of
@@ -35,21 +35,9 @@ if TYPE_CHECKING:
     from canon.proof.domain.domain import Domain
 
 __all__ = [
-    "Screened",
-    "Test",
-    "bilinear_covariant",
-    "by_question",
-    "canonicity",
-    "constant",
-    "equality",
-    "gauge",
-    "generating",
-    "lagrange_brackets",
-    "motion",
-    "new_hamiltonian",
-    "poisson_brackets",
-    "solution",
-]
+    "Screened", "Test", "bilinear_covariant", "by_question", "canonicity", "constant", "equality",
+    "gauge", "generating", "lagrange_brackets", "motion", "new_hamiltonian", "poisson_brackets", "solution",
+]  # fmt: skip
 
 MOST_KNOWN = 4
 QUESTION_STEPS = 2_000
@@ -379,7 +367,7 @@ def _left_over(
 
 def by_question(reading: Reading) -> Screened | None:
     """What the judge compares first, derived anew for each candidate: for kinds without a law of their own here."""
-    keys = [place for key in reading.kind.repaired if reading.has(key) for place in _places(reading, key)]
+    keys = [key for key, _ in answers_of(reading)]
     first = _compared(reading)
     if first is None:
         return None
@@ -397,12 +385,6 @@ def by_question(reading: Reading) -> Screened | None:
     given = tuple(part.right for part in first.parts)
     names = dict.fromkeys((*reading.scope.names.values(), reading.time, *symbols))
     return Screened(test, tuple(names), first.domain, given, QUESTION_STEPS)
-
-
-def _places(reading: Reading, key: str) -> list[str]:
-    """Return a key, or the places of the list that stands under it."""
-    listed = reading.kind.shapes.get(key) is Shape.TEXTS
-    return [f"{key}[{i}]" for i in range(len(reading.words(key)))] if listed else [key]
 
 
 def _compared(reading: Reading) -> Same | None:

@@ -30,14 +30,8 @@ if TYPE_CHECKING:
     from canon.exercise.diagnose.repairs.unbuilt import Form
 
 __all__ = [
-    "RARER",
-    "common_slips",
-    "lost_factors",
-    "of_one_coefficient",
-    "plain_variants",
-    "rarer_variants",
-    "variants",
-]
+    "RARER", "common_slips", "lost_factors", "of_one_coefficient", "plain_variants", "rarer_variants", "variants",
+]  # fmt: skip
 
 Slip: TypeAlias = "tuple[Form, Change]"
 """An expression with a slip, and which one."""
@@ -179,15 +173,11 @@ def _one_place(expression: Expr, edits: Callable[[Expr], Iterator[Slip]]) -> Ite
     for i, operand in enumerate(expression.args):
         if isinstance(operand, Expr) and not operand.is_Number:
             place = Place(expression, i)
-            put = _put if place.is_valued else _put_at_once
+            put = Within if place.is_valued else _put_at_once
             for new, change in _one_place(operand, edits):
                 whole = put(place, new)
                 if whole is not None:
                     yield whole, change
-
-
-def _put(place: Place, new: Form) -> Form:
-    return Within(place, new)
 
 
 def _put_at_once(place: Place, new: Form) -> Form | None:

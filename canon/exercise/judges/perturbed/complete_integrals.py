@@ -58,14 +58,14 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         why = f"a complete integral has {wanted} beside an additive one, not {len(constants)}"
         yield fails("the number of constants", why)
         return
-    whole = reading.expression(name) if name != "gradient" else sp.S.Zero
-    slopes = tuple(whole.diff(x) for x in q) if whole != 0 else _gradient(reading, name)
-    for f in (whole, *slopes):
+    whole = None if name == "gradient" else reading.expression(name)
+    slopes = reading.expressions("gradient", like="q") if whole is None else tuple(map(whole.diff, q))
+    for f in slopes if whole is None else (whole,):
         wrong = tuple(wrong_variables(f, (*p, *((t,) if name != "S" else ())), name, _variables_of(name)))
         if wrong:
             yield wrong[0]
             return
-    rate = whole.diff(t)
+    rate = sp.S.Zero if whole is None else whole.diff(t)
     energy = sp.S.Zero if name == "S" else _energy(reading, constants)
     equation = substitute(H, dict(zip(p, slopes, strict=True))) + rate
     parts = [Part(_equation_of(name), equation, energy)]
@@ -82,7 +82,7 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         "the constants are not independent: det ∂²W/∂q∂α = 0, so the integral is not complete",
     )
     variables = (*q, *constants, t)
-    if whole != 0:
+    if whole is not None:
         yield is_continuous(whole, variables, reading.domain, name, (H,))
     for x, slope in zip(p, slopes, strict=True):
         yield is_continuous(slope, variables, reading.domain, f"{x} = ∂W/∂q", (H,))
@@ -101,12 +101,6 @@ def _check_constants(reading: Reading, H: Expr, constants: Sequence[Symbol]) -> 
     repeated = [str(c) for c in constants if constants.count(c) > 1]
     if repeated:
         reading.fault("constants", f"{repeated[0]} is named twice")
-
-
-def _gradient(reading: Reading, name: str) -> tuple[Expr, ...]:
-    if name != "gradient":
-        return tuple(sp.S.Zero for _ in reading.symbols("q"))
-    return reading.expressions("gradient", like="q")
 
 
 def _energy(reading: Reading, constants: Sequence[Symbol]) -> Expr:

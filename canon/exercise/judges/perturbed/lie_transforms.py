@@ -17,6 +17,7 @@ from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.judges.perturbed.tori import slow_invariant
 from canon.exercise.judges.small_quantities import small_symbols
 from canon.exercise.question.continuous_answer import is_continuous
+from canon.exercise.question.deadline import PROOF_SECONDS
 from canon.exercise.question.question import Part, Question, Same, Tells, fails, wrong_variables
 from canon.exercise.question.series_expansion import check_analytic, coefficient, without_kinks
 from canon.expression.symbols.user_input import counted
@@ -52,8 +53,6 @@ __all__ = [
 MOST_ORDERS = 8
 LARGE = 2_000
 """Operations of an expression up to which its fractions are cancelled."""
-SECONDS = 2.0
-"""Time to look for a jump across one cut."""
 HIGHEST_DEGREE = 12
 """Degree in (q, p) up to which a normal form is judged."""
 
@@ -80,9 +79,7 @@ def generator_of_first_order(reading: Reading) -> Iterator[Question]:
     period 2π in each angle, and continuous, or the mean of H₁ would be removed too.
     """
     q, p = reading.phase_space("q", "p")
-    small, H, t = _small(reading), reading.expression("H"), reading.time
-    if H.has(t):
-        reading.fault("H", f"depends on {t}; take the phase as an angle with a momentum of its own")
+    small, H, t = _small(reading), _autonomous(reading), reading.time
     H0, H1 = _coefficients(reading, H, small, 1)
     key = "W" if reading.has("W") else "F2"
     if key == "W":
@@ -135,7 +132,7 @@ def _winding(f: Expr, variables: Sequence[Symbol], domain: Domain, name: str) ->
         f = cast("Expr", sp.cancel(f))  # d atan(q/p) has 1/p in it, and no pole there
     arcs = _arcs(f, variables)
     for cut in arcs:
-        jump = find_jump(f, cut, variables, domain, time.monotonic() + SECONDS)
+        jump = find_jump(f, cut, variables, domain, time.monotonic() + PROOF_SECONDS)
         if jump is not None:
             where = ", ".join(f"{s} = {value}" for s, value in jump.point.items())
             return fails(
@@ -160,16 +157,14 @@ def _angles(reading: Reading, H: Expr, q: Sequence[Symbol]) -> tuple[Symbol, ...
 
 def _has_period(H: Expr, x: Symbol, reading: Reading) -> bool:
     turned = substitute(H, {x: x + 2 * sp.pi})
-    return vanishes_off_kinks(turned - H, reading.domain, budget=1.0).holds
+    return vanishes_off_kinks(turned - H, reading.domain, budget=PROOF_SECONDS).holds
 
 
 def averaged_hamiltonian(reading: Reading) -> Iterator[Question]:
     """K is the average of H over fast angles to an order, in the new variables under the names of the old ones."""
     q, p = reading.phase_space("q", "p")
     small, order, t = _small(reading), _order(reading), reading.time
-    H, fast = reading.expression("H"), reading.subset("angles", "q")
-    if H.has(t):
-        reading.fault("H", f"depends on {t}; take the phase as an angle with a momentum of its own")
+    H, fast = _autonomous(reading), reading.subset("angles", "q")
     expanded = _coefficients(reading, H, small, order)
     try:
         averaged = average(Hamiltonian(_sum(expanded, small), q, p, t), fast, order, small)
@@ -179,7 +174,7 @@ def averaged_hamiltonian(reading: Reading) -> Iterator[Question]:
     if unique < order:
         yield _averaged_to(reading, averaged, unique)
         claimed = _to_the_order(reading, "K", small, order)
-        if not vanishes_off_kinks(claimed - averaged.K, reading.domain, budget=2.0).holds:
+        if not vanishes_off_kinks(claimed - averaged.K, reading.domain, budget=PROOF_SECONDS).holds:
             raise Undecided(
                 f"to order {unique} K is right; beyond, it depends on which generator is taken, as there are slow "
                 "variables: canon takes the one without a mean over the fast angles, whose K is another one"
@@ -206,20 +201,18 @@ def _unique_orders(averaged: Averaged, K: Expr, order: int) -> int:
 def normal_form(reading: Reading) -> Iterator[Question]:
     """K, as a function of the actions, is the normal form of H at the origin to a degree, with H there or without."""
     q, p = reading.phase_space("q", "p")
-    H, t, actions = reading.expression("H"), reading.time, reading.symbols("actions")
+    H, t, actions = _autonomous(reading), reading.time, reading.symbols("actions")
     degree = reading.claim.keys["degree"]
     if degree != int(degree) or not 2 <= degree <= HIGHEST_DEGREE or degree % 2:
         reading.fault("degree", f"should be an even number from 2 to {HIGHEST_DEGREE}, the degree in q and p")
     if len(actions) != len(q):
         reading.fault("actions", f"{counted(len(actions), 'action')} for {counted(len(q), 'coordinate')}")
-    if H.has(t):
-        reading.fault("H", f"depends on {t}; take the phase as an angle with a momentum of its own")
     K = reading.expression("K")
     yield from wrong_variables(K, (*q, *p, t), "K", "the actions")
     try:
         form = birkhoff_normal_form(Hamiltonian(H, q, p, t), int(degree))
         known = form.in_actions()
-    except (NormalFormError, NoDiagonalFormError, NoExactFieldError, NotAnalyticError, ValueError) as reason:
+    except (NormalFormError, NoDiagonalFormError, NoExactFieldError, NotAnalyticError) as reason:
         raise Undecided(f"the normal form was not found: {reason}") from None
     right = substitute(known, dict(zip(form.actions, actions, strict=True)))
     yield _same_polynomials(reading, K, right, actions, int(degree) // 2)
@@ -259,7 +252,8 @@ def _agree(
     wanted: Mapping[tuple[int, ...], Expr],
 ) -> bool:
     return all(
-        vanishes_off_kinks(claimed[e] - wanted[e], reading.domain, budget=0.5).holds for e in exponents
+        vanishes_off_kinks(claimed[e] - wanted[e], reading.domain, budget=PROOF_SECONDS).holds
+        for e in exponents
     )
 
 
@@ -298,13 +292,24 @@ def adiabatic_invariant(reading: Reading) -> Iterator[Question]:
     yield Tells((same_everywhere((I_0,), (*q, *p), reading.domain),), NOT_OF_THE_STATE)
     rate = sp.Add(poisson_bracket(I, H, q, p), *(small * I.diff(tau) for tau in slow))
     coefficients = _coefficients(reading, rate, small, order)
-    parts = _parts("dI/dt", coefficients, [sp.S.Zero] * (order + 1), small)
+    parts = tuple(
+        Part(f"dI/dt to order {k} in {small}" if k else f"dI/dt at {small} = 0", c)
+        for k, c in enumerate(coefficients)
+    )
     yield Same(
         parts, reading.domain, None, lambda part: f"{part.name} does not vanish: {shown_short(part.claimed)}"
     )
     yield from _one_function(reading, I, H, "I")
     if order == 0:
         yield from (found for tau in slow for found in slow_invariant(reading, I_0, tau, H_0))
+
+
+def _autonomous(reading: Reading) -> Expr:
+    """Return H, which must not depend on the time."""
+    H, t = reading.expression("H"), reading.time
+    if H.has(t):
+        reading.fault("H", f"depends on {t}; take the phase as an angle with a momentum of its own")
+    return H
 
 
 def _small(reading: Reading) -> Symbol:
@@ -339,11 +344,3 @@ def _to_the_order(reading: Reading, key: str, small: Symbol, order: int) -> Expr
     f = reading.expression(key)
     truncated = _sum(_coefficients(reading, f, small, order), small)
     return f if sp.expand(f - truncated) == 0 else truncated
-
-
-def _parts(name: str, claimed: Sequence[Expr], right: Sequence[Expr], small: Symbol) -> tuple[Part, ...]:
-    """Return coefficients as parts; both lists begin at order 0."""
-    return tuple(
-        Part(f"{name} to order {k} in {small}" if k else f"{name} at {small} = 0", a, b)
-        for k, (a, b) in enumerate(zip(claimed, right, strict=True))
-    )

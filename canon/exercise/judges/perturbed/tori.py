@@ -19,6 +19,7 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.judges.canonical import canonical_parts
+from canon.exercise.question.deadline import PROOF_SECONDS
 from canon.exercise.question.question import Part, Question, Same, Stated
 from canon.expression.symbols.user_input import counted
 from canon.frozen_mapping import FrozenMapping
@@ -161,7 +162,7 @@ def _turns_alone(part: Part) -> str:
 
 
 def _is_times(part: Part, factor: Expr) -> bool:
-    return vanishes_off_kinks(part.seen(part.claimed) - factor * part.right, EVERYWHERE, budget=0.5).holds
+    return vanishes_off_kinks(part.seen(part.claimed) - factor * part.right, EVERYWHERE, PROOF_SECONDS).holds
 
 
 def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:

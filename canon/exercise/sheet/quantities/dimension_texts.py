@@ -13,7 +13,7 @@ from itertools import zip_longest
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from canon.exercise.sheet.measures import measure_of
+from canon.exercise.sheet.quantities.measures import measure_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -150,7 +150,7 @@ def dimension_from(text: str) -> Dimension:
     >>> dimension_from("furlong")
     Traceback (most recent call last):
         ...
-    canon.exercise.question.dimension_texts.DimensionError: furlong is no dimension and no unit; write ...
+    canon.exercise.sheet.quantities.dimension_texts.DimensionError: furlong is no dimension and no unit; write ...
     """
     if len(text) > MOST_CHARACTERS:
         raise DimensionError(f"{len(text)} characters, and at most {MOST_CHARACTERS} are read")

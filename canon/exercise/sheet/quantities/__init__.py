@@ -1,0 +1,1 @@
+"""Quantities as sheets write them: units behind numbers, and dimensions."""
