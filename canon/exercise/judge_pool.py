@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from canon.exercise.judging_process import Worker
 from canon.exercise.report.report import Report
 from canon.exercise.sheet.sheet import Claim, Sheet, bundled_sheet, claim_from, read_sheet
+from canon.exercise.waiting_claims import OWN_KEYS, WaitingClaims
 from canon.expression.symbols.input_in_words import given_kind
 
 if TYPE_CHECKING:
@@ -27,9 +28,6 @@ __all__ = ["JudgePool", "said"]
 
 CLAIMS_A_PROCESS = 1_000
 """Claims after which a process is replaced, so that what libraries keep in memory does not grow for ever."""
-
-_OWN_KEYS = frozenset(("id", "title", "source", "expect"))
-"""Keys that say nothing about mechanics."""
 
 
 class JudgePool:
@@ -103,13 +101,9 @@ class JudgePool:
     def judge(self, claim: Claim | Mapping[str, Any]) -> Judgement:
         """Return the judgement on one claim, or on a table of its keys; waits for a process that is idle."""
         read = claim if isinstance(claim, Claim) else claim_from(dict(claim))
-        if self._budget is not None:
-            read = replace(read, budget=self._budget)
         worker = self._idle.get()
         try:
-            if self._closed.is_set():
-                raise ValueError("the pool is closed: make another one")
-            return worker.judge(read)
+            return self._judged_by(worker, read)
         finally:
             self._put_back(worker)
 
@@ -120,15 +114,21 @@ class JudgePool:
 
     def judged(self, claims: Sequence[Claim]) -> Iterator[Judgement]:
         """Yield the judgement on each claim, in order; what is said twice is judged once."""
-        first = {said(claim): claim for claim in reversed(claims)}
-        running = {key: self._threads.submit(self.judge, claim) for key, claim in reversed(first.items())}
+        keys = [said(claim) for claim in claims]
+        first = dict(zip(reversed(keys), reversed(claims), strict=True))
+        waiting = WaitingClaims(dict(reversed(first.items())))
+        running = [self._threads.submit(self._judged_next, waiting) for _ in first]
+        begun = iter(running)  # in this order, so that the next to be told is among the first
+        found: dict[str, Judgement] = {}
         try:
-            for claim in claims:
-                found = running[said(claim)].result()
+            for key, claim in zip(keys, claims, strict=True):
+                while key not in found:
+                    other, judgement = next(begun).result()
+                    found[other] = judgement
                 title = str(claim.keys.get("title", ""))
-                yield replace(found, id=claim.id, title=title, expect=claim.expect, file=claim.file)
+                yield replace(found[key], id=claim.id, title=title, expect=claim.expect, file=claim.file)
         finally:
-            for future in running.values():  # nobody waits for what is left
+            for future in running:  # nobody waits for what is left
                 future.cancel()
 
     def close(self) -> None:
@@ -137,6 +137,20 @@ class JudgePool:
         self._threads.shutdown(wait=False, cancel_futures=True)
         for worker in self._all:
             worker.stop()
+
+    def _judged_by(self, worker: Worker, claim: Claim) -> Judgement:
+        if self._closed.is_set():
+            raise ValueError("the pool is closed: make another one")
+        return worker.judge(claim if self._budget is None else replace(claim, budget=self._budget))
+
+    def _judged_next(self, waiting: WaitingClaims) -> tuple[str, Judgement]:
+        """Return the key and the judgement of the waiting claim that is best for a process that is idle."""
+        worker = self._idle.get()
+        try:
+            key, claim = waiting.next_for(worker)
+            return key, self._judged_by(worker, claim)
+        finally:
+            self._put_back(worker)
 
     def _warmed(self, worker: Worker) -> None:
         try:
@@ -170,5 +184,5 @@ def said(claim: Claim) -> str:
     """
     if claim.errors:
         return f"{claim.id}: {claim.errors}"
-    keys = {key: value for key, value in claim.keys.items() if key not in _OWN_KEYS}
+    keys = {key: value for key, value in claim.keys.items() if key not in OWN_KEYS}
     return json.dumps([claim.kind, keys, claim.budget], sort_keys=True, default=str)

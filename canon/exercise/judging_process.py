@@ -120,11 +120,13 @@ class Worker:
 
     def start(self) -> Child:
         """Return the process, a new one unless one is running, without waiting until it is ready."""
-        if self._child is None or not self._child.usable:
+        child = self._child
+        if child is None or not child.usable:
             self.stop()
-            self._child, self._ready, self.judged = Child(JUDGING, leads=True), False, 0
+            child = self._child = Child(JUDGING, leads=True)
+            self._ready, self.judged = False, 0
             self.started += 1
-        return self._child
+        return child  # its own name for it: another thread may stop this worker meanwhile
 
     def _running(self) -> Child:
         """Return the process once it is ready."""

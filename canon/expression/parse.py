@@ -7,6 +7,7 @@ its meaning within a :class:`Scope` of declared names in :mod:`canon.expression.
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING, cast
 
 from sympy import Expr, Rational
@@ -37,6 +38,9 @@ __all__ = [
     "statements_of",
     "syntax_of",
 ]
+
+_LONGEST_KEPT = 600
+"""Characters of a text whose tree is kept, so that a process that lives for weeks stays small."""
 
 
 def parse_expression(text: str, scope: Scope) -> Expr:
@@ -113,12 +117,20 @@ def syntax_of(text: str, scope: Scope) -> syntax.Node:
     """
     given_kind(text, str, "an expression of the language")
     given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
+    return (_kept_syntax if len(text) <= _LONGEST_KEPT else _syntax)(text, scope)
+
+
+def _syntax(text: str, scope: Scope) -> syntax.Node:
     text = unmarked(text)
     if is_latex(text):
         from canon.expression.latex.grammar import parse_latex  # only here: it loads a parser generator
 
         return _in_place(text, without_units(text, scope), lambda blanked: parse_latex(blanked, scope))
     return _in_place(text, without_units(text, scope), lambda blanked: parse_juxtaposed(blanked, scope))
+
+
+_kept_syntax = functools.lru_cache(maxsize=256)(_syntax)
+"""A text is an expression, an equation and what has a value as it is written: one tree for all of them."""
 
 
 def statements_of(text: str, scope: Scope) -> tuple[Statement, ...]:

@@ -6,7 +6,7 @@ import json
 import os
 import signal
 import sys
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 
 import pytest
 
@@ -14,6 +14,7 @@ import canon
 from canon.exercise import JudgePool, Sheet, SheetError, read_sheet
 from canon.exercise.judge_pool import CLAIMS_A_PROCESS
 from canon.exercise.sheet.sheet import Claim
+from canon.exercise.waiting_claims import AHEAD, WaitingClaims
 
 RIGHT = {"id": "right", "kind": "equality-only", "lhs": "2*x", "rhs": "x + x", "parameters": {"x": "real"}}
 WRONG = {**RIGHT, "id": "wrong", "rhs": "x + 1"}
@@ -115,3 +116,39 @@ def test_a_sheet_is_checked_by_the_pool_and_by_check_within_a_budget(pool):
     assert report.counts == {"holds": 2, "fails": 1}
     late = canon.check(Sheet("long", (Claim("long", "equality-only", LONG, budget=3000.0),)), budget=0.2)
     assert late.counts == {"undecided": 1}
+
+
+def equality(number, lhs, rhs):
+    return Claim(str(number), "equality-only", {"lhs": lhs, "rhs": rhs, "parameters": {"x": "real"}})
+
+
+def test_a_process_goes_on_with_the_questions_it_has_judged():
+    """Two questions in turns: each worker keeps its own while there is some of it within reach, then helps out."""
+    waiting = WaitingClaims({str(i): equality(i, f"sin(x)*{i % 2 + 2}", str(i)) for i in range(8)})
+    taken = {worker: [] for worker in "ab"}
+    for worker in "abaaabbb":
+        taken[worker].append(int(waiting.next_for(worker)[0]))
+    assert taken == {"a": [0, 2, 4, 6], "b": [1, 3, 5, 7]}
+
+
+def test_nobody_is_without_work_and_nothing_is_judged_twice():
+    waiting = WaitingClaims({str(i): equality(i, "sin(x)", str(i)) for i in range(250)})
+    taken = [int(waiting.next_for(i % 3)[0]) for i in range(250)]
+    assert sorted(taken) == list(range(250))
+    assert max(abs(turn - i) for turn, i in enumerate(taken)) <= AHEAD
+
+
+def test_judgements_come_in_the_order_of_the_claims(pool):
+    claims = [equality(i, f"{i % 3}*x", f"x*{i % 3} + {i % 2}") for i in range(24)]
+    found = list(pool.judged(claims))
+    assert [j.id for j in found] == [c.id for c in claims]
+    assert [j.status for j in found] == ["fails" if i % 2 else "holds" for i in range(24)]
+
+
+def test_a_pool_that_is_closed_meanwhile_says_so_to_whoever_waits():
+    with JudgePool(workers=1, warm=False) as pool:
+        judged = pool.judged([equality(i, "x", f"x + {i}") for i in range(50)])
+        assert next(judged).status == "holds"
+        pool.close()
+        with pytest.raises((CancelledError, ValueError, OSError)):
+            list(judged)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -79,11 +80,23 @@ def only_where(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     ]
     for symbol in free[:6]:
         for word, sign in (("positive", ">"), ("negative", "<")):
+            if _is_refuted_where(wrong, symbol, word):
+                continue
             if not effort.spend(SCREEN_STEPS):
                 return
             trial = read_anew(reading, {**keys, "parameters": {**assumed, symbol.name: word}})
             if _is_somewhere(trial) and _could_hold(trial) and judged_to_hold(trial, effort):
                 yield Diagnosis.of(Mistake.ONLY_WHERE, symbol, sign, repaired=trial)
+
+
+def _is_refuted_where(wrong: WrongAnswer, symbol: sp.Symbol, word: str) -> bool:
+    """Whether the point at which the claim was refuted has this sign of a symbol."""
+    example = wrong.finding.verdict.counterexample
+    value = "" if example is None else example.point.get(symbol.name, "")
+    try:
+        return Fraction(value) > 0 if word == "positive" else Fraction(value) < 0
+    except ValueError:  # there is none, or it is not rational
+        return False
 
 
 def only_for(wrong: WrongAnswer) -> Iterator[Diagnosis]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.exercise.sheet.kept_parses import parsed
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import KINDS
 from canon.expression.as_written import as_written
@@ -146,7 +147,7 @@ def _written(reading: Reading) -> Iterator[tuple[str, Expr]]:
         if shapes.get(key) in _EXPRESSIONS:
             for where, text in _texts(key, value):
                 try:
-                    yield where, as_written(text, extended.scope)
+                    yield where, parsed(as_written, text, extended.scope)
                 except LanguageError:  # the judge of the kind says what is wrong with it
                     continue
 

@@ -7,6 +7,7 @@ every size is known before it is tried.
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import TYPE_CHECKING, TypeAlias, cast
 
@@ -36,10 +37,12 @@ SHORT = 20
 """Nodes of an answer that anyone reads as it stands."""
 
 
-def book_forms(f: Expr) -> list[Expr]:
+@functools.lru_cache(maxsize=256)
+def book_forms(f: Expr) -> tuple[Expr, ...]:
     """Return plain forms of an expression that are clearly shorter, the shortest first.
 
-    They are equal by algebra off isolated points; whoever shows one proves it.
+    They are equal by algebra off isolated points; whoever shows one proves it. Those of the last expressions are kept:
+    a class has one right answer.
 
     Examples
     --------
@@ -49,15 +52,14 @@ def book_forms(f: Expr) -> list[Expr]:
     >>> book_forms((sp.sin(phi) ** 2 / sp.cos(phi) + sp.cos(phi)) * w)[0]
     w/cos(phi)
     >>> book_forms(m * w**2 - r / 2)
-    []
+    ()
     """
     if size(f) > MOST_NODES:
-        return []
+        return ()
     longest = (CLEARLY if size(f) > SHORT else OF_A_SHORT_ONE) * size(f)
     found = {form: size(form) for form in _forms(f)}
-    return sorted(
-        (form for form, nodes in found.items() if nodes <= longest), key=lambda g: (found[g], str(g))
-    )
+    short = (form for form, nodes in found.items() if nodes <= longest)
+    return tuple(sorted(short, key=lambda g: (found[g], str(g))))
 
 
 def _forms(f: Expr) -> Iterator[Expr]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -128,5 +129,9 @@ def _answer(question: Question, verdict: Verdict) -> str:
 def shown(f: Basic) -> str:
     """Return an expression as text, nothing where it is longer than anyone reads."""
     nodes = sum(1 for _ in zip(sp.preorder_traversal(f), range(MOST_NODES), strict=False))
-    text = written(f) if nodes < MOST_NODES else ""
+    text = _written(f) if nodes < MOST_NODES else ""
     return text if len(text) <= MOST_CHARACTERS else ""
+
+
+_written = functools.lru_cache(maxsize=256)(written)
+"""What is derived from a question is the same for all who answer it."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, fields, replace
+from copy import deepcopy
+from dataclasses import dataclass, fields, replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -96,7 +97,14 @@ class Judgement:
 
     def to_dict(self) -> dict[str, Any]:
         """Return what one JSON line says."""
-        return {**asdict(self), "seconds": round(self.seconds, 4), "earned": self.earned}
+        said = {field.name: getattr(self, field.name) for field in fields(self)}
+        example = deepcopy(self.counterexample)  # everything else can't be changed
+        return {
+            **said,
+            "counterexample": example,
+            "seconds": round(self.seconds, 4),
+            "earned": self.earned,
+        }
 
     @classmethod
     def from_dict(cls, found: Mapping[str, Any]) -> Judgement:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -12,6 +11,7 @@ from sympy import Expr, Rational, Symbol
 
 from canon.cached_property import cached_property
 from canon.exercise.sheet.field_texts import texts_in
+from canon.exercise.sheet.kept_parses import parsed
 from canon.exercise.sheet.key_shapes import ASSUMPTIONS
 from canon.exercise.sheet.kind import Kind, Shape
 from canon.exercise.sheet.kinds import kind_of
@@ -52,9 +52,6 @@ NAME_KEYS = (
 
 _MOVING = ("q", "p", "x", "variables", "new_q", "new_p", "quasi")
 """Keys of names that stand for what changes in time."""
-
-_LONGEST_KEPT = 600
-"""Characters of a text whose expression is kept, so that what is kept stays small."""
 
 
 class InvalidClaim(ValueError):
@@ -358,22 +355,10 @@ class Reading:
         if key in self.instead:
             return self.instead[key]
         try:
-            parsed = _parsed(parse, str(text), self.scope)
-            return substitute(parsed, self.at) if self.at else parsed
+            said = parsed(parse, str(text), self.scope)
+            return substitute(said, self.at) if self.at else said
         except LanguageError as error:
             raise self.error(key, error) from error
-
-
-def _parsed(parse: Callable[[str, Scope], Any], text: str, scope: Scope) -> Any:
-    """Return what a text says; what is given is read once for all that is tried on an answer, and for a whole class."""
-    return (_kept_parse if len(text) <= _LONGEST_KEPT else _parse_anew)(parse, text, scope)
-
-
-def _parse_anew(parse: Callable[[str, Scope], Any], text: str, scope: Scope) -> Any:
-    return parse(text, scope)
-
-
-_kept_parse = functools.lru_cache(maxsize=512)(_parse_anew)
 
 
 def _is_rate(name: str, names: Mapping[str, Symbol]) -> bool:
