@@ -116,7 +116,7 @@ def one_worker_left(client):
 
 
 LONG = Study.of(
-    system="henon-heiles", method=["kahan-li-8", "taylor"], step=0.01, span=12000.0, samples=2048, parts=8,
+    system="henon-heiles", method=["kahan-li-8", "taylor"], step=0.01, span=4000.0, samples=512, parts=8,
     keep=["motion", {"section": "x"}],
 )  # fmt: skip
 
@@ -125,9 +125,8 @@ def extent(motion):
     return abs(motion.y).max(axis=1)
 
 
-@pytest.mark.slow
 def test_a_worker_killed_in_mid_case_changes_no_bit_of_what_is_kept(tmp_path, cluster):
-    """Two cases are under way, each with a checkpoint; the worker that is killed is running one of them."""
+    """Two cases are under way, one at least with a checkpoint; the worker that is killed is running one of them."""
     keep, here, there = {"extent": extent}, tmp_path / "here.sqlite", Store(tmp_path / "cluster.sqlite")
     run_study(LONG, here, keep=keep)
     with distributed.Client(scheduler_file=str(cluster), timeout=60) as client:
@@ -136,7 +135,7 @@ def test_a_worker_killed_in_mid_case_changes_no_bit_of_what_is_kept(tmp_path, cl
 
         def kill_a_busy_one(status):
             begun = there.parts_done()
-            if killed or status.finished or len(begun) < 2:
+            if killed or status.finished or not begun:
                 return
             busy = [address for address, tasks in client.processing().items() if tasks]
             if busy:
@@ -167,25 +166,30 @@ def large_for_pendulums(motion):
     return len(motion.t)
 
 
-@pytest.mark.slow
 def test_a_case_beyond_the_memory_limit_is_told_and_the_others_finish(tmp_path, start):
     """The nanny kills the worker that takes more than 1 GB, again where the case is tried again; canon says which."""
     study = Study.of(
-        system=["simple-pendulum", "henon-heiles"], method=["verlet", "rk4"], step=0.1, span=100.0, samples=512,
+        system=["simple-pendulum", "henon-heiles"],
+        method="verlet",
+        step=0.1,
+        span=100.0,
+        samples=512,
         keep="motion",
-    )  # fmt: skip
+    )
     here, there = tmp_path / "here.sqlite", tmp_path / "cluster.sqlite"
     with distributed.Client(
         scheduler_file=str(start(["--memory-limit", "1GB"], ["--memory-limit", "1GB"])), timeout=60
     ) as client:
         client.wait_for_workers(2, timeout=60)
-        told = r"2 cases took more memory than workers have.*simple-pendulum.*give workers more memory.*run again"
+        told = (
+            r"1 case took more memory than workers have.*simple-pendulum.*give workers more memory.*run again"
+        )
         with pytest.raises(StudyError, match=told):
             run_study(study, there, client.get_executor(), keep={"large": large_for_pendulums}, in_flight=2)
-        assert status_of(Store(there)).finished == 2
+        assert status_of(Store(there)).finished == 1
         client.wait_for_workers(1, timeout=60)
         assert (
-            run_study(study, there, client.get_executor(), keep={"extent": extent}, in_flight=2).finished == 6
+            run_study(study, there, client.get_executor(), keep={"extent": extent}, in_flight=2).finished == 3
         )
     run_study(study, here, keep={"extent": extent})
     (rows, files), (whole, chunks) = all_of(here), all_of(there)
