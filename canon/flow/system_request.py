@@ -19,7 +19,7 @@ from canon.flow.equations.first_order_motion import moving_system
 from canon.flow.equations.lagrangian_motion import SPAN
 from canon.flow.method.method_text import method_of
 from canon.flow.run.event import Event
-from canon.flow.system.parameter_values import check_given, check_known, check_parameters
+from canon.flow.system.parameter_values import SpareParameters, check_given, check_known, check_parameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system.start_of_motion import check_constraints, state_in_order
@@ -89,15 +89,15 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
         request = replace(request, system=read_at_start(request.system, float(begin), request.y0))
     if scene:
         system, y0, parameters = opened(request.system, request.y0, request.parameters or {})
-        request = replace(request, system=system, y0=y0, parameters=parameters)
+        request = replace(request, system=system, y0=y0, parameters=SpareParameters(parameters))
     if not is_hamiltonian(request.system):
-        return _system_task(request, of_scene=scene)
+        return _system_task(request)
     variables = (*request.system.q, *request.system.p)
     if isinstance(request.y0, Mapping):
         request = replace(request, y0=state_in_order(request.y0, variables))
     if request.parameters:
         check_given(request.parameters, request.system.H.free_symbols, (*variables, request.system.t))
-        if not scene:
+        if not isinstance(request.parameters, SpareParameters):
             check_known(request.parameters, _symbols_of(request) - {*variables, request.system.t})
     return task_of(request), None
 
@@ -121,8 +121,8 @@ def _unneeded_but_given(
     return in_functions | {s for s in system.unneeded if s.name in named}
 
 
-def _system_task(request: Request, *, of_scene: bool) -> tuple[Task, MovingSystem]:
-    """Return the task of a system without a Hamiltonian; a scene may have parameters that do not matter."""
+def _system_task(request: Request) -> tuple[Task, MovingSystem]:
+    """Return the task of a system without a Hamiltonian."""
     y0: Any = request.y0
     ends = two_ends(request.t_span, y0)
     found, given = recognised(request.system), dict(request.parameters or {})
@@ -132,7 +132,7 @@ def _system_task(request: Request, *, of_scene: bool) -> tuple[Task, MovingSyste
     functions = [*observed.values(), *(event.function for event in met)]
     others = _unneeded_but_given(found, functions, given)
     by_name = {s.name: s for s in (*found.parameters, *others)}
-    if of_scene:
+    if isinstance(request.parameters, SpareParameters):
         given = {key: value for key, value in given.items() if str(key) in by_name}
     check_parameters(given, found.parameters, variables, others=others - {*variables})
     fixed, varying = parted_by_orbit(given)

@@ -14,7 +14,9 @@ from canon import (
     RK4,
     ConstrainedLagrangian,
     GibbsAppell,
+    Hamiltonian,
     Lagrangian,
+    Splitting,
     Study,
     Taylor,
     VectorField,
@@ -36,6 +38,7 @@ from canon.study.cases.checkpointed_run import Checkpoint, advance
 from canon.study.energy_drift.drift import Growth
 from canon.study.energy_drift.drift_study import drift_study
 from canon.study.errors import StudyError
+from canon.study.motion.system_table import system_from
 from canon.study.motion.system_text import system_in, system_text
 
 
@@ -257,3 +260,43 @@ def test_starts_by_name_and_scenes_by_name():
     found = drift_study("rolling-disc", span=2.0, step=0.01, methods=["taylor"])
     assert found.rows[0].drift.bound < 1e-13
     assert choose("kepler", 50.0, accuracy=1e-7, methods=["taylor"]).reached
+
+
+SPARE = {
+    "H": "p**2/2 + q**2/2", "q": "q", "p": "p", "parameters": {"k": 2.0}, "starts": {"near": [0.5, 0.0]}, "period": 6.0,
+}  # fmt: skip
+WITHOUT_H = {
+    "L": "q_dot**2/2 - q**2/2",
+    **{key: SPARE[key] for key in ("q", "parameters", "starts", "period")},
+}
+
+
+@pytest.mark.parametrize("table", [SPARE, WITHOUT_H])
+def test_a_table_may_have_parameters_that_do_not_matter(tmp_path, table):
+    """One that stands nowhere, or only in what is followed along the motion."""
+    study = Study.of(
+        system=system_from("own", table),
+        method="taylor",
+        span=60.0,
+        samples=512,
+        keep=[{"section": "q - k/10"}],
+    )
+    status = run_study(study, tmp_path / "s.sqlite")
+    assert (status.finished, status.failed) == (len(study.cases), 0)
+    assert len(study.cases) > 0
+
+
+def test_a_scene_may_have_parameters_that_do_not_matter():
+    """The radius of the hollow cylinder is not in its Hamiltonian."""
+    study = drift_study("hollow-cylinder-second-kind", methods=[Splitting("verlet")], periods=20)
+    assert [row.failure for row in study.rows] == [""]
+    assert choose("hollow-cylinder-second-kind", 5.0, accuracy=1e-4).reached
+
+
+def test_a_parameter_that_a_users_own_hamiltonian_has_not_is_refused():
+    q = coordinates("q")
+    with pytest.raises(KeyError, match="the system has no parameter k, it has none"):
+        drift_study(
+            Hamiltonian(q.momentum**2 / 2 + q**2 / 2, [q], [q.momentum]), [0.5, 0.0],
+            methods=[Splitting("verlet")], step=0.1, span=60.0, parameters={"k": 2.0},
+        )  # fmt: skip

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
+from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.hamilton_equations import exact_number
 
 if TYPE_CHECKING:
@@ -15,9 +16,16 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
-__all__ = ["check_given", "check_known", "check_parameters"]
+__all__ = ["SpareParameters", "check_given", "check_known", "check_parameters"]
 
 _KINDS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "integer")
+
+
+class SpareParameters(FrozenMapping[str, float]):
+    """Values of the parameters of a scene or of a table, some of which may not matter in the motion.
+
+    That of a user's own system which it has not is an error instead, since it may be a slip.
+    """
 
 
 def check_parameters(

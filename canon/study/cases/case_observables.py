@@ -93,7 +93,9 @@ def read_formula(case: Case, what: str, text: str) -> Expr:
     elif isinstance(case.system, Formula):
         constants = tuple(parameters(constant) for constant, _ in case.system.parameters)
     else:
-        constants = recognised(case.hamiltonian).parameters
+        moving = {symbol.name: symbol for symbol in recognised(case.hamiltonian).parameters}
+        declared = (name for name, _ in case.system.parameters if name not in moving)
+        constants = (*moving.values(), *(parameters(name) for name in declared))
     symbols = (*variables_of(case.hamiltonian)[0], *constants)
     try:
         return parse_expression(text, Scope({symbol.name: symbol for symbol in symbols}))

@@ -22,6 +22,7 @@ import numpy as np
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
 from canon.flow.request import Request
 from canon.flow.run.sampling_plan import steps_over
+from canon.flow.system.parameter_values import SpareParameters
 from canon.flow.system_request import is_hamiltonian
 from canon.study.cases.case import part_count
 from canon.study.cases.case_numbers import judged_energy, judged_observable
@@ -270,7 +271,7 @@ def _run(
         case.hamiltonian if timed is None else timed.hamiltonian,
         span,
         np.array(state, dtype=object),
-        parameters={**case.values},
+        parameters=SpareParameters(case.values),
         samples=samples if times is None else None,
         times=times,
         observables=expressions_of(along),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.system.parameter_values import SpareParameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system.start_of_motion import state_in_order
@@ -99,10 +100,11 @@ def subject_of(
         return Subject(asked, asked, _state_of(asked, y0), {**given}, type(asked).__name__)
     scene: Any = asked.with_parameters(**given)
     moving: Any = scene.hamiltonian if scene.is_free else scene
+    values = SpareParameters(scene.values)
     if y0 is None or isinstance(y0, str):
         state = np.asarray(opened(scene, y0, {}).y0, dtype=np.float64)
-        return Subject(scene, moving, state, {**scene.values}, f"{scene.title}; {scene.start(y0).about}")
-    return Subject(scene, moving, _state_of(moving, y0), {**scene.values}, scene.title)
+        return Subject(scene, moving, state, values, f"{scene.title}; {scene.start(y0).about}")
+    return Subject(scene, moving, _state_of(moving, y0), values, scene.title)
 
 
 def variables_of(system: Any) -> tuple[tuple[Symbol, ...], Symbol]:
