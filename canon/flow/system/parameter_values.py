@@ -21,7 +21,7 @@ __all__ = ["SpareParameters", "check_given", "check_known", "check_parameters"]
 _KINDS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "integer")
 
 
-class SpareParameters(FrozenMapping[str, float]):
+class SpareParameters(FrozenMapping["Symbol | str", Any]):
     """Values of the parameters of a scene or of a table, some of which may not matter in the motion.
 
     That of a user's own system which it has not is an error instead, since it may be a slip.

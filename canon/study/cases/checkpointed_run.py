@@ -271,7 +271,7 @@ def _run(
         case.hamiltonian if timed is None else timed.hamiltonian,
         span,
         np.array(state, dtype=object),
-        parameters=SpareParameters(case.values),
+        parameters=SpareParameters({**case.values}),
         samples=samples if times is None else None,
         times=times,
         observables=expressions_of(along),

@@ -100,7 +100,7 @@ def subject_of(
         return Subject(asked, asked, _state_of(asked, y0), {**given}, type(asked).__name__)
     scene: Any = asked.with_parameters(**given)
     moving: Any = scene.hamiltonian if scene.is_free else scene
-    values = SpareParameters(scene.values)
+    values = SpareParameters({**scene.values})
     if y0 is None or isinstance(y0, str):
         state = np.asarray(opened(scene, y0, {}).y0, dtype=np.float64)
         return Subject(scene, moving, state, values, f"{scene.title}; {scene.start(y0).about}")
