@@ -83,7 +83,8 @@ def _one_kill(file: Path, jobs: int, target: str, draw: random.Random) -> tuple[
         program = subprocess.Popen(command, stdout=said, stderr=said, start_new_session=True)
         time.sleep(draw.uniform(0.0, 4.0 if draw.random() < 0.8 else 12.0))
         family = _family(program.pid)
-        victim = program.pid if target == "study" or not family else draw.choice(family)
+        workers = [pid for pid in family if not _keeps_semaphores(pid)]
+        victim = program.pid if target == "study" or not workers else draw.choice(workers)
         with suppress(ProcessLookupError):
             os.kill(victim, signal.SIGKILL)
         at_work = program.poll() is None
@@ -131,6 +132,14 @@ def _forget(file: Path) -> None:
 
     for old in file.parent.glob("study.sqlite*"):
         shutil.rmtree(old) if old.is_dir() else old.unlink()
+
+
+def _keeps_semaphores(pid: int) -> bool:
+    """Whether a process is Python's own for semaphores: it holds no work, and complains itself where it was killed."""
+    try:
+        return b"resource_tracker" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return False
 
 
 def _runs(pid: int) -> bool:
