@@ -37,6 +37,7 @@ from .canonical.parametric_generating_function import (
 )
 from .canonical.transformation import CanonicalTransformation as CanonicalTransformation
 from .canonical.transformation import point_transformation as point_transformation
+from .canonical.transformed_hamiltonian import transformed_hamiltonian as transformed_hamiltonian
 from .hamilton.bracket import lagrange_bracket as lagrange_bracket
 from .hamilton.bracket import lagrange_matrix as lagrange_matrix
 from .hamilton.bracket import lie_bracket as lie_bracket

@@ -1,0 +1,148 @@
+"""Inverses of maps of polar type, proved both ways, and K in the new variables; wrong twins beside them."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from sympy import atan, atan2, cos, pi, sin, sqrt
+
+from canon.expression.symbols.symbol import time as t
+from canon.mechanics import (
+    CanonicalTransformation,
+    NoClosedInverseError,
+    inverse_transformation,
+    new_hamiltonian,
+    transformed_hamiltonian,
+)
+from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian
+from canon.mechanics.canonical.polar_inverse import plain_arcs, plain_sign, united_squares
+from canon.proof.domain.domain import Domain
+from canon.proof.vanish import vanishes
+
+q, p, Q, P, Q2, P2 = sp.symbols("q p Q P Q2 P2", real=True)
+phi, psi = sp.symbols("phi psi", real=True)
+I, J, m, w = sp.symbols("I J m omega", positive=True)
+ACTION = (p**2 + m**2 * w**2 * q**2) / (2 * m * w)
+ENERGY = p**2 / (2 * m) + m * w**2 * q**2 / 2
+SINE, COSINE = sqrt(2 * P / (m * w)) * sin(Q), sqrt(2 * P * m * w) * cos(Q)
+RIGHT, LEFT = Domain((p > 0,)), Domain((p < 0,))
+
+
+@pytest.mark.parametrize(
+    ("angle", "domain", "sign"),
+    [
+        (atan(m * w * q / p), RIGHT, 1),
+        (atan(m * w * q / p), LEFT, -1),
+        (atan2(m * w * q, p), None, 1),
+        (atan2(m * w * q, p), LEFT, 1),
+    ],
+)
+def test_the_oscillators_angle_and_action_are_solved_for_q_and_p(angle, domain, sign):
+    back = inverse_transformation(CanonicalTransformation(q, p, angle, ACTION, domain), [Q], [P])
+    positive = Domain((P > 0,))
+    assert vanishes(back.new_q[0] - sign * SINE, positive).holds
+    assert vanishes(back.new_p[0] - sign * COSINE, positive).holds
+    assert vanishes(back.new_p[0] + sign * COSINE, positive).fails
+    assert back.is_canonical().holds
+
+
+def test_the_domain_of_the_inverse_is_the_image():
+    """An angle beyond the range of the arc is no image; the inverse would not come back to it."""
+    back = inverse_transformation(CanonicalTransformation(q, p, atan(m * w * q / p), ACTION, RIGHT), [Q], [P])
+    assert {"Q > -pi/2", "Q < pi/2", "P > 0"} <= {str(c) for c in back.domain.conditions}
+    there = back.then(CanonicalTransformation(q, p, atan(m * w * q / p), ACTION))
+    assert vanishes(there.new_q[0] - Q, back.domain).holds
+    assert vanishes(there.new_q[0] - Q, Domain((P > 0,))).fails
+
+
+def test_no_inverse_where_opposite_points_have_the_same_image():
+    with pytest.raises(NoClosedInverseError, match=r"opposite point have the same image .atan2 tells"):
+        inverse_transformation(CanonicalTransformation(q, p, atan(m * w * q / p), ACTION), [Q], [P])
+
+
+TURNS = [(-pi, pi, 0), (pi, 3 * pi, 1), (-3 * pi, -pi, -1)]
+
+
+@pytest.mark.parametrize(("low", "high", "turns"), TURNS)
+def test_angles_under_sines_and_cosines_are_arcs_on_the_turn_of_the_domain(low, high, turns):
+    domain = Domain((phi > low, phi < high))
+    T = CanonicalTransformation(
+        phi, I, sqrt(2 * I / (m * w)) * sin(phi), sqrt(2 * I * m * w) * cos(phi), domain
+    )
+    back = inverse_transformation(T, [Q], [P])
+    assert back.new_q[0] == atan2(Q * m * w, P) + 2 * pi * turns
+    assert vanishes(back.new_p[0] - (P**2 + m**2 * w**2 * Q**2) / (2 * m * w)).holds
+    assert back.is_canonical().holds
+
+
+@pytest.mark.parametrize("conditions", [(), (phi > 0, phi < 2 * pi), (phi > -pi, phi < 3 * pi)])
+def test_no_arc_where_the_angle_crosses_its_cut_or_makes_more_than_a_turn(conditions):
+    T = CanonicalTransformation(phi, I, sqrt(2 * I) * sin(phi), sqrt(2 * I) * cos(phi), Domain(conditions))
+    words = "one turn: -pi < phi < pi" if not conditions else "narrow the domain"
+    with pytest.raises(NoClosedInverseError, match=words):
+        inverse_transformation(T, [Q], [P])
+
+
+@pytest.mark.parametrize(("a", "b", "power"), [(1, 1, 1), (2, 3, 1), (5, 1, sp.Rational(1, 2))])
+def test_other_radii_than_the_oscillators(a, b, power):
+    """Q = atan2(b q, a p) with the ellipse's radius or its square: the old variables come back."""
+    radius = (q**2 / a**2 + p**2 / b**2) ** power
+    T = CanonicalTransformation(q, p, atan2(b * q, a * p), radius)
+    R = sp.Symbol(
+        "R", positive=True
+    )  # the root is positive: with P that may be negative there is no such image
+    back = inverse_transformation(T, [Q], [R])
+    rng = np.random.default_rng(3)
+    there, home = sp.lambdify((q, p), T.images), sp.lambdify((Q, R), back.images)
+    for point in rng.normal(size=(10, 2)):
+        assert np.allclose(home(*there(*point)), point, rtol=1e-12, atol=1e-14)
+
+
+def test_two_degrees_of_freedom():
+    """Both angles at once, and one beside a plain degree of freedom."""
+    one_turn = Domain((phi > -pi, phi < pi))
+    x = (sqrt(2 * I) * sin(phi), psi + J)
+    y = (sqrt(2 * I) * cos(phi), J)
+    back = inverse_transformation(
+        CanonicalTransformation((phi, psi), (I, J), x, y, one_turn), [Q, Q2], [P, P2]
+    )
+    assert back.new_q == (atan2(Q, P), Q2 - P2)
+    arcs = CanonicalTransformation(
+        (q, psi), (p, J), (atan2(q, p), psi), ((q**2 + p**2) / 2, J), Domain((J > 0,))
+    )
+    back = inverse_transformation(arcs, [Q, Q2], [P, P2])
+    assert vanishes(back.new_q[0] - sqrt(2 * P) * sin(Q), Domain((P > 0,))).holds
+    assert back.new_q[1] == Q2
+
+
+@pytest.mark.parametrize("angle", [atan(m * w * q / p), atan2(m * w * q, p)])
+def test_k_of_the_oscillator_is_omega_p(angle):
+    """H. Goldstein, Classical Mechanics, 3rd ed., eq. (9.44); with atan no inverse exists, and K does."""
+    T = CanonicalTransformation(q, p, angle, ACTION)
+    K = transformed_hamiltonian(T, ENERGY, [Q], [P])
+    assert (K.H, K.q, K.p) == (w * P, (Q,), (P,))
+    assert is_new_hamiltonian(T, ENERGY, w * P, [Q, P]).holds
+    assert is_new_hamiltonian(T, ENERGY, 2 * w * P, [Q, P]).fails
+    assert vanishes(new_hamiltonian(T, ENERGY) - w * ACTION).holds
+
+
+def test_k_of_moving_maps_and_of_the_way_back():
+    turning = CanonicalTransformation(q, p, atan2(m * w * q, p) - w * t, ACTION)
+    assert transformed_hamiltonian(turning, ENERGY, [Q], [P]).H == 0
+    home = CanonicalTransformation(phi, I, sqrt(2 * I / (m * w)) * sin(phi), sqrt(2 * I * m * w) * cos(phi))
+    assert sp.expand(transformed_hamiltonian(home, w * I, [Q], [P]).H - ENERGY.subs({q: Q, p: P})) == 0
+
+
+def test_no_k_of_a_map_that_is_not_canonical():
+    with pytest.raises(NoClosedInverseError, match="could not be proved; is_canonical"):
+        transformed_hamiltonian(CanonicalTransformation(q, p, atan2(q, p), q**2 + p**2), ENERGY, [Q], [P])
+    with pytest.raises(ValueError, match="none of them an old variable"):
+        transformed_hamiltonian(CanonicalTransformation(q, p, p, -q), ENERGY, [q], [P])
+
+
+def test_only_factors_that_keep_the_direction_leave_an_arc():
+    assert plain_arcs(atan2(m * q, m * p)) == atan2(q, p)
+    assert plain_arcs(atan2(-q, -p)) == atan2(-q, -p)
+    assert plain_arcs(atan2(q * p, p)) == atan2(q * p, p)
+    assert plain_sign(sqrt(P) * cos(Q) > 0) == (cos(Q) > 0)
+    assert plain_sign(P * cos(Q) > 0) == (P * cos(Q) > 0)
+    assert united_squares(3 * sin(Q) ** 2 + 2 * cos(Q) ** 2) == cos(Q) ** 2 * -1 + 3
