@@ -318,7 +318,7 @@ def _powers(f: Expr) -> dict[Expr, Expr]:
             base, exponent = factor, sp.S.One
         numbers: Any = sp.factorrat(base) if base.is_Rational and base.is_positive else {base: 1}
         for part, power in numbers.items():
-            key = cast("Expr", sp.sympify(part))
+            key = cast("Expr", sp.sympify(part, strict=True))
             powers[key] = powers.get(key, sp.S.Zero) + exponent * power
     return powers
 

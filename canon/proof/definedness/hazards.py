@@ -11,9 +11,10 @@ from sympy.core.function import AppliedUndef
 from canon.proof.analytic import ENTIRE
 from canon.proof.trees.replacement import LAZY
 from canon.proof.trees.sympy_types import arguments
+from canon.proof.trees.worked_out import known
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from sympy import Expr
 
@@ -56,14 +57,14 @@ def hazards(parts: Iterable[sp.Basic]) -> list[Hazard]:
     ['its denominator x + y is zero', 'it takes the logarithm of x, which is zero']
     """
     found = (risk for part in parts for risk in _of(part))
-    return [risk for risk in found if known(lambda of=risk.argument: of.is_zero) is not False]
+    return [risk for risk in found if known("is_zero", risk.argument) is not False]
 
 
 def _of(part: sp.Basic) -> Iterator[Hazard]:
     if isinstance(part, sp.Pow):
         base, exponent = arguments(part)
-        harmless = known(lambda: exponent.is_nonnegative)
-        if known(lambda: exponent.is_negative) or (not harmless and exponent.could_extract_minus_sign()):
+        harmless = known("is_nonnegative", exponent)
+        if known("is_negative", exponent) or (not harmless and exponent.could_extract_minus_sign()):
             yield Hazard(part, base, _BELOW)
         return
     if not isinstance(part, sp.Function) or isinstance(part, AppliedUndef):
@@ -93,14 +94,6 @@ def _of(part: sp.Basic) -> Iterator[Hazard]:
             yield Hazard(part, args[0], "it takes a branch of LambertW of {}, which is zero")
         case _:
             return
-
-
-def known(fact: Callable[[], bool | None]) -> bool | None:
-    """Return what SymPy tells of a number; None also where the number is too large for it."""
-    try:
-        return fact()
-    except OverflowError:
-        return None
 
 
 def unconditional(expr: sp.Basic) -> set[sp.Basic]:
@@ -152,9 +145,9 @@ def _branches(part: sp.Basic) -> bool:
         return bool(part.is_integer)
     if isinstance(part, sp.Pow):
         base, exponent = arguments(part)
-        return not known(lambda: exponent.is_integer or base.is_positive)
+        return not (known("is_integer", exponent) or known("is_positive", base))
     if isinstance(part, sp.log):
-        return not known(lambda: arguments(part)[0].is_positive)
+        return not known("is_positive", arguments(part)[0])
     return isinstance(part, sp.Function) and not isinstance(part, (*ENTIRE, AppliedUndef))
 
 
