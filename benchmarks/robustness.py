@@ -46,7 +46,7 @@ SORTS: dict[str, tuple[Attack, int, int]] = {
     "kept": (flipped_kept_bits, 400, 100),
     "stores": (hostile_stores, 300, 100),
     "studies": (hostile_studies, 2000, 200),
-    "claims": (hostile_claims, 20_000, 1000),
+    "claims": (hostile_claims, 21_000, 1000),
     "kills": (kills, 200, 20),
     "streams": (streams, 310, 31),
     "requests": (hostile_requests, 1000, 500),
