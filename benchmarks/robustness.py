@@ -5,7 +5,7 @@ python benchmarks/robustness.py bits               # one sort, as many
 python benchmarks/robustness.py bits 100           # one sort, so many of it; nothing is recorded
 
 Attacks go in pieces, each with a seed of its own. A piece that has ended is recorded in
-benchmarks/results/robustness.json for the commit it was done on: after an interrupt the same command goes on with
+benchmarks/results/robustness.json for the commit of what it attacks: after an interrupt the same command goes on with
 the next piece. What was recorded on another commit is done anew. Prints the table of docs/measured.md, and ends
 with status 1 where an attack gave a traceback, other numbers, a false line or verdict, or left a process.
 """
@@ -53,6 +53,8 @@ SORTS: dict[str, tuple[Attack, int, int]] = {
     "serve": (served_load, 10_000, 10_000),
 }
 """Each sort with its attack, how many there are, and how many of them are a piece."""
+OF_THE_SERVICE = ("requests", "serve")
+"""Sorts that ask `canon serve`; the others do not touch it."""
 
 
 def main(arguments: list[str]) -> int:
@@ -92,20 +94,21 @@ def _in_pieces(sort: str) -> Count:
 def _recorded(sort: str) -> dict[str, dict[str, Any]]:
     written = json.loads(RECORD.read_text("utf-8")) if RECORD.exists() else {}
     found = written.get(sort, {})
-    return found["pieces"] if found.get("commit") == _commit() else {}
+    return found["pieces"] if found.get("commit") == _commit(sort) else {}
 
 
 def _record(sort: str, pieces: dict[str, dict[str, Any]]) -> None:
     written = json.loads(RECORD.read_text("utf-8")) if RECORD.exists() else {}
-    written[sort] = {"commit": _commit(), "pieces": pieces}
+    written[sort] = {"commit": _commit(sort), "pieces": pieces}
     beside = RECORD.with_suffix(".new")
     beside.write_text(json.dumps(written, indent=1, ensure_ascii=True) + "\n", "utf-8")
     beside.replace(RECORD)
 
 
-def _commit() -> str:
-    """Return the commit of the last change of canon or of the attacks."""
-    asked = ["git", "log", "-1", "--format=%h", "--", "canon", "benchmarks/attacks"]
+def _commit(sort: str) -> str:
+    """Return the commit of the last change of the attacks or of what they meet in canon."""
+    passed_over = [] if sort in OF_THE_SERVICE else [":!canon/serve"]
+    asked = ["git", "log", "-1", "--format=%h", "--", "canon", "benchmarks/attacks", *passed_over]
     return subprocess.run(asked, capture_output=True, text=True, cwd=HERE.parent, check=False).stdout.strip()
 
 

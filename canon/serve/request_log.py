@@ -9,6 +9,8 @@ import time
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
+from h11 import LocalProtocolError
+
 if TYPE_CHECKING:
     from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -70,7 +72,12 @@ class RequestLog:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-            await send(message)
+            try:
+                await send(message)
+            except (
+                LocalProtocolError
+            ):  # what followed the head was no HTTP, and the server has said so and hung up
+                status = 400
 
         try:
             await self._app(scope, receive, watched)

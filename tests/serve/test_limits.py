@@ -6,6 +6,7 @@ import asyncio
 import logging
 import socket
 import threading
+from contextlib import contextmanager
 from types import SimpleNamespace
 
 import pytest
@@ -217,7 +218,9 @@ def test_a_long_sheet_does_not_keep_others_waiting_for_its_end(served):
         assert [claim.id for claim in pool_of(client).asked].index("short") <= 2
 
 
-def test_a_client_that_goes_in_the_middle_of_its_request_is_no_fault(served):
+@contextmanager
+def logged():
+    """Give the lines that the service and its server log: the status of each, and the exception."""
     lines = []
 
     class Kept(logging.Handler):
@@ -229,18 +232,41 @@ def test_a_client_that_goes_in_the_middle_of_its_request_is_no_fault(served):
     for logger in loggers:
         logger.addHandler(kept)
         logger.setLevel(logging.INFO)
-    with served() as client, socket.create_connection(("127.0.0.1", client.port), 30) as going:
-        head = b"POST /check HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
-        going.sendall(head + b"Content-Length: 50\r\n\r\n[")
-        while not http_connections(client):
-            pass
-        going.close()
-        while (499, None) not in lines:
-            pass
-    for logger, level in zip(loggers, levels, strict=True):
-        logger.removeHandler(kept)
-        logger.setLevel(level)
-    assert not [error for _, error in lines if error]
+    try:
+        yield lines
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.removeHandler(kept)
+            logger.setLevel(level)
+
+
+def test_a_client_that_goes_in_the_middle_of_its_request_is_no_fault(served):
+    with logged() as lines:
+        with served() as client, socket.create_connection(("127.0.0.1", client.port), 30) as going:
+            head = b"POST /check HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+            going.sendall(head + b"Content-Length: 50\r\n\r\n[")
+            while not http_connections(client):
+                pass
+            going.close()
+            while (499, None) not in lines:
+                pass
+        assert not [error for _, error in lines if error]
+
+
+@pytest.mark.parametrize("host", [b"localhost", b"elsewhere.example"])
+def test_a_body_that_is_no_http_behind_a_good_head_is_no_fault(served, host):
+    """The server answers 400 by itself and hangs up, perhaps before the service has said what it thinks of the head."""
+    with logged() as lines:
+        with served() as client, socket.create_connection(("127.0.0.1", client.port), 30) as broken:
+            broken.sendall(
+                b"POST /check HTTP/1.1\r\nHost: "
+                + host
+                + b"\r\nTransfer-Encoding: chunked\r\n\r\nno chunk\r\n"
+            )
+            assert broken.recv(1000).startswith(b"HTTP/1.1 400 ")
+            while not any(status for status, _ in lines):
+                pass
+        assert not [error for _, error in lines if error]
 
 
 @pytest.mark.parametrize("said", [b"", b"POST /check HTTP/1.1\r\nHost: local"])
