@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
+from canon.expression.symbols.magnitude import has_huge_number
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def known(fact: str, f: Expr) -> bool | None:
     (True, None)
     """
     try:
-        plain = worked_out(f)
+        plain = f if has_huge_number(f) else worked_out(f)
         return None if plain.has(sp.nan, sp.zoo, sp.oo, -sp.oo) else getattr(plain, fact)
     except OverflowError:
         return None
