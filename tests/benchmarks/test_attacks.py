@@ -99,7 +99,7 @@ def test_what_was_interrupted_goes_on_with_the_next_piece(tmp_path, monkeypatch,
 
     monkeypatch.setattr(robustness, "RECORD", tmp_path / "robustness.json")
     monkeypatch.setattr(robustness, "SORTS", {"some": (attack, 40, 10)})
-    monkeypatch.setattr(robustness, "_commit", lambda: commit[0])
+    monkeypatch.setattr(robustness, "_commit", lambda sort: commit[0])
     with pytest.raises(KeyboardInterrupt):
         robustness.main(["some"])
     assert robustness.main(["some"]) == 1  # a traceback was among them
