@@ -83,6 +83,7 @@ def test_what_sympy_prints_is_read_back_of_thousands(expression):
     [
         (V(X - L).diff(X), V(X + L).diff(X)),
         (2 * sp.E * X, 3 * sp.E * X),
+        (V(X * M).diff(X) + sp.E, V(X * M).diff(X) - sp.E),
         (sp.atan2(Y, X), sp.atan2(X, Y)),
         (piecewise((X, Y)), piecewise((Y, X))),
         (

@@ -15,7 +15,7 @@ from canon.exercise.judges.constrained import bound_by, is_one_of
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
-from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.deadline import SIDE_SECONDS, Deadline
 from canon.exercise.question.implicit_point import refuted_at_a_point
 from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
 from canon.expression.symbols.symbol import velocity
@@ -93,7 +93,7 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
     for motion in _motions(reading, (contact, *others), multipliers, (leaves,)):
         force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
         claimed = motion.along(leaves)
-        if claimed == 0 or vanishes_off_kinks(claimed, motion.branch.domain, budget=1.0).holds:
+        if claimed == 0 or vanishes_off_kinks(claimed, motion.branch.domain, budget=SIDE_SECONDS).holds:
             yield fails(TELLING, "this says nothing about the motion: it holds all along the contact")
             return
         if claimed.is_nonzero or proved_sign(claimed, motion.branch.domain) in ("+", "-"):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.exercise.question.question import Chain, Part, fails
 from canon.exercise.sheet.kind import Shape
 from canon.expression.symbols.symbol import Coordinate, Rate, velocity
@@ -171,5 +172,5 @@ def _moved(directions: Sequence[tuple[Expr, ...]], domain: Domain) -> set[int]:
         i
         for direction in directions
         for i, component in enumerate(direction)
-        if component != 0 and vanishes(component, domain, budget=1.0).fails
+        if component != 0 and vanishes(component, domain, budget=SIDE_SECONDS).fails
     }

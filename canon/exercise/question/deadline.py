@@ -15,12 +15,14 @@ from typing import TypeVar
 
 from canon.proof.worker.budget import seconds_in_worker
 
-__all__ = ["NEAR", "PATIENCE", "PROOF_SECONDS", "BudgetSpent", "Deadline", "Worked", "unless_spent"]
+__all__ = ["NEAR", "PATIENCE", "PROOF_SECONDS", "SIDE_SECONDS", "BudgetSpent", "Deadline", "Worked", "unless_spent"]
 
 T = TypeVar("T")
 PROOF_SECONDS = 20.0
 """Last safety of one proof or judgement, in seconds of the processor: most take some hundredths, and a process for
 proofs, which may have to be started, a second or two."""
+SIDE_SECONDS = 5.0
+"""Last safety of a question beside a judgement, such as whether an answer says nothing: many times what it takes."""
 NEAR = 0.9
 """Share of its seconds after which a proof is taken to have been ended by them."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.exercise.question.equation_systems import same_equations
 from canon.expression.symbols.symbol import Momentum
 from canon.frozen_mapping import FrozenMapping
@@ -320,7 +321,7 @@ def _all_vanish(question: Same, deadline: Deadline) -> Verdict:
         return verdict
     if verdict.fails and turned.right != 0:  # ask again for the values of both sides
         seen, right = (off.seen(side) for side in (turned.seen(turned.claimed), turned.right))
-        both = equal(seen, right, off.strictly, budget=1.0)
+        both = equal(seen, right, off.strictly, budget=SIDE_SECONDS)
         verdict = replace(verdict, counterexample=both.counterexample or verdict.counterexample)
     if verdict.fails and said is not None:
         verdict = replace(verdict, feedback=said(turned))

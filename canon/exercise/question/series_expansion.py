@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.verdict import Undecided
@@ -65,7 +66,7 @@ def _analytic(part: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> bool:
         return proved_sign(u, domain) == "+"
 
     def nonzero(u: Expr) -> bool:
-        return vanishes_off_kinks(u, domain, budget=0.5).fails
+        return vanishes_off_kinks(u, domain, budget=SIDE_SECONDS).fails
 
     if isinstance(part, sp.Pow):
         base = substitute(part.base, place)

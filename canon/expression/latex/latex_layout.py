@@ -104,9 +104,9 @@ def without_layout(text: str) -> str:
 
 
 def _primed(printed: re.Match[str]) -> str:
-    """Return the derivative at a place with primes, as long as it was."""
+    """Return the derivative at a place with primes, printed as SymPy prints calls, and as long as it was."""
     primes = "'" * int(printed[1] or 1)
-    return f"{printed['f']}{primes}({printed['place']})".ljust(len(printed.group()))
+    return rf"{printed['f']}{primes}\left({printed['place']}\right)".ljust(len(printed.group()))
 
 
 def _unboxed(text: str) -> str:
