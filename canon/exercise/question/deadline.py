@@ -15,7 +15,16 @@ from typing import TypeVar
 
 from canon.proof.worker.budget import seconds_in_worker
 
-__all__ = ["NEAR", "PATIENCE", "PROOF_SECONDS", "SIDE_SECONDS", "BudgetSpent", "Deadline", "Worked", "unless_spent"]
+__all__ = [
+    "NEAR",
+    "PATIENCE",
+    "PROOF_SECONDS",
+    "SIDE_SECONDS",
+    "BudgetSpent",
+    "Deadline",
+    "Worked",
+    "unless_spent",
+]
 
 T = TypeVar("T")
 PROOF_SECONDS = 20.0
