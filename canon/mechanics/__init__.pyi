@@ -76,6 +76,12 @@ from .integrable.complete_integral import CompleteIntegral as CompleteIntegral
 from .integrable.complete_integral import hamilton_jacobi as hamilton_jacobi
 from .integrable.cycles import Cycle as Cycle
 from .integrable.cycles import CycleKind as CycleKind
+from .integrable.kepler_maps import delaunay_from_poincare as delaunay_from_poincare
+from .integrable.kepler_maps import poincare_from_delaunay as poincare_from_delaunay
+from .integrable.kepler_variables import KeplerVariables as KeplerVariables
+from .integrable.kepler_variables import delaunay_generating_function as delaunay_generating_function
+from .integrable.kepler_variables import delaunay_variables as delaunay_variables
+from .integrable.kepler_variables import poincare_variables as poincare_variables
 from .integrable.separability import is_separable as is_separable
 from .integrable.separability import levi_civita_condition as levi_civita_condition
 from .integrable.separated_momenta import NotSeparatedError as NotSeparatedError

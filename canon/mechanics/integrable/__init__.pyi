@@ -10,6 +10,12 @@ from .complete_integral import CompleteIntegral as CompleteIntegral
 from .complete_integral import hamilton_jacobi as hamilton_jacobi
 from .cycles import Cycle as Cycle
 from .cycles import CycleKind as CycleKind
+from .kepler_maps import delaunay_from_poincare as delaunay_from_poincare
+from .kepler_maps import poincare_from_delaunay as poincare_from_delaunay
+from .kepler_variables import KeplerVariables as KeplerVariables
+from .kepler_variables import delaunay_generating_function as delaunay_generating_function
+from .kepler_variables import delaunay_variables as delaunay_variables
+from .kepler_variables import poincare_variables as poincare_variables
 from .separability import is_separable as is_separable
 from .separability import levi_civita_condition as levi_civita_condition
 from .separated_momenta import NotSeparatedError as NotSeparatedError
