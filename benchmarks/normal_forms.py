@@ -1,9 +1,10 @@
 """Normal forms: canon's exact arithmetic on FLINT beside the same algorithm with SymPy's polynomials, in one run.
 
-    python benchmarks/normal_forms.py            # orders 8, 16, 24; SymPy to 8
-    python benchmarks/normal_forms.py --large    # and order 32
+    python benchmarks/normal_forms.py            # orders 8, 16, 24; SymPy to 8; L1 to degree 12
+    python benchmarks/normal_forms.py --large    # and order 32; L1 to degree 16
 
-The Hénon–Heiles system, exactly over ℚ. Seconds are of the processor; ratios within one run are what can be compared.
+The Hénon–Heiles system, exactly over ℚ; the centre manifold of L1 in balls.
+Seconds are of the processor; ratios within one run are what can be compared.
 """
 
 from __future__ import annotations
@@ -17,10 +18,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from canon import Hamiltonian, birkhoff_normal_form
+from canon import Hamiltonian, birkhoff_normal_form, centre_manifold
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from canon.mechanics import CentreManifold
 
 x, y, px, py = sp.symbols("x y p_x p_y", real=True)
 HENON_HEILES = Hamiltonian((px**2 + py**2 + x**2 + y**2) / 2 + x**2 * y - y**3 / 3, [x, y], [px, py])
@@ -69,6 +72,15 @@ def transformed(parts: dict[int, sp.Poly], chi: sp.Poly, degree: int, order: int
     return {d: f for d, f in found.items() if not f.is_zero}
 
 
+def at_l1(order: int) -> CentreManifold:
+    """The centre manifold of the point between Earth and Moon, every coefficient to 15 certain digits."""
+    z, pz, mu = sp.symbols("z p_z mu", real=True)
+    to_earth, to_moon = (sp.sqrt((x + s) ** 2 + y**2 + z**2) for s in (mu, mu - 1))
+    kinetic = (px**2 + py**2 + pz**2) / 2 + y * px - x * py
+    H = Hamiltonian(kinetic - (1 - mu) / to_earth - mu / to_moon, [x, y, z], [px, py, pz])
+    return centre_manifold(H, order, at={x: 0.83, py: 0.83}, parameters={mu: sp.Rational("0.0121505856")})
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -85,6 +97,13 @@ def main() -> None:
             continue
         theirs = seconds(lambda order=order: by_sympy(order), 1)
         print(f"| {order} | {ours:.3f} | {theirs:.2f} | {theirs / ours:.0f} |")
+    print(
+        "\n| centre manifold of L1, Earth and Moon, degree | canon, s | largest error of a coefficient |\n|---|---|---|"
+    )
+    for order in (6, 10, 12, *([16] if chosen.large else [])):
+        started = time.process_time()
+        found = at_l1(order)
+        print(f"| {order} | {time.process_time() - started:.2f} | {found.error:.0e} |")
 
 
 if __name__ == "__main__":
