@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from canon import Hamiltonian, birkhoff_normal_form, centre_manifold
+from canon import Hamiltonian, birkhoff_normal_form
+from canon.mechanics import centre_manifold
 
 if TYPE_CHECKING:
     from collections.abc import Callable

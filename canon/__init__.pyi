@@ -47,7 +47,6 @@ from .mechanics.lagrange.force import lagrangian_of_bodies as lagrangian_of_bodi
 from .mechanics.lagrange.lagrangian import Lagrangian as Lagrangian
 from .mechanics.lagrange.sympy_bridge import from_sympy_mechanics as from_sympy_mechanics
 from .mechanics.perturbation.birkhoff import birkhoff_normal_form as birkhoff_normal_form
-from .mechanics.perturbation.centre_manifold import centre_manifold as centre_manifold
 from .mechanics.reduction.routh import routhian as routhian
 from .proof.domain.domain import Domain as Domain
 from .proof.domain.verdict import Verdict as Verdict

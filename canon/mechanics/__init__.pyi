@@ -132,8 +132,8 @@ from .perturbation.averaging import average as average
 from .perturbation.birkhoff import NormalForm as NormalForm
 from .perturbation.birkhoff import NormalFormError as NormalFormError
 from .perturbation.birkhoff import birkhoff_normal_form as birkhoff_normal_form
-from .perturbation.centre_manifold import CentreManifold as CentreManifold
-from .perturbation.centre_manifold import centre_manifold as centre_manifold
+from .perturbation.centre_reduction import CentreManifold as CentreManifold
+from .perturbation.centre_reduction import centre_manifold as centre_manifold
 from .perturbation.coefficient_field import NoExactFieldError as NoExactFieldError
 from .perturbation.fourier_series import NoFourierSeriesError as NoFourierSeriesError
 from .perturbation.generator_forms import deprit_generator as deprit_generator

@@ -5,8 +5,8 @@ from .averaging import average as average
 from .birkhoff import NormalForm as NormalForm
 from .birkhoff import NormalFormError as NormalFormError
 from .birkhoff import birkhoff_normal_form as birkhoff_normal_form
-from .centre_manifold import CentreManifold as CentreManifold
-from .centre_manifold import centre_manifold as centre_manifold
+from .centre_reduction import CentreManifold as CentreManifold
+from .centre_reduction import centre_manifold as centre_manifold
 from .gustavson import FormalIntegral as FormalIntegral
 from .gustavson import formal_integral as formal_integral
 from .near_identity import NearIdentityMap as NearIdentityMap

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon import Hamiltonian, birkhoff_normal_form
-from canon.mechanics.perturbation.centre_manifold import centre_manifold
+from canon.mechanics.perturbation.centre_reduction import centre_manifold
 from canon.mechanics.perturbation.enclosed.enclosed_polynomial import FixedPointRing, PrecisionError
 from canon.mechanics.perturbation.enclosed.enclosed_series import enclosed_parts
 from canon.mechanics.perturbation.quadratic_form import NoDiagonalFormError
