@@ -48,6 +48,42 @@ def test_a_generator_with_an_angle_in_it_removes_the_mean_and_does_not_hold(angl
     assert not examine(claim).verdict.holds
 
 
+@pytest.mark.parametrize(
+    "angle", ["acos(p/sqrt(p**2 + q**2))", "asin(q/sqrt(p**2 + q**2))", "atan(Abs(q/p))"]
+)
+def test_a_generator_with_an_angle_that_goes_to_and_fro_removes_the_mean_on_one_way_and_does_not_hold(angle):
+    claim = Claim("a", "generating-first-order", {**QUARTIC, "W": f"{RIGHT} + 3*(p**2 + q**2)**2*{angle}/8"})
+    assert not examine(claim).verdict.holds
+
+
+@pytest.mark.parametrize("zigzag", ["asin(sin(u))", "v*acos(cos(u))", "Abs(sin(u))"])
+def test_a_generator_whose_new_hamiltonian_jumps_does_not_hold(zigzag):
+    rotor = {
+        "q": ["u"],
+        "p": ["v"],
+        "H": "v**2/2 + eps*cos(u)",
+        "parameters": {"eps": "real"},
+        "small": ["eps"],
+    }
+    right = Claim("a", "generating-first-order", {**rotor, "W": "sin(u)/v"})
+    assert examine(right).verdict.holds
+    assert not examine(Claim("a", right.kind, {**rotor, "W": f"sin(u)/v + {zigzag}"})).verdict.holds
+
+
+@pytest.mark.parametrize(
+    ("q", "p", "H"),
+    [
+        (["x", "y"], ["a", "b"], "a**2/2 + x*y"),
+        (["x", "y", "z"], ["a", "b", "c"], "a**2/2 + b**2/2 + x*z"),
+        (["x"], ["a"], "x**2"),
+    ],
+)
+def test_a_coordinate_whose_momentum_is_not_in_h_does_not_separate(q, p, H):
+    keys = {"q": q, "p": p, "H": H}
+    assert examine(Claim("a", "separable", {**keys, "is": ["separable"]})).verdict.fails
+    assert examine(Claim("a", "separable", {**keys, "is": ["not separable"]})).verdict.holds
+
+
 @pytest.mark.parametrize("free", ["(p**2 + q**2)**3", "7", "sin(p**2 + q**2)"])
 def test_what_commutes_with_the_unperturbed_hamiltonian_is_free(free):
     claim = Claim("a", "generating-first-order", {**QUARTIC, "W": f"{RIGHT} + {free}"})

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-from canon.proof.domain.verdict import Status, Verdict
+from canon.proof.domain.domain import as_domain
+from canon.proof.domain.verdict import Evidence, Status, Verdict
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -58,7 +60,8 @@ def is_separable(H: Hamiltonian, domain: Domain | None = None, budget: float = 1
     Returns
     -------
     Verdict
-        HOLDS where Levi-Civita's conditions do for each pair; FAILS names the pair that does not separate.
+        HOLDS where Levi-Civita's conditions do for each pair; FAILS names the pair that does not separate, or a
+        coordinate that stands in H without its momentum.
 
     Raises
     ------
@@ -78,9 +81,13 @@ def is_separable(H: Hamiltonian, domain: Domain | None = None, budget: float = 1
         raise ValueError(
             f"H depends on the time {H.t}; take it as a coordinate: H + p_t with {H.t} among the coordinates"
         )
+    question = f"the Hamilton–Jacobi equation separates in {', '.join(map(str, H.q))}"
+    for i in range(len(H.q)):
+        without_momentum = _without_momentum(H, i, as_domain(domain), budget / (4 * len(H.q)))
+        if without_momentum is not None:
+            return replace(without_momentum, question=question)
     pairs = list(combinations(range(len(H.q)), 2))
     words = {f"Levi-Civita's condition for the pair ({H.q[i]}, {H.q[j]})": (i, j) for i, j in pairs}
-    question = f"the Hamilton–Jacobi equation separates in {', '.join(map(str, H.q))}"
     verdict = all_vanish(
         ((name, levi_civita_condition(H, *pair)) for name, pair in words.items()), question, domain, budget
     )
@@ -91,3 +98,22 @@ def is_separable(H: Hamiltonian, domain: Domain | None = None, budget: float = 1
         return verdict
     first, second = (H.q[k] for k in words[condition])
     return replace(verdict, feedback=f"{first} and {second} do not separate: {condition} fails")
+
+
+def _without_momentum(H: Hamiltonian, i: int, domain: Domain, budget: float) -> Verdict | None:
+    """Tell of a coordinate that stands in H without its momentum; None where H holds both, or neither.
+
+    Levi-Civita's conditions say nothing then: ∂H/∂p_i = 0 is a factor of each of their terms or of both that hold
+    q_i. The other momenta would depend on q_i, which alone no p_j(q_j, α) does.
+    """
+    q, p, of_p, of_q = H.q[i], H.p[i], H.H.diff(H.p[i]), H.H.diff(H.q[i])
+    by_p = vanishes_off_kinks(of_p, domain, budget)
+    if by_p.fails:
+        return None
+    by_q = vanishes_off_kinks(of_q, domain, budget)
+    if by_q.holds and by_p.holds:
+        return None
+    if by_p.holds and by_q.fails:
+        return replace(by_q, feedback=f"{q} does not separate: H depends on {q}, and not on its momentum {p}")
+    why = f"whether H depends on {p if by_p.undecided else q} was not decided"
+    return Verdict(Status.UNDECIDED, "", evidence=(Evidence("open", why),), feedback=why)

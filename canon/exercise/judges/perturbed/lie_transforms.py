@@ -76,7 +76,8 @@ def generator_of_first_order(reading: Reading) -> Iterator[Question]:
     """{H₁ + {H₀, W}, H₀} = 0: the new Hamiltonian of first order is constant along the motion of H₀.
 
     For von Zeipel's F₂ = Σ q P + ε S it is the same with W = −S. The generator must be one function on phase space: of
-    period 2π in each angle, and continuous, or the mean of H₁ would be removed too.
+    period 2π in each angle, and continuous, or the mean of H₁ would be removed too. The new Hamiltonian of first order
+    must be continuous, or an angle that goes to and fro, such as asin(sin q), would remove the mean on one way.
     """
     q, p = reading.phase_space("q", "p")
     small, H, t = _small(reading), _autonomous(reading), reading.time
@@ -100,6 +101,7 @@ def generator_of_first_order(reading: Reading) -> Iterator[Question]:
     said = "the generator leaves terms of first order that change along the motion of the unperturbed system"
     yield Same(tuple(parts), reading.domain, None, lambda _: said)
     yield from _one_function(reading, generator, H, key)
+    yield is_continuous(first_order, (*q, *p), reading.domain, "the new Hamiltonian of first order", (H,))
 
 
 def _one_function(reading: Reading, f: Expr, H: Expr, key: str) -> Iterator[Question]:
