@@ -18,6 +18,7 @@ from canon.scene.scene import Condition, Integral, Parameter, Scene, SceneError,
 from canon.scene.systems import (
     bead,
     bodies,
+    celestial,
     charge,
     control,
     driven,
@@ -35,9 +36,11 @@ from canon.scene.systems import (
     piston,
     piston_joints,
     rotating,
+    swinging_atwood,
     top,
     triple,
     two_degree,
+    two_waves,
 )
 
 __all__ = [
@@ -53,8 +56,10 @@ SCENES: tuple[Scene, ...] = (
     *two_degree.SCENES,
     *lattice.SCENES,
     *triple.SCENES,
+    *swinging_atwood.SCENES,
     *top.SCENES,
     *rotating.SCENES,
+    *celestial.SCENES,
     *nonholonomic.SCENES,
     *orbit.SCENES,
     *first_kind.SCENES,
@@ -66,6 +71,7 @@ SCENES: tuple[Scene, ...] = (
     *motor.SCENES,
     *manipulator.SCENES,
     *driven.SCENES,
+    *two_waves.SCENES,
     *charge.SCENES,
 )
 """Every scene."""

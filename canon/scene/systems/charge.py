@@ -1,4 +1,4 @@
-"""A charged particle in given fields: crossed ones, a Penning trap, the dipole of the Earth."""
+"""A charged particle in given fields: crossed ones, a Penning trap, a Paul trap, the dipole of the Earth."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
 
-__all__ = ["SCENES"]
+__all__ = ["MATHIEU_LIMIT", "SCENES", "in_fields", "mathieu_exponent"]
 
 _CHARGE = Parameter("e", 1.602176634e-19, "C", "charge", sign="real")
 _ELECTRON = Parameter("m", 9.1093837e-31, "kg", "mass of the electron")
@@ -253,5 +253,104 @@ PENNING = Scene(
     picture_of=lambda s: Picture(masses=((s.x, s.y, s.z),)),
 )
 
-SCENES = (CROSSED, PENNING, STORMER)
+MATHIEU_LIMIT = 0.9080463
+"""Where the first region of stability of Mathieu's equation with a = 0 ends."""
+_FOURIER = 12
+
+
+def _mathieu(value: Mapping[str, float]) -> float:
+    """Return q = 2 e V/(m r₀² W²) of Mathieu's equation x'' + 2 q cos(2 τ) x = 0, τ = W t/2."""
+    return 2.0 * value["e"] * value["V"] / (value["m"] * value["d"] ** 2 * value["W"] ** 2)
+
+
+def _ratios(q: float, beta: float) -> list[float]:
+    """Return C₁/C₀, C₂/C₁, … of (2 n + β)² C_n = q (C_{n−1} + C_{n+1}), by its continued fraction."""
+    found = [0.0]
+    for n in range(_FOURIER, 0, -1):
+        found.insert(0, q / ((2.0 * n + beta) ** 2 - q * found[0]))
+    return found[:-1]
+
+
+def mathieu_exponent(q: float) -> float:
+    """Return β with x = Σ C_n cos((2 n + β) τ) for x'' + 2 q cos(2 τ) x = 0, in the first region of stability.
+
+    Examples
+    --------
+    >>> round(mathieu_exponent(0.4), 9), round(0.4 / math.sqrt(2.0), 9)
+    (0.292673259, 0.282842712)
+
+    Source: N. W. McLachlan, Theory and Application of Mathieu Functions (1947), section 5.10.
+    """
+    low, high = 0.0, 1.0
+    while (middle := (low + high) / 2.0) not in (low, high):
+        gap = middle**2 - q * (_ratios(q, middle)[0] + _ratios(q, -middle)[0])
+        low, high = (middle, high) if gap < 0.0 else (low, middle)
+    return middle
+
+
+_ASIDE = 10.0
+
+
+def _caught(value: Mapping[str, float], t: Array, sign: float) -> Array:
+    """Return the even solution of Mathieu's equation from rest at 10 µm."""
+    import numpy as np
+
+    q = sign * _mathieu(value)
+    beta = mathieu_exponent(q)
+    above, below = (np.cumprod(_ratios(q, each)) for each in (beta, -beta))
+    coefficients = np.concatenate([below[::-1], [1.0], above])
+    rates = 2.0 * np.arange(-_FOURIER, _FOURIER + 1) + beta
+    swings = np.cos(np.multiply.outer(value["W"] * t / 2.0, rates))
+    return np.asarray(_ASIDE * swings @ coefficients / coefficients.sum())
+
+
+PAUL = Scene(
+    name="paul-trap",
+    title="Paul trap: a calcium ion held in a plane by an electric quadrupole that oscillates; stable for q < 0.908",
+    coordinates="x y",
+    parameters=(
+        Parameter("m", 39.9620, "u", "mass of the ion, 40Ca+"),
+        Parameter("e", 9.648533212e7, "u um^2/(us^2 V)", "charge"),
+        Parameter("V", 100.0, "V", "amplitude of the voltage"),
+        Parameter("d", 500.0, "um", "distance of the electrodes from the axis"),
+        Parameter("W", 2.0 * math.pi * 12.0, "rad/us", "angular frequency of the voltage"),
+    ),
+    conditions=(
+        Condition(
+            "the ion is held where |q| = 2 e V/(m d² W²) is below 0.908",
+            lambda v: abs(_mathieu(v)) < MATHIEU_LIMIT,
+        ),
+    ),
+    starts=(Start("rest", "let go at rest, 10 µm aside", q=(_ASIDE, _ASIDE), v=(0.0, 0.0)),),
+    time_scale=lambda value: 2.0 * math.pi / value["W"],
+    time_unit="us",
+    source="W. Paul, Rev. Mod. Phys. 62, 531 (1990), doi:10.1103/RevModPhys.62.531",
+    L_of=lambda s: (
+        s.m * (s.x.dot**2 + s.y.dot**2) / 2 - s.e * s.V * cos(s.W * s.t) * (s.x**2 - s.y**2) / (2 * s.d**2)
+    ),
+    solutions=(
+        Solution(
+            "x: Mathieu's equation, by its Fourier series",
+            "rest",
+            lambda s: s.x,
+            lambda v, t: _caught(v, t, 1.0),
+            periods=50.0,
+            bound=1e-12,
+        ),
+        Solution(
+            "y: the same with −q",
+            "rest",
+            lambda s: s.y,
+            lambda v, t: _caught(v, t, -1.0),
+            periods=50.0,
+            bound=1e-12,
+        ),
+    ),
+    energy_bound=1e-10,
+    energy_why="the work goes to and fro with every oscillation, and is summed",
+    picture_of=lambda s: Picture(masses=((s.x, s.y),)),
+    shown=40.0,
+)
+
+SCENES = (CROSSED, PENNING, PAUL, STORMER)
 """The charged particles."""
