@@ -277,7 +277,7 @@ def mathieu_exponent(q: float) -> float:
     Examples
     --------
     >>> round(mathieu_exponent(0.4), 9), round(0.4 / math.sqrt(2.0), 9)
-    (0.292673259, 0.282842712)
+    (0.292566211, 0.282842712)
 
     Source: N. W. McLachlan, Theory and Application of Mathieu Functions (1947), section 5.10.
     """
