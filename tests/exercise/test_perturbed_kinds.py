@@ -108,6 +108,26 @@ def test_angles_are_free_up_to_their_origin_and_sense_but_grow_by_a_turn(theta, 
     assert examine(claim).verdict.holds == holds
 
 
+@pytest.mark.parametrize(
+    ("H", "J", "box"),
+    [
+        ("p**2/2 - cos(q)", "8/pi*(elliptic_e((1+E)/2) - (1-E)/2*elliptic_k((1+E)/2))",
+         {"p": [-1, 1], "q": [-0.5, 0.5]}),
+        ("p**2/2 - k/q + 1/(2*q**2)", "k/sqrt(-2*E) - 1", {"k": [0.5, 3], "q": [0.5, 3], "p": [-0.5, 0.5]}),
+    ],
+)  # fmt: skip
+def test_a_box_is_a_hint_and_an_action_that_is_right_in_it_only_does_not_hold(H, J, box):
+    keys = {"q": ["q"], "p": ["p"], "H": H, "J": [J], "parameters": {"k": "real", "E": "real"}}
+    assert not examine(Claim("a", "action-angle", {**keys, "box": box})).verdict.holds
+
+
+def test_bound_motions_of_either_attraction_have_the_action_of_its_amount():
+    H, parameters = "p**2/2 - k/q + 1/(2*q**2)", {"k": "nonzero", "E": "real"}
+    keys = {"q": ["q"], "p": ["p"], "H": H, "parameters": parameters, "J": ["Abs(k)/sqrt(-2*E) - 1"]}
+    claim = Claim("a", "action-angle", {**keys, "domain": ["p**2/2 - k/q + 1/(2*q**2) < 0"]})
+    assert examine(claim).verdict.holds
+
+
 def test_an_action_without_a_closed_form_is_refuted_by_quadrature():
     keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + q**4", "parameters": {"E": "positive"}}
     verdict = examine(Claim("a", "action-angle", {**keys, "J": ["E**(3/4)"]})).verdict

@@ -168,7 +168,10 @@ def _powers(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] 
         B, C = terms.get(q, sp.S.Zero), terms[q**2]
         return (A - B**2 / (4 * C)) / (2 * sqrt(-C)), "oscillator"
     if names == {1 / q, q**-2}:
-        return terms[1 / q] / (2 * sqrt(-A)) - sqrt(-terms[q**-2]), "Kepler"
+        pull = terms[1 / q]
+        # motions are bound where pull/q > 0
+        attraction = pull if q.is_positive else -pull if q.is_negative else sp.Abs(pull)
+        return attraction / (2 * sqrt(-A)) - sqrt(-terms[q**-2]), "Kepler"
     if names == {q**2, q**-2}:
         return A / (4 * sqrt(-terms[q**2])) - sqrt(-terms[q**-2]) / 2, "radial oscillator"
     return None

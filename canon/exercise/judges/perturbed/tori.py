@@ -51,6 +51,8 @@ __all__ = ["action_angle", "frequency", "slow_invariant"]
 DIGITS = 15
 TORI = 3
 """On how many tori of the domain the actions must be the same formulas."""
+COMPARED = 9
+"""On how many more tori, in the whole domain, kinds of motion and formulas are compared."""
 POINTS = 24
 """Points of the domain that are tried for these tori; through some of them no bounded motion goes."""
 BITS = 128
@@ -312,18 +314,22 @@ def _kept_tori(
         raise Undecided(f"actions are known where the Hamilton–Jacobi equation separates; {reason}") from None
     try:
         found = list(islice(_bounded(integral, there), TORI))
+        elsewhere = list(
+            islice(_bounded(integral, Domain(there.conditions)), COMPARED)
+        )  # a box is a hint only
     except NotHolomorphicError as reason:
         raise Undecided(f"no quadrature of this H is certified: {reason}") from None
     if len(found) < TORI:
         raise Undecided(
             f"bounded motions were found through {len(found)} of {POINTS} points of the domain only; narrow it"
         )
-    if len({tuple(cycle.kind for cycle in torus.cycles) for torus in found}) > 1:
+    compared = (*found, *elsewhere)
+    if len({tuple(cycle.kind for cycle in torus.cycles) for torus in compared}) > 1:
         raise Undecided(
             "the domain has motions of several kinds, librations and rotations; narrow it to those that are meant"
         )
     known = tuple(None if action is None else action.J for action in closed_actions(found[0]))
-    if any(not _lies_in(J, torus, i) for torus in found for i, J in enumerate(known) if J is not None):
+    if any(not _lies_in(J, torus, i) for torus in compared for i, J in enumerate(known) if J is not None):
         raise Undecided("the actions are other functions in parts of the domain; narrow it")
     back = {symbol: f for f, symbol in frozen.items()}
     return _Tori(integral, tuple(found), tuple(J if J is None else exchanged(J, back) for J in known), back)
