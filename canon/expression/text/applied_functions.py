@@ -66,6 +66,7 @@ def applied(reader: FactorParser, token: Token, chain: int = 1) -> Node | None:
     elif name == "sqrt" and reader.starts(following):
         node = reader.root(token)
     elif reader.starts(following):
+        _refuse_a_base(reader, token.text)
         node = Call(name, (_bare(reader, name, chain),), token.column)
         reader.bare_end, reader.bare_start = reader.at, (token, following)
     elif following.text in ("+", "-"):
@@ -171,6 +172,15 @@ def _bare(reader: FactorParser, name: str, chain: int) -> Node:
     return taken[0] if len(taken) == 1 else Product(tuple((False, node) for node in taken), first.column)
 
 
+def _refuse_a_base(reader: FactorParser, name: str) -> None:
+    """Refuse ``log10(x)`` and ``exp2(x)``, which name a base elsewhere."""
+    number, behind = reader.tokens[reader.at : reader.at + 2]
+    if name in ("log", "exp") and number.kind == "number" and number.tight and reader.starts(behind):
+        n = number.text
+        remedy = f"write {f'log(x)/log({n})' if name == 'log' else f'{n}**x'}, or {name}({n}*x)"
+        raise reader.fault(f"is {n} the base of {name}, or a factor?", remedy)
+
+
 def _applied_inside(reader: FactorParser, token: Token, name: str, chain: int) -> Node:
     """Return the argument of a function that is a function without brackets, ``sin cos x``."""
     if chain >= _MAX_CHAIN:
@@ -214,11 +224,8 @@ def _exponential(reader: FactorParser, token: Token) -> Node | None:
         reader.deeper(sign)
         inside = reader.exponent(sign)
         reader.depth -= 1
-        if (
-            reader.starts(reader.token)
-            and reader.token.tight
-            and reader.tokens[reader.at - 1].text not in (")", "}", "]")
-        ):
+        bracketed = reader.tokens[reader.at - 1].text in (")", "}", "]")
+        if reader.starts(reader.token) and reader.token.tight and not bracketed:
             raise reader.fault("does this still belong to the exponent?", "write brackets, e^(a*t)")
         return _raised_e(reader, token, inside)
     if token.text == "e":
