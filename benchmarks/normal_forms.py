@@ -2,6 +2,7 @@
 
     python benchmarks/normal_forms.py            # orders 8, 16, 24; SymPy to 8; L1 to degree 12
     python benchmarks/normal_forms.py --large    # and order 32; L1 to degree 16
+    python benchmarks/normal_forms.py --hiten ENV/bin/python    # beside HITEN, from an environment that has it
 
 The Hénon–Heiles system, exactly over ℚ; the centre manifold of L1 in balls.
 Seconds are of the processor; ratios within one run are what can be compared.
@@ -10,6 +11,8 @@ Seconds are of the processor; ratios within one run are what can be compared.
 from __future__ import annotations
 
 import argparse
+import re
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
 
 x, y, px, py = sp.symbols("x y p_x p_y", real=True)
 HENON_HEILES = Hamiltonian((px**2 + py**2 + x**2 + y**2) / 2 + x**2 * y - y**3 / 3, [x, y], [px, py])
+EARTH_MOON = sp.Rational("0.0121505856")
 Z = sp.symbols("z1 z2 zbar1 zbar2")
 
 
@@ -73,13 +77,52 @@ def transformed(parts: dict[int, sp.Poly], chi: sp.Poly, degree: int, order: int
     return {d: f for d, f in found.items() if not f.is_zero}
 
 
-def at_l1(order: int) -> CentreManifold:
+def at_l1(order: int, mass: sp.Rational = EARTH_MOON) -> CentreManifold:
     """The centre manifold of the point between Earth and Moon, every coefficient to 15 certain digits."""
     z, pz, mu = sp.symbols("z p_z mu", real=True)
     to_earth, to_moon = (sp.sqrt((x + s) ** 2 + y**2 + z**2) for s in (mu, mu - 1))
     kinetic = (px**2 + py**2 + pz**2) / 2 + y * px - x * py
     H = Hamiltonian(kinetic - (1 - mu) / to_earth - mu / to_moon, [x, y, z], [px, py, pz])
-    return centre_manifold(H, order, at={x: 0.83, py: 0.83}, parameters={mu: sp.Rational("0.0121505856")})
+    return centre_manifold(H, order, at={x: 0.83, py: 0.83}, parameters={mu: mass})
+
+
+IN_HITEN = """
+import sys, time
+from hiten import System
+point = System.from_bodies("earth", "moon").get_libration_point(1)
+started = time.process_time()
+found = point.get_center_manifold(degree=int(sys.argv[1]))
+found.compute()
+print("OF HITEN", repr(float(point.mu)), repr(float(point.gamma)), time.process_time() - started)
+print(found.coefficients())
+"""
+HITENS_TERM = re.compile(r"\b0\s+0\s+(\d+)\s+(\d+)\s+(\d+)\s+(\d+)\s+(-?\d\.\d+e[-+]\d+)")
+
+
+def beside_hiten(python: str, order: int) -> str:
+    """A row: seconds of both for the same manifold, and how far their coefficients differ.
+
+    HITEN measures lengths in distances γ of the point from the Moon and turns each elliptic pair by an angle, so that
+    its terms of degree d are ours times γ^(d−2), with Q = −p, P = q in the plane.
+    """
+    done = subprocess.run([python, "-c", IN_HITEN, str(order)], capture_output=True, text=True, check=True)
+    mass, gamma, theirs = map(float, done.stdout.split("OF HITEN ")[1].split()[:3])
+    started = time.process_time()
+    found = at_l1(order, sp.Rational(mass))
+    ours = time.process_time() - started
+    (Q1, Q2), (P1, P2) = found.q, found.p
+    q2, p2 = sp.symbols("q2 p2", real=True)
+    turned = sp.Poly(found.hamiltonian.H.subs({Q1: -p2, P1: q2}, simultaneous=True), q2, p2, Q2, P2)
+    terms = HITENS_TERM.findall(done.stdout)
+    gaps = [
+        abs(
+            float(turned.coeff_monomial(tuple(map(int, powers)))) * gamma ** (sum(map(int, powers)) - 2)
+            - float(c)
+        )
+        for *powers, c in terms
+    ]
+    largest = max(abs(float(c)) for *_, c in terms)
+    return f"| {order} | {ours:.2f} | {theirs:.1f} | {theirs / ours:.0f} | {len(terms)} | {max(gaps) / largest:.0e} |"
 
 
 def main() -> None:
@@ -87,7 +130,14 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--large", action="store_true", help="order 32 too")
+    parser.add_argument("--hiten", metavar="PYTHON", help="an interpreter that has HITEN")
     chosen = parser.parse_args()
+    if chosen.hiten:
+        print("| degree | canon, s | HITEN, s | ratio | terms | largest difference, of the largest |")
+        print("|---|---|---|---|---|---|")
+        for order in (6, 8, *([10] if chosen.large else [])):
+            print(beside_hiten(chosen.hiten, order))
+        return
     canons = birkhoff_normal_form(HENON_HEILES, 8)
     assert sp.expand(sum(f.as_expr() for f in by_sympy(8).values()) - canons.K) == 0, "the two disagree"
     print("| order | canon, s | the same steps with SymPy's Poly, s | ratio |\n|---|---|---|---|")

@@ -20,7 +20,7 @@ BENCHMARKS = {
     "import_cost": "What `import canon` costs",
     "zero_test": "The zero test on its corpus of identities",
     "canonical": "Canonical maps and generating functions",
-    "normal_forms": "Normal forms of the Hénon–Heiles system",
+    "normal_forms": "Normal forms, and the centre manifold between Earth and Moon",
     "derivation": "Equations of motion, beside SymPy's LagrangesMethod",
     "operations": "Operations of a pendulum's equations, by four designs",
     "minimal": "Only what is asked for",

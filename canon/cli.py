@@ -14,6 +14,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from canon.command import COMMANDS
+from canon.command.exit_status import BROKEN_PIPE, INTERRUPTED, UNWRITTEN
 from canon.command.standard_streams import silenced, streams_open, why_not_written
 from canon.printable import in_one_line
 
@@ -31,12 +32,6 @@ examples:
   canon drift kepler --plot drift.png               which methods can be trusted for long
   canon choose kepler --accuracy 1e-9               the cheapest one that suffices
 """
-BROKEN_PIPE = 141
-"""Exit status of a program whose reader went away, as shells report it: 128 + SIGPIPE."""
-INTERRUPTED = 130
-"""Exit status of a program that was interrupted: 128 + SIGINT."""
-UNWRITTEN = 2
-"""Exit status where what was found can't be told: none of those that say something of claims."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

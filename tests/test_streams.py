@@ -165,6 +165,32 @@ def test_an_interrupted_study_prints_one_line(begun):
     assert (begun.returncode, out, err) == (130, "", "canon: interrupted\n")
 
 
+POOL_THAT_NEVER_ENDS = """
+import concurrent.futures, signal, sys, threading, time
+from canon.cli import main
+class Stuck(concurrent.futures.ProcessPoolExecutor):
+    def shutdown(self, *args, **choices):
+        threading.Event().wait()
+concurrent.futures.ProcessPoolExecutor = Stuck
+if __name__ == "__main__":
+    threading.Timer(3.0, signal.raise_signal, [signal.SIGINT]).start()
+    sys.exit(main(["study", "run", sys.argv[1], "--jobs", "2"]))
+"""
+
+
+@pytest.mark.slow
+def test_an_interrupted_study_ends_even_where_its_pool_does_not(tmp_path):
+    """A worker that is killed while it sends leaves Python's pool waiting for the rest: seen once in many runs."""
+    file, program = tmp_path / "long.toml", tmp_path / "stuck.py"
+    file.write_text(LONG)
+    program.write_text(POOL_THAT_NEVER_ENDS)
+    done = subprocess.run(
+        [sys.executable, str(program), str(file)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.returncode, done.stdout) == (130, "")
+    assert "canon: interrupted" in done.stderr.splitlines()
+
+
 @pytest.mark.skipif(
     not Path("/proc/self/task").exists(), reason="processes are looked for where Linux lists them"
 )

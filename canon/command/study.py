@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,7 @@ from canon.command.argument_types import seconds, whole_number
 from canon.printable import in_one_line, printable
 
 if TYPE_CHECKING:
+    import threading
     from collections.abc import Callable, Generator, Sequence
     from concurrent.futures import Executor
 
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from canon.study.cases.store import Store
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
+
+LAST_WAIT = 5.0
+"""Seconds that an interrupted study waits for its pool of processes to end."""
 
 DESCRIPTION = """\
 Run every combination of systems, starts, parameters, methods and steps of a study and keep what comes of it in one
@@ -319,15 +323,38 @@ def _executor(arguments: argparse.Namespace) -> Generator[tuple[Executor | None,
         from canon.trusted_folders import safe_path
 
         spawned = multiprocessing.get_context("spawn")
-        with safe_path(), ProcessPoolExecutor(arguments.jobs, spawned, end_with_parent) as pool:
+        with (
+            safe_path(),
+            ExitStack() as last,
+            ProcessPoolExecutor(arguments.jobs, spawned, end_with_parent) as pool,
+        ):
             try:
                 yield pool, arguments.jobs + 1
-            except BaseException:  # an interrupt above all: nobody waits for what they compute any more
+            except BaseException as ended:  # nobody waits for what they compute any more
+                if isinstance(ended, KeyboardInterrupt):
+                    last.callback(_end_anyway().cancel)
                 for worker in multiprocessing.active_children():
                     worker.kill()
                 raise
     else:
         yield None, None
+
+
+def _end_anyway() -> threading.Timer:
+    """End this process soon unless cancelled: Python's pool waits for ever for what a killed worker began to send."""
+    import os
+    import threading
+
+    from canon.command.exit_status import INTERRUPTED
+
+    def end() -> None:
+        print("canon: interrupted", file=sys.stderr, flush=True)
+        os._exit(INTERRUPTED)
+
+    timer = threading.Timer(LAST_WAIT, end)
+    timer.daemon = True
+    timer.start()
+    return timer
 
 
 @contextmanager
