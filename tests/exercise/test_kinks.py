@@ -376,3 +376,14 @@ def test_motions_may_be_written_with_kinks_that_cancel():
     ):
         assert not judge(Claim("a", "solution", {**folded, "solution": {"x": motion}})).holds, motion
     assert judge(Claim("a", "solution", {**folded, "solution": {"x": "Max(cos(t), cos(t))"}})).holds
+
+
+@pytest.mark.parametrize(
+    ("H", "holds"), [("c*sqrt(m**2*c**2 + p**2)", True), ("-c*sqrt(m**2*c**2 + p**2)", False)]
+)
+def test_a_relativistic_lagrangian_is_meant_below_the_speed_of_light(H, holds):
+    keys = {"q": ["x"], "p": ["p"], "L": "-m*c**2*sqrt(1 - x_dot**2/c**2)", "H": H}
+    parameters = {"m": "positive", "c": "positive"}
+    verdict = examine(Claim("a", "legendre-hamiltonian", {**keys, "parameters": parameters})).verdict
+    assert verdict.holds == holds
+    assert verdict.fails != holds

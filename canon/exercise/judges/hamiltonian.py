@@ -17,6 +17,7 @@ from canon.mechanics.algebra.constraint_manifold import on_manifold, transported
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian
+from canon.mechanics.hamilton.legendre import where_root_is_real
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -30,7 +31,7 @@ def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
     """The velocity Hessian is regular and H(q, ∂L/∂q̇, t) = Σ p q̇ − L."""
     _, p = reading.phase_space("q", "p")
     lagrangian = lagrangian_of(reading)
-    domain = reading.domain
+    domain = where_root_is_real(lagrangian.L, lagrangian.velocities, reading.domain)
     yield Regular(lagrangian.mass_matrix, "the velocity Hessian", domain)
     if reading.has("H"):
         yield from wrong_variables(reading.expression("H"), lagrangian.velocities, "H", "q, p and t")

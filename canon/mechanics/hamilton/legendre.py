@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from canon.mechanics.algebra.branch_point import BranchPoint
 
-__all__ = ["LegendreError", "eliminate_velocities", "legendre_residual"]
+__all__ = ["LegendreError", "eliminate_velocities", "legendre_residual", "where_root_is_real"]
 
 WITNESSES = 4
 """Points that show a branch."""
@@ -157,6 +157,27 @@ def _where_real(f: Expr, old: Sequence[Symbol], domain: Domain) -> Domain:
     radicands = [e.base for e in f.atoms(sp.Pow) if e.has(*old) and _exponent(e).is_Rational and _is_even(e)]
     above = (sp.Gt(radicand, 0) for radicand in dict.fromkeys(radicands) if not radicand.is_nonnegative)
     return Domain((*domain.conditions, *(c for c in above if c is not sp.true)), domain.box)
+
+
+def where_root_is_real(f: Expr, old: Sequence[Symbol], domain: Domain) -> Domain:
+    """Return the domain where f is real, if f holds one square root √r of the old variables and is rational in it.
+
+    Elsewhere r < 0 and f has an imaginary part, as −m c² √(1 − v²/c²) beyond the speed of light.
+
+    Examples
+    --------
+    >>> v = Symbol("v", real=True)
+    >>> where_root_is_real(sp.sqrt(1 - v), [v], Domain()).conditions, where_root_is_real(v**2, [v], Domain()).conditions
+    ((v < 1,), ())
+    """
+    roots: dict[Expr, Expr] = {
+        e: sp.Dummy() for e in f.atoms(sp.Pow) if e.has(*old) and not _exponent(e).is_Integer
+    }
+    seen = exchanged(f, roots)
+    inside = any(g.has(*roots.values()) for g in seen.atoms(sp.Function)) if roots else False
+    one = len({e.as_base_exp()[0] for e in roots}) == 1
+    halves = all((2 * e.as_base_exp()[1]).is_Integer for e in roots)
+    return _where_real(f, old, domain) if one and halves and not inside and not f.has(sp.I) else domain
 
 
 def _is_even(power: sp.Pow) -> bool:
