@@ -167,6 +167,11 @@ def _powers(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] 
     if q**2 in names and names <= {q, q**2}:
         B, C = terms.get(q, sp.S.Zero), terms[q**2]
         return (A - B**2 / (4 * C)) / (2 * sqrt(-C)), "oscillator"
+    if len(terms) == 1 and _is_even_power(next(iter(names)), q):
+        (power,) = names
+        n, wall = power.as_base_exp()[1], -terms[power]
+        gammas = sp.gamma(1 / n) / sp.gamma(1 / n + Rational(3, 2))
+        return A ** (Rational(1, 2) + 1 / n) * wall ** (-1 / n) * gammas / (n * sqrt(sp.pi)), "even power"
     if names == {1 / q, q**-2}:
         pull = terms[1 / q]
         # motions are bound where pull/q > 0
@@ -175,6 +180,12 @@ def _powers(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] 
     if names == {q**2, q**-2}:
         return A / (4 * sqrt(-terms[q**2])) - sqrt(-terms[q**-2]) / 2, "radial oscillator"
     return None
+
+
+def _is_even_power(f: Expr, q: Symbol) -> bool:
+    """Whether f is q⁴, q⁶, …: with the substitution q = a x^(1/n) its action is a beta function."""
+    base, exponent = f.as_base_exp()
+    return base == q and exponent.is_Integer is True and exponent.is_even is True and bool(exponent > 2)
 
 
 def _trigonometric(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] | None:

@@ -124,6 +124,23 @@ def test_morse_and_poschl_teller():
     assert holds(found.frequencies[0], sp.Rational(1, 2) * sp.sqrt(-2 * E / 2))
 
 
+def test_two_centres_of_which_one_has_no_mass_are_keplers_problem():
+    """(u, v) and (−u, −v) are one place: a cycle of both is two revolutions, at half of Kepler's (−2 E)^(3/2)/k."""
+    one, two, c = sp.symbols("k1 k2 c", positive=True)
+    near, far = sp.sqrt((x - c) ** 2 + y**2), sp.sqrt((x + c) ** 2 + y**2)
+    centres = Hamiltonian((px**2 + py**2) / 2 - one / near - two / far, [x, y], [px, py])
+    found = hamilton_jacobi(centres, "elliptic", focal=c)
+    start = (1, sp.Rational(1, 2), sp.Rational(1, 5), sp.Rational(1, 3))
+    values = {one: 1, two: 0, c: sp.Rational(1, 2)}
+    torus = action_variables(found, start, values)
+    E = torus.values[found.energy]
+    for frequency in torus.frequencies:
+        assert holds(frequency, (-2 * E) ** sp.Rational(3, 2) / 2)
+        assert misses(frequency, (-2 * E) ** sp.Rational(3, 2))
+    both = action_variables(found, start, {**values, two: sp.Rational(1, 10)})
+    assert not both.frequencies[0].overlaps(both.frequencies[1])
+
+
 @pytest.mark.parametrize("n", [2, 4, 6])
 def test_even_powers_have_the_action_of_their_gamma_functions(n):
     found = action_variables(hamilton_jacobi(Hamiltonian(p**2 / 2 + q**n, q, p)), {q: 0, p: sp.sqrt(2)})

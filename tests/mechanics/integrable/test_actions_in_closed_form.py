@@ -66,6 +66,25 @@ def test_published_formulas_come_out(name):
         assert found[1].J == L
 
 
+@pytest.mark.parametrize("n", [4, 6, 10])
+def test_even_powers_have_gamma_functions(n):
+    """J = E^(1/2 + 1/n) √(2 m) k^(−1/n) Γ(1/n)/(n √π Γ(3/2 + 1/n)), so E grows as J^(2n/(n + 2))."""
+    H = Hamiltonian(p**2 / (2 * m) + k * q**n, q, p)
+    torus = action_variables(hamilton_jacobi(H), LINE, {m: sp.Rational(3, 2), k: 2}, digits=20)
+    (found,) = closed_actions(torus)
+    gammas = sp.gamma(sp.Rational(1, n)) / sp.gamma(sp.Rational(3, 2) + sp.Rational(1, n))
+    formula = E ** (half + sp.Rational(1, n)) * sp.sqrt(2 * m) * k ** sp.Rational(-1, n) * gammas
+    assert (found.name, found.tori) == ("even power", 3)
+    assert vanishes(found.J - formula / (n * sp.sqrt(sp.pi)), Domain((E > 0,))).holds
+    assert vanishes(found.J - 2 * formula / (n * sp.sqrt(sp.pi)), Domain((E > 0,))).fails
+
+
+@pytest.mark.parametrize("potential", [q**4 / 4 + q**2 / 2, q**4 + q**6])
+def test_sums_of_even_powers_have_no_such_formula(potential):
+    H = Hamiltonian(p**2 / 2 + potential, q, p)
+    assert closed_actions(action_variables(hamilton_jacobi(H), LINE, digits=20)) == (None,)
+
+
 @pytest.mark.parametrize(("momentum", "name"), [(1, "pendulum, libration"), (-3, "pendulum, rotation")])
 def test_the_pendulum_has_complete_elliptic_integrals(momentum, name):
     H = Hamiltonian(p**2 / (2 * m) - k * sp.cos(q), q, p)
@@ -96,7 +115,7 @@ def test_a_wrong_formula_is_not_returned(monkeypatch, name, factor):
 
 
 def test_what_has_no_known_integral_is_left_open():
-    quartic = hamilton_jacobi(Hamiltonian(p**2 / 2 + q**4, q, p))
+    quartic = hamilton_jacobi(Hamiltonian(p**2 / 2 + q**2 + q**4, q, p))
     assert closed_actions(action_variables(quartic, {q: 0, p: 1}, digits=20)) == (None,)
     shifted = hamilton_jacobi(Hamiltonian(p**2 / 2 + sp.exp(-3 * q) - 2 * sp.exp(-q), q, p))
     assert closed_actions(action_variables(shifted, {q: 0, p: half}, digits=20))[0] is None
