@@ -129,12 +129,21 @@ def test_bound_motions_of_either_attraction_have_the_action_of_its_amount():
 
 
 def test_an_action_without_a_closed_form_is_refuted_by_quadrature():
-    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + q**4", "parameters": {"E": "positive"}}
-    verdict = examine(Claim("a", "action-angle", {**keys, "J": ["E**(3/4)"]})).verdict
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + tan(q)**2", "domain": ["-pi/2 < q", "q < pi/2"]}
+    keys["parameters"] = {"E": "positive"}
+    verdict = examine(Claim("a", "action-angle", {**keys, "J": ["sqrt(2*E + 2) - 1"]})).verdict
     assert verdict.fails
     assert verdict.certificate == "ball"
+    right = "sqrt(2*E + 2) - sqrt(2)"
+    assert examine(Claim("a", "action-angle", {**keys, "J": [right]})).verdict.undecided
+
+
+def test_the_action_of_a_quartic_wall_is_known_in_gamma_functions_and_elliptic_integrals():
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + q**4", "parameters": {"E": "positive"}}
     area = "4*elliptic_k(1/2)*E**(3/4)/(3*pi)"
-    assert examine(Claim("a", "action-angle", {**keys, "J": [area]})).verdict.undecided
+    assert examine(Claim("a", "action-angle", {**keys, "J": [area]})).verdict.holds
+    for wrong in ("4*elliptic_k(1/4)*E**(3/4)/(3*pi)", "2*elliptic_k(1/2)*E**(3/4)/(3*pi)", "E**(3/4)"):
+        assert examine(Claim("a", "action-angle", {**keys, "J": [wrong]})).verdict.fails
 
 
 OSCILLATOR = {"q": ["q"], "p": ["p"], "H": "p**2/(2*m) + m*omega**2*q**2/2"}
