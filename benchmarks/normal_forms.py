@@ -77,7 +77,7 @@ def transformed(parts: dict[int, sp.Poly], chi: sp.Poly, degree: int, order: int
     return {d: f for d, f in found.items() if not f.is_zero}
 
 
-def at_l1(order: int, mass: sp.Rational = EARTH_MOON) -> CentreManifold:
+def at_l1(order: int, mass: sp.Expr = EARTH_MOON) -> CentreManifold:
     """The centre manifold of the point between Earth and Moon, every coefficient to 15 certain digits."""
     z, pz, mu = sp.symbols("z p_z mu", real=True)
     to_earth, to_moon = (sp.sqrt((x + s) ** 2 + y**2 + z**2) for s in (mu, mu - 1))

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from canon.array import Array
-    from canon.flow.equations.first_order_motion import FirstOrderMotion, MovingSystem
+    from canon.flow.equations.first_order_motion import Contacts, FirstOrderMotion, MovingSystem
     from canon.flow.method.method import Method
     from canon.flow.request import Request
     from canon.flow.system.recognised_system import RecognisedSystem
@@ -112,6 +112,22 @@ def _symbols_of(request: Request) -> set[Any]:
     return {symbol for f in functions for symbol in sympify(f, strict=True).free_symbols}
 
 
+def _check_direction(contacts: Contacts, ends: tuple[Fraction, Fraction]) -> None:
+    """Refuse a motion backwards in time through impacts that lose energy: before one of e = 0 it may have been any.
+
+    Raises
+    ------
+    ValueError
+        Where the span ends before it begins, and a restitution is below 1.
+    """
+    lossy = next((c for c in contacts.each if c.restitution is not None and c.restitution < 1), None)
+    if lossy is not None and ends[1] < ends[0]:
+        raise ValueError(
+            f"impacts at {lossy.words} lose energy (restitution {lossy.restitution:g}), and a motion through them is "
+            "not determined backwards in time: give a span that grows, or restitution=1"
+        )
+
+
 def _unneeded_but_given(
     system: RecognisedSystem, functions: Sequence[Expr], given: Mapping[Any, Any]
 ) -> set[Symbol]:
@@ -148,6 +164,7 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     hidden = _contacts_at_start(motion, orbits)
     check_constraints(motion, start | hidden, _words(motion))
     if motion.contacts is not None:
+        _check_direction(motion.contacts, ends)
         met = (*met, *(event for contact in motion.contacts.each for event in contact.events))
     unit = _work_unit(motion, first | hidden)
     moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying], unit)

@@ -139,6 +139,9 @@ def test_products_and_sums_of_matrices(form):
         r"m\begin{pmatrix}\ddot x & \ddot y\end{pmatrix} + k" + BOTH + " = 0",
         "np.array([[m, 0], [0, m]]) * np.array([x'', y'']) = 0",
         "m*Matrix([x'', y'']) + k = 0",
+        "m**Matrix([x'', y'']) = -k*Matrix([x, y])",
+        "m*Matrix([x'', y'']) = -k**Matrix([x, y])",
+        "Matrix([[0, m], [m, 0]])**Matrix([y'', x'']) = -k*Matrix([x, y])",
     ],
 )
 def test_what_is_no_sum_of_vectors_of_one_length_is_not_read(form):

@@ -270,3 +270,21 @@ def test_what_knows_no_events_refuses_contacts() -> None:
 def test_events_that_are_none_are_refused_with_what_to_write(events: Any) -> None:
     with pytest.raises(TypeError, match="give a list of"):
         propagate(falling, (0, 1), [1, 0], parameters={g: 2}, events=events)
+
+
+@pytest.mark.parametrize("e", [0, sp.Rational(1, 2)])
+def test_impacts_that_lose_energy_are_not_run_backwards(e):
+    y = coordinates("y")
+    ball = UnilateralLagrangian(Lagrangian(y.dot**2 / 2 - 2 * y, [y]), [y], restitution=e)
+    with pytest.raises(
+        ValueError, match=r"impacts at y = 0 lose energy .* a span that grows, or restitution=1"
+    ):
+        propagate(ball, (0, -1.5), [1.0, 0.0])
+
+
+def test_impacts_that_lose_nothing_are_run_backwards():
+    y = coordinates("y")
+    ball = UnilateralLagrangian(Lagrangian(y.dot**2 / 2 - 2 * y, [y]), [y], restitution=1)
+    there = propagate(ball, (0, 1.7), [1.0, 0.3], samples=1).y[:, -1]
+    back = propagate(ball, (1.7, 0), there, samples=1).y[:, -1]
+    assert np.abs(back - [1.0, 0.3]).max() < 1e-12

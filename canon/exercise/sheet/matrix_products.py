@@ -25,7 +25,9 @@ _OPENS = re.compile(
     r"|(?:\w{1,9}\.)?(?:Immutable|Mutable)?(?:Dense)?(?P<plain>Matrix|array)\(\s*(?=\[)"
 )
 _BRACKET_BEHIND = re.compile(r"\s*\\right\s*[)\]]")
-_TIMES = re.compile(r"(?:\s|\\[,;:! ]|\\cdot(?![A-Za-z])|\*|@)*")
+_SPACE = r"(?:\s|\\[,;:! ])*"
+_TIMES = re.compile(rf"{_SPACE}(?:\\cdot(?![A-Za-z])|\*|@)?{_SPACE}")
+"""At most one sign of a product: ``**`` is a power, which is not taken for one."""
 _BLANK = re.compile(r"(?:[\s$.,&]|\\[,;:! ])*")
 _ZERO = re.compile(r"[\s$&.]*(?:0|\\(?:vec|mathbf|boldsymbol)\s*\{?\s*0\s*\}?)[\s$.]*")
 _SIGN = re.compile(r"(?<![<>!:=])={1,2}(?!=)")
@@ -164,7 +166,8 @@ def _fit(text: str, matrices: Sequence[_Matrix]) -> bool:
 def _factor(text: str, begin: int, end: int) -> tuple[str, str]:
     """Return the sign of a term and the factor before its first matrix, at its columns; blank where there is none."""
     said = text[begin:end]
-    bare = re.sub(r"(?:\s|\\[,;:! ]|\\cdot|\*|@)+$", "", said)
+    last = re.search(rf"{_TIMES.pattern}$", said)
+    bare = said[: last.start()] if last else said
     first = re.match(r"[\s$&]*([-+−]?)", bare)
     at = first.end() if first else 0
     sign = "-" if first and first[1] in ("-", "−") else ""

@@ -115,6 +115,7 @@ class ContactEvents:
             lands=lands,
             parts=Event(self._name(rose, "rose"), 1, {wall.margin: sp.S.Zero, wall.armed: self._unit}),
             crowded=crowded,
+            restitution=None if e is None else self._number(e),
         )
 
     def _impact(self, i: int, e: Expr, fallen: Symbol) -> Event:

@@ -53,6 +53,8 @@ class Contact:
     opens, lands, parts, crowded
         The events: λ falls to 0; f falls to 0; f has risen for good after the contact opened; f falls to 0 while
         another contact is closed, None where that matters nothing.
+    restitution
+        Newton's coefficient at the start; None where a motion ends at an impact.
     """
 
     words: str
@@ -64,6 +66,7 @@ class Contact:
     lands: Event
     parts: Event
     crowded: Event | None = None
+    restitution: float | None = None
 
     @property
     def events(self) -> tuple[Event, ...]:
