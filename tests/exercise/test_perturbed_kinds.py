@@ -70,6 +70,21 @@ def test_a_generator_whose_new_hamiltonian_jumps_does_not_hold(zigzag):
     assert not examine(Claim("a", right.kind, {**rotor, "W": f"sin(u)/v + {zigzag}"})).verdict.holds
 
 
+@pytest.mark.parametrize(("told", "holds"), [({}, True), ({"energy": "E"}, True), ({"energy": "7*E"}, False)])
+def test_an_energy_that_is_told_beside_s_is_judged_too(told, holds):
+    keys = {
+        "q": ["q"],
+        "p": ["p"],
+        "H": "p**2/2",
+        "constants": ["E"],
+        "parameters": {"E": "positive"},
+        **told,
+    }
+    verdict = examine(Claim("a", "hamilton-jacobi", {**keys, "S": "sqrt(2*E)*q - E*t"})).verdict
+    assert verdict.holds is holds
+    assert verdict.fails is not holds
+
+
 @pytest.mark.parametrize(
     ("q", "p", "H"),
     [

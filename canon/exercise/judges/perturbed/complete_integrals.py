@@ -69,6 +69,8 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
     energy = sp.S.Zero if name == "S" else _energy(reading, constants)
     equation = substitute(H, dict(zip(p, slopes, strict=True))) + rate
     parts = [Part(_equation_of(name), equation, energy)]
+    if name == "S":
+        parts += _told_energy(reading, H, rate, constants)
     parts += [
         Part(f"∂p_{a}/∂{b} = ∂p_{b}/∂{a}", f.diff(b), g.diff(a))
         for (a, f), (b, g) in combinations(zip(q, slopes, strict=True), 2)
@@ -119,6 +121,14 @@ def _energy(reading: Reading, constants: Sequence[Symbol]) -> Expr:
     if not named and len(constants) > 1:
         reading.fault("constants", 'which of them is the energy? Name it E, or say energy = "…"')
     return named[0] if named else constants[0]
+
+
+def _told_energy(reading: Reading, H: Expr, rate: Expr, constants: Sequence[Symbol]) -> Iterator[Part]:
+    """Yield the question whether −∂S/∂t is the energy that the claim says it is."""
+    if reading.has("energy"):
+        if H.has(reading.time):
+            reading.fault("energy", f"H depends on {reading.time}, so no energy is kept")
+        yield Part("−∂S/∂t", -rate, _energy(reading, constants))
 
 
 def _variables_of(name: str) -> str:
