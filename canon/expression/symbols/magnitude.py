@@ -6,8 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 import sympy as sp
+from sympy.concrete.expr_with_limits import ExprWithLimits
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from sympy import Expr
 
 __all__ = ["MOST_DIGITS", "digits", "has_huge_number", "written"]
@@ -17,6 +20,9 @@ MOST_DIGITS = 1e5
 
 MOST_WRITTEN = 4200
 """Digits of a fraction that are written out; Python writes numbers of up to 4300."""
+
+BINDING = (sp.Subs, sp.Lambda, ExprWithLimits)
+"""What has symbols of its own, which are not free."""
 
 _TEN = math.log(10.0)
 _GROWING = (sp.exp, sp.sinh, sp.cosh, sp.csch, sp.sech)
@@ -51,11 +57,27 @@ def has_huge_number(f: sp.Basic) -> bool:
     (True, False)
     """
     known: dict[sp.Basic, float] = {}
-    return any(
-        isinstance(part, sp.Expr) and not part.free_symbols and _digits(part, known) > MOST_DIGITS
-        for part in sp.preorder_traversal(f)
-        if part.args
-    )
+    return any(_digits(part, known) > MOST_DIGITS for part in _numbers_in(f))
+
+
+def _numbers_in(f: sp.Basic) -> Iterator[sp.Expr]:
+    """Yield the distinct parts without free symbols, but for those that are written as one sign."""
+    free: dict[sp.Basic, bool] = {}
+    stack = [(f, False)]
+    while stack:
+        part, ready = stack.pop()
+        if part in free:
+            continue
+        if not part.args:
+            free[part] = not part.free_symbols
+        elif ready:
+            bound = isinstance(part, BINDING) and not part.free_symbols
+            free[part] = bound or all(map(free.__getitem__, part.args))
+            if free[part] and isinstance(part, sp.Expr):
+                yield part
+        else:
+            stack.append((part, True))
+            stack.extend((inner, False) for inner in part.args)
 
 
 def written(item: object) -> str:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.expression.symbols.magnitude import has_huge_number
+from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
@@ -20,9 +21,12 @@ if TYPE_CHECKING:
 
 __all__ = ["known", "worked_out"]
 
+LARGE = 1_000
+"""Size of a tree beyond which SymPy, which walks all of it again and again, takes seconds for a fact."""
+
 
 def known(fact: str, f: Expr) -> bool | None:
-    """Return what SymPy knows of an expression; None also where a number in it is too large or is none.
+    """Return what SymPy knows of an expression; None also of a large one, and where a number is too large or is none.
 
     Parameters
     ----------
@@ -36,6 +40,8 @@ def known(fact: str, f: Expr) -> bool | None:
     >>> known("is_zero", sp.Mul(2, 0, evaluate=False)), known("is_zero", sp.log(0))
     (True, None)
     """
+    if anatomy([f]).tree > LARGE:
+        return None
     try:
         plain = f if has_huge_number(f) else worked_out(f)
         return None if plain.has(sp.nan, sp.zoo, sp.oo, -sp.oo) else getattr(plain, fact)
