@@ -1,7 +1,7 @@
 """On generated expressions: an identity is never refuted, a changed one never proved."""
 
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from sympy import Abs, Rational, cos, cosh, exp, log, sin, sinh, sqrt, tan
 
@@ -45,9 +45,15 @@ REWRITINGS = [
 ]
 
 
+def has_value(e):
+    """Tell whether an expression is no nan or infinity, which (e² − f²)/(e + f) is where e and f are 0."""
+    return not e.has(sp.nan, sp.zoo, sp.oo, -sp.oo)
+
+
 @settings(max_examples=60, deadline=None)
 @given(expressions, expressions, st.sampled_from(REWRITINGS))
 def test_identities_are_never_refuted(e, f, rewritten):
+    assume(has_value(rewritten(e, f)))
     assert not vanishes(e - rewritten(e, f), budget=2.0).fails
 
 
@@ -59,6 +65,7 @@ def test_identities_are_never_refuted(e, f, rewritten):
     st.sampled_from([Rational(1, 10**20), x / 10**9, sin(y) / 1000, a - b, 1 / (1 + x**2)]),
 )
 def test_changed_identities_are_never_proved(e, f, rewritten, delta):
+    assume(has_value(rewritten(e, f)))
     assert not vanishes(e - rewritten(e, f) + delta, budget=2.0).holds
 
 
