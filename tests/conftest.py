@@ -1,5 +1,6 @@
 """Generated examples are the same in every run of CI, elsewhere new ones; a test has at most five minutes."""
 
+import gc
 import os
 import signal
 import sys
@@ -18,6 +19,12 @@ LONGEST = 300.0
 """Seconds of a test, slow ones included."""
 
 
+def pytest_collection_finish():
+    """Leave what was imported out of every search for garbage, which would look through millions of objects."""
+    gc.collect()
+    gc.freeze()
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item):
     """Fail a test that has not ended in time, with where it was, so that it does not hold up the others."""
@@ -34,6 +41,28 @@ def pytest_runtest_call(item):
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
+
+
+@pytest.fixture(scope="session")
+def calls():
+    """Tell how many functions were called in a piece of work: the same number on every machine, busy or not."""
+    return _calls
+
+
+def _calls(work):
+    counted = 0
+
+    def count(_frame, event, _function):
+        nonlocal counted
+        counted += event.endswith("call")
+
+    before = sys.getprofile()
+    sys.setprofile(count)
+    try:
+        work()
+    finally:
+        sys.setprofile(before)
+    return counted
 
 
 @pytest.fixture(scope="session")

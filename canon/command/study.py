@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from canon.command.argument_types import seconds, whole_number
+from canon.command.exit_status import INTERRUPTED
 from canon.printable import in_one_line, printable
 
 if TYPE_CHECKING:
@@ -344,8 +345,6 @@ def _end_anyway() -> threading.Timer:
     """End this process soon unless cancelled: Python's pool waits for ever for what a killed worker began to send."""
     import os
     import threading
-
-    from canon.command.exit_status import INTERRUPTED
 
     def end() -> None:
         print("canon: interrupted", file=sys.stderr, flush=True)

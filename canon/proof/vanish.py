@@ -266,6 +266,11 @@ def _decide(left: object, right: object, domain: Domain, deadline: float, names:
         return Verdict(Status.UNDECIDED, evidence=(Evidence("tried", said),))
 
 
+def _difference(left: Expr, right: Expr) -> Expr:
+    """Return left − right, without a sum where the sides are one: SymPy's may ask for digits that no memory holds."""
+    return sp.Integer(0) if left == right else left - right
+
+
 def _thorough(quick: Attempt, difference: Expr, domain: Domain, deadline: float) -> Attempt:
     """Return what the thorough rungs did in the worker; the quick attempt where they can add nothing in time."""
     seconds = deadline - time.monotonic()
@@ -291,7 +296,8 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float, names: tupl
     )
     if search.counterexample is not None:
         return _refuted(left, right, search)
-    proof = prove_zero(left - right, domain, min(deadline, time.monotonic() + QUICK_SECONDS), QUICK)
+    difference = _difference(left, right)
+    proof = prove_zero(difference, domain, min(deadline, time.monotonic() + QUICK_SECONDS), QUICK)
     if proof.holds:
         if search.agreements == 0 and domain.conditions and is_empty(domain, deadline):
             return replace(_proved(proof), assumed=(EMPTY,))
@@ -309,13 +315,13 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float, names: tupl
     search = look_in_corners(left, right, domain, _share(CORNER_SHARE, deadline), search)
     if search.counterexample is not None:
         return _refuted(left, right, search)
-    proof = _thorough(proof, left - right, domain, deadline)
+    proof = _thorough(proof, difference, domain, deadline)
     if proof.holds:
         valued = search.agreements > 0
         return _with_values(_proved(proof), sides, names, domain, deadline, valued=valued)
     tried = tuple(Evidence("tried", obstacle) for obstacle in proof.obstacles)
     known = Evidence("balls", search.known)
-    undecided = Verdict(Status.UNDECIDED, residual=left - right, evidence=(*tried, known))
+    undecided = Verdict(Status.UNDECIDED, residual=difference, evidence=(*tried, known))
     if search.unmodelled:
         return undecided
     return _with_values(undecided, sides, names, domain, deadline, valued=search.agreements > 0)

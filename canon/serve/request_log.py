@@ -74,9 +74,8 @@ class RequestLog:
                 status = message["status"]
             try:
                 await send(message)
-            except (
-                LocalProtocolError
-            ):  # what followed the head was no HTTP, and the server has said so and hung up
+            except LocalProtocolError:
+                # What followed the head was no HTTP, and the server has said so and hung up.
                 status = 400
 
         try:

@@ -32,6 +32,7 @@ from sympy import (
     tan,
     tanh,
 )
+from sympy.core.cache import clear_cache
 
 from canon.proof import Domain, equal
 from canon.proof.domain.verdict import Status
@@ -225,7 +226,9 @@ def test_numbers_beyond_any_float_are_answered_and_shown(number):
     shown = f"{verdict} {verdict!r} {verdict.to_dict()}"
     assert "Error" not in shown
     assert "int too large" not in shown
-    assert equal(f + x, x + f).holds
+    for _ in range(5):
+        clear_cache()  # which facts SymPy asks of a number, and in what order, depends on what it has kept
+        assert equal(f + x, x + f).holds
 
 
 def test_a_value_of_which_no_digit_is_certain_is_shown_as_a_bound():

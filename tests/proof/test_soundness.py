@@ -155,14 +155,17 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("expr", "conditions"), REFUSED, ids=range(len(REFUSED)))
-def test_what_sympy_refuses_or_cannot_write_out_raises_nothing(expr, conditions):
-    assert vanishes(expr, Domain(conditions), budget=2.0).seconds < 2.5
+def test_what_sympy_refuses_or_cannot_write_out_raises_nothing(expr, conditions, processor_seconds):
+    used = processor_seconds()
+    vanishes(expr, Domain(conditions), budget=2.0)
+    assert processor_seconds() - used < 2.5
 
 
-def test_a_domain_that_no_point_meets_keeps_to_the_budget():
+def test_a_domain_that_no_point_meets_keeps_to_the_budget(processor_seconds):
     narrow = sum((sin(exp(x) * i) + cos(y * i) * exp(z) - i) ** 2 for i in range(1, 200)) < Rational(1, 100)
-    verdict = vanishes(exp(sin(x)) * sqrt(x**2) + exp(sin(x)) * x, Domain((narrow,)), budget=1.0)
-    assert verdict.seconds < 2.0
+    used = processor_seconds()
+    vanishes(exp(sin(x)) * sqrt(x**2) + exp(sin(x)) * x, Domain((narrow,)), budget=1.0)
+    assert processor_seconds() - used < 2.0
 
 
 def test_a_function_is_no_expression():

@@ -165,12 +165,10 @@ def _fit(text: str, matrices: Sequence[_Matrix]) -> bool:
 
 def _factor(text: str, begin: int, end: int) -> tuple[str, str]:
     """Return the sign of a term and the factor before its first matrix, at its columns; blank where there is none."""
-    said = text[begin:end]
-    last = re.search(rf"{_TIMES.pattern}$", said)
-    bare = said[: last.start()] if last else said
-    first = re.match(r"[\s$&]*([-+−]?)", bare)
-    at = first.end() if first else 0
-    sign = "-" if first and first[1] in ("-", "−") else ""
+    bare = re.sub(rf"{_TIMES.pattern}$", "", text[begin:end], count=1)
+    unsigned = re.sub(r"^[\s$&]*[-+−]?", "", bare, count=1)
+    at = len(bare) - len(unsigned)
+    sign = "-" if bare[:at].endswith(("-", "−")) else ""
     return sign, _placed(text, begin + at, begin + len(bare))
 
 

@@ -9,6 +9,7 @@ from canon.scene.formula_functions import cos, sin, sqrt
 from canon.scene.parts import Condition
 from canon.scene.picture import Picture
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
+from canon.scene.systems.pendulum import quarter_of_swing
 from canon.scene.systems.rotating import RESTRICTED
 
 if TYPE_CHECKING:
@@ -253,10 +254,7 @@ def _in_step() -> float:
 def _quarter(value: Mapping[str, float]) -> float:
     """Return the quarter of a libration in the 3:2 resonance: that of a pendulum with (w n)² H(3/2, e)."""
     rate = value["w"] * value["n"] * math.sqrt(float(_strengths(value["e"])[2]))
-    a, b = 1.0, math.cos(_SWING)
-    while a - b > 1e-15:
-        a, b = (a + b) / 2.0, math.sqrt(a * b)
-    return math.pi / (2.0 * a) / rate
+    return quarter_of_swing(2.0 * _SWING, rate)
 
 
 SPIN_ORBIT = Scene(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
 
-__all__ = ["SCENES"]
+__all__ = ["SCENES", "quarter_of_swing"]
 
 GRAVITY = Parameter("g", 9.80665, "m/s²", "standard acceleration of free fall")
 
@@ -45,10 +45,11 @@ def swing(amplitude: float, value: Mapping[str, float], t: Array) -> Array:
     return 2.0 * np.arcsin(k * cn / dn)
 
 
-def _quarter(amplitude: float, value: Mapping[str, float]) -> float:
+def quarter_of_swing(amplitude: float, rate: float) -> float:
+    """Return the quarter of a pendulum's period, K(sin²(θ₀/2))/ω; ω is its rate at small swings."""
     from scipy.special import ellipk
 
-    return math.sqrt(value["l"] / value["g"]) * float(ellipk(math.sin(amplitude / 2.0) ** 2))
+    return float(ellipk(math.sin(amplitude / 2.0) ** 2)) / rate
 
 
 def _simple_picture(s: SimpleNamespace) -> Picture:
@@ -86,7 +87,7 @@ SIMPLE = Scene(
             "quarter of the period, √(l/g) K(sin θ₀/2)",
             "wide",
             lambda s: s.t,
-            lambda v, _t: _quarter(2.0, v),
+            lambda v, _t: quarter_of_swing(2.0, math.sqrt(v["g"] / v["l"])),
             event=lambda s: s.theta,
             bound=1e-14,
         ),

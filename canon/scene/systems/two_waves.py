@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from canon.scene.formula_functions import cos
 from canon.scene.scene import Parameter, Scene, Solution, Start
+from canon.scene.systems.pendulum import quarter_of_swing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,10 +26,7 @@ def _two_waves(s: SimpleNamespace) -> Expr:
 
 def _quarter(value: Mapping[str, float]) -> float:
     """Return the quarter of a period in the trough of the first wave alone, a pendulum with ω² = M."""
-    a, b = 1.0, math.cos(_SWING / 2.0)
-    while a - b > 1e-15:
-        a, b = (a + b) / 2.0, math.sqrt(a * b)
-    return math.pi / (2.0 * a * math.sqrt(value["M"]))
+    return quarter_of_swing(_SWING, math.sqrt(value["M"]))
 
 
 TWO_WAVES = Scene(

@@ -314,9 +314,8 @@ def _kept_tori(
         raise Undecided(f"actions are known where the Hamilton–Jacobi equation separates; {reason}") from None
     try:
         found = list(islice(_bounded(integral, there), TORI))
-        elsewhere = list(
-            islice(_bounded(integral, Domain(there.conditions)), COMPARED)
-        )  # a box is a hint only
+        # A box is a hint only: what holds there must hold on the rest of the domain too.
+        elsewhere = list(islice(_bounded(integral, Domain(there.conditions)), COMPARED))
     except NotHolomorphicError as reason:
         raise Undecided(f"no quadrature of this H is certified: {reason}") from None
     if len(found) < TORI:
