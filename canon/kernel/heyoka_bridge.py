@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.graph.number_systems import LONGDOUBLE
+from canon.kernel.heyoka_compiled import compiled_integrator
 from canon.kernel.program.program import exact_value
 
 if TYPE_CHECKING:
@@ -276,12 +277,10 @@ def taylor_integrator(
         What the integrator's numbers are parts of, a power of two; heyoka takes the tolerance for an absolute one where
         all of them are below 1.
     """
-    import heyoka as hy
-
     compact = number is not float or len(system.graph.reachable(system.rates)) > _COMPACT_FROM
     state = [number(x / unit) for x in y0]
     options: dict[str, Any] = {} if tolerance is None else {"tol": number(Fraction(tolerance))}
-    return hy.taylor_adaptive(
+    return compiled_integrator(
         heyoka_equations(system, number, unit),
         np.array(state),
         time=number(t0),

@@ -157,8 +157,14 @@ def test_the_action_of_a_quartic_wall_is_known_in_gamma_functions_and_elliptic_i
     keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + q**4", "parameters": {"E": "positive"}}
     area = "4*elliptic_k(1/2)*E**(3/4)/(3*pi)"
     assert examine(Claim("a", "action-angle", {**keys, "J": [area]})).verdict.holds
-    for wrong in ("4*elliptic_k(1/4)*E**(3/4)/(3*pi)", "2*elliptic_k(1/2)*E**(3/4)/(3*pi)", "E**(3/4)"):
-        assert examine(Claim("a", "action-angle", {**keys, "J": [wrong]})).verdict.fails
+    assert examine(Claim("a", "action-angle", {**keys, "J": [area.replace("4*", "2*")]})).verdict.fails
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("wrong", ["4*elliptic_k(1/4)*E**(3/4)/(3*pi)", "E**(3/4)"])
+def test_other_actions_of_a_quartic_wall_fail(wrong):
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + q**4", "parameters": {"E": "positive"}}
+    assert examine(Claim("a", "action-angle", {**keys, "J": [wrong]})).verdict.fails
 
 
 OSCILLATOR = {"q": ["q"], "p": ["p"], "H": "p**2/(2*m) + m*omega**2*q**2/2"}

@@ -21,6 +21,7 @@ from canon.flow.geometry.certified_derivatives import Residual, RoundedValue, de
 from canon.flow.run.event import Event, PreparedEvent
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.heyoka_bridge import heyoka_expressions
+from canon.kernel.heyoka_compiled import compiled_integrator
 from canon.kernel.program.hamilton_equations import HamiltonEquations, exact_number, exact_numbers
 from canon.kernel.program.series_gaps import may_have_gaps
 from canon.mechanics.hamilton.vector_field import VectorField
@@ -262,15 +263,13 @@ def _orbit(
     events: Sequence[PreparedEvent] = (),
 ) -> TaylorOrbit:
     """Return an orbit of heyoka's equations of a field, or of its variations too, at the start of its way."""
-    import heyoka as hy
-
     start, end = t_span
     forward = 1 if end > start else -1
     met = TaylorEvents(field.equations, events, "double", float, forward=forward)
     terms = LocalisedTerms.of(field.equations, float, None, Fraction(1), forward)
 
     def integrator(stops: Mapping[str, Sequence[Any]]) -> Any:
-        return hy.taylor_adaptive(equations, y0, time=start, compact_mode=compact, **stops)
+        return compiled_integrator(equations, y0, time=start, compact_mode=compact, **stops)
 
     own = met.heyoka_events()
     first = integrator(terms.beside(own) if own else own)

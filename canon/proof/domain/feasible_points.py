@@ -72,7 +72,7 @@ def moved_inside(
         if worst > 0:
             return at
         slopes = _gradient(gap, at)
-        square = sum(slope**2 for slope in slopes.values())
+        square = math.fsum(slope * slope for slope in slopes.values())  # infinite where a power would raise
         if not 0 < square < LARGEST**2:
             return None
         for s, slope in slopes.items():
