@@ -38,6 +38,8 @@ COARSE_BITS = 64
 SPARE_BITS = 32
 """Bits of the working precision that integrals need not reach."""
 EVALUATIONS = 200_000
+COARSE_EVALUATIONS = 4_000
+"""Those of an integral that only counts zeros: of one that takes more, a zero lies near the path; another is taken."""
 
 
 @dataclass(frozen=True)
@@ -116,6 +118,7 @@ class Libration:
                 lambda q, analytic: self.slope(q, analytic) / self.square(q, analytic),
                 list(reversed(self._path(d, None))),
                 COARSE_GOAL,
+                COARSE_EVALUATIONS,
             )
             if not turns.is_finite():
                 return False
@@ -134,7 +137,12 @@ class Libration:
         )
 
 
-def integral_along(f: Callable[[acb, bool], acb], corners: list[acb], tolerance: float | None = None) -> acb:
+def integral_along(
+    f: Callable[[acb, bool], acb],
+    corners: list[acb],
+    tolerance: float | None = None,
+    evaluations: int = EVALUATIONS,
+) -> acb:
     """Return the integral along the straight lines between corners, a ball that certainly holds it.
 
     Examples
@@ -145,7 +153,7 @@ def integral_along(f: Callable[[acb, bool], acb], corners: list[acb], tolerance:
     total = acb(0)
     goal = arb(2) ** (SPARE_BITS - ctx.prec) if tolerance is None else arb(tolerance)
     for start, end in pairwise(corners):
-        total += acb.integral(f, start, end, rel_tol=goal, abs_tol=goal, eval_limit=EVALUATIONS)
+        total += acb.integral(f, start, end, rel_tol=goal, abs_tol=goal, eval_limit=evaluations)
         if not total.is_finite():
             break
     return total
