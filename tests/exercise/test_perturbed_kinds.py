@@ -1,5 +1,7 @@
 """Claims of Hamilton–Jacobi theory and perturbation theory: what is told, and generators that would remove the mean."""
 
+from dataclasses import replace
+
 import pytest
 
 from canon.exercise.claim_verdict import examine
@@ -38,7 +40,8 @@ ANGLES = (
     ],
 )
 def test_what_is_told(name, told):
-    (judgement,) = judged([CLAIMS[name]])
+    patiently = replace(CLAIMS[name], budget=60.0)  # what is told does not depend on how busy the machine is
+    (judgement,) = judged([patiently])
     assert (judgement.status, judgement.feedback) == ("fails", told)
 
 

@@ -52,7 +52,7 @@ DIGITS = 15
 TORI = 3
 """On how many tori of the domain the actions must be the same formulas."""
 COMPARED = 9
-"""On how many more tori, in the whole domain, kinds of motion and formulas are compared."""
+"""On how many tori of the domain, in its box and outside, kinds of motion and formulas are compared."""
 POINTS = 24
 """Points of the domain that are tried for these tori; through some of them no bounded motion goes."""
 BITS = 128
@@ -313,22 +313,26 @@ def _kept_tori(
     except NotSeparatedError as reason:
         raise Undecided(f"actions are known where the Hamilton–Jacobi equation separates; {reason}") from None
     try:
-        found = list(islice(_bounded(integral, there), TORI))
         # A box is a hint only: what holds there must hold on the rest of the domain too.
-        elsewhere = list(islice(_bounded(integral, Domain(there.conditions)), COMPARED))
+        compared = list(islice(_bounded(integral, Domain(there.conditions)), COMPARED))
+        found = list(islice(_bounded(integral, there), TORI)) if there.box else compared[:TORI]
     except NotHolomorphicError as reason:
         raise Undecided(f"no quadrature of this H is certified: {reason}") from None
     if len(found) < TORI:
         raise Undecided(
             f"bounded motions were found through {len(found)} of {POINTS} points of the domain only; narrow it"
         )
-    compared = (*found, *elsewhere)
-    if len({tuple(cycle.kind for cycle in torus.cycles) for torus in compared}) > 1:
+    if len({tuple(cycle.kind for cycle in torus.cycles) for torus in (*found, *compared)}) > 1:
         raise Undecided(
             "the domain has motions of several kinds, librations and rotations; narrow it to those that are meant"
         )
     known = tuple(None if action is None else action.J for action in closed_actions(found[0]))
-    if any(not _lies_in(J, torus, i) for torus in compared for i, J in enumerate(known) if J is not None):
+    if any(
+        not _lies_in(J, torus, i)
+        for torus in (*found, *compared)
+        for i, J in enumerate(known)
+        if J is not None
+    ):
         raise Undecided("the actions are other functions in parts of the domain; narrow it")
     back = {symbol: f for f, symbol in frozen.items()}
     return _Tori(integral, tuple(found), tuple(J if J is None else exchanged(J, back) for J in known), back)
