@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from canon.cached_property import cached_property
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from sympy import Symbol
 
@@ -49,7 +49,8 @@ class Arena:
         self._rationals: dict[Fraction | int, int] = {}
         self._variables: dict[Symbol, int] = {}
         self._bits: dict[Symbol, int] = {}
-        self._sets: dict[int, frozenset[Symbol]] = {0: frozenset()}
+        self._in_order: list[Symbol] = []
+        self._sets: dict[bytes, frozenset[Symbol]] = {}
         self.negatives: dict[int, int] = {}
         """The node of −x for each node x whose negative was asked for."""
 
@@ -104,6 +105,7 @@ class Arena:
         found = self._variables.get(symbol)
         if found is None:
             bit = self._bits[symbol] = 1 << len(self._bits)
+            self._in_order.append(symbol)
             found = self._variables[symbol] = self._leaf(Node("symbol", (), symbol), bit)
         return found
 
@@ -134,6 +136,10 @@ class Arena:
                 waiting.extend(self.nodes[node].operands)
         return sorted(found)
 
+    def is_constant(self, node: int) -> bool:
+        """Whether a node depends on no symbol."""
+        return not self.masks[node]
+
     def symbols(self, node: int) -> frozenset[Symbol]:
         """Return the symbols a node depends on."""
         return self.all_symbols((node,))
@@ -143,10 +149,19 @@ class Arena:
         mask = 0
         for node in nodes:
             mask |= self.masks[node]
-        found = self._sets.get(mask)
+        # As bytes: Python's hash of 2^k is that of 2^(k mod 61), so that thousands of symbols would collide.
+        key = mask.to_bytes((mask.bit_length() + 7) // 8, "little")
+        found = self._sets.get(key)
         if found is None:
-            found = self._sets[mask] = frozenset(s for s, bit in self._bits.items() if bit & mask)
+            found = self._sets[key] = frozenset(self._marked(mask))
         return found
+
+    def _marked(self, mask: int) -> Iterator[Symbol]:
+        """Yield the symbols whose bits are set; of thousands of symbols most nodes depend on a few."""
+        while mask:
+            place = mask.bit_length() - 1
+            yield self._in_order[place]
+            mask ^= 1 << place
 
     def mask(self, symbols: Iterable[Symbol]) -> int:
         """Return the bits of symbols: a node depends on one of them where ``masks[node] & mask(symbols)``."""

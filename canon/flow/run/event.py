@@ -151,7 +151,7 @@ def prepared_events(system: HamiltonEquations, events: Sequence[Event]) -> tuple
 def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
     graph, state = system.graph, (*system.q, *system.p)
     value = system.node(sp.sympify(event.function, strict=True), f"the event {event}")
-    if not graph.symbols(value):
+    if graph.is_constant(value):
         raise ValueError(f"the event {event} does not depend on the motion")
     slopes = graph.gradient(value, (*state, system.t))
     rates = (*system.velocity, *system.force, graph.one)

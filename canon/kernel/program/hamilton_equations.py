@@ -174,14 +174,14 @@ def _equations(
         force=tuple(force),
         separable=separable,
         quadratic_kinetic=quadratic,
-        autonomous=t not in graph.symbols(node),
+        autonomous=not _depends(graph, [node], [t]),
         varying=len(varying),
     )
 
 
 def _depends(graph: Graph, nodes: Sequence[int], symbols: Sequence[Symbol]) -> bool:
-    wanted = frozenset[Any](symbols)
-    return any(wanted & graph.symbols(node) for node in nodes)
+    wanted = graph.mask(symbols)
+    return any(graph.masks[node] & wanted for node in nodes)
 
 
 def _is_linear(
@@ -230,7 +230,7 @@ def exact_number(value: Any, what: str) -> Fraction:
     if isinstance(value, sp.Expr):
         graph = Graph()
         node = graph.from_sympy(value)
-        if graph.symbols(node):
+        if not graph.is_constant(node):
             raise ValueError(f"{what} = {value} is no number; give one, such as 9.81 or Rational(1, 10)")
         return exact_value(graph, node)
     if isinstance(value, bool):

@@ -55,9 +55,9 @@ def exponents_of(graph: Graph, nodes: Sequence[int]) -> tuple[int, ...]:
             found[operands[0]] = None
         elif kind in _OF_SQUARES:
             found[graph.power(operands[0], 2)] = None
-        elif kind == "pow" and graph.symbols(operands[1]):
+        elif kind == "pow" and not graph.is_constant(operands[1]):
             found[graph.mul([operands[1], graph.function("log", operands[0])])] = None
-    varying = sorted(node for node in found if graph.symbols(node))
+    varying = sorted(node for node in found if not graph.is_constant(node))
     return tuple(node for k, node in enumerate(varying) if graph.negative(node) not in varying[:k])
 
 
@@ -76,7 +76,7 @@ def denominators_of(graph: Graph, nodes: Sequence[int]) -> tuple[int, ...]:
     found = dict[int, None]()
     for each in graph.reachable(nodes):
         kind, operands, _ = graph.nodes[each]
-        if kind == "pow" and graph.nodes[operands[0]].kind == "add" and graph.symbols(operands[0]):
+        if kind == "pow" and graph.nodes[operands[0]].kind == "add" and not graph.is_constant(operands[0]):
             exponent = graph.nodes[operands[1]]
             if exponent.kind != "number" or exponent.value < 0:
                 found[operands[0]] = None

@@ -101,7 +101,7 @@ def _factored(graph: Graph, term: int) -> tuple[Fraction, int]:
         return Fraction(1), term
     factor, rest = Fraction(1), list[int]()
     for operand in graph.nodes[term].operands:
-        if graph.symbols(operand):
+        if not graph.is_constant(operand):
             rest.append(operand)
         else:
             factor *= exact_value(graph, operand)
@@ -113,7 +113,7 @@ def _pairs(
 ) -> _Pairs | None:
     """Return the family of terms that has every pair of bodies once, in a symmetric function."""
     wanted = bodies * (bodies - 1) // 2
-    terms = [term for term in terms if len(graph.symbols(term)) == 2 * axes]
+    terms = [term for term in terms if graph.masks[term].bit_count() == 2 * axes]
     if len(terms) < wanted:
         return None
     families: dict[_Key, dict[tuple[int, int], tuple[int, Fraction, int]]] = {}
@@ -159,7 +159,7 @@ def _key(graph: Graph, node: int, slots: Mapping[Symbol, tuple[int, int]]) -> _K
     kind, operands, value = graph.nodes[node]
     if kind == "symbol":
         return ("symbol", slots[value])
-    if not graph.symbols(node):
+    if graph.is_constant(node):
         return ("number", exact_value(graph, node))
     if kind == "add":
         return ("add", *sorted(_signed(graph, term, slots) for term in operands))

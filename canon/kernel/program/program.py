@@ -90,7 +90,7 @@ def program(graph: Graph, outputs: Sequence[int], inputs: Sequence[Symbol]) -> P
     >>> [step.operation for step in quotient.instructions]
     ['input', 'mul', 'input', 'add', 'mul', 'mul', 'div']
     """
-    unknown = frozenset[Any]().union(*(graph.symbols(node) for node in outputs)) - set(inputs)
+    unknown = graph.all_symbols(outputs) - set(inputs)
     if unknown:
         named = ", ".join(sorted(map(str, unknown)))
         raise KeyError(f"no value for {named}: give each a number in parameters=")
@@ -147,7 +147,7 @@ class _Lowering:
 
     def _read(self, node: int) -> list[int]:
         kind, operands, _ = self.graph.nodes[node]
-        if not self.graph.symbols(node):
+        if self.graph.is_constant(node):
             return []
         if self._is_negative_sum(node):
             node = operands[1]
@@ -172,7 +172,7 @@ class _Lowering:
     def _factor(self, node: int) -> tuple[list[int], Fraction | None]:
         """Return what a product reads of a factor, and the negative exponent of one it divides by."""
         exponent = self._exact_exponent(node)
-        if not self.graph.symbols(node):
+        if self.graph.is_constant(node):
             return [], None
         if exponent is None or exponent > 0 or self.uses.get(node, 0) > 1:
             return [node], None
@@ -207,7 +207,7 @@ class _Lowering:
 
     def _lower(self, node: int) -> int:
         kind, operands, value = self.graph.nodes[node]
-        if not self.graph.symbols(node):
+        if self.graph.is_constant(node):
             return self._constant(exact_value(self.graph, node))
         if kind == "symbol":
             return self._emit("input", value=self.inputs[value])
@@ -238,7 +238,7 @@ class _Lowering:
     def _product(self, factors: Sequence[int]) -> int:
         constant, above, below = Fraction(1), list[int](), list[int]()
         for factor in factors:
-            if not self.graph.symbols(factor):
+            if self.graph.is_constant(factor):
                 constant *= exact_value(self.graph, factor)
                 continue
             (read,), exponent = self._factor(factor)
