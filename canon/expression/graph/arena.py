@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from canon.cached_property import cached_property
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from sympy import Symbol
 
@@ -29,6 +29,10 @@ class Node(NamedTuple):
     kind: str
     operands: tuple[int, ...] = ()
     value: Any = None
+
+
+_KEPT = 64
+"""Of how many groups of nodes it is kept what they are computed from."""
 
 
 class Arena:
@@ -50,6 +54,7 @@ class Arena:
         self._variables: dict[Symbol, int] = {}
         self._bits: dict[Symbol, int] = {}
         self._in_order: list[Symbol] = []
+        self._reached: dict[tuple[int, ...], tuple[int, ...]] = {}
         self._sets: dict[bytes, frozenset[Symbol]] = {}
         self.negatives: dict[int, int] = {}
         """The node of −x for each node x whose negative was asked for."""
@@ -126,15 +131,21 @@ class Arena:
             return self.operation(kind, tuple(operands))
         return operands[0] if operands else neutral
 
-    def reachable(self, nodes: Iterable[int]) -> list[int]:
+    def reachable(self, nodes: Iterable[int]) -> Sequence[int]:
         """Return the given nodes and all they are computed from, operands first."""
-        found, waiting = set[int](), list(nodes)
-        while waiting:
-            node = waiting.pop()
-            if node not in found:
-                found.add(node)
-                waiting.extend(self.nodes[node].operands)
-        return sorted(found)
+        asked = tuple(nodes)
+        known = self._reached.get(asked)
+        if known is None:
+            found, waiting = set[int](), list(asked)
+            while waiting:
+                node = waiting.pop()
+                if node not in found:
+                    found.add(node)
+                    waiting.extend(self.nodes[node].operands)
+            if len(self._reached) >= _KEPT:
+                self._reached.clear()
+            known = self._reached[asked] = tuple(sorted(found))
+        return known
 
     def is_constant(self, node: int) -> bool:
         """Whether a node depends on no symbol."""

@@ -6,6 +6,7 @@ import contextlib
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -64,11 +65,11 @@ class Arithmetic:
         """Return base**exponent: products for whole exponents, a square root for halves."""
         if not isinstance(exponent, Fraction):
             return base**exponent
-        if exponent.denominator == 1:
-            return base**exponent.numerator if exponent > 0 else 1 / base**-exponent.numerator
-        if exponent.denominator == 2:
-            return self.power(self.root(base), exponent * 2)
-        return base ** self.number(exponent)
+        whole, part = exponent.numerator, exponent.denominator
+        if part > 2:
+            return base ** self.number(exponent)
+        base = base if part == 1 else self.root(base)
+        return base**whole if whole > 0 else 1 / base**-whole
 
     def quiet(self) -> AbstractContextManager[Any]:
         """Keep NumPy from warning where a value leaves a function's domain: it returns NaN or inf."""
@@ -98,6 +99,7 @@ def _each(dtype: type[np.floating[Any]], name: str) -> Callable[[Any], Any]:
 def _numpy(dtype: type[np.floating[Any]]) -> Arithmetic:
     largest = np.finfo(dtype).maxexp
 
+    @lru_cache(maxsize=4096)
     def number(value: Fraction) -> Any:
         top_bits, bottom_bits = value.numerator.bit_length(), value.denominator.bit_length()
         if top_bits - bottom_bits > largest:

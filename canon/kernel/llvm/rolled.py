@@ -34,14 +34,16 @@ _CHEAP, _AGAIN = ("add", "sub", "mul", "neg"), 16
 """What is computed again rather than read from memory, and up to how many operations."""
 
 
-def is_worth_rolling(steps: Program, beside: Program | None = None) -> bool:
+def is_worth_rolling(steps: Program, beside: Callable[[], Program] | None = None) -> bool:
     """Return whether a program is better written as loops.
 
-    A short one is where one beside it is: of arrays that loops work on, nothing is then kept in registers.
+    A short one is where one beside it is: of arrays that loops work on, nothing is then kept in registers. That one may
+    be very long, and is asked for only where it decides.
     """
     count = len(steps.instructions)
-    shortest = _BESIDE if beside is not None and is_worth_rolling(beside) else _REGULAR
-    if count <= shortest:
+    if count <= _BESIDE:
+        return False
+    if count <= _REGULAR and not (beside is not None and is_worth_rolling(beside())):
         return False
     families, location = families_of(steps)
     places = operand_places(steps, families, location)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.program.pairwise import PairForces
+    from canon.kernel.program.program import Program
 
     _Take: TypeAlias = Callable[[str, str], None]
     """What is done with the number of a component and its rate."""
@@ -99,6 +100,9 @@ class _SplittingWriter:
     kick_clock: str
     pairs: PairForces | None
     kick_first: bool
+    programs: dict[tuple[int, ...], Program] = field(
+        default_factory=dict[tuple[int, ...], "Program"], repr=False
+    )
 
     @classmethod
     def of(
@@ -153,9 +157,9 @@ class _SplittingWriter:
     def _evaluate(self, nodes: Sequence[int], reads: int, clock: str, take: _Take) -> None:
         """Write functions of t and the n components from ``reads`` on, and hand each to ``take``."""
         w, n, system = self.w, self.n, self.system
-        steps = system.program(nodes)
+        steps = self._program(nodes)
         state = w.at(self.y, self.gap) if reads else self.y
-        if is_worth_rolling(steps, system.program(system.force) if reads else None):
+        if is_worth_rolling(steps, (lambda: self._program(system.force)) if reads else None):
             write_rolled(w, steps, state, clock, take)
             return
         arguments = ["poison"] * (2 * n + 1)
@@ -164,6 +168,13 @@ class _SplittingWriter:
         arguments[2 * n] = w.load(clock, 0)
         for i, value in enumerate(w.program(steps, arguments)):
             take(str(i), value)
+
+    def _program(self, nodes: Sequence[int]) -> Program:
+        """Return the program of some nodes, made once though a loop may write it twice."""
+        found = self.programs.get(tuple(nodes))
+        if found is None:
+            found = self.programs[tuple(nodes)] = self.system.program(nodes)
+        return found
 
     def _moving(self, first: int, coefficient: str) -> _Take:
         """Return what adds coefficient · rate to the components from ``first`` on."""

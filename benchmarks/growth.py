@@ -1,0 +1,216 @@
+"""How waiting grows with size: a table of processor seconds and the slope of their logarithms.
+
+    python benchmarks/growth.py              # every row, some minutes
+    python benchmarks/growth.py --quick      # without the largest size of each row
+    python benchmarks/growth.py chain bodies # some rows
+
+Each size is measured once, in a process of its own, its start and imports left out. The slope is that between the two
+largest sizes: 1 is linear. What is counted is the processor time of the process and its children.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+HERE = Path(__file__)
+sys.path.insert(0, str(HERE.parents[1]))
+
+
+class Row(NamedTuple):
+    what: str
+    sizes: tuple[int, ...]
+    work: Callable[[int], Callable[[], object]]
+    """From a size to the work that is timed; what it prepares is not."""
+
+
+def used() -> float:
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime
+
+
+def chain(sites: int) -> Callable[[], object]:
+    """From H, a sum that SymPy has built, to the state after the first step."""
+    import numpy as np
+    import sympy as sp
+
+    from canon import Hamiltonian, Splitting, propagate
+
+    q, p = sp.symbols(f"q0:{sites}", real=True), sp.symbols(f"p0:{sites}", real=True)
+    stretches = [b - a for a, b in zip((sp.Integer(0), *q), (*q, sp.Integer(0)), strict=True)]
+    H = sp.Add(*(x**2 / 2 for x in p), *(d**2 / 2 + d**4 / 40 for d in stretches))
+    start = np.concatenate([np.sin(np.arange(sites)), np.zeros(sites)])
+    how = {"method": Splitting("verlet"), "step": 0.01, "samples": 1}
+    return lambda: propagate(Hamiltonian(H, q, p), (0, 0.01), start, **how)
+
+
+def bodies(number: int) -> Callable[[], object]:
+    """The same of bodies that attract each other, every pair a term."""
+    import numpy as np
+    import sympy as sp
+
+    from canon import Hamiltonian, Splitting, propagate
+
+    x = [sp.symbols(f"x{k} y{k} z{k}", real=True) for k in range(number)]
+    p = sp.symbols(f"p0:{3 * number}", real=True)
+    pairs = [
+        -1 / sp.sqrt(sum((a - b) ** 2 for a, b in zip(x[i], x[k], strict=True)))
+        for i in range(number)
+        for k in range(i)
+    ]
+    H = sp.Add(*(each**2 / 2 for each in p), *pairs)
+    start = np.concatenate([10 * np.random.default_rng(1).normal(size=3 * number), np.zeros(3 * number)])
+    how = {"method": Splitting("verlet"), "step": 0.001, "samples": 1}
+    return lambda: propagate(Hamiltonian(H, [s for body in x for s in body], p), (0, 0.001), start, **how)
+
+
+def links(number: int) -> Callable[[], object]:
+    """From the Lagrangian of a pendulum of many links to its accelerations as a function of numbers."""
+    import sympy as sp
+
+    from canon import Lagrangian, coordinates
+    from canon.flow import right_hand_side
+
+    angles = coordinates(" ".join(f"theta{k}" for k in range(number)))
+    speeds, heights = [], []
+    vx = vy = height = sp.Integer(0)
+    for a in angles:
+        vx, vy, height = vx + sp.cos(a) * a.dot, vy + sp.sin(a) * a.dot, height - sp.cos(a)
+        speeds.append((vx**2 + vy**2) / 2)
+        heights.append(height)
+    L = Lagrangian(sp.Add(*speeds) - sp.Add(*heights), list(angles))
+    start = [0.1] * number + [0.0] * number
+    return lambda: right_hand_side(L, start)(0.0, start)
+
+
+def claims(number: int) -> Callable[[], object]:
+    """A sheet of so many different claims, judged in one process."""
+    from canon.exercise.sheet.sheet import Claim
+    from canon.exercise.sheet_check import judged
+
+    def claim(k: int) -> Claim:
+        keys = {
+            "lhs": f"sin({k + 1}*x)**2 + cos({k + 1}*x)**2 + {k}",
+            "rhs": str(k + 1),
+            "parameters": {"x": "real"},
+        }
+        return Claim(f"c{k}", "equality-only", keys)
+
+    sheet = [claim(k) for k in range(number)]
+    return lambda: list(judged(sheet))
+
+
+def cases(number: int) -> Callable[[], object]:
+    """A study of so many short cases, from the first to its finished status."""
+    from canon import Splitting
+    from canon.study.cases.run_study import run_study
+    from canon.study.cases.store import Store
+    from canon.study.cases.study import Study
+
+    starts = [[0.0, 0.1 + 0.3 * k / number, 0.4, 0.1] for k in range(number)]
+    study = Study.of(
+        system="henon-heiles", start=starts, method=Splitting("verlet"), step=0.05, span=25.6, samples=256
+    )
+    path = Path(tempfile.mkdtemp()) / "grows.sqlite"
+    return lambda: run_study(study, Store(path))
+
+
+def samples(number: int) -> Callable[[], object]:
+    """One orbit of as many steps, each kept, and its energy error."""
+    return _pendulum(lambda H, how: how(H, (0, number / 10), [1.0, 0.0], step=0.1, samples=number))
+
+
+def orbits(number: int) -> Callable[[], object]:
+    """So many orbits side by side for 100 steps."""
+    import numpy as np
+
+    starts = np.array([np.linspace(0.1, 2.0, number), np.zeros(number)])
+    return _pendulum(lambda H, how: how(H, (0, 10), starts, step=0.1, samples=1))
+
+
+def _pendulum(go: Callable[..., object]) -> Callable[[], object]:
+    from functools import partial
+
+    import sympy as sp
+
+    from canon import Hamiltonian, Splitting, propagate
+
+    q, p = sp.symbols("q p", real=True)
+    H = Hamiltonian(p**2 / 2 - sp.cos(q), [q], [p])
+    how = partial(propagate, method=Splitting("verlet"))
+    how(H, (0, 1), [1.0, 0.0], step=0.1, samples=1)
+    return lambda: go(H, how)
+
+
+ROWS = {
+    "chain": Row("sites of a chain, H to first step", (100, 300, 1_000, 3_000, 10_000), chain),
+    "bodies": Row("bodies that attract, H to first step", (10, 20, 50, 100, 200), bodies),
+    "links": Row("links of a pendulum, L to first accelerations", (5, 10, 20, 40, 80), links),
+    "claims": Row("claims of a sheet", (10, 100, 1_000, 10_000), claims),
+    "cases": Row("cases of a study", (10, 100, 1_000, 10_000), cases),
+    "samples": Row("samples of an orbit", (10**3, 10**4, 10**5, 10**6, 10**7), samples),
+    "orbits": Row("orbits side by side, 100 steps", (1, 10, 10**2, 10**3, 10**4, 10**5, 10**6), orbits),
+}
+
+
+def alone(name: str, size: int) -> float:
+    """Return the seconds of one size, measured in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, str(HERE), "--one", name, str(size)], capture_output=True, text=True, check=False
+    )
+    if done.returncode:
+        sys.exit(f"{name} {size}: {done.stderr.strip().splitlines()[-1]}")
+    return float(json.loads(done.stdout))
+
+
+def one(name: str, size: int) -> float:
+    work = ROWS[name].work(size)
+    import canon.flow.propagation
+    import canon.kernel.llvm.machine_code  # noqa: F401  loaded before it is timed
+
+    begun = used()
+    work()
+    return used() - begun
+
+
+def table(names: list[str], quick: bool) -> None:
+    for name in names:
+        row = ROWS[name]
+        sizes = row.sizes[:-1] if quick else row.sizes
+        found = [alone(name, size) for size in sizes]
+        slope = math.log(found[-1] / found[-2]) / math.log(sizes[-1] / sizes[-2])
+        print(row.what)
+        print("  size     " + "".join(f"{size:>10,}" for size in sizes))
+        print(
+            "  seconds  " + "".join(f"{seconds:>10.3f}" for seconds in found) + f"   slope {slope:.2f}",
+            flush=True,
+        )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("rows", nargs="*", choices=[*ROWS, []], help="rows of the table, all where not given")
+    parser.add_argument("--quick", action="store_true", help="without the largest size of each row")
+    parser.add_argument("--one", nargs=2, help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.one:
+        print(json.dumps(one(given.one[0], int(given.one[1]))))
+        return
+    os.environ.setdefault("PYTHONHASHSEED", "0")
+    table(given.rows or list(ROWS), given.quick)
+
+
+if __name__ == "__main__":
+    main()
