@@ -120,15 +120,27 @@ class CentreManifold:
 
     @cached_property
     def hamiltonian(self) -> Hamiltonian:
-        """The Hamiltonian on the manifold in (Q, P), its coefficients rounded beyond the digits that are certain."""
+        """The Hamiltonian on the manifold in (Q, P), its coefficients rounded beyond the digits that are certain.
+
+        Raises
+        ------
+        PrecisionError
+            Where an error, in these variables, is more than the digits allow.
+        """
         return Hamiltonian(self._in_real_variables(self.parts), self.q, self.p)
 
     @cached_property
     def embedding(self) -> dict[Symbol, Expr]:
-        """The old variables (q, p) as polynomials of degree order − 1 in (Q, P)."""
-        return {z: self._on_manifold(j, z) for j, z in enumerate((*self.source.q, *self.source.p))}
+        """The old variables (q, p) as polynomials of degree order − 1 in (Q, P).
 
-    def _on_manifold(self, j: int, z: Symbol) -> Expr:
+        Raises
+        ------
+        PrecisionError
+            Where an error of a coefficient is more than the digits allow.
+        """
+        return {z: self._embedded(j, z) for j, z in enumerate((*self.source.q, *self.source.p))}
+
+    def _embedded(self, j: int, z: Symbol) -> Expr:
         form = self.diagonal
         n, h = len(form.exponents), form.hyperbolic
         ring, brackets = FixedPointRing(2 * n, self.parts[2].ring.bits, h), PairBrackets(h, n - h)
@@ -141,16 +153,26 @@ class CentreManifold:
 
     def _rounded(self, number: arb) -> Expr:
         with precision(self.bits):
+            self._refuse_wide(float(number.rad()))
             middle = number.mid()
             text = "0" if abs(middle) < arb(10) ** -self.digits else middle.str(self.digits + 8, radius=False)
         return sp.Float(text, self.digits + 8) if text != "0" else sp.S.Zero
+
+    def _refuse_wide(self, error: float) -> None:
+        if not error <= 10.0**-self.digits:
+            raise PrecisionError(
+                f"a coefficient is known to within {error:.1e}, not 1e-{self.digits}; "
+                "give centre_manifold more digits"
+            )
 
     def _in_real_variables(self, parts: Mapping[int, EnclosedPolynomial]) -> Expr:
         """Return a real polynomial in z = Q + i P, z̄ = Q − i P; what is zero to the digits is left out."""
         m, symbols = len(self.q), (*self.q, *self.p)
         total: dict[tuple[int, ...], acb] = {}
         with precision(self.bits):
-            for part in parts.values():
+            for degree, part in parts.items():
+                # (Q + iP)ᵏ (Q − iP)ˡ has no coefficient above 2ᵏ⁺ˡ: this bounds the terms that have no ball too
+                self._refuse_wide(part.bound * 2.0**degree)
                 for powers, c in part.coefficients.items():
                     for real, factor in _expanded(powers, m).items():
                         total[real] = total.get(real, acb(0)) + c * factor

@@ -1,5 +1,7 @@
 """Centre manifolds: against the exact normal form, closed forms at L1, and the equations of motion."""
 
+from dataclasses import replace
+
 import mpmath as mp
 import pytest
 import sympy as sp
@@ -148,6 +150,42 @@ def test_more_digits_lie_within_the_bounds_of_fewer():
         for powers, ball in fine.coefficients.items():
             near = coarse.coefficients.get(powers, acb(0))
             assert abs(ball - near).abs_lower() <= arb(coarse.error) + arb(fine.error)
+
+
+def test_coefficients_that_are_not_known_to_the_digits_are_not_given():
+    found = centre_manifold(Hamiltonian(SADDLE + x**2 * y - y**3 / 3, [x, y], [px, py]), 4)
+    assert found.hamiltonian.H.has(found.q[0])
+    assert found.embedding[x] == 0  # x = p_x = 0 is invariant
+    assert found.embedding[y].has(found.q[0])
+    claimed = replace(found, digits=60)
+    with pytest.raises(PrecisionError, match="more digits"):
+        _ = claimed.hamiltonian
+    with pytest.raises(PrecisionError, match="more digits"):
+        _ = claimed.embedding
+
+
+def test_a_part_without_terms_but_with_an_error_is_not_taken_for_zero():
+    found = centre_manifold(Hamiltonian(SADDLE + x**2 * y - y**3 / 3, [x, y], [px, py]), 4)
+    ring = found.parts[3].ring
+    for error, kept in ((ring.unit >> 60, True), (ring.unit >> 40, False)):
+        unsure = replace(found, parts={**found.parts, 3: replace(ring.zero, error=error)})
+        if kept:
+            assert unsure.hamiltonian.H.coeff(found.q[0], 3) == 0
+        else:
+            with pytest.raises(PrecisionError, match="known to within"):
+                _ = unsure.hamiltonian
+
+
+@pytest.mark.parametrize("j", range(4))
+def test_an_embedding_with_wide_generators_is_not_given(j):
+    found = centre_manifold(Hamiltonian(SADDLE + x**2 * y - y**3 / 3, [x, y], [px, py]), 4)
+    degree, chi = found.generators[0]
+    wide = replace(
+        found, generators=((degree, replace(chi, error=chi.ring.unit >> 30)), *found.generators[1:])
+    )
+    assert wide.hamiltonian.H.has(found.q[0])
+    with pytest.raises(PrecisionError, match="known to within"):
+        wide._embedded(j, [x, y, px, py][j])
 
 
 @pytest.mark.slow

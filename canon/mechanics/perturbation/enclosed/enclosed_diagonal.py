@@ -30,8 +30,6 @@ class EnclosedDiagonalForm:
 
     Parameters
     ----------
-    rows
-        (a, b) as linear functions of (q, p), of shape (2n, 2n).
     columns
         (q, p) as linear functions of (a, b), of shape (2n, 2n).
     exponents
@@ -40,7 +38,6 @@ class EnclosedDiagonalForm:
         How many pairs are hyperbolic.
     """
 
-    rows: tuple[tuple[acb, ...], ...]
     columns: tuple[tuple[acb, ...], ...]
     exponents: tuple[acb, ...]
     hyperbolic: int
@@ -76,8 +73,7 @@ def enclosed_diagonal_form(hessian: Sequence[Sequence[arb]]) -> EnclosedDiagonal
     if len(pairs) < n:
         raise NoDiagonalFormError("four exponents ±α ± iβ belong together, which is not computed in balls")
     columns = [_coordinate(k, pairs, len(real) // 2) for k in range(2 * n)]
-    kept = (*(tuple(a) for a, _, _ in pairs), *(tuple(b) for _, b, _ in pairs))
-    return EnclosedDiagonalForm(kept, tuple(columns), tuple(e for *_, e in pairs), len(real) // 2)
+    return EnclosedDiagonalForm(tuple(columns), tuple(e for *_, e in pairs), len(real) // 2)
 
 
 def _axes(exponents: Sequence[acb]) -> tuple[list[int], list[int]]:

@@ -57,7 +57,7 @@ def enclosed_equilibrium(
 def enclosed_hessian(H: Expr, variables: Sequence[Symbol], place: Mapping[Symbol, acb]) -> list[list[arb]]:
     """Return ∂²H at a place in balls."""
     known: dict[Any, acb] = dict(place)
-    return [[value(H.diff(x, y), {}, dict(known)).real for y in variables] for x in variables]
+    return [[value(H.diff(x, y), {}, known).real for y in variables] for x in variables]
 
 
 def _newton_step(
@@ -71,8 +71,8 @@ def _newton_step(
     """Return (∇²H(box))⁻¹ ∇H(at)."""
     here: dict[Any, acb] = {**constants, **{z: acb(x) for z, x in zip(variables, at, strict=True)}}
     there: dict[Any, acb] = {**constants, **{z: acb(x) for z, x in zip(variables, box, strict=True)}}
-    slope = arb_mat([[value(g, {}, dict(here)).real] for g in gradient])
-    matrix = arb_mat([[value(h, {}, dict(there)).real for h in row] for row in curvature])
+    slope = arb_mat([[value(g, {}, here).real] for g in gradient])
+    matrix = arb_mat([[value(h, {}, there).real for h in row] for row in curvature])
     try:
         step = matrix.solve(slope)
     except ZeroDivisionError as singular:

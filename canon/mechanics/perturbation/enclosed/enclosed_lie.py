@@ -13,15 +13,12 @@ from canon.mechanics.perturbation.enclosed.graded_polynomial import GradedPolyno
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from flint import fmpz_mpoly
-
     from canon.mechanics.perturbation.enclosed.enclosed_polynomial import FixedPointRing
-    from canon.mechanics.perturbation.enclosed.graded_polynomial import PairBrackets
+    from canon.mechanics.perturbation.enclosed.graded_polynomial import Both, PairBrackets
 
 __all__ = ["enclosed_homological_solution", "enclosed_transformed"]
 
 Weight = tuple[int, ...]
-Both = tuple["fmpz_mpoly", "fmpz_mpoly"]
 Terms = tuple[dict[Weight, int], dict[Weight, int]]
 
 

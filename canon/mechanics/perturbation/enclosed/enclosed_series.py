@@ -84,7 +84,7 @@ class _Expansion:
 
     def _fresh(self, f: Any) -> Parts:
         if not f.has(*self.displacements):
-            return self._constant(value(f, {}, dict(self.place)))
+            return self._constant(value(f, {}, self.place))
         if f in self.displacements:
             return [self.ring.constant(self.place[f]), self.displacements[f], *self._zeros(2)][
                 : self.order + 1

@@ -50,8 +50,8 @@ class GradedPolynomial:
 
     def __add__(self, other: GradedPolynomial) -> GradedPolynomial:
         total = dict(self.grades)
-        for h, (re, im) in other.grades.items():
-            total[h] = (total[h][0] + re, total[h][1] + im) if h in total else (re, im)
+        for h, both in other.grades.items():
+            _add(total, h, both)
         return GradedPolynomial(self.ring, total, self.error + other.error)
 
     def __sub__(self, other: GradedPolynomial) -> GradedPolynomial:
@@ -127,7 +127,7 @@ class PairBrackets:
             for h, (re, im) in self._pair(f, g, j, highest).items():
                 if j >= self.hyperbolic:  # times −2i
                     re, im = 2 * im, -2 * re
-                total[h] = (total[h][0] + re, total[h][1] + im) if h in total else (re, im)
+                _add(total, h, (re, im))
         unit = f.ring.unit
         # Σ over pairs of ‖∂f‖ ‖∂g‖ is at most deg f ‖f‖ · deg g ‖g‖, and |c| is 1 or 2
         error = 2 * degrees * (f.norm * g.error + f.error * (g.norm + g.error)) // unit + 1
@@ -143,8 +143,11 @@ class PairBrackets:
                 for k, right in g.slopes[other].items():
                     if h + k <= highest:
                         re, im = complex_product(left, right)
-                        had = total.get(h + k)
-                        if sign < 0:
-                            re, im = -re, -im
-                        total[h + k] = (re, im) if had is None else (had[0] + re, had[1] + im)
+                        _add(total, h + k, (re, im) if sign > 0 else (-re, -im))
         return total
+
+
+def _add(total: dict[int, Both], h: int, both: Both) -> None:
+    """Add real and imaginary part to those of a grade."""
+    had = total.get(h)
+    total[h] = both if had is None else (had[0] + both[0], had[1] + both[1])
