@@ -8,14 +8,13 @@ every size is known before it is tried.
 from __future__ import annotations
 
 import functools
-import math
 from typing import TYPE_CHECKING, TypeAlias, cast
 
 import sympy as sp
 from sympy import Expr
 
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
-from canon.mechanics.algebra.substitution import size
+from canon.mechanics.algebra.substitution import MOST_TERMS, size, terms_if_expanded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,8 +24,6 @@ __all__ = ["book_forms"]
 Wave: TypeAlias = "type[sp.sin | sp.cos]"
 
 MOST_NODES = 300
-MOST_TERMS = 150
-"""Terms that multiplying out may make."""
 MOST_GENERATORS = 14
 """Symbols and functions of a fraction that is brought to lowest terms."""
 MOST_DENOMINATORS = 4
@@ -64,7 +61,7 @@ def book_forms(f: Expr) -> tuple[Expr, ...]:
 
 def _forms(f: Expr) -> Iterator[Expr]:
     yield _factored(f)
-    if _terms(f) > MOST_TERMS:
+    if terms_if_expanded(f) > MOST_TERMS:
         return
     expanded = sp.expand(f)
     yield expanded
@@ -85,7 +82,7 @@ def _fractions(f: Expr) -> Iterator[Expr]:
     if not _is_small_fraction(f):
         return
     above, below = sp.fraction(sp.together(f))
-    if max(_terms(above), _terms(below)) > MOST_TERMS:
+    if max(terms_if_expanded(above), terms_if_expanded(below)) > MOST_TERMS:
         return
     above, below = sp.expand(above), sp.expand(below)
     waves = [pair for pair in ((sp.sin, sp.cos), (sp.cos, sp.sin)) if f.has(pair[0])]
@@ -120,19 +117,6 @@ def _is_small_fraction(f: Expr) -> bool:
     return bool(below) and len(sums) <= MOST_DENOMINATORS and len(generators) <= MOST_GENERATORS
 
 
-def _terms(f: sp.Basic) -> float:
-    """Return how many terms there are at most where an expression is multiplied out."""
-    if isinstance(f, sp.Add):
-        return sum(map(_terms, f.args))
-    if isinstance(f, sp.Mul):
-        return math.prod(map(_terms, f.args))
-    if isinstance(f, sp.Pow) and f.base.is_Add:
-        exponent = f.exp if f.exp.is_Integer else sp.S.One
-        terms = _terms(f.base)
-        return terms ** min(abs(int(exponent)), 50) if terms < MOST_TERMS else math.inf
-    return max((1.0, *(_terms(part) for part in f.args))) if f.args else 1.0
-
-
 def _without_squares(f: Expr, wave: Wave, other: Wave) -> Expr:
     """Return a sum of products with 1 − cos² for sin², multiplied out, or the other way round."""
     by: dict[Expr, Expr] = {}
@@ -142,4 +126,4 @@ def _without_squares(f: Expr, wave: Wave, other: Wave) -> Expr:
             pairs, left = divmod(int(exponent), 2)
             by[power] = base**left * (1 - other(base.args[0]) ** 2) ** pairs
     there = cast("Expr", f.xreplace(by))
-    return sp.expand(there) if _terms(there) <= MOST_TERMS else there
+    return sp.expand(there) if terms_if_expanded(there) <= MOST_TERMS else there

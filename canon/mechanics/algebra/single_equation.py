@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.mechanics.algebra.substitution import exchanged, size
+from canon.mechanics.algebra.substitution import MOST_TERMS, exchanged, size, terms_if_expanded
 from canon.proof.trees.polynomial_roots import low_degree_roots
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, tu
     polynomial = sp.numer(sp.together(exchanged(equation, names)))
     for kernel in sorted(kernels, key=lambda k: (k != x, size(k))):
         reduced = _eliminated(polynomial, kernel, names, x)
-        if reduced is None:
+        if reduced is None or terms_if_expanded(reduced) > MOST_TERMS:
             continue
         for root, signs in low_degree_roots(reduced, names[kernel]):
             value = exchanged(root, back)
@@ -58,16 +58,41 @@ def generator_values(equation: Expr, x: Symbol) -> Iterator[tuple[Expr, Expr, tu
 
 
 def _eliminated(polynomial: Expr, kept: Expr, names: Mapping[Expr, Symbol], x: Symbol) -> Expr | None:
-    """Eliminate all generators but one by their relations with it: s² + c² = 1, r² = radicand, xⁿ."""
-    u = names[kept]
+    """Eliminate all generators but one by their relations with it: s² + c² = 1, r² = radicand, xⁿ.
+
+    Functions without x are named meanwhile: SymPy eliminates among polynomials over the integers in a moment, among
+    polynomials over functions it may take minutes.
+    """
+    u, constants = names[kept], dict[Expr, Symbol]()
     for kernel, name in names.items():
         if kernel == kept or not polynomial.has(name):
             continue
         relation = _relation(kernel, name, kept, u, names)
-        if relation is None or relation.has(x):
+        if relation is None or relation.has(x) or _is_large(polynomial, relation, name):
             return None
-        polynomial = cast("Expr", sp.resultant(polynomial, relation, name))
+        polynomial = cast(
+            "Expr", sp.resultant(_named(polynomial, constants), _named(relation, constants), name)
+        )
+    polynomial = exchanged(polynomial, {name: f for f, name in constants.items()})
     return polynomial if polynomial.has(u) else None
+
+
+def _is_large(polynomial: Expr, relation: Expr, name: Symbol) -> bool:
+    """Whether the resultant, a product of the polynomial at all roots of the relation, may have many terms."""
+    return terms_if_expanded(polynomial) ** float(sp.degree(relation, name)) > MOST_TERMS
+
+
+def _named(f: Expr, constants: dict[Expr, Symbol]) -> Expr:
+    """Return f with a symbol for each function that stands in its sums, products and whole powers."""
+    return exchanged(f, {g: constants.setdefault(g, sp.Dummy()) for g in _functions(f)})
+
+
+def _functions(f: Expr) -> set[Expr]:
+    if f.is_Add or f.is_Mul:
+        return {g for part in f.args for g in _functions(cast("Expr", part))}
+    if f.is_Pow and f.as_base_exp()[1].is_Integer:
+        return _functions(f.as_base_exp()[0])
+    return set() if f.is_Symbol or f.is_Rational else {f}
 
 
 def _relation(kernel: Expr, name: Symbol, kept: Expr, u: Symbol, names: Mapping[Expr, Symbol]) -> Expr | None:

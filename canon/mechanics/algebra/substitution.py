@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
@@ -12,7 +13,23 @@ from canon.expression.symbols.user_input import given_expression
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-__all__ = ["as_tuple", "entry", "exchanged", "shortened", "size", "substitute", "symbols_of"]
+__all__ = [
+    "MOST_TERMS",
+    "as_tuple",
+    "entry",
+    "exchanged",
+    "shortened",
+    "size",
+    "substitute",
+    "symbols_of",
+    "terms_if_expanded",
+]
+
+MOST_TERMS = 150
+"""How many terms, multiplied out, SymPy's polynomials are asked for: gcd and resultant of larger ones take minutes."""
+
+_LOG_OF_MANY = 40.0
+"""The logarithm of a number of terms that no memory holds."""
 
 
 def substitute(f: Expr, values: Mapping[sp.Symbol, Expr]) -> Expr:
@@ -53,9 +70,36 @@ def as_tuple(given: Sequence[Expr] | Expr) -> tuple[Expr, ...]:
     return tuple(given_expression(f) for f in given)
 
 
+def terms_if_expanded(f: sp.Basic) -> float:
+    """Return how many terms there are at most where an expression is multiplied out, here or in one of its parts.
+
+    Examples
+    --------
+    >>> from sympy.abc import x, y
+    >>> terms_if_expanded((x + y) ** 3 * (x + 1)), terms_if_expanded((x + y) ** 900)
+    (16.0, inf)
+    """
+    return _terms(f, {})
+
+
+def _terms(f: sp.Basic, known: dict[sp.Basic, float]) -> float:
+    if f not in known:
+        parts = [_terms(part, known) for part in f.args]
+        if isinstance(f, sp.Add):
+            known[f] = math.fsum(parts)
+        elif isinstance(f, sp.Mul):
+            known[f] = math.prod(parts)
+        elif isinstance(f, sp.Pow) and f.base.is_Add and f.exp.is_Integer:
+            few = math.log(parts[0]) * abs(int(f.exp)) < _LOG_OF_MANY
+            known[f] = parts[0] ** abs(int(f.exp)) if few else math.inf
+        else:
+            known[f] = max((1.0, *parts))
+    return known[f]
+
+
 def shortened(F: Expr) -> Expr:
     """Return the shortest of a few plain forms of F: as it stands, over one denominator, multiplied out."""
-    if size(F) > 350:
+    if size(F) > 350 or terms_if_expanded(F) > MOST_TERMS:
         return F
     return min((F, sp.factor_terms(F), sp.expand(F), sp.cancel(sp.together(F))), key=size)
 

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+import time as clock
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+import sympy as sp
 from sympy import Expr, Symbol, atan, true
 
-from canon.expression.symbols.user_input import counted, given_kind, given_symbols
+from canon.expression.symbols.user_input import counted, given_kind, given_seconds, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.branch_point import branch_points, far_from_principal
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.canonical.point_inverse import point_branch
 from canon.mechanics.canonical.polar_inverse import free_angles, plain_sign, polar_branch
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.proof.domain.domain import Domain
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from sympy.logic.boolalg import Boolean
 
     from canon.mechanics.algebra.branch_point import BranchPoint
+    from canon.mechanics.canonical.polar_inverse import BranchOfInverse
 
 __all__ = ["NoClosedInverseError", "inverse_transformation", "meaning_of"]
 
@@ -30,7 +35,10 @@ class NoClosedInverseError(ValueError):
 
 
 def inverse_transformation(
-    transformation: CanonicalTransformation, new_q: Sequence[Symbol], new_p: Sequence[Symbol]
+    transformation: CanonicalTransformation,
+    new_q: Sequence[Symbol],
+    new_p: Sequence[Symbol],
+    budget: float = 30.0,
 ) -> CanonicalTransformation:
     """Return q(Q, P, t), p(Q, P, t), proved on the domain of the map.
 
@@ -42,11 +50,13 @@ def inverse_transformation(
         The map (q, p) → (Q, P).
     new_q, new_p
         Symbols for the new variables.
+    budget
+        Seconds for solving and proving; a step of algebra that is under way is finished.
 
     Raises
     ------
     NoClosedInverseError
-        Where the equations could not be solved on one branch that covers the domain.
+        Where the equations could not be solved on one branch that covers the domain, or not within the budget.
 
     Examples
     --------
@@ -67,10 +77,17 @@ def inverse_transformation(
     new_q, new_p = given_symbols(new_q, "new_q"), given_symbols(new_p, "new_p")
     meaning = meaning_of(T, new_q, new_p)
     symbols = set(T.variables).union(*(f.atoms(Symbol) for f in T.images))
+    deadline = clock.monotonic() + given_seconds(budget)
+    search = _Search(T, meaning, new_q, new_p, deadline)
     for witness in sorted(branch_points(symbols, meaning, T.domain, 12), key=far_from_principal)[:3]:
-        inverse = _polar(T, meaning, witness, new_q, new_p) or _peeled(T, meaning, witness, new_q, new_p)
+        inverse = search.through(witness)
         if inverse is not None:
             return inverse
+    if clock.monotonic() > deadline:
+        raise NoClosedInverseError(
+            f"no inverse in closed form was found within {budget:g} s; give inverse_transformation a larger budget, "
+            "or narrow the domain to one branch with conditions such as p > 0"
+        )
     raise NoClosedInverseError(
         f"the map could not be inverted in closed form on its whole domain{_same_images(T)}; narrow the domain "
         "to one branch with conditions such as p > 0"
@@ -92,52 +109,61 @@ def meaning_of(
     return meaning
 
 
-def _polar(
-    T: CanonicalTransformation,
-    meaning: Mapping[Symbol, Expr],
-    witness: BranchPoint,
-    new_q: Sequence[Symbol],
-    new_p: Sequence[Symbol],
-) -> CanonicalTransformation | None:
-    """Return the inverse of a map of polar type, proved on the domain and on the image that it states."""
-    branch = polar_branch(T.variables, meaning, witness)
-    if branch is None or not all_vanish(branch.returns(meaning), "the inverse is right", T.domain).holds:
-        return None
-    inverse = _inverse(T, branch.values, new_q, new_p, branch.ranges)
-    there = branch.undoes(meaning)
-    return inverse if all_vanish(there, "the map undoes its inverse", inverse.domain).holds else None
+@dataclass(frozen=True)
+class _Search:
+    """A map to be inverted in given symbols until a deadline."""
 
+    T: CanonicalTransformation
+    meaning: Mapping[Symbol, Expr]
+    new_q: Sequence[Symbol]
+    new_p: Sequence[Symbol]
+    deadline: float
 
-def _peeled(
-    T: CanonicalTransformation,
-    meaning: Mapping[Symbol, Expr],
-    witness: BranchPoint,
-    new_q: Sequence[Symbol],
-    new_p: Sequence[Symbol],
-) -> CanonicalTransformation | None:
-    """Return the inverse by one operation undone after the other, proved on the domain."""
-    solved = solve_system([(f, s) for s, f in meaning.items()], T.variables, Inversion(witness))
-    if solved is None:
-        return None
-    claims = ((f"{z} comes back", substitute(solved[z], meaning) - z) for z in T.variables)
-    if not all_vanish(claims, "the inverse is right", T.domain).holds:
-        return None
-    return _inverse(T, solved, new_q, new_p)
+    def through(self, witness: BranchPoint) -> CanonicalTransformation | None:
+        """Return the inverse on the branch of a witness, by the route that fits: coordinates alone, polar, peeled."""
+        T = self.T
+        return (
+            self._proved(point_branch(T.q, T.p, self.meaning, witness, self.deadline))
+            or self._proved(polar_branch(T.variables, self.meaning, witness, self.deadline))
+            or self._peeled(witness)
+        )
 
+    def _proved(self, branch: BranchOfInverse | None) -> CanonicalTransformation | None:
+        """Return the inverse of a branch, proved on the domain and on the image that it states."""
+        if branch is None or not self._all_vanish(
+            branch.returns(self.meaning), "the inverse is right", self.T.domain
+        ):
+            return None
+        inverse = self._inverse(branch.values, branch.ranges)
+        there = branch.undoes(self.meaning)
+        return inverse if self._all_vanish(there, "the map undoes its inverse", inverse.domain) else None
 
-def _inverse(
-    T: CanonicalTransformation,
-    values: Mapping[Symbol, Expr],
-    new_q: Sequence[Symbol],
-    new_p: Sequence[Symbol],
-    ranges: tuple[Boolean, ...] = (),
-) -> CanonicalTransformation:
-    moved = [cast("Boolean", c.xreplace(dict(values))) for c in T.domain.conditions]
-    if ranges:
+    def _peeled(self, witness: BranchPoint) -> CanonicalTransformation | None:
+        """Return the inverse by one operation undone after the other, proved on the domain."""
+        equations = [(f, s) for s, f in self.meaning.items()]
+        solved = solve_system(equations, self.T.variables, Inversion(witness, deadline=self.deadline))
+        if solved is None:
+            return None
+        claims = ((f"{z} comes back", substitute(solved[z], self.meaning) - z) for z in self.T.variables)
+        right = self._all_vanish(claims, "the inverse is right", self.T.domain)
+        return self._inverse(solved) if right else None
+
+    def _all_vanish(self, claims: Iterable[tuple[str, Expr]], question: str, domain: Domain) -> bool:
+        seconds = min(10.0, self.deadline - clock.monotonic())
+        return seconds > 0 and all_vanish(claims, question, domain, seconds).holds
+
+    def _inverse(
+        self, values: Mapping[Symbol, Expr], ranges: tuple[Boolean, ...] = ()
+    ) -> CanonicalTransformation:
+        T, n = self.T, len(self.T.q)
+        moved = [cast("Boolean", c.xreplace(dict(values))) for c in T.domain.conditions]
+        moved += [cast("Boolean", sp.Gt(values[z], 0)) for z in T.variables if z.is_positive]
         moved = [plain_sign(c) for c in moved]
-    conditions = tuple(c for c in (*ranges, *moved) if c != true)
-    images, n = [values[z] for z in T.variables], len(T.q)
-    return CanonicalTransformation(new_q, new_p, images[:n], images[n:], Domain(conditions), T.t)
+        conditions = tuple(c for c in (*ranges, *moved) if c != true)
+        images = [values[z] for z in T.variables]
+        return CanonicalTransformation(
+            self.new_q, self.new_p, images[:n], images[n:], Domain(conditions), T.t
+        )
 
 
 def _same_images(T: CanonicalTransformation) -> str:

@@ -10,6 +10,7 @@ What is found here is a suggestion of one branch; :mod:`inverse_transformation` 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, cast
@@ -49,11 +50,14 @@ class BranchOfInverse:
         What the new variables satisfy on this branch: the range of each arc, radicands that are positive.
     angles
         For each old angle that was found as an arc, what should be its sine and its cosine, and its turns.
+    within_a_turn
+        Angles, in the new variables, that the ranges put between -pi and pi.
     """
 
     values: Mapping[Symbol, Expr]
     ranges: tuple[Boolean, ...]
     angles: Mapping[Symbol, AngleFromArc]
+    within_a_turn: tuple[Expr, ...] = ()
 
     def returns(self, meaning: Mapping[Symbol, Expr]) -> list[tuple[str, Expr]]:
         """Return what must vanish in the old variables so that each of them comes back."""
@@ -74,17 +78,25 @@ class BranchOfInverse:
         The images hold angles that were found as arcs by their sines and cosines only, and atan2(s, c) has the
         sine s and the cosine c where s² + c² = 1, so that no arc is left in the claims.
         """
-        parts: dict[Expr, Expr] = {}
         claims: list[tuple[str, Expr]] = []
         for z, angle in self.angles.items():
-            parts |= {sin(z): angle.sine, cos(z): angle.cosine}
             claims.append((f"the squares add up to one for {z}", angle.sine**2 + angle.cosine**2 - 1))
-        named: dict[Expr, Symbol] = {f: sp.Dummy("part", real=True) for f in parts}
-        values = {**self.values, **{name: parts[f] for f, name in named.items()}}
-        for new, image in meaning.items():
-            there = plain_arcs(substitute(exchanged(image, named), values))
-            claims.append((f"{new} comes back", there - new))
-        return claims
+        arcs = {atan2(sin(angle), cos(angle)): angle for angle in self.within_a_turn}
+        there = {new: exchanged(self.at(image), arcs) for new, image in meaning.items()}
+        return [*claims, *((f"{new} comes back", f - new) for new, f in there.items())]
+
+    def at(self, f: Expr) -> Expr:
+        """Return a function of the old variables in the new ones, sines and cosines of angles without arcs."""
+        named: dict[Expr, Symbol] = {}
+        values = dict(self.values)
+        for z, angle in self.angles.items():
+            for part, value in ((sin(z), angle.sine), (cos(z), angle.cosine)):
+                named[part] = sp.Dummy("part", real=True)
+                values[named[part]] = value
+        there = united_squares(plain_arcs(substitute(exchanged(f, named), values)))
+        return exchanged(
+            there, {abs(c.lhs): c.lhs for c in self.ranges if isinstance(c, sp.Gt) and c.rhs == 0}
+        )
 
 
 @dataclass(frozen=True)
@@ -121,7 +133,10 @@ def free_angles(variables: Sequence[Symbol], images: Sequence[Expr]) -> list[Sym
 
 
 def polar_branch(
-    variables: Sequence[Symbol], meaning: Mapping[Symbol, Expr], witness: BranchPoint
+    variables: Sequence[Symbol],
+    meaning: Mapping[Symbol, Expr],
+    witness: BranchPoint,
+    deadline: float = math.inf,
 ) -> BranchOfInverse | None:
     """Return the branch of the inverse that the witness shows; None where the map is not of polar type.
 
@@ -133,6 +148,8 @@ def polar_branch(
         The new variables as expressions in the old ones.
     witness
         A point of the domain, which tells the branch.
+    deadline
+        When to give up, on the monotonic clock; a step that is under way is finished.
 
     Examples
     --------
@@ -142,7 +159,7 @@ def polar_branch(
     >>> dict(polar_branch([q, p], meaning, witness).values)
     {q: sqrt(2)*sqrt(P)*sin(Q), p: sqrt(2)*sqrt(P)*cos(Q)}
     """
-    system = _Polar([], dict(meaning), [], [])
+    system = _Polar([], dict(meaning), [], [], [])
     for symbol, image in meaning.items():
         system.add(symbol, image, variables, witness)
     parts = {z: _sine_and_cosine(z) for z in free_angles(variables, list(meaning.values()))}
@@ -152,11 +169,14 @@ def polar_branch(
     equations = [(exchanged(lhs, named), rhs) for lhs, rhs in system.equations]
     unknowns = [*(z for z in variables if z not in parts), *system.radii]
     known = {**system.meaning, **{name: f for f, name in named.items()}}
-    inversion = Inversion(BranchPoint(witness.point, known))
+    inversion = Inversion(BranchPoint(witness.point, known), deadline=deadline)
     solved = _solved(equations, unknowns, [tuple(pair.values()) for pair in parts.values()], inversion)
     if solved is None:
         return None
-    solved = {z: shortened(united_squares(value)) for z, value in solved.items()}
+    sizes: dict[Expr, Expr] = {
+        abs(new): new for new, image in meaning.items() if image.is_nonnegative and not new.is_nonnegative
+    }
+    solved = {z: shortened(exchanged(united_squares(value), sizes)) for z, value in solved.items()}
     angles: dict[Symbol, AngleFromArc] = {}
     for z, pair in parts.items():
         sine, cosine = (solved[name] for name in pair.values())
@@ -165,7 +185,9 @@ def polar_branch(
             return None
         angles[z] = AngleFromArc(sine, cosine, round(turns))
     values = {z: angles[z].value if z in angles else solved[z] for z in variables}
-    return BranchOfInverse(values, (*system.ranges, *_radicands(solved.values())), angles)
+    signs = (cast("Boolean", sp.Gt(new, 0)) for new in sizes.values())
+    ranges = tuple(dict.fromkeys((*system.ranges, *signs, *_radicands(solved.values()))))
+    return BranchOfInverse(values, ranges, angles, tuple(system.angles))
 
 
 def _solved(
@@ -177,8 +199,10 @@ def _solved(
     """Solve for the unknowns and for pairs of sines and cosines, these from two equations that hold them."""
     if not pairs:
         return solve_system(equations, unknowns, inversion)
-    pair, others = pairs[0], pairs[1:]
-    for two in combinations([each for each in equations if each[0].has(*pair)], 2):
+    # Equations without momenta come first, and the angle that stands in the fewest of them.
+    simplest = sorted(equations, key=lambda each: (len(each[0].free_symbols), size(each[0])))
+    pair, *others = sorted(pairs, key=lambda pair: sum(lhs.has(*pair) for lhs, _ in equations))
+    for two in combinations([each for each in simplest if each[0].has(*pair)], 2):
         found = solve_system(two, pair, inversion)
         if found is None:
             continue
@@ -202,6 +226,7 @@ class _Polar:
     meaning: dict[Symbol, Expr]
     radii: list[Symbol]
     ranges: list[Boolean]
+    angles: list[Expr]
 
     def add(self, symbol: Symbol, image: Expr, variables: Sequence[Symbol], witness: BranchPoint) -> None:
         """Add image = symbol, as two equations where the image is an arc but for constants."""
@@ -218,6 +243,7 @@ class _Polar:
         self.meaning[radius] = sp.sqrt(x**2 + y**2)
         self.radii.append(radius)
         self.equations += [(y - radius * sin(angle), sp.S.Zero), (x - radius * cos(angle), sp.S.Zero)]
+        self.angles.append(angle)
         self.ranges += [cast("Boolean", sp.Gt(angle, -half_range)), cast("Boolean", sp.Lt(angle, half_range))]
 
 

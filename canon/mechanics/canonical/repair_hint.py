@@ -13,7 +13,7 @@ from sympy.core.function import AppliedUndef
 
 from canon.expression.symbols.symbol import time
 from canon.mechanics.algebra.jacobian import is_large
-from canon.mechanics.algebra.substitution import exchanged
+from canon.mechanics.algebra.substitution import MOST_TERMS, exchanged, terms_if_expanded
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
@@ -55,8 +55,8 @@ def constant_value(
             continue
         tried.add(candidate)
         candidate = _short(candidate)
-        verdict = vanishes_off_kinks(f - candidate, domain, min(10.0, deadline - clock.monotonic()))
-        if verdict.holds:
+        seconds = min(10.0, deadline - clock.monotonic())
+        if seconds > 0 and vanishes_off_kinks(f - candidate, domain, seconds).holds:
             return candidate
     return None
 
@@ -132,7 +132,7 @@ def repair_hint(T: PhaseSpaceMap, c: Expr, seconds: float = 10.0) -> RepairHint 
         value = constant_value(T.poisson_bracket_of(0, 1), T.variables, T.domain, seconds, T.t)
         return None if value is None else RepairHint((value,), c)
     for a, b in ((first + i, first + j) for first in (0, n) for i in range(n) for j in range(i)):
-        if clock.monotonic() > deadline or not _vanishes(T.poisson_bracket_of(a, b), T.domain):
+        if not _vanishes(T.poisson_bracket_of(a, b), T.domain, min(10.0, deadline - clock.monotonic())):
             return None
     constants: dict[tuple[int, int], Expr | None] = {}
     for i, j in product(range(n), repeat=2):
@@ -154,14 +154,14 @@ def _of_pairs(constants: Mapping[tuple[int, int], Expr | None], n: int, c: Expr)
     return RepairHint(tuple(cast("list[Expr]", found)), c, tuple(j for (j,) in partners))
 
 
-def _vanishes(f: Expr, domain: Domain) -> bool:
-    return f == 0 or vanishes_off_kinks(f, domain).holds
+def _vanishes(f: Expr, domain: Domain, seconds: float) -> bool:
+    return f == 0 or (seconds > 0 and vanishes_off_kinks(f, domain, seconds).holds)
 
 
 def _short(candidate: Expr) -> Expr:
     """Return a candidate in lowest terms; whoever uses it checks it afterwards."""
     if candidate.is_rational_function():
-        return sp.cancel(candidate)
+        return sp.cancel(candidate) if terms_if_expanded(candidate) <= MOST_TERMS else candidate
     if candidate.is_number and not candidate.is_Rational:
         guess = sp.nsimplify(candidate.evalf(30), rational=True, tolerance=sp.Float("1e-20"))
         if guess.is_Rational and guess.q < 10**6:

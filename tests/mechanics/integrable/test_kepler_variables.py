@@ -56,7 +56,12 @@ def test_the_steps_agree_with_the_whole_map():
 
 @pytest.mark.parametrize(
     ("variables", "place"),
-    [(delaunay_variables, PLANE), (poincare_variables, PLANE), (delaunay_variables, SPACE)],
+    [
+        (delaunay_variables, PLANE),
+        (poincare_variables, PLANE),
+        (delaunay_variables, SPACE),
+        (poincare_variables, SPACE),
+    ],
 )
 def test_wrong_twins_are_not_canonical(variables, place):
     T = variables(*place, mu).steps[0]
