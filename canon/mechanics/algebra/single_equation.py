@@ -79,7 +79,7 @@ def _eliminated(polynomial: Expr, kept: Expr, names: Mapping[Expr, Symbol], x: S
 
 def _is_large(polynomial: Expr, relation: Expr, name: Symbol) -> bool:
     """Whether the resultant, a product of the polynomial at all roots of the relation, may have many terms."""
-    return terms_if_expanded(polynomial) ** float(sp.degree(relation, name)) > MOST_TERMS
+    return terms_if_expanded(polynomial) ** sp.Poly(relation, name).degree() > MOST_TERMS
 
 
 def _named(f: Expr, constants: dict[Expr, Symbol]) -> Expr:

@@ -94,9 +94,8 @@ class BranchOfInverse:
                 named[part] = sp.Dummy("part", real=True)
                 values[named[part]] = value
         there = united_squares(plain_arcs(substitute(exchanged(f, named), values)))
-        return exchanged(
-            there, {abs(c.lhs): c.lhs for c in self.ranges if isinstance(c, sp.Gt) and c.rhs == 0}
-        )
+        positive = [cast("Expr", c.lhs) for c in self.ranges if isinstance(c, sp.Gt) and c.rhs == 0]
+        return exchanged(there, {cast("Expr", sp.Abs(f)): f for f in positive})
 
 
 @dataclass(frozen=True)
