@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.explained_judgement import judgements
-from canon.exercise.judging_process import Worker
+from canon.exercise.judging_process import GRACE, Worker
+from canon.exercise.question.deadline import PATIENCE
 from canon.exercise.sheet.sheet import SheetError, read_sheet, sheet_from
 from canon.expression.parse import LanguageError, Scope, parse_expression
 
@@ -142,12 +143,16 @@ def test_two_thousand_confused_claims(first):
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(1000, 4000, 500))
 def test_three_thousand_slips_in_the_worker(first):
-    """Whatever a claim says, the worker answers for it in its budget and does not break off."""
+    """Whatever a claim says, the worker answers for it in its budget and does not break off.
+
+    On a busy machine a claim has that much of the processor, and is waited for PATIENCE times as long at most.
+    """
     claims = [slipped_claim(number) for number in range(first, first + 500)]
     with Worker() as worker:
         told = [worker.judge(claim) for claim in claims]
     assert not [t for t in told if "broke off" in t.known]
-    assert all(t.seconds < claim.budget + 0.5 for t, claim in zip(told, claims, strict=True))
+    late = [t for t, c in zip(told, claims, strict=True) if t.seconds > PATIENCE * (c.budget + GRACE) + 0.5]
+    assert not late
 
 
 def test_a_claim_whose_answer_stands_in_a_list_is_named():

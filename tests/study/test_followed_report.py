@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -100,15 +102,21 @@ def test_it_follows_another_process(tmp_path):
     run = subprocess.Popen([*command, "run", str(toml), "--checkpoint", "0"], stdout=subprocess.PIPE)
     while not (path.exists() and Store(path).cases()):
         assert run.poll() is None
-    report = subprocess.run(
+    run.send_signal(signal.SIGSTOP)  # until the report has begun, however fast the study is
+    report = subprocess.Popen(
         [*command, "report", str(path), str(page), "--follow", "0.05"],
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
-        timeout=500,
     )
-    assert (run.wait(60), report.returncode, report.stderr) == (0, 0, "")
+    while not page.exists():
+        assert report.poll() is None
+        time.sleep(0.05)
+    run.send_signal(signal.SIGCONT)
+    out, err = report.communicate(timeout=500)
+    assert (run.wait(60), report.returncode, err) == (0, 0, "")
     run.stdout.close()
-    lines = report.stdout.splitlines()
+    lines = out.splitlines()
     assert len(lines) >= 3
     assert lines[-1] == f"report: {page}"
     assert words(page.read_text()) == words(study_report(results_of(path), "s"))

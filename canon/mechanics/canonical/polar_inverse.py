@@ -95,7 +95,7 @@ class BranchOfInverse:
                 values[named[part]] = value
         there = united_squares(plain_arcs(substitute(exchanged(f, named), values)))
         positive = [cast("Expr", c.lhs) for c in self.ranges if isinstance(c, sp.Gt) and c.rhs == 0]
-        return exchanged(there, {cast("Expr", sp.Abs(f)): f for f in positive})
+        return exchanged(there, {sp.Abs(f): f for f in positive})
 
 
 @dataclass(frozen=True)

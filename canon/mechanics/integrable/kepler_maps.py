@@ -97,13 +97,13 @@ def delaunay_from_poincare(
 
 
 def kepler_hamiltonian(q: tuple[Symbol, ...], p: tuple[Symbol, ...], k: Expr, m: Expr) -> Hamiltonian:
-    """Return (p_r² + |r × p|²/r²)/(2m) − k/r in polar or spherical coordinates."""
+    """Return (p_r² + (r × p)²/r²)/(2m) − k/r in polar or spherical coordinates."""
     r, p_r = q[0], p[0]
     return Hamiltonian((p_r**2 + _angular_momentum(q, p) ** 2 / r**2) / (2 * m) - k / r, q, p)
 
 
 def _angular_momentum(q: tuple[Symbol, ...], p: tuple[Symbol, ...]) -> Expr:
-    """Return |r × p|, where p_φ > 0 in a plane."""
+    """Return the length of r × p, where p_φ > 0 in a plane."""
     return p[1] if len(q) == 2 else sqrt(p[1] ** 2 + p[2] ** 2 / sin(q[1]) ** 2)
 
 

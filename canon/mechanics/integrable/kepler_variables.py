@@ -53,7 +53,7 @@ class KeplerVariables:
     Parameters
     ----------
     strength, mass
-        k and m of H = |p|²/(2m) − k/r.
+        k and m of H = p²/(2m) − k/r.
     old
         That H in polar or spherical coordinates.
     new
@@ -115,9 +115,9 @@ class KeplerVariables:
 def delaunay_variables(
     q: Sequence[Symbol], p: Sequence[Symbol], strength: Expr | float, mass: Expr | float = 1
 ) -> KeplerVariables:
-    """Return Delaunay's variables of H = |p|²/(2m) − k/r: mean anomaly, argument of pericentre, node, and momenta.
+    """Return Delaunay's variables of H = p²/(2m) − k/r: mean anomaly, argument of pericentre, node, and momenta.
 
-    L = √(m k a), G = |r × p| = L √(1 − e²), and in space H = G cos i. The mean anomaly l grows at the rate m k²/L³, all
+    L = √(m k a), G = ‖r × p‖ = L √(1 − e²), and in space H = G cos i. The mean anomaly l grows at the rate m k²/L³, all
     others stay. With k = μ and m = 1 they are those of a body of unit mass. Angles are those within −π … π of the
     anomalies: l steps back by 2π where the body passes the apocentre. Any consistent units.
 
@@ -171,7 +171,7 @@ def delaunay_variables(
 def poincare_variables(
     q: Sequence[Symbol], p: Sequence[Symbol], strength: Expr | float, mass: Expr | float = 1
 ) -> KeplerVariables:
-    """Return Poincaré's variables of H = |p|²/(2m) − k/r, which are regular for circular orbits and those not inclined.
+    """Return Poincaré's variables of H = p²/(2m) − k/r, which are regular for circular orbits and those not inclined.
 
     Λ = L and λ = l + g, the mean longitude; ξ = √(2(L − G)) cos g and η = −√(2(L − G)) sin g; in space λ = l + g + h,
     g + h in place of g, and √(2(G − H)) cos h, −√(2(G − H)) sin h. The coordinates are λ, η, the momenta Λ, ξ. They are

@@ -88,7 +88,7 @@ class CentreManifold:
 
     @property
     def frequencies(self) -> tuple[arb, ...]:
-        """ω of each elliptic pair in a ball, negative where H₂ has the action with a minus sign; |ω| falls."""
+        """ω of each elliptic pair in a ball, negative where H₂ has the action with a minus sign; its size falls."""
         with precision(self.bits):
             return self.diagonal.frequencies
 
