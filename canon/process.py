@@ -279,7 +279,7 @@ def serve(answers: Callable[[bytes], Iterable[bytes]], memory: int) -> None:
     answers
         Returns the answers to a message.
     memory
-        Bytes of address space that the process may have, where the system can limit it.
+        Bytes of address space that the process may have, where the system can limit it: not on macOS and Windows.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform != "win32":
@@ -311,6 +311,8 @@ def _limit_memory(memory: int) -> None:
     try:
         import resource
     except ImportError:  # Windows
+        return
+    if sys.platform == "darwin":  # refuses limits below what every process has mapped (python/cpython#78783)
         return
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     wanted = memory if hard == resource.RLIM_INFINITY else min(memory, hard)

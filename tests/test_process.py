@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from canon.process import Child, Ended, Late
+from canon.process import Child, Ended, Late, _limit_memory
 from canon.trusted_folders import RESTS_ON, trusted_folders
 
 ROOT = Path(__file__).parents[1]
@@ -296,3 +296,37 @@ def test_a_process_that_ends_just_when_it_is_asked(monkeypatch):
     assert not child._listener.is_alive()
     assert raised == []
     child.kill()
+
+
+class Limits:
+    """The module ``resource`` of a system that may refuse every limit, as macOS does."""
+
+    RLIMIT_AS, RLIM_INFINITY = "address space", -1
+
+    def __init__(self):
+        self.asked = []
+
+    def getrlimit(self, which):
+        return -1, 2**40
+
+    def setrlimit(self, which, limits):
+        self.asked.append((which, limits))
+        raise ValueError("current limit exceeds maximum limit")
+
+
+def test_a_child_on_macos_starts_without_a_limit_that_the_system_refuses(monkeypatch):
+    """The error is that of python/cpython#78783; with it no claim would be judged there."""
+    limits = Limits()
+    monkeypatch.setitem(sys.modules, "resource", limits)
+    monkeypatch.setattr(sys, "platform", "darwin")
+    _limit_memory(2**31)
+    assert limits.asked == []
+
+
+def test_a_limit_that_is_refused_elsewhere_is_not_passed_over(monkeypatch):
+    limits = Limits()
+    monkeypatch.setitem(sys.modules, "resource", limits)
+    monkeypatch.setattr(sys, "platform", "linux")
+    with pytest.raises(ValueError, match="current limit"):
+        _limit_memory(2**31)
+    assert limits.asked == [("address space", (2**31, 2**40))]

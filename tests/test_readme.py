@@ -2,7 +2,6 @@
 
 import os
 import re
-import resource
 import shlex
 import subprocess
 import sys
@@ -80,6 +79,9 @@ def clone(tmp_path_factory):
 @pytest.mark.slow
 def test_the_documentation_builds_without_warnings_from_a_fresh_clone(clone):
     """With the packages of this environment in place of the command's installation: pip install -e ".[dev,docs]"."""
+    resource = pytest.importorskip(
+        "resource", reason="the processor time of children, which POSIX systems tell"
+    )
     words = shlex.split(BUILD.partition("&& ")[2])
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(

@@ -473,6 +473,8 @@ def sizes_by_sympy(terms, point):
     def give_up(*_):
         raise TooLong
 
+    if not hasattr(signal, "setitimer"):  # Windows: SymPy can't be stopped, and a ball tells the same
+        return []
     before = signal.signal(signal.SIGVTALRM, give_up)
     signal.setitimer(signal.ITIMER_VIRTUAL, 5.0)
     try:

@@ -81,6 +81,7 @@ def cluster(start):
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="it is killed as POSIX does")
 def test_a_cluster_of_which_a_worker_is_killed_gives_the_same(tmp_path, cluster):
     here = Store(tmp_path / "here.sqlite")
     run_study(STUDY, here)
@@ -125,6 +126,7 @@ def extent(motion):
     return abs(motion.y).max(axis=1)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="it is killed as POSIX does")
 def test_a_worker_killed_in_mid_case_changes_no_bit_of_what_is_kept(tmp_path, cluster):
     """Two cases are under way, one at least with a checkpoint; the worker that is killed is running one of them."""
     keep, here, there = {"extent": extent}, tmp_path / "here.sqlite", Store(tmp_path / "cluster.sqlite")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import sys
 
 import pytest
 
@@ -97,6 +98,7 @@ def test_it_is_told_what_is_wrong(tmp_path, what):
     assert len(str(caught.value)) < 1_500
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="a device of POSIX")
 def test_a_device_is_no_study(capsys):
     assert main(["study", "run", "/dev/zero"]) == 2
     assert capsys.readouterr().err == "canon study: /dev/zero: it is a device and no file\n"

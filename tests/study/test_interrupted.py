@@ -62,6 +62,7 @@ def kill_after(program, lines, seconds=0.0):
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="it is killed as POSIX does")
 def test_killed_inside_a_run_of_every_method_it_ends_the_same(tmp_path, uninterrupted):
     store = Store(tmp_path / "killed.sqlite")
     draw = random.Random(1)
@@ -84,6 +85,7 @@ def test_killed_inside_a_run_of_every_method_it_ends_the_same(tmp_path, uninterr
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="it is killed as POSIX does")
 def test_killed_at_any_moment_it_ends_the_same(tmp_path, uninterrupted):
     store = Store(tmp_path / "killed.sqlite")
     draw = random.Random(2)
@@ -136,6 +138,9 @@ except StoreError as error:
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(
+    sys.platform == "win32", reason="no limit on the size of files stands in for a full disk there"
+)
 def test_a_disk_that_fills_up_in_mid_study(tmp_path, uninterrupted):
     """A limit on the size of files stands in for a full disk."""
     path = tmp_path / "full.sqlite"

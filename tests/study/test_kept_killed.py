@@ -30,6 +30,7 @@ run_study(
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="it is killed as POSIX does")
 def test_killed_at_any_moment_what_is_kept_is_the_same(tmp_path):
     whole = tmp_path / "whole.sqlite"
     run_study(STUDY, whole, keep=FUNCTIONS)

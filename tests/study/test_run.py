@@ -6,6 +6,7 @@ import json
 import multiprocessing
 import os
 import signal
+import sys
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
@@ -74,6 +75,7 @@ def test_what_is_finished_is_not_run_again(uninterrupted, monkeypatch, tmp_path)
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="it is killed as POSIX does")
 def test_a_process_pool_gives_the_same_and_survives_a_killed_worker(tmp_path, uninterrupted):
     store = Store(tmp_path / "pool.sqlite")
     spawn = multiprocessing.get_context("spawn")
