@@ -1,8 +1,9 @@
-"""Derivation at scale against SymPy's LagrangesMethod and heyoka's lagrangian, in one run on one machine.
+"""Derivation at scale against SymPy's LagrangesMethod and KanesMethod and heyoka's lagrangian, in one run.
 
 Prints processor milliseconds, the best of a few repeats for canon and one run for SymPy (which caches), and the
-ratios. SymPy is given T − V, and its building is not counted; canon starts from positions and masses. SymPy takes
-two minutes and more for 20 links, so it is asked up to ``--peer`` links:
+ratios. LagrangesMethod is given T − V, KanesMethod the points with their velocities, and building these is not counted;
+canon starts from positions and masses. LagrangesMethod takes two minutes and more for 20 links, so both are asked up to
+``--peer`` links:
 
     python benchmarks/derivation.py            # 10 links at most for SymPy
     python benchmarks/derivation.py --peer 20
@@ -15,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 import sympy as sp
-from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
+from sympy.physics import mechanics
+from sympy.physics.mechanics import KanesMethod, LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "mechanics"))
 
@@ -79,28 +81,74 @@ def ours(n):
     }
 
 
-def theirs(n):
-    """Return the times of LagrangesMethod for the same links."""
+def masses_and_lengths(n):
+    masses, lengths = sp.symbols(f"m:{n}", positive=True), sp.symbols(f"l:{n}", positive=True)
+    return masses, lengths, sp.Symbol("g", positive=True)
+
+
+def by_lagrange(n):
+    """Return the same links for LagrangesMethod: what derives M and f, their places and speeds."""
     q = dynamicsymbols(f"theta:{n}")
     (t,) = q[0].args
-    m, l = sp.symbols(f"m:{n}", positive=True), sp.symbols(f"l:{n}", positive=True)
-    g = sp.Symbol("g", positive=True)
+    m, l, g = masses_and_lengths(n)
     x = y = T = V = sp.S.Zero
     for angle, mass, length in zip(q, m, l, strict=True):
         x, y = x + length * sp.sin(angle), y - length * sp.cos(angle)
         T += mass * (x.diff(t) ** 2 + y.diff(t) ** 2) / 2
         V += mass * g * y
-    start = time.process_time()
-    method = LagrangesMethod(T - V, q)
-    method.form_lagranges_equations()
-    M, f = method.mass_matrix, method.forcing
-    derive = time.process_time() - start
-    speeds = {s.diff(t): sp.Symbol(f"v{i}") for i, s in enumerate(q)}
-    places = {s: sp.Symbol(f"q{i}") for i, s in enumerate(q)}
-    M, f = (e.xreplace(speeds).xreplace(places) for e in (M, f))
-    inputs = [*places.values(), *speeds.values(), *m, *l, g]
+
+    def derive():
+        method = LagrangesMethod(T - V, q)
+        method.form_lagranges_equations()
+        return method.mass_matrix, method.forcing
+
+    return derive, q, [s.diff(t) for s in q]
+
+
+def by_kane(n):
+    """Return the same links for KanesMethod: a frame turns with each link, and the angular speeds are the speeds."""
+    q, u = dynamicsymbols(f"theta:{n}"), dynamicsymbols(f"u:{n}")
+    (t,) = q[0].args
+    m, l, g = masses_and_lengths(n)
+    ground, joint = ReferenceFrame("N"), Point("O")
+    joint.set_vel(ground, 0)
+    bodies, loads = [], []
+    for i in range(n):
+        link = ground.orientnew(f"A{i}", "Axis", [q[i], ground.z])
+        link.set_ang_vel(ground, u[i] * ground.z)
+        end = joint.locatenew(f"P{i}", -l[i] * link.y)
+        end.v2pt_theory(joint, ground, link)
+        bodies.append(mechanics.Particle(f"body{i}", end, m[i]))
+        loads.append((end, -m[i] * g * ground.y))
+        joint = end
+
+    def derive():
+        speeds = [speed - angle.diff(t) for angle, speed in zip(q, u, strict=True)]
+        method = KanesMethod(ground, q_ind=q, u_ind=u, kd_eqs=speeds)
+        method.kanes_equations(bodies, loads)
+        return method.mass_matrix, method.forcing
+
+    return derive, q, u
+
+
+def accelerations_of(M, f, places, speeds, n):
+    """Return what SymPy's function of places, speeds and parameters answers where each of them is 0.1."""
+    m, l, g = masses_and_lengths(n)
+    v = {s: sp.Symbol(f"v{i}") for i, s in enumerate(speeds)}
+    q = {s: sp.Symbol(f"q{i}") for i, s in enumerate(places)}
+    M, f = (e.xreplace(v).xreplace(q) for e in (M, f))
+    inputs = [*q.values(), *v.values(), *m, *l, g]
     function = sp.lambdify(inputs, [M, f], cse=True)
-    np.linalg.solve(*function(*[0.1] * len(inputs)))
+    return np.linalg.solve(*function(*[0.1] * len(inputs))).ravel()
+
+
+def theirs(n, by):
+    """Return the times of a method of SymPy for the same links."""
+    derive_them, places, speeds = by(n)
+    start = time.process_time()
+    M, f = derive_them()
+    derive = time.process_time() - start
+    accelerations_of(M, f, places, speeds, n)
     call = time.process_time() - start
     replacements, shared = sp.cse([M, f])
     operations = sum(sp.count_ops(e) for _, e in replacements) + sum(sp.count_ops(e) for e in shared)
@@ -109,18 +157,19 @@ def theirs(n):
 
 def links(peer):
     print("planar pendulum of n links, processor ms (SymPy / canon):")
-    print("   n   derive  callable   as SymPy   H nodes  H callable  operations   ratios to LagrangesMethod")
+    print("   n   derive  callable   as SymPy   H nodes  H callable  operations")
     for n in SIZES:
         mine = ours(n)
         row = f"{n:4d} {mine['derive']:8.1f} {mine['call']:9.1f} {mine['objects']:10.1f} {mine['H']:9.1f}"
         row += f" {mine['H called']:11.1f} {mine['ops']:11d}"
-        if n <= peer:
-            other = theirs(n)
-            shown = ", ".join(
-                f"{key} {other[key] / mine[key]:.1f}" for key in ("derive", "call", "objects", "ops")
-            )
-            row += f"   {shown}"
         print(row, flush=True)
+        for name, by in (("LagrangesMethod", by_lagrange), ("KanesMethod", by_kane)):
+            if n <= peer:
+                other = theirs(n, by)
+                shown = ", ".join(
+                    f"{key} {other[key] / mine[key]:.1f}" for key in ("derive", "call", "objects", "ops")
+                )
+                print(f"       {name + ' / canon:':24} {shown}", flush=True)
 
 
 def piston():
@@ -242,7 +291,7 @@ def against_heyoka():
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--peer", type=int, default=10, help="the longest chain LagrangesMethod is given")
+    parser.add_argument("--peer", type=int, default=10, help="the longest chain that SymPy is given")
     options = parser.parse_args()
     links(options.peer)
     others()
