@@ -21,7 +21,7 @@ BENCHMARKS = {
     "zero_test": "The zero test on its corpus of identities",
     "canonical": "Canonical maps and generating functions",
     "normal_forms": "Normal forms, and the centre manifold between Earth and Moon",
-    "derivation": "Equations of motion, beside SymPy's LagrangesMethod",
+    "derivation": "Equations of motion, beside SymPy's LagrangesMethod and KanesMethod",
     "operations": "Operations of a pendulum's equations, by four designs",
     "minimal": "Only what is asked for",
     "classroom": "A class of two hundred",
