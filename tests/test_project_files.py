@@ -121,3 +121,44 @@ def test_no_link_of_the_project_files_leads_nowhere():
 
 def test_the_citation_names_this_version():
     assert str(read("CITATION.cff")["version"]) == canon.__version__
+
+
+PAPER = (HOME / "docs" / "paper" / "paper.md").read_text("utf-8")
+REFERENCES = (HOME / "docs" / "paper" / "paper.bib").read_text("utf-8")
+
+
+def test_the_paper_cites_what_its_bibliography_has_and_nothing_else():
+    cited = set(re.findall(r"@([a-z]+\d*)", PAPER))
+    assert cited == set(re.findall(r"^@\w+\{(\w+),", REFERENCES, re.MULTILINE))
+    entries = re.split(r"^@", REFERENCES, flags=re.MULTILINE)[1:]
+    assert all(re.search(r"\b(doi|isbn|publisher) = ", entry) for entry in entries)
+
+
+def test_the_paper_has_the_sections_and_the_length_that_its_journal_asks_for():
+    """https://joss.readthedocs.io, as read in November 2026: 750 to 1750 words."""
+    sections = re.findall(r"^# (.+)$", PAPER, re.MULTILINE)
+    assert sections == [
+        "Summary", "Statement of need", "State of the field", "Software design", "Research impact statement",
+        "AI usage disclosure", "Acknowledgements", "References",
+    ]  # fmt: skip
+    assert 750 < len(PAPER.rpartition("---")[2].split()) < 1750
+    for figure in re.findall(r"!\[.*?\]\((.+?)\)", PAPER):
+        assert (HOME / "docs" / "paper" / figure).exists()
+
+
+def test_the_numbers_of_the_paper_are_those_that_were_measured():
+    measured = (HOME / "docs" / "measured.md").read_text("utf-8")
+    identities = re.search(r"^(\d+) identities, (\d+) true and (\d+) false", measured, re.MULTILINE)
+    proved = re.search(r"^canon +(\d+)/\d+ +(\d+)/\d+ +(\d+) +(\d+) +", measured, re.MULTILINE)
+    told = (
+        f"of {identities[1]} identities, {identities[2]} of them true, canon proves {proved[1]}, refutes all "
+        f"{proved[2]} false ones, and is wrong about none; {proved[4]} stay undecided"
+    )
+    assert proved[3] == "0"
+    assert told in " ".join(PAPER.split())
+    seeds = (HOME / "docs" / "seeds.md").read_text("utf-8")
+    judged = re.search(
+        r"^(\d+) entries; (\d+) of them .* in (\d+) claims: \d+ holds, (\d+) fails", seeds, re.MULTILINE
+    )
+    assert f"{judged[2]} of {judged[1]} entries" in " ".join(PAPER.split())
+    assert f"in {judged[3]} claims; {judged[4]} of these fail" in " ".join(PAPER.split())
