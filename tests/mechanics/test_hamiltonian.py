@@ -86,6 +86,9 @@ def test_relativistic_hamiltonian_of_two_degrees():
     assert vanishes(H.H - expected).holds
     assert is_hamiltonian_of(particle, expected, H.p, slow).holds
     assert is_hamiltonian_of(particle, -expected, H.p, slow).fails
+    # without a domain the particle is meant where L is real, below the speed of light
+    assert is_hamiltonian_of(particle, expected, H.p).holds
+    assert is_hamiltonian_of(particle, -expected, H.p).fails
 
 
 def test_relativistic_hamiltonian_goes_back():

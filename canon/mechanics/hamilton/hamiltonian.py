@@ -18,7 +18,12 @@ from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.bracket import poisson_bracket
-from canon.mechanics.hamilton.legendre import LegendreError, eliminate_velocities, legendre_residual
+from canon.mechanics.hamilton.legendre import (
+    LegendreError,
+    eliminate_velocities,
+    legendre_residual,
+    where_root_is_real,
+)
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Verdict, all_hold
@@ -289,7 +294,7 @@ def is_hamiltonian_of(
     >>> is_hamiltonian_of(L, x.momentum**2/2 - x**2, [x.momentum]).status.name
     'FAILS'
     """
-    domain = as_domain(domain)
+    domain = where_root_is_real(lagrangian.L, lagrangian.velocities, as_domain(domain))
     question = "H is the Hamiltonian of L"
 
     momenta = coordinate_symbols(p)
