@@ -1,6 +1,6 @@
 """Normal forms: canon's exact arithmetic on FLINT beside the same algorithm with SymPy's polynomials, in one run.
 
-    python benchmarks/normal_forms.py            # orders 8, 16, 24; SymPy to 8; L1 to degree 12
+    python benchmarks/normal_forms.py            # orders 8, 16, 24; SymPy to 8; L1 to degree 12; 10⁵ terms
     python benchmarks/normal_forms.py --large    # and order 32; L1 to degree 16
     python benchmarks/normal_forms.py --hiten ENV/bin/python    # beside HITEN, from an environment that has it
 
@@ -11,6 +11,7 @@ Seconds are of the processor; ratios within one run are what can be compared.
 from __future__ import annotations
 
 import argparse
+import random
 import re
 import subprocess
 import sys
@@ -19,13 +20,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import sympy as sp
+from flint import fmpq
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from canon import Hamiltonian, birkhoff_normal_form
 from canon.mechanics import centre_manifold
+from canon.mechanics.perturbation.lie_transform import Brackets
+from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial, PolynomialRing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from canon.mechanics import CentreManifold
 
@@ -89,14 +93,33 @@ def at_l1(order: int, mass: sp.Expr = EARTH_MOON) -> CentreManifold:
 IN_HITEN = """
 import sys, time
 from hiten import System
-point = System.from_bodies("earth", "moon").get_libration_point(1)
-started = time.process_time()
-found = point.get_center_manifold(degree=int(sys.argv[1]))
-found.compute()
-print("OF HITEN", repr(float(point.mu)), repr(float(point.gamma)), time.process_time() - started)
+
+def manifold(degree):
+    point = System.from_bodies("earth", "moon").get_libration_point(1)
+    started = time.process_time()
+    found = point.get_center_manifold(degree=degree)
+    found.compute()
+    return point, found, time.process_time() - started
+
+if sys.argv[2] == "compiled":
+    manifold(4)
+point, found, seconds = manifold(int(sys.argv[1]))
+print("OF HITEN", repr(float(point.mu)), repr(float(point.gamma)), seconds)
 print(found.coefficients())
 """
 HITENS_TERM = re.compile(r"\b0\s+0\s+(\d+)\s+(\d+)\s+(\d+)\s+(\d+)\s+(-?\d\.\d+e[-+]\d+)")
+
+
+def of_hiten(python: str, order: int, state: str) -> tuple[float, float, float, list[tuple[str, ...]]]:
+    """Mass, gamma, seconds and terms of HITEN in a process of its own.
+
+    "compiled" is timed after one of degree 4 in the same process, of another System: Numba has compiled all by then.
+    """
+    done = subprocess.run(
+        [python, "-c", IN_HITEN, str(order), state], capture_output=True, text=True, check=True
+    )
+    mass, gamma, spent = map(float, done.stdout.split("OF HITEN ")[1].split()[:3])
+    return mass, gamma, spent, HITENS_TERM.findall(done.stdout)
 
 
 def beside_hiten(python: str, order: int) -> str:
@@ -105,15 +128,15 @@ def beside_hiten(python: str, order: int) -> str:
     HITEN measures lengths in distances γ of the point from the Moon and turns each elliptic pair by an angle, so that
     its terms of degree d are ours times γ^(d−2), with Q = −p, P = q in the plane.
     """
-    done = subprocess.run([python, "-c", IN_HITEN, str(order)], capture_output=True, text=True, check=True)
-    mass, gamma, theirs = map(float, done.stdout.split("OF HITEN ")[1].split()[:3])
+    first = of_hiten(python, order, "with compiling")[2]
+    mass, gamma, theirs, terms = of_hiten(python, order, "compiled")
+    at_l1(4, sp.Rational(mass))
     started = time.process_time()
     found = at_l1(order, sp.Rational(mass))
     ours = time.process_time() - started
     (Q1, Q2), (P1, P2) = found.q, found.p
     q2, p2 = sp.symbols("q2 p2", real=True)
     turned = sp.Poly(found.hamiltonian.H.subs({Q1: -p2, P1: q2}, simultaneous=True), q2, p2, Q2, P2)
-    terms = HITENS_TERM.findall(done.stdout)
     gaps = [
         abs(
             float(turned.coeff_monomial(tuple(map(int, powers)))) * gamma ** (sum(map(int, powers)) - 2)
@@ -122,7 +145,33 @@ def beside_hiten(python: str, order: int) -> str:
         for *powers, c in terms
     ]
     largest = max(abs(float(c)) for *_, c in terms)
-    return f"| {order} | {ours:.2f} | {theirs:.1f} | {theirs / ours:.0f} | {len(terms)} | {max(gaps) / largest:.0e} |"
+    spent = f"{ours:.2f} | {theirs:.2f} | {theirs / ours:.1f} | {first:.1f}"
+    return f"| {order} | {spent} | {len(terms)} | {max(gaps) / largest:.0e} |"
+
+
+def long_bracket(partner: int) -> tuple[int, int, float]:
+    """Terms of a dense polynomial in three degrees of freedom, terms of its bracket with a short one, and seconds."""
+    chance, ring = random.Random(1), PolynomialRing(6)
+    monomials = [powers for degree in range(18) for powers in exponents(degree, 6)]
+    cubic = [powers for powers in monomials if sum(powers) in (3, 4)]
+
+    def series(among: list[tuple[int, ...]]) -> PhasePolynomial:
+        numbers = {(0, *powers): fmpq(chance.randint(1, 99), chance.choice((1, 2, 3, 8))) for powers in among}
+        return PhasePolynomial(ring, ring.context.from_dict(numbers), ring.nothing, ring.unit)
+
+    f, g, bracket = series(monomials), series(chance.sample(cubic, partner)), Brackets((ring.one,) * 3)
+    found = bracket(f, g)
+    return len(f), len(found), seconds(lambda: bracket(f, g), 3)
+
+
+def exponents(degree: int, count: int) -> Iterator[tuple[int, ...]]:
+    """Yield the exponents of all monomials of one degree."""
+    if count == 1:
+        yield (degree,)
+        return
+    for first in range(degree + 1):
+        for rest in exponents(degree - first, count - 1):
+            yield first, *rest
 
 
 def main() -> None:
@@ -133,8 +182,10 @@ def main() -> None:
     parser.add_argument("--hiten", metavar="PYTHON", help="an interpreter that has HITEN")
     chosen = parser.parse_args()
     if chosen.hiten:
-        print("| degree | canon, s | HITEN, s | ratio | terms | largest difference, of the largest |")
-        print("|---|---|---|---|---|---|")
+        print(
+            "| degree | canon, s | HITEN compiled, s | ratio | HITEN with compiling, s | terms | "
+            "largest difference, of the largest |\n|---|---|---|---|---|---|---|"
+        )
         for order in (6, 8, *([10] if chosen.large else [])):
             print(beside_hiten(chosen.hiten, order))
         return
@@ -155,6 +206,12 @@ def main() -> None:
         started = time.process_time()
         found = at_l1(order)
         print(f"| {order} | {time.process_time() - started:.2f} | {found.error:.0e} |")
+    print(
+        "\n| terms of a series | bracketed with a series of | terms of the bracket | canon, s |\n|---|---|---|---|"
+    )
+    for partner in (10, 100):
+        terms, found, spent = long_bracket(partner)
+        print(f"| {terms} | {partner} | {found} | {spent:.2f} |")
 
 
 if __name__ == "__main__":

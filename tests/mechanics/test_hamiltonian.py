@@ -14,6 +14,7 @@ from canon.mechanics.hamilton.hamiltonian import (
     is_hamiltonian_of,
     lagrangian,
 )
+from canon.mechanics.hamilton.legendre import is_dual
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
@@ -194,6 +195,48 @@ def test_velocities_that_are_eliminated_by_inverse_functions_stay_real(name):
     real = Domain((abs(v) < c,) if L.has(c) else (abs(v) < 1,) if name == "of units" else ())
     assert is_hamiltonian_of(Lagrangian(L, [x]), right, [p_x], real).holds
     assert is_hamiltonian_of(Lagrangian(L, [x]), right + p_x, [p_x], real).fails
+
+
+a, b = sp.symbols("a b", positive=True)
+CONVEX = {
+    "quartic and quadratic": v**4 / 4 + v**2 / 2,
+    "with parameters": a * v**4 / 4 + m * v**2 / 2 - k * x**2 / 2,
+    "with a cubic term": v**4 / 4 + v**3 / 2 + v**2 - x * v,
+    "log cosh": m * sp.log(sp.cosh(v / a)),
+}
+VALUES = {a: sp.Rational(3, 2), m: sp.Rational(4, 3), k: 2, x: sp.Rational(1, 5)}
+
+
+@pytest.mark.parametrize("name", CONVEX)
+def test_velocities_of_convex_lagrangians(name):
+    """∂H/∂p gives the velocity back to 30 digits, and H = p v − L there; this H is recognized, a twin is not."""
+    L = Lagrangian(CONVEX[name], [x])
+    H = hamiltonian(L)
+    assert not H.H.has(sp.I)
+    for speed in ("-1.3", "0.02", "0.7"):
+        there = {**VALUES, v: sp.Rational(speed)}
+        at = {**VALUES, p_x: L.momenta[0].subs(there)}
+        assert abs(H.H.diff(p_x).evalf(40, subs=at) - there[v]) < sp.Float("1e-30")
+        assert abs(H.H.evalf(40, subs=at) - L.jacobi_energy.evalf(40, subs=there)) < sp.Float("1e-30")
+    assert is_hamiltonian_of(L, H.H, H.p).holds
+    for twin in (-H.H, H.H + p_x, H.H + b, H.H.subs(p_x, 2 * p_x)):
+        assert not is_hamiltonian_of(L, twin, H.p).holds
+        assert is_hamiltonian_of(L, twin, H.p).fails
+
+
+@pytest.mark.parametrize("L", [v**4 - v**2, v**4 + v**3, v**3 + v])
+def test_no_hamiltonian_where_the_momentum_does_not_grow(L):
+    """Several velocities have one momentum, or the momentum turns back: no closed form on all velocities is right."""
+    with pytest.raises(LegendreError, match="could not be found in closed form on this domain; narrow it"):
+        hamiltonian(Lagrangian(L, [x]))
+
+
+def test_the_dual_says_nothing_of_what_is_not_convex():
+    """p = 4 v³ − 2 v has three roots; a branch of them solves both identities, and is no Hamiltonian."""
+    L = v**4 - v**2
+    assert not is_dual(p_x * v - L, L, v, p_x)
+    u = sp.Symbol("u", real=True)
+    assert not is_dual(-(u**2) / 4, -(v**2), v, u)  # concave
 
 
 def test_relativistic_motion_in_space_is_real():

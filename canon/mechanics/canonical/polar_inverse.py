@@ -172,10 +172,26 @@ def polar_branch(
     solved = _solved(equations, unknowns, [tuple(pair.values()) for pair in parts.values()], inversion)
     if solved is None:
         return None
-    sizes: dict[Expr, Expr] = {
-        abs(new): new for new, image in meaning.items() if image.is_nonnegative and not new.is_nonnegative
-    }
+    sizes = {f: new for new, image in meaning.items() for f in _sizes(new, image)}
     solved = {z: shortened(exchanged(united_squares(value), sizes)) for z, value in solved.items()}
+    angles = _angles(parts, solved, witness)
+    if angles is None:
+        return None
+    values = {z: angles[z].value if z in angles else solved[z] for z in variables}
+    signs = (cast("Boolean", sp.Gt(new, 0)) for new in sizes.values())
+    ranges = tuple(dict.fromkeys((*system.ranges, *signs, *_radicands(solved.values()))))
+    return BranchOfInverse(values, ranges, angles, tuple(system.angles))
+
+
+def _sizes(new: Symbol, image: Expr) -> tuple[Expr, ...]:
+    """Return |new| where the new variable is not negative as an image, whatever its symbol says."""
+    return (sp.Abs(new),) if image.is_nonnegative and not new.is_nonnegative else ()
+
+
+def _angles(
+    parts: Mapping[Symbol, Mapping[Expr, Symbol]], solved: Mapping[Symbol, Expr], witness: BranchPoint
+) -> dict[Symbol, AngleFromArc] | None:
+    """Return the old angles by their sines and cosines, with the turns that the witness shows."""
     angles: dict[Symbol, AngleFromArc] = {}
     for z, pair in parts.items():
         sine, cosine = (solved[name] for name in pair.values())
@@ -183,10 +199,7 @@ def polar_branch(
         if turns is None:
             return None
         angles[z] = AngleFromArc(sine, cosine, round(turns))
-    values = {z: angles[z].value if z in angles else solved[z] for z in variables}
-    signs = (cast("Boolean", sp.Gt(new, 0)) for new in sizes.values())
-    ranges = tuple(dict.fromkeys((*system.ranges, *signs, *_radicands(solved.values()))))
-    return BranchOfInverse(values, ranges, angles, tuple(system.angles))
+    return angles
 
 
 def _solved(

@@ -21,12 +21,13 @@ from canon.mechanics.hamilton.bracket import poisson_bracket
 from canon.mechanics.hamilton.legendre import (
     LegendreError,
     eliminate_velocities,
+    is_dual,
     legendre_residual,
     where_root_is_real,
 )
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.domain.domain import Domain, as_domain
-from canon.proof.domain.verdict import Verdict, all_hold
+from canon.proof.domain.verdict import Status, Verdict, all_hold
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
@@ -302,12 +303,15 @@ def is_hamiltonian_of(
 
     def verdicts() -> Iterator[Verdict]:
         yield has_hamiltonian(lagrangian, domain)
-        yield vanishes_off_kinks(
-            legendre_residual(
-                energy, dict(zip(momenta, lagrangian.momenta, strict=True)), lagrangian.jacobi_energy
-            ),
-            domain,
+        residual = legendre_residual(
+            energy, dict(zip(momenta, lagrangian.momenta, strict=True)), lagrangian.jacobi_energy
         )
+        plainly = vanishes_off_kinks(residual, domain)
+        if plainly.status is Status.UNDECIDED and len(momenta) == 1:
+            (v,), (p,) = lagrangian.velocities, momenta
+            if is_dual(energy, lagrangian.L, v, p):
+                plainly = Verdict(Status.HOLDS, question, "exact")
+        yield plainly
 
     there = substitute(energy, dict(zip(momenta, lagrangian.momenta, strict=True)))
     return having_values(all_hold(verdicts(), question), {"H": there}, [lagrangian.L], domain)

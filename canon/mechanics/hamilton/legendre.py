@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from canon.mechanics.algebra.branch_point import BranchPoint
 
-__all__ = ["LegendreError", "eliminate_velocities", "legendre_residual", "where_root_is_real"]
+__all__ = ["LegendreError", "eliminate_velocities", "is_dual", "legendre_residual", "where_root_is_real"]
 
 WITNESSES = 4
 """Points that show a branch."""
@@ -144,12 +145,53 @@ def _of_nonlinear(
     domain = _where_real(f, old, domain)
     witnesses = tuple(branch_points({*f.atoms(Symbol), *old}, there, domain, WITNESSES))
     for values, transformed in _candidates(f, gradient, old, new, witnesses):
-        if all(
+        if _only_root(values, gradient, hessian, old, new) or all(
             vanishes_off_kinks(substitute(value, there) - x, domain).holds
             for value, x in zip(values, old, strict=True)
         ):
             return transformed
     return None
+
+
+def _only_root(
+    values: Sequence[Expr],
+    gradient: Sequence[Expr],
+    hessian: sp.Matrix,
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+) -> bool:
+    """Whether a real x(y) gives ∂f/∂x = y for every y, in one variable where ∂f/∂x grows: there is no other root."""
+    if len(old) > 1 or not _is_positive(entry(hessian, 0, 0), old[0]) or not values[0].is_real:
+        return False
+    return vanishes_off_kinks(substitute(gradient[0], {old[0]: values[0]}) - new[0], Domain()).holds
+
+
+def _is_positive(f: Expr, x: Symbol) -> bool:
+    """Whether f > 0 for every real x, by its symbols or as a square polynomial without real roots."""
+    square = polynomial_in(f, x)
+    if f.is_positive or square is None or square.degree() != 2:
+        return bool(f.is_positive)
+    return bool(square.LC().is_positive and sp.factor(-square.discriminant()).is_positive)
+
+
+def is_dual(H: Expr, L: Expr, v: Symbol, p: Symbol) -> bool:
+    """Tell whether H is the transform of a convex L by what holds at its own v = ∂H/∂p, with nothing left open.
+
+    With ∂²L/∂v² > 0 the two identities ∂L/∂v = p and p v − L = H at v = ∂H/∂p say all: for each p there is one v only
+    (V. I. Arnold, Mathematical Methods of Classical Mechanics, section 14).
+
+    Examples
+    --------
+    >>> v, p = sp.symbols("v p", real=True)
+    >>> is_dual(p**2/2, v**2/2, v, p), is_dual(p**2, v**2/2, v, p)
+    (True, False)
+    """
+    slope = H.diff(p)
+    if not _is_positive(L.diff(v, 2), v) or not slope.is_real:
+        return False
+    there = {v: slope}
+    claims = (substitute(L.diff(v), there) - p, p * slope - substitute(L, there) - H)
+    return all(vanishes_off_kinks(claim, Domain()).holds for claim in claims)
 
 
 def _where_real(f: Expr, old: Sequence[Symbol], domain: Domain) -> Domain:
@@ -196,17 +238,49 @@ def _candidates(
     if not radicals and len(old) == 1:
         equation = sp.numer(sp.together(gradient[0] - new[0]))
         yield from _of_odd_power(f, equation, old[0], new[0])
+        yield from _of_growing_cubic(f, equation, old[0], new[0])
         for root, _ in low_degree_roots(equation, old[0]):
             yield (root,), sp.factor_terms(root * new[0] - substitute(f, {old[0]: root}))
     bases = {e.as_base_exp()[0] for e in radicals}
     if len(bases) == 1 and all((2 * _exponent(e)).is_Integer for e in radicals):
         yield from _of_one_radical(bases.pop(), f, gradient, old, new, witnesses)
-    for witness in witnesses:
-        solved = solve_system(list(zip(gradient, new, strict=True)), old, Inversion(witness))
+    for witness, slopes in product(witnesses, dict.fromkeys((tuple(gradient), _by_tanh(gradient, old)))):
+        solved = solve_system(list(zip(slopes, new, strict=True)), old, Inversion(witness))
         if solved is not None:
             values = tuple(solved[x] for x in old)
             products = (x * y for x, y in zip(values, new, strict=True))
             yield values, sp.Add(*products, -substitute(f, dict(zip(old, values, strict=True))))
+
+
+def _by_tanh(gradient: Sequence[Expr], old: Sequence[Symbol]) -> tuple[Expr, ...]:
+    """Return ∂f/∂x with tanh for quotients of sinh and cosh."""
+    sines = {
+        g: sp.tanh(g.args[0]) * sp.cosh(g.args[0]) for f in gradient for g in f.atoms(sp.sinh) if g.has(*old)
+    }
+    return tuple(exchanged(f, sines) for f in gradient)
+
+
+def _of_growing_cubic(
+    f: Expr, equation: Expr, x: Symbol, y: Symbol
+) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
+    """Yield the only real root of a x³ + b x² + c x + d = 0 where the left side grows, 3 a c > b².
+
+    With x = u − b/3a it is u³ + P u + Q = 0, P > 0, whose root is u = −2 √(P/3) sinh(⅓ arsinh((3 Q/2 P) √(3/P))), real
+    without cube roots of negative numbers as in Cardano's formula. Powers of x from x³ are reduced by the equation.
+    """
+    poly = polynomial_in(equation, x)
+    if poly is None or poly.degree() != 3:
+        return
+    a, b, c, d = poly.all_coeffs()
+    P = sp.cancel((3 * a * c - b**2) / (3 * a**2))
+    if not P.is_positive:
+        return
+    Q = sp.cancel((2 * b**3 - 9 * a * b * c + 27 * a**2 * d) / (27 * a**3))
+    u = -2 * sp.sqrt(P / 3) * sp.sinh(sp.asinh(3 * Q * sp.sqrt(3 / P) / (2 * P)) / 3)
+    root = sp.Dummy()
+    total = sp.rem(sp.Poly(x * y - f, x), poly).as_expr() if (x * y - f).is_polynomial(x) else x * y - f
+    shifted = root - b / (3 * a)
+    yield (u - b / (3 * a),), exchanged(sp.expand(substitute(total, {x: shifted})), {root: u})
 
 
 def _of_odd_power(f: Expr, equation: Expr, x: Symbol, y: Symbol) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
