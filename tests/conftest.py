@@ -15,6 +15,8 @@ settings.register_profile("ci", derandomize=True, deadline=None)
 settings.register_profile("here", deadline=None)  # a busy machine proves nothing against a law
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
+collect_ignore_glob = ["data/typed/*"]  # read by checkers of types, never run: half of it is wrong
+
 LONGEST = 300.0
 """Seconds of a test, slow ones included."""
 
