@@ -55,13 +55,15 @@ def bytes_of(path: Path, most: int, instead: str) -> bytes:
     Examples
     --------
     >>> from pathlib import Path
-    >>> bytes_of(Path("/dev/null"), 100, "split it")
+    >>> bytes_of(Path("no such file"), 100, "split it")
     Traceback (most recent call last):
         ...
-    canon.given_file.UnreadableFile: it is a device and no file
+    canon.given_file.UnreadableFile: can't be read (No such file or directory)
     """
+    # Windows would change the ends of lines and stop at a Ctrl-Z; a pipe without a writer would be waited for.
+    as_it_is = os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NONBLOCK", 0)
     try:
-        with os.fdopen(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:
+        with os.fdopen(os.open(path, as_it_is), "rb") as file:
             kind = stat.S_IFMT(os.fstat(file.fileno()).st_mode)
             if kind == stat.S_IFIFO and str(path).startswith(PIPES_OF_SHELLS):
                 os.set_blocking(file.fileno(), True)
