@@ -3,6 +3,7 @@
     python benchmarks/normal_forms.py            # orders 8, 16, 24; SymPy to 8; L1 to degree 12; 10⁵ terms
     python benchmarks/normal_forms.py --large    # and order 32; L1 to degree 16
     python benchmarks/normal_forms.py --hiten ENV/bin/python    # beside HITEN, from an environment that has it
+    python benchmarks/normal_forms.py --celmech ENV/bin/python  # beside celmech's birkhoff_normalize, likewise
 
 The Hénon–Heiles system, exactly over ℚ; the centre manifold of L1 in balls.
 Seconds are of the processor; ratios within one run are what can be compared.
@@ -149,6 +150,59 @@ def beside_hiten(python: str, order: int) -> str:
     return f"| {order} | {spent} | {len(terms)} | {max(gaps) / largest:.0e} |"
 
 
+SAME_FORM = 8
+IN_CELMECH = """
+import math, sys, time
+from itertools import product
+from celmech.poisson_series import PoissonSeries, PSTerm, birkhoff_normalize
+
+def series(terms):
+    return PoissonSeries.from_PSTerms([PSTerm(c, k, l, [], []) for c, k, l in terms], N=2, M=0)
+
+def power(choices, each):
+    for signs in product((0, 1), repeat=len(choices)):
+        k, l = [0, 0], [0, 0]
+        for j, barred in zip(choices, signs):
+            (l if barred else k)[j] += 1
+        yield each / math.sqrt(8), k, l
+
+order = int(sys.argv[1])
+H = {degree: PoissonSeries(2, 0) for degree in range(2, order + 1)}
+H[2] = series([(1.0, [1, 0], [1, 0]), (1.0, [0, 1], [0, 1])])
+for term in (*power((0, 0, 1), 1.0), *power((1, 1, 1), -1 / 3)):
+    H[3] = H[3] + series([term])
+started = time.process_time()
+_, found = birkhoff_normalize([1.0, 1.0], H, order, kres=[[1, -1]])
+print("OF CELMECH", time.process_time() - started)
+for part in found.values():
+    for term in part.terms:
+        print("TERM", *term.k, *term.kbar, repr(complex(term.C)))
+"""
+
+
+def beside_celmech(python: str, order: int) -> str:
+    """A row: seconds of both for the normal form of Hénon and Heiles' system, and how far coefficients differ.
+
+    celmech takes doubles and x = (q + i p)/√2, so that its terms of degree d are canon's times 2^(d/2). Its
+    transformation is one exponential and canon's a product: resonant normal forms of the two are equal to some degree,
+    here 8 (canon's as one exponential has a part that commutes with H₂ from degree 8: hori_generator). Coefficients
+    are compared to that degree.
+    """
+    done = subprocess.run([python, "-c", IN_CELMECH, str(order)], capture_output=True, text=True, check=True)
+    theirs = float(done.stdout.split("OF CELMECH ")[1].split()[0])
+    terms = {
+        tuple(map(int, words[1:5])): complex(words[5])
+        for words in map(str.split, done.stdout.splitlines())
+        if words[0] == "TERM"
+    }
+    ours = seconds(lambda: birkhoff_normal_form(HENON_HEILES, order), 3)
+    form = birkhoff_normal_form(HENON_HEILES, order)
+    exact = {k: float(c) * 2 ** (sum(k) / 2) for k, c in sp.Poly(form.K, *form.complex_variables).terms()}
+    gap = max(abs(exact.get(k, 0) - terms.get(k, 0)) for k in exact | terms if sum(k) <= SAME_FORM)
+    gap /= max(abs(c) for k, c in exact.items() if sum(k) <= SAME_FORM)
+    return f"| {order} | {ours:.3f} | {theirs:.2f} | {theirs / ours:.0f} | {len(exact)} | {gap:.0e} |"
+
+
 def long_bracket(partner: int) -> tuple[int, int, float]:
     """Terms of a dense polynomial in three degrees of freedom, terms of its bracket with a short one, and seconds."""
     chance, ring = random.Random(1), PolynomialRing(6)
@@ -180,7 +234,16 @@ def main() -> None:
     )
     parser.add_argument("--large", action="store_true", help="order 32 too")
     parser.add_argument("--hiten", metavar="PYTHON", help="an interpreter that has HITEN")
+    parser.add_argument("--celmech", metavar="PYTHON", help="an interpreter that has celmech")
     chosen = parser.parse_args()
+    if chosen.celmech:
+        print(
+            "| degree | canon, exact, s | celmech, doubles, s | ratio | terms | "
+            "largest difference to degree 8, of the largest |\n|---|---|---|---|---|---|"
+        )
+        for order in (6, 8, 10, *([12] if chosen.large else [])):
+            print(beside_celmech(chosen.celmech, order), flush=True)
+        return
     if chosen.hiten:
         print(
             "| degree | canon, s | HITEN compiled, s | ratio | HITEN with compiling, s | terms | "
