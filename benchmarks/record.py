@@ -26,6 +26,7 @@ BENCHMARKS = {
     "minimal": "Only what is asked for",
     "classroom": "A class of two hundred",
     "feedback": "Wrong answers whose slip is known",
+    "growth": "How the time grows: sites, bodies, links, claims, cases, samples, orbits",
     "kernels": "Compiled loops, beside a C program",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",

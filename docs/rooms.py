@@ -53,9 +53,9 @@ def rooms() -> str:
         folder = PACKAGE / room
         lines += [f"### {room}", "", f"{first_line(folder / '__init__.py')}.".replace("?.", "?"), ""]
         lines += table(folder)
-        for place in sorted(path.parent for path in folder.glob("*/__init__.py")):
+        for place in sorted(path.parent for path in folder.glob("*/**/__init__.py")):
             lines += [
-                f"#### {room}/{place.name}",
+                f"#### {place.relative_to(PACKAGE).as_posix()}",
                 "",
                 f"{first_line(place / '__init__.py')}.",
                 "",

@@ -1,0 +1,1 @@
+"""Averages over the mean anomaly of Kepler's ellipse in closed form, without a series in the eccentricity."""
