@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 from sympy import cos, sin
 
+from canon import Hamiltonian, Taylor, propagate
 from canon.mechanics import average_over_anomaly
 from canon.mechanics.perturbation.averaging import AveragingError
 
@@ -134,6 +135,56 @@ def test_an_inverse_square_is_known_exactly():
     found = average_over_anomaly(k / r**2, mu, r, f, [g], [L, G], order=2).in_momenta()
     for order, each in enumerate(found, 1):
         assert sp.simplify(each - K.diff(small, order).subs(small, 0) / sp.factorial(order)) == 0
+
+
+def delaunay(motion):
+    """Return (l, g, h, L, G, H), f and f − l of rows (x, y, z, p_x, p_y, p_z) with μ = 1, angles without jumps."""
+    x, v = motion[:, :3], motion[:, 3:]
+    radius, spin = np.linalg.norm(x, axis=1), np.cross(x, v)
+    L0, G0 = 1 / np.sqrt(2 / radius - (v**2).sum(1)), np.linalg.norm(spin, axis=1)
+    node = np.stack([-spin[:, 1], spin[:, 0], 0 * radius], axis=1)
+    node /= np.linalg.norm(node, axis=1)[:, None]
+    latitude = np.arctan2((np.cross(spin, node) * x).sum(1) / G0, (node * x).sum(1))
+    e_cos, e_sin = G0**2 / radius - 1, G0 * (x * v).sum(1) / radius
+    e, true = np.hypot(e_cos, e_sin), np.arctan2(e_sin, e_cos)
+    E = 2 * np.arctan(np.sqrt((1 - e) / (1 + e)) * np.tan(true / 2))
+    mean = E - e * np.sin(E)
+    angles = (mean, latitude - true, np.arctan2(node[:, 1], node[:, 0]))
+    return (*map(np.unwrap, angles), L0, G0, spin[:, 2]), true, true - mean
+
+
+def along_an_orbit(small, order):
+    """Return the spread of the mean L', and by how much an oblate planet turns its node otherwise than K says."""
+    found = averaged("oblate planet")
+    x, y, z, *p = sp.symbols("x y z p_x p_y p_z")
+    distance = sp.sqrt(x**2 + y**2 + z**2)
+    oblate = sp.Rational(1, 2) * small * (3 * z**2 / distance**2 - 1) / distance**3
+    system = Hamiltonian(sum(one**2 for one in p) / 2 - 1 / distance + oblate, (x, y, z), tuple(p))
+    start = np.array([0.8, 0, 0, 0, 1.2 * np.cos(0.7), 1.2 * np.sin(0.7)])
+    motion = propagate(system, (0.0, 60 * np.pi), start, method=Taylor(), samples=1501)
+    osculating, true, centre = delaunay(motion.y.T)
+    ellipse, there = found.ellipse, {mu: 1, k: 1}
+    given = (f, ellipse.e, ellipse.eta, *found.angles, *found.momenta, found.centre)
+    shifts = sp.lambdify(given, [each.subs(there) for each in found.shifts()])
+    e, eta = np.sqrt(1 - (osculating[4] / osculating[3]) ** 2), osculating[4] / osculating[3]
+    moved = shifts(true, e, eta, *osculating[1:], centre)
+    mean = [one - small * shift for one, shift in zip(osculating, moved, strict=True)]
+    K = sum(small**n * each for n, each in enumerate(found.in_momenta()[:order], 1))
+    rate = sp.lambdify((g, L, G, H), K.subs(there).diff(H))(mean[1], *mean[3:])
+    smooth = np.sin(
+        np.pi * motion.t / motion.t[-1]
+    )  # squared, Hann's window: waves of the anomaly leave no slope
+    turned = np.polyfit(motion.t, mean[2], 1, w=smooth)[0]
+    return np.ptp(mean[3]), abs(turned - np.average(rate, weights=smooth**2))
+
+
+def test_mean_elements_stay_along_an_orbit():
+    """L' wanders by J₂² only; the node turns as K₁ says to J₂², and as K₁ + K₂ say to J₂³."""
+    spread = [along_an_orbit(small, 1)[0] for small in (2e-3, 1e-3)]
+    assert spread[0] / spread[1] == pytest.approx(4, rel=0.1)
+    for order, due in ((1, 4), (2, 8)):
+        wrong = [along_an_orbit(small, order)[1] for small in (2e-3, 1e-3)]
+        assert wrong[0] / wrong[1] == pytest.approx(due, rel=0.1)
 
 
 @pytest.mark.parametrize(

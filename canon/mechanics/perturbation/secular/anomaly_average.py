@@ -42,6 +42,8 @@ class AnomalyAverage:
         The strength μ of −μ/r.
     centre
         The equation of the centre f − l.
+    angles, momenta
+        g and perhaps h; L, G and perhaps H.
     """
 
     K: tuple[Expr, ...]
@@ -50,6 +52,8 @@ class AnomalyAverage:
     ellipse: Ellipse
     mu: Expr
     centre: Symbol
+    angles: tuple[Symbol, ...]
+    momenta: tuple[Symbol, ...]
 
     def in_momenta(self) -> tuple[Expr, ...]:
         """Return K₁ and K₂ with G/L for η."""
@@ -65,9 +69,35 @@ class AnomalyAverage:
         True
         """
         x, n = self.ellipse, self.mu**2 / self.ellipse.L**3
-        rate = self.W.diff(x.f) * x.f_l + self.W.diff(self.centre) * (x.f_l - 1)
-        claim = exchanged(n * rate - self.perturbation + self.K[0], {x.e: sp.sqrt(1 - x.eta**2)})
+        claim = exchanged(
+            n * self._by_mean_anomaly() - self.perturbation + self.K[0], {x.e: sp.sqrt(1 - x.eta**2)}
+        )
         return all_vanish([("n dW/dl = H1 - K1", claim)], "the generator removes the mean anomaly")
+
+    def shifts(self) -> tuple[Expr, ...]:
+        """Return {·, W} of l, of the angles and of the momenta, by which the osculating elements differ from mean ones.
+
+        In f, e, η, the momenta and ``centre``. What is left of the osculating elements less ε times it are the mean
+        elements up to terms of ε². Those of l and g divide by e, and have no value on a circle.
+
+        Examples
+        --------
+        The momentum L is μ²/2L² + H₁ made free of l, so that its shift is −(H₁ − K₁)/n:
+
+        >>> mu, r, f, L, G, g, k = sp.symbols("mu r f L G g k", positive=True)
+        >>> found = average_over_anomaly(k/r**2, mu, r, f, [g], [L, G])
+        >>> sp.simplify(found.shifts()[2] * mu**2 / L**3 + found.perturbation - found.K[0])
+        0
+        """
+        x, W = self.ellipse, self.W
+        by_momenta = (x.by_momentum(W, J) + W.diff(self.centre) * x.f_by(J) for J in self.momenta)
+        by_angles = (self._by_mean_anomaly(), *(W.diff(angle) for angle in self.angles))
+        return (*by_momenta, *(-each for each in by_angles))
+
+    def _by_mean_anomaly(self) -> Expr:
+        """Return ∂W/∂l."""
+        f_l = self.ellipse.f_l
+        return self.W.diff(self.ellipse.f) * f_l + self.W.diff(self.centre) * (f_l - 1)
 
 
 def average_over_anomaly(
@@ -163,7 +193,8 @@ class _Averaging:
         waves = x.integral_in_f(self.reduced)
         centre = sp.Symbol("centre", real=True)
         K = (K1,) if order == 1 else (K1, self._second(K1, waves))
-        return AnomalyAverage(K, (K1 * centre + waves) / n, self.H1, x, self.mu, centre)
+        generator = (K1 * centre + waves) / n
+        return AnomalyAverage(K, generator, self.H1, x, self.mu, centre, self.angles, self.momenta)
 
     def _second(self, K1: Expr, waves: Expr) -> Expr:
         """Return ½ ⟨{H₁ + K₁, W}⟩ with W = (K₁ (f − l) + S)/n.
