@@ -33,6 +33,8 @@ MOST_WIDTHS = 4
 """Rectangles in which the integral is tried before it is given up."""
 DEEPEST = 7
 """How often boxes are halved in the proof that p² is holomorphic."""
+CUT_DEPTH = 40
+"""How often a path is halved in the proof that √R is one function along it."""
 COARSE_BITS = 64
 """The precision of the argument principle, whose value is an integer."""
 SPARE_BITS = 32
@@ -66,11 +68,19 @@ class Libration:
     proved: dict[float, bool] = field(default_factory=dict[float, bool], compare=False, repr=False)
 
     def root(self, q: acb, analytic: bool = False) -> acb:
-        """Return √(p²) in the upper half plane, positive on the upper side of the interval."""
+        """Return √(p²) in the upper half plane, positive on the upper side of the interval.
+
+        √R is not finite on a ball that meets the cut, whether Arb asks for a holomorphic function or for bounds only:
+        Arb integrates over a jump, and beyond the cut the other root would be taken.
+        """
         left, right = q - self.low, self.high - q
-        rest = (self.square(q, analytic) / (left * right)).sqrt(analytic=analytic)
+        rest = self._rest(q, analytic).sqrt(analytic=True)
         i = acb(0, 1)
         return (-i * left).sqrt(analytic=analytic) * (i * right).sqrt(analytic=analytic) * rest
+
+    def _rest(self, q: acb, analytic: bool = False) -> acb:
+        """Return R = p²/((q − a)(b − q))."""
+        return self.square(q, analytic) / ((q - self.low) * (self.high - q))
 
     def integral(self, f: BallFunction | None, power: int, end: arb | None = None) -> arb:
         """Return the integral of f·(p²)^(power/2) from the lower turning point to the upper one, or to ``end``.
@@ -85,20 +95,26 @@ class Libration:
             factor = acb(1) if f is None else f(q, analytic)
             return factor * self.root(q, analytic) ** power
 
-        for d in self._widths():
-            total = integral_along(integrand, self._path(d, end))
+        for path in self._paths(end):
+            total = integral_along(integrand, path)
             if total.is_finite():
                 return total.real
         raise self._too_near
 
-    def _widths(self) -> Iterator[arb]:
-        """Give widths of rectangles in which p² is proved to have the two zeros and no pole, wide ones first."""
+    def _paths(self, end: arb | None) -> Iterator[list[acb]]:
+        """Give paths about rectangles in which p² is proved to have the two zeros and no pole, wide ones first.
+
+        √R is one function along each of them: R does not meet the negative real axis, as it may where p² turns much.
+        """
         d = ((self.high - self.low) / 2).mid()
         given = 0
         for _ in range(MOST_HALVINGS):
-            if self._proved_for(d):
+            path = self._path(d, end)
+            if self._proved_for(d) and all(
+                _is_off_the_cut(self._rest, *ends, CUT_DEPTH) for ends in pairwise(path)
+            ):
                 given += 1
-                yield d
+                yield path
             if given == MOST_WIDTHS:
                 return
             d = (d / 2).mid()
@@ -171,6 +187,16 @@ def _holomorphic(f: BallFunction, real: arb, imaginary: arb, depth: int) -> bool
         else [(real, part) for part in _halves(imaginary)]
     )
     return all(_holomorphic(f, x, y, depth - 1) for x, y in halves)
+
+
+def _is_off_the_cut(f: Callable[[acb], acb], start: acb, end: acb, depth: int) -> bool:
+    """Whether f certainly keeps off zero and the negative real axis on a line, which is halved until balls tell."""
+    if f(start.union(end)).sqrt(analytic=True).is_finite():
+        return True
+    if depth == 0:
+        return False
+    middle = ((start + end) / 2).mid()
+    return _is_off_the_cut(f, start, middle, depth - 1) and _is_off_the_cut(f, middle, end, depth - 1)
 
 
 def _halves(interval: arb) -> tuple[arb, arb]:

@@ -124,6 +124,27 @@ def test_morse_and_poschl_teller():
     assert holds(found.frequencies[0], sp.Rational(1, 2) * sp.sqrt(-2 * E / 2))
 
 
+@pytest.mark.parametrize("place", [5, 15])
+def test_a_root_that_turns_on_its_way_about_a_deep_well_is_not_taken_for_the_other_root(place):
+    """p²/((q − a)(b − q)) turns past the negative axis on wide paths, where its principal root jumps."""
+    found = action_variables(MORSE, {q: place, p: 0}, {m: 1, D: 2, a: 1})
+    depth = 2 * sp.exp(-place) - sp.exp(-2 * place)
+    assert holds(found.J[0], 2 - 2 * sp.sqrt(depth))
+    assert misses(found.J[0], 2 + 2 * sp.sqrt(depth))
+
+
+def test_an_action_in_a_well_with_steep_walls_is_the_real_integral():
+    wall = hamilton_jacobi(Hamiltonian(p**2 / 2 + sp.cosh(q), q, p))
+    found = action_variables(wall, {q: 10, p: 1}).J[0]
+    with mp.workdps(20):
+        E = mp.mpf(1) / 2 + mp.cosh(10)
+        end = mp.acosh(E)
+        half = mp.quad(
+            lambda u: mp.re(mp.sqrt(2 * (E - mp.cosh(end * mp.sin(u))))) * end * mp.cos(u), [0, mp.pi / 2]
+        )
+    assert abs(float(found) / float(2 * half / mp.pi) - 1) < 1e-12
+
+
 def test_two_centres_of_which_one_has_no_mass_are_keplers_problem():
     """(u, v) and (−u, −v) are one place: a cycle of both is two revolutions, at half of Kepler's (−2 E)^(3/2)/k."""
     one, two, c = sp.symbols("k1 k2 c", positive=True)
