@@ -1,3 +1,7 @@
+from .chaos.energy_surface import starts_of_energy as starts_of_energy
+from .chaos.poincare_section import PoincareSection as PoincareSection
+from .chaos.poincare_section import SectionNotMetError as SectionNotMetError
+from .chaos.poincare_section import poincare_section as poincare_section
 from .compiled_right_hand_side import RightHandSide as RightHandSide
 from .compiled_right_hand_side import right_hand_side as right_hand_side
 from .estimate.error_estimate import ErrorEstimate as ErrorEstimate

@@ -1,0 +1,1 @@
+"""Regular or chaotic: sections, periodic orbits, and how fast neighbours part."""
