@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 import sys
 from typing import TYPE_CHECKING
 
@@ -105,7 +106,7 @@ def _command(choice: Choice, arguments: argparse.Namespace) -> str:
     knob = f"--step {choice.step:.6g}" if choice.step is not None else f"--tolerance {choice.tolerance:.3g}"
     words = ["canon drift", arguments.scene, *(f"--set {each}" for each in arguments.set)]
     words += [f'--start "{arguments.start}"'] if arguments.start else []
-    words += [f"--method {name}", knob, f"--span {choice.span:.10g}"]
+    words += [f"--method {shlex.quote(name)}", knob, f"--span {choice.span:.10g}"]
     return " ".join([*words, f"--precision {choice.precision}"])
 
 

@@ -80,4 +80,11 @@ def _scenes() -> list[str]:
 def _methods() -> list[str]:
     from canon.kernel.schemes.splitting_schemes import SCHEMES
 
-    return [*SCHEMES, *(f"gauss-{stages}" for stages in range(1, 9)), "rk4", "taylor", "dop853"]
+    return [
+        *SCHEMES,
+        *(f"gauss-{stages}" for stages in range(1, 9)),
+        *(f"semiexplicit-{order}" for order in (2, 4, 6, 8)),
+        "rk4",
+        "taylor",
+        "dop853",
+    ]

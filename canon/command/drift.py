@@ -22,7 +22,7 @@ between the samples are not kept.
 """
 EXAMPLES = """\
 methods: kahan-li-8, verlet, blanes-moan-4, … (symplectic splittings, for H = T(p) + V(q)), gauss-1 … gauss-8
-(symplectic, for every H), taylor (heyoka's, adaptive), rk4, dop853 (not symplectic)
+and semiexplicit-2 … semiexplicit-8 (symplectic, for every H), taylor (heyoka's, adaptive), rk4, dop853 (not symplectic)
 
 observables: energy, momenta (of ignorable coordinates), integrals (all known constants of the scene), symplecticity
 (the bilinear covariant of two variations carried along by the method), or one of them by its name

@@ -21,6 +21,8 @@ from .method.method import Gauss as Gauss
 from .method.method import Method as Method
 from .method.method import Splitting as Splitting
 from .method.method import TimeTransformed as TimeTransformed
+from .method.nonseparable_splitting import ExtendedPhaseSpace as ExtendedPhaseSpace
+from .method.nonseparable_splitting import SemiexplicitSplitting as SemiexplicitSplitting
 from .method.solvable_splitting import SABA as SABA
 from .method.solvable_splitting import SBAB as SBAB
 from .method.solvable_splitting import SolvableSplitting as SolvableSplitting

@@ -26,6 +26,7 @@ from canon.flow.equations.first_order_motion import Contact, Contacts, MovingSys
 from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.method import RK4, Gauss, Splitting, TimeTransformed
+from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
 from canon.flow.run.event import Crossing, Event
 from canon.flow.run.samples import Samples
@@ -52,7 +53,7 @@ _CLASSES: dict[str, Any] = {
     for each in (
         RunRecord, Task, Samples, Plan, HamiltonEquations, MovingSystem, Residual, Contact, Contacts, ExtendedSystem,
         RunState, StepEnd, LoopState, Event, Crossing, Splitting, Gauss, RK4, Taylor, DOP853, TimeTransformed,
-        SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme,
+        SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme, ExtendedPhaseSpace, SemiexplicitSplitting,
     )
 }  # fmt: skip
 

@@ -21,6 +21,7 @@ from canon import (
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.method_text import method_from, method_named, method_of
+from canon.flow.method.nonseparable_splitting import COMPOSITIONS, ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
 from canon.kernel.schemes.perturbed_schemes import saba
 from canon.kernel.schemes.splitting_schemes import SCHEMES
@@ -35,6 +36,7 @@ NAMED = {
     **{f"gauss-{stages}": Gauss(stages) for stages in range(1, 9)},
     **{f"saba-{stages}": SABA(stages) for stages in range(1, 9)},
     **{f"sbab-{stages}": SBAB(stages) for stages in range(1, 9)},
+    **{f"semiexplicit-{order}": SemiexplicitSplitting(order) for order in COMPOSITIONS},
     "gauss": Gauss(),
     "rk4": RK4(),
     "taylor": Taylor(),
@@ -43,11 +45,14 @@ NAMED = {
     "aba-8-6-4": SABA("8-6-4"),
     "aba-10-6-4": SABA("10-6-4"),
 }
+TWO_COPIES = SemiexplicitSplitting(8), ExtendedPhaseSpace(6, omega=0.1), ExtendedPhaseSpace(2, omega=1e-7)
 KINDS = [
     Splitting("verlet"),
     Splitting(a=["1/3", "2/3"], b=["1/2", "1/2"]),
     Splitting("verlet", parts=(x.momentum**2, x**4)),
     Gauss(3),
+    SemiexplicitSplitting(6),
+    ExtendedPhaseSpace(4, omega=2.5),
     RK4(),
     Taylor(1e-9),
     DOP853(),
@@ -84,7 +89,16 @@ def test_a_wrong_number_of_stages_is_told_as_such(wrong):
 
 
 def test_the_words_of_a_method_name_it():
-    for method in (Gauss(6), RK4(), Taylor(), Splitting("kahan-li-8"), SABA(5), SABA("8-6-4"), SBAB(2)):
+    for method in (
+        Gauss(6),
+        RK4(),
+        Taylor(),
+        Splitting("kahan-li-8"),
+        SABA(5),
+        SABA("8-6-4"),
+        SBAB(2),
+        *TWO_COPIES,
+    ):
         assert method_named(str(method)) == method
 
 
@@ -124,7 +138,8 @@ def test_methods_by_solvable_parts_are_classes():
 
 def test_methods_answer_for_themselves():
     symplectic = {type(method).__name__ for method in KINDS if method.is_symplectic}
-    assert symplectic == {"Splitting", "Gauss", "WisdomHolman", "SABA", "SBAB", "TimeTransformed"}
+    copies = {"ExtendedPhaseSpace", "SemiexplicitSplitting"}
+    assert symplectic == {"Splitting", "Gauss", "WisdomHolman", "SABA", "SBAB", "TimeTransformed"} | copies
     engines = {type(method).__name__: method.engine for method in KINDS}
     assert engines.pop("TimeTransformed") is FICTITIOUS_TIME
     assert engines.pop("Taylor") is HEYOKA

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.fixed_step.partial_step import PartialSteps
 from canon.kernel.llvm.loop import Loop, runge_kutta_loop
 from canon.kernel.llvm.machine_code import simd_bytes
+from canon.kernel.loops.doubled_phase_space import (
+    mixing_coefficients,
+    mixing_loop,
+    projecting_coefficients,
+    projecting_loop,
+)
 from canon.kernel.loops.gauss import gauss_loop
 from canon.kernel.loops.splitting import splitting_loop
 from canon.kernel.schemes.gauss_tableau import gauss_coefficients
@@ -18,9 +25,9 @@ from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableErr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from fractions import Fraction
 
     from canon.flow.method.method import RK4, Gauss, Method, Splitting
+    from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
     from canon.flow.method.number_formats import Precision
     from canon.flow.method.solvable_splitting import SolvableSplitting
     from canon.flow.run.sampling_plan import Plan
@@ -66,6 +73,19 @@ def _gauss(system: HamiltonEquations, method: Gauss, precision: Precision, _orbi
     return _kept_gauss(system, method.stages, precision.number, compensated=precision.compensated)
 
 
+def _extended(
+    system: HamiltonEquations, method: ExtendedPhaseSpace, precision: Precision, orbits: int
+) -> Loop:
+    number = _with_lanes(precision.number, system, orbits, 0)
+    return _kept_mixing(system, len(method.weights), number, compensated=precision.compensated)
+
+
+def _semiexplicit(
+    system: HamiltonEquations, method: SemiexplicitSplitting, precision: Precision, _orbits: int
+) -> Loop:
+    return _kept_projecting(system, len(method.weights), precision.number, compensated=precision.compensated)
+
+
 def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, orbits: int) -> Loop:
     number = _with_lanes(precision.number, system, orbits, 0)
     return _kept_runge_kutta(system, number, compensated=precision.compensated)
@@ -74,8 +94,8 @@ def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, 
 def _splitting(system: HamiltonEquations, method: Splitting, precision: Precision, orbits: int) -> Loop:
     if not system.separable:
         raise ValueError(
-            "H is not a sum T(p, t) + V(q, t), so it does not split into drifts and kicks; use Gauss(6), which is "
-            "symplectic for every H, or Taylor()"
+            "H is not a sum T(p, t) + V(q, t), so it does not split into drifts and kicks; use Gauss(6), "
+            "SemiexplicitSplitting(4) or ExtendedPhaseSpace(4, omega=…), which are symplectic for every H, or Taylor()"
         )
     if method.scheme.nystrom and not system.quadratic_kinetic:
         raise ValueError(
@@ -108,6 +128,8 @@ _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
     "solvable": _solvable,
     "gauss": _gauss,
     "rk4": _runge_kutta,
+    "extended_phase_space": _extended,
+    "semiexplicit": _semiexplicit,
 }
 """What compiles the methods of each family."""
 
@@ -138,6 +160,18 @@ def _kept_runge_kutta(system: HamiltonEquations, number: MachineType, *, compens
 @functools.lru_cache(maxsize=_KEPT)
 def _kept_gauss(system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool) -> Loop:
     return gauss_loop(system, stages, compensated=compensated, number=number)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_mixing(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
+    return mixing_loop(system, weights, number=number, compensated=compensated)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_projecting(
+    system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
+) -> Loop:
+    return projecting_loop(system, weights, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=64)
@@ -184,9 +218,19 @@ def _of_splitting(method: Splitting, _number: MachineType, h: Fraction) -> list[
     return [h * c for pair in zip(a, b, strict=False) for c in pair] + [h * a[-1]]
 
 
+def _of_extended(method: ExtendedPhaseSpace, _number: MachineType, h: Fraction) -> list[Fraction]:
+    return mixing_coefficients(method.weights, Fraction(method.omega), h)
+
+
+def _of_semiexplicit(method: SemiexplicitSplitting, _number: MachineType, h: Fraction) -> list[Fraction]:
+    return projecting_coefficients(method.weights, h)
+
+
 _COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]] = {
     "splitting": _of_splitting,
     "gauss": _of_gauss,
     "rk4": _of_runge_kutta,
+    "extended_phase_space": _of_extended,
+    "semiexplicit": _of_semiexplicit,
 }
 """What a step of each family reads, where the loop does not say it."""

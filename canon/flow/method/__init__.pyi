@@ -5,6 +5,8 @@ from .method import Gauss as Gauss
 from .method import Method as Method
 from .method import Splitting as Splitting
 from .method import TimeTransformed as TimeTransformed
+from .nonseparable_splitting import ExtendedPhaseSpace as ExtendedPhaseSpace
+from .nonseparable_splitting import SemiexplicitSplitting as SemiexplicitSplitting
 from .solvable_splitting import SABA as SABA
 from .solvable_splitting import SBAB as SBAB
 from .solvable_splitting import WisdomHolman as WisdomHolman

@@ -17,6 +17,7 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import counted
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
+from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
 from canon.kernel.schemes.order_conditions import order
@@ -349,7 +350,7 @@ class TimeTransformed:
         )
 
 
-FixedStep = Splitting | Gauss | RK4 | SolvableSplitting
+FixedStep = Splitting | Gauss | RK4 | SolvableSplitting | ExtendedPhaseSpace | SemiexplicitSplitting
 """Methods that take steps of one size."""
 
 Stepped = FixedStep | TimeTransformed

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.method import RK4, Gauss, Method, Splitting, TimeTransformed
+from canon.flow.method.nonseparable_splitting import COMPOSITIONS, ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
 from canon.kernel.schemes.perturbed_schemes import ABA
@@ -30,6 +31,10 @@ _EIGHT = range(1, 9)
 """Stages of SABA and SBAB methods."""
 
 _NUMBERED = re.compile(r"(gauss|saba|sbab)([0-9]{1,3})")
+
+_TAO = re.compile(
+    r"\s*tao[-_ ]?([0-9]{1,3})[,;]?\s*omega\s*=?\s*([0-9.]{1,30}(?:e[-+]?[0-9]{1,3})?)\s*", re.IGNORECASE
+)
 
 _RATIONAL = re.compile(r"[-+]?[0-9]{1,80}(?:\.[0-9]{0,80}|/[0-9]{1,80})?(?:[eE][-+]?[0-9]{1,2})?")
 
@@ -49,6 +54,7 @@ def _named() -> dict[str, Callable[[], Method]]:
         "dop853": DOP853,
         "gauss": Gauss,
         **{f"gauss-{stages}": partial(Gauss, stages) for stages in range(1, HIGHEST_STAGES + 1)},
+        **{f"semiexplicit-{each}": partial(SemiexplicitSplitting, each) for each in COMPOSITIONS},
         "wisdom-holman": WisdomHolman,
         **{f"saba-{stages}": partial(SABA, stages) for stages in _EIGHT},
         **{scheme.name: partial(SABA, stages) for stages, scheme in ABA.items()},
@@ -75,6 +81,11 @@ _ELSEWHERE = {
         ("yoshida", "yoshida4"), '"forest-ruth" is Yoshida\'s method of order 4, "kahan-li-8" has order 8'
     ),
     **dict.fromkeys(("whfast", "symba"), '"wisdom-holman" splits off the Kepler motions'),
+    **dict.fromkeys(
+        ("tao", "tao2", "tao4", "tao6", "tao8", "extendedphasespace"),
+        '"tao-4, omega 20" is ExtendedPhaseSpace(4, omega=20): say how strongly the copies are held together',
+    ),
+    "semiexplicit": '"semiexplicit-4" has order 4',
     "implicitmidpoint": '"gauss-1" is the implicit midpoint rule',
     **dict.fromkeys(("euler", "symplecticeuler"), '"verlet" costs as much and has order 2'),
 }
@@ -105,6 +116,8 @@ def method_named(name: str) -> Method:
         return {"gauss": Gauss, "saba": SABA, "sbab": SBAB}[family](
             int(stages)
         )  # which says how many there are
+    if (tao := _TAO.fullmatch(name)) is not None:
+        return ExtendedPhaseSpace(int(tao[1]), omega=float(tao[2]))
     if (here := _ELSEWHERE.get(_folded(name))) is not None:
         raise ValueError(f"no method is called {name!r} here: {here}")
     spelled = {_folded(known): known for known in _named()}
@@ -114,7 +127,9 @@ def method_named(name: str) -> Method:
 
 
 def _those_there_are() -> str:
-    numbered = f"gauss-1 … gauss-{HIGHEST_STAGES}, saba-1 … saba-8, sbab-1 … sbab-8"
+    numbered = (
+        f"gauss-1 … gauss-{HIGHEST_STAGES}, semiexplicit-2 … semiexplicit-8, saba-1 … saba-8, sbab-1 … sbab-8"
+    )
     return f"{', '.join((*SCHEMES, 'rk4', 'taylor', 'dop853', 'wisdom-holman', *_blanes()))}, {numbered}"
 
 
@@ -185,6 +200,10 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return _time_transformed(method_from(inner))
         case {"gauss": int() as stages, **rest} if not rest and stages is not True:
             return Gauss(stages)
+        case {"semiexplicit": int() as order, **rest} if not rest:
+            return SemiexplicitSplitting(order)
+        case {"extended_phase_space": int() as order, "omega": int() | float() as omega, **rest} if not rest:
+            return ExtendedPhaseSpace(order, omega=float(omega))
         case {"rk4": True, **rest} if not rest:
             return RK4()
         case {"taylor": True, **rest} if not rest:
@@ -200,7 +219,7 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             raise ValueError(
                 f"no method is written {known}; there are names, {_those_there_are()}, and tables, "
                 "{ gauss = stages }, { taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
-                "{ splitting = { a, b } }, "
+                "{ splitting = { a, b } }, { semiexplicit = order }, { extended_phase_space = order, omega = number }, "
                 "{ solvable = name, corrector = order, commutator = true, coordinates = name }"
             )
 

@@ -11,6 +11,7 @@ from sympy import Pow
 
 from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
+from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
 from canon.flow.propagation import is_separable
@@ -50,6 +51,9 @@ HOPELESS = 4.0
 
 IN_FICTITIOUS_TIME = ("verlet", "blanes-moan-6", "kahan-li-8")
 """Splittings that are considered with steps that vary along the orbit: Verlet's puts Kepler's motion on its ellipse."""
+
+HELD_BY = 2.0
+"""How many times the fastest rate of the motion at its start holds two copies of the phase space together."""
 
 DENSEST = 8
 """How many times the operations of the force a drift by a matrix may take: about what its larger steps can gain."""
@@ -108,7 +112,8 @@ class Candidate:
 def candidate_methods(question: Question) -> tuple[Method, ...]:
     """Return the methods that apply, those first that are usually the cheapest.
 
-    Splittings where H = T(p) + V(q), in a fictitious time too where V has a singularity, else Gauss's methods;
+    Splittings where H = T(p) + V(q), in a fictitious time too where V has a singularity, else Gauss's methods and
+    splittings of two copies of the phase space;
     Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
     for comparison. Where there is no H, the last three alone.
     """
@@ -116,9 +121,24 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
         return Taylor(), DOP853(), RK4()
     others = *_of_disturbed(question), RK4(), DOP853()
     if not is_separable(question.hamiltonian, question.values):
-        return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *others
+        return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *_of_two_copies(question), *others
     names = sorted(SCHEMES, key=lambda name: -SCHEMES[name].order)
     return Taylor(), *(Splitting(name) for name in names), *_of_close_encounters(question), *others
+
+
+def _of_two_copies(question: Question) -> tuple[Method, ...]:
+    """Return splittings of the doubled phase space; the copies are held by twice the fastest rate at the start."""
+    projected = tuple(SemiexplicitSplitting(order) for order in (6, 4, 8, 2))
+    system = hamilton_equations_of(question.hamiltonian, question.values)
+    state = (*system.q, *system.p)
+    point = dict(zip((*state, system.t), (*map(float, question.y0), question.since), strict=True))
+    slopes = [system.graph.gradient(rate, state) for rate in (*system.velocity, *system.force)]
+    linear = np.array([[float(x) for x in system.graph.evaluate(row, point)] for row in slopes])
+    fastest = float(abs(np.linalg.eigvals(linear)).max()) if np.isfinite(linear).all() else 0.0
+    if not fastest > 0.0:
+        return projected
+    omega = float(f"{HELD_BY * fastest:.1e}")
+    return *projected, *(ExtendedPhaseSpace(order, omega=omega) for order in (6, 4, 2))
 
 
 def _of_disturbed(question: Question) -> tuple[Method, ...]:
