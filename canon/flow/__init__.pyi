@@ -1,7 +1,16 @@
+from .chaos.alignment_index import gali as gali
+from .chaos.alignment_index import sali as sali
+from .chaos.chaos_indicators import ChaosIndicator as ChaosIndicator
+from .chaos.chaos_indicators import fast_lyapunov_indicator as fast_lyapunov_indicator
+from .chaos.chaos_indicators import megno as megno
 from .chaos.energy_surface import starts_of_energy as starts_of_energy
+from .chaos.lyapunov import LyapunovSpectrum as LyapunovSpectrum
+from .chaos.lyapunov import largest_lyapunov_exponent as largest_lyapunov_exponent
+from .chaos.lyapunov import lyapunov_spectrum as lyapunov_spectrum
 from .chaos.poincare_section import PoincareSection as PoincareSection
 from .chaos.poincare_section import SectionNotMetError as SectionNotMetError
 from .chaos.poincare_section import poincare_section as poincare_section
+from .chaos.regularity import Regularity as Regularity
 from .compiled_right_hand_side import RightHandSide as RightHandSide
 from .compiled_right_hand_side import right_hand_side as right_hand_side
 from .estimate.error_estimate import ErrorEstimate as ErrorEstimate

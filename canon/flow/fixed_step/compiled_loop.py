@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["compiled_loop", "steps_between"]
+__all__ = ["check_splitting", "compiled_loop", "steps_between"]
 
 _KEPT = 64
 """Compiled loops kept for the next call."""
@@ -91,7 +91,14 @@ def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, 
     return _kept_runge_kutta(system, number, compensated=precision.compensated)
 
 
-def _splitting(system: HamiltonEquations, method: Splitting, precision: Precision, orbits: int) -> Loop:
+def check_splitting(system: HamiltonEquations, method: Splitting) -> None:
+    """Refuse Hamiltonians that a splitting does not apply to.
+
+    Raises
+    ------
+    ValueError
+        H does not split, or a Nyström method is given a kinetic energy that is not quadratic.
+    """
     if not system.separable:
         raise ValueError(
             "H is not a sum T(p, t) + V(q, t), so it does not split into drifts and kicks; use Gauss(6), "
@@ -102,6 +109,10 @@ def _splitting(system: HamiltonEquations, method: Splitting, precision: Precisio
             f"{method} keeps its order only for kinetic energies quadratic in p with constant coefficients; "
             "use Splitting('blanes-moan-6') or Splitting('kahan-li-8')"
         )
+
+
+def _splitting(system: HamiltonEquations, method: Splitting, precision: Precision, orbits: int) -> Loop:
+    check_splitting(system, method)
     stages = len(method.scheme.b)
     number = _with_lanes(precision.number, system, orbits, 0 if precision.compensated else stages)
     kick_first = method.scheme.kick_first and system.autonomous

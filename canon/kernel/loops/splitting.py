@@ -14,7 +14,7 @@ from canon.kernel.program.pairwise import pair_forces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from typing import TypeAlias
+    from typing import Protocol, TypeAlias
 
     from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.program.pairwise import PairForces
@@ -23,7 +23,17 @@ if TYPE_CHECKING:
     _Take: TypeAlias = Callable[[str, str], None]
     """What is done with the number of a component and its rate."""
 
-__all__ = ["splitting_loop"]
+    class Splits(Protocol):
+        """What moves by drifts and kicks: an orbit, or an orbit with its deviations."""
+
+        def set_clocks(self, time: str) -> None: ...
+        def keep_force(self) -> None: ...
+        def kick_again(self, coefficient: str) -> None: ...
+        def drift(self, coefficient: str) -> None: ...
+        def kick(self, coefficient: str) -> None: ...
+
+
+__all__ = ["SplittingWriter", "splitting_loop", "write_splitting"]
 
 _LONG, _ALIGNED, _APART = 64, 8, 24
 
@@ -53,25 +63,32 @@ def splitting_loop(
     """
     n = len(system.q)
     w = Writer(number)
-    writing = _SplittingWriter.of(w, system, compensated=compensated, kick_first=kick_first)
+    writing = SplittingWriter.of(w, system, compensated=compensated, kick_first=kick_first)
     with blocks_of(w, writing.y, writing.e, 2 * n, 2 * n, writing.gap):
-        if kick_first:
-            writing.keep_force()
-        with steps_of(w, system) as time:
-            writing.set_clocks(time)
-            if kick_first:
-                writing.kick_again(w.load("%c", METHOD + 1))
-            with w.loop(int(kick_first), stages) as s:
-                pair = w.let(f"shl i64 {s}, 1")
-                writing.drift(w.load("%c", w.let(f"add i64 {pair}, {METHOD}")))
-                writing.kick(w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}")))
-            if not kick_first:
-                writing.drift(w.load("%c", METHOD + 2 * stages))
+        write_splitting(w, system, stages, writing, kick_first=kick_first)
     return compile_loop(w, n, compensated=compensated)
 
 
+def write_splitting(
+    w: Writer, system: HamiltonEquations, stages: int, moving: Splits, *, kick_first: bool
+) -> None:
+    """Write the steps of a splitting for what moves by drifts and kicks."""
+    if kick_first:
+        moving.keep_force()
+    with steps_of(w, system) as time:
+        moving.set_clocks(time)
+        if kick_first:
+            moving.kick_again(w.load("%c", METHOD + 1))
+        with w.loop(int(kick_first), stages) as s:
+            pair = w.let(f"shl i64 {s}, 1")
+            moving.drift(w.load("%c", w.let(f"add i64 {pair}, {METHOD}")))
+            moving.kick(w.load("%c", w.let(f"add i64 {pair}, {METHOD + 1}")))
+        if not kick_first:
+            moving.drift(w.load("%c", METHOD + 2 * stages))
+
+
 @dataclass(frozen=True)
-class _SplittingWriter:
+class SplittingWriter:
     """Writes drifts and kicks of one Hamiltonian.
 
     Parameters
@@ -107,7 +124,8 @@ class _SplittingWriter:
     @classmethod
     def of(
         cls, w: Writer, system: HamiltonEquations, *, compensated: bool, kick_first: bool
-    ) -> _SplittingWriter:
+    ) -> SplittingWriter:
+        """Return the writer for a loop, with memory of its own for the state."""
         n = len(system.q)
         gap = _gap(n)
         y, e = w.array(2 * n + gap), w.array(2 * n + gap) if compensated else ""
@@ -116,11 +134,12 @@ class _SplittingWriter:
 
     @property
     def n(self) -> int:
+        """Degrees of freedom, parameters that vary included."""
         return len(self.system.q)
 
     def drift(self, coefficient: str) -> None:
         """Write q ← q + coefficient · ∂H/∂p."""
-        self._evaluate(self.system.velocity, self.n, self.kick_clock, self._moving(0, coefficient))
+        self.evaluate(self.system.velocity, self.n, self.kick_clock, self._moving(0, coefficient))
         self._advance(self.drift_clock, coefficient)
 
     def kick(self, coefficient: str) -> None:
@@ -149,12 +168,12 @@ class _SplittingWriter:
     def _evaluate_force(self, take: _Take) -> None:
         w, force, clock = self.w, self.system.force, self.drift_clock
         if self.pairs is None:
-            self._evaluate(force, 0, clock, take)
+            self.evaluate(force, 0, clock, take)
             return
         others = self.pairs.rest
-        write_pair_forces(w, self.pairs, self.y, lambda each: self._evaluate(others, 0, clock, each), take)
+        write_pair_forces(w, self.pairs, self.y, lambda each: self.evaluate(others, 0, clock, each), take)
 
-    def _evaluate(self, nodes: Sequence[int], reads: int, clock: str, take: _Take) -> None:
+    def evaluate(self, nodes: Sequence[int], reads: int, clock: str, take: _Take) -> None:
         """Write functions of t and the n components from ``reads`` on, and hand each to ``take``."""
         w, n, system = self.w, self.n, self.system
         steps = self._program(nodes)

@@ -1,0 +1,203 @@
+"""Growth of deviations along a motion: logarithms of lengths at samples, from whatever engine carries the vectors."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.flow.chaos.compiled_deviations import CompiledDeviations
+from canon.flow.chaos.tangent_loop import has_tangent_loop
+from canon.flow.chaos.variational_deviations import VariationalDeviations
+from canon.flow.request import Request
+from canon.flow.system_request import any_task, refuse_contacts
+from canon.progress import reporting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    import numpy.typing as npt
+    from sympy import Symbol
+
+    from canon.array import Array
+    from canon.flow.method.method_text import MethodGiven
+    from canon.flow.task import Task
+
+__all__ = ["DeviationGrowth", "DeviationRun", "deviation_growth", "deviation_task"]
+
+
+@dataclass(frozen=True)
+class DeviationGrowth:
+    """How deviations have grown along orbits.
+
+    Parameters
+    ----------
+    t
+        Times, shape (times,), as spans from the start: they rise in either direction of time.
+    log
+        ln of how each vector has grown since the start, shape (vectors, times, orbits).
+    noted
+        What was noted of the vectors at each time, shape (times, orbits), or None.
+    states
+        The last states, shape (2n, orbits).
+    left_at
+        When each orbit left the finite numbers, shape (orbits,); infinite of those that did not.
+    single
+        Whether one state was given rather than several.
+    method
+        What carried the motion, in words.
+    """
+
+    t: Array
+    log: Array
+    noted: Array | None
+    states: Array
+    left_at: Array
+    single: bool
+    method: str
+
+
+@dataclass(frozen=True)
+class DeviationRun:
+    """What the indicators have in common: the arguments of a motion and of its deviations.
+
+    Parameters are those of :func:`canon.flow.chaos.lyapunov.lyapunov_spectrum`.
+    """
+
+    system: Any
+    t_span: Any
+    y0: Any
+    method: MethodGiven | None
+    step: float | None
+    tolerance: float | None
+    precision: str | int | None
+    parameters: Mapping[Symbol | str, Any] | None
+    samples: int | None
+    progress: Callable[[float], None] | bool | None
+
+
+_CARRIED = ("splitting", "gauss", "rk4", "taylor", "dop853")
+"""Families of methods that carry deviations: their steps commute with differentiation."""
+
+_SAMPLES, _OF_MANY = 1000, 100
+"""Samples of one orbit, and of each of many."""
+
+
+def deviation_task(run: DeviationRun) -> Task:
+    """Return the task of a run whose motion deviations are to follow.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        As :func:`canon.propagate` documents them; or the system has contacts, or the method has no tangent map here.
+    """
+    many = np.ndim(run.y0) == 2 or any(np.ndim(value) for value in (run.parameters or {}).values())
+    samples = run.samples or (_OF_MANY if many else _SAMPLES)
+    request = Request(
+        run.system, run.t_span, run.y0, method=run.method, step=run.step, tolerance=run.tolerance,
+        precision=run.precision, parameters=run.parameters, samples=samples,
+    )  # fmt: skip
+    task, moving = any_task(request)
+    refuse_contacts(moving, "a tangent map")
+    if moving is not None and (moving.work is not None or task.system.varying or task.system.spare):
+        raise ValueError(
+            "deviations here are those of a Hamiltonian or of a vector field on all of its variables; make a "
+            "Hamiltonian of the system, hamiltonian(L), or write its equations as a VectorField"
+        )
+    if task.method.family not in _CARRIED:
+        raise ValueError(
+            f"{task.method} carries no deviations here: take a splitting of T + V, Splitting('kahan-li-8'), Gauss(6) "
+            "or Taylor()"
+        )
+    return task
+
+
+def deviation_growth(
+    task: Task,
+    frame: Array,
+    *,
+    orthogonal: bool,
+    note: Callable[[Array], Array] | None = None,
+    progress: Callable[[float], None] | bool | None = None,
+) -> DeviationGrowth:
+    """Return how deviations grow along the motion of a task.
+
+    Parameters
+    ----------
+    task
+        The motion.
+    frame
+        The deviations at the start, shape (2n, vectors).
+    orthogonal
+        Whether they are kept orthonormal.
+    note
+        What to note of the deviations at each sample, from shape (2n, vectors, orbits) to (orbits,).
+    progress
+        As :func:`canon.propagate` takes it.
+
+    Raises
+    ------
+    NonFiniteStateError
+        The only orbit has left the finite numbers.
+    """
+    count = task.states[0].shape[1]
+    parts = np.array_split(np.arange(count), min(os.cpu_count() or 1, -(-count // _LEAST)))
+    done = [0.0] * len(parts)
+    with reporting(progress) as report:
+
+        def part(k: int) -> tuple[Array, Array | None, Array]:
+            def told(fraction: float) -> None:
+                done[k] = fraction
+                report(min(done))
+
+            return _followed(task, frame, parts[k], note, told, orthogonal=orthogonal)
+
+        if len(parts) == 1:
+            found = [part(0)]
+        else:
+            with ThreadPoolExecutor(len(parts)) as pool:
+                found = list(pool.map(part, range(len(parts))))
+    log = np.concatenate([each[0] for each in found], axis=2)
+    noted = (
+        None if note is None else np.concatenate([each[1] for each in found if each[1] is not None], axis=1)
+    )
+    t = np.abs(task.plan.instants - task.plan.instants[0])
+    lost = ~np.isfinite(log).all(axis=0)
+    left_at = np.where(lost.any(axis=0), t[np.argmax(lost, axis=0)], np.inf)
+    states = np.concatenate([each[2] for each in found], axis=1)
+    return DeviationGrowth(t, log, noted, states, left_at, task.single, str(task.method))
+
+
+_LEAST = 64
+"""Orbits that are worth a thread."""
+
+
+def _followed(
+    task: Task,
+    frame: Array,
+    orbits: npt.NDArray[np.int64],
+    note: Callable[[Array], Array] | None,
+    progress: Callable[[float], None],
+    *,
+    orthogonal: bool,
+) -> tuple[Array, Array | None, Array]:
+    """Return logarithms, what was noted, and the last states of some orbits."""
+    made = CompiledDeviations if has_tangent_loop(task.method) else VariationalDeviations
+    going = made(task, frame, orthogonal=orthogonal, orbits=orbits)
+    samples = len(task.plan.instants)
+    log, lack = np.zeros((frame.shape[1], samples, len(orbits))), np.zeros((frame.shape[1], len(orbits)))
+    noted = None if note is None else np.empty((samples, len(orbits)))
+    if noted is not None and note is not None:
+        noted[0] = note(going.vectors())
+    for k in range(1, samples):
+        # Kahan's sum: what the total lacks is added with the next growth.
+        new = going.advance() + lack
+        log[:, k] = log[:, k - 1] + new
+        lack = new - (log[:, k] - log[:, k - 1])
+        if noted is not None and note is not None:
+            noted[k] = note(going.vectors())
+        progress(k / (samples - 1))
+    return log, noted, going.states()

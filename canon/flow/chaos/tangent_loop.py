@@ -1,0 +1,85 @@
+"""Tangent loop of a method: steps of an orbit with deviations beside it, compiled once, then kept."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from typing import TYPE_CHECKING
+
+from canon.flow.fixed_step.compiled_loop import check_splitting
+from canon.flow.method.method import Splitting
+from canon.kernel.llvm.machine_code import simd_bytes
+from canon.kernel.loops.deviations import Deviations
+from canon.kernel.loops.tangent_splitting import tangent_splitting_loop
+
+if TYPE_CHECKING:
+    from canon.flow.method.method import Method
+    from canon.flow.method.number_formats import Precision
+    from canon.kernel.llvm.loop import Loop
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
+
+__all__ = ["TangentLoop", "has_tangent_loop", "tangent_loop"]
+
+_KEPT = 32
+"""Compiled loops kept for the next call."""
+
+_INTERLEAVED = 2
+"""SIMD registers' worth of orbits stepped together, each with its deviations."""
+
+
+@dataclasses.dataclass(frozen=True)
+class TangentLoop:
+    """A compiled loop, and how the deviations lie in what it works on."""
+
+    loop: Loop
+    deviations: Deviations
+
+
+def tangent_loop(
+    system: HamiltonEquations, method: Method, precision: Precision, vectors: int, orbits: int = 1
+) -> TangentLoop:
+    """Return the machine code that steps orbits with so many deviations each.
+
+    Parameters
+    ----------
+    system, method, precision
+        What to integrate, how, and in which numbers.
+    vectors, orbits
+        Deviations of each orbit, and how many orbits: many run side by side in SIMD lanes, else the deviations do.
+
+    Raises
+    ------
+    ValueError
+        The numbers are no doubles; or H does not split.
+    """
+    number = precision.number
+    if number.scalar != "double" or number.pair:
+        raise ValueError(
+            f"precision={precision.name!r}: deviations are moved in doubles; leave precision out, or 'double'"
+        )
+    registers = simd_bytes() // number.alignment
+    state, size = 2 * len(system.q), 2 * (len(system.q) - system.varying)
+    if orbits > 1:
+        number, lanes = dataclasses.replace(number, lanes=registers * _INTERLEAVED), 1
+    else:
+        lanes = min(registers, 1 << (vectors - 1).bit_length())
+    deviations = Deviations(number, state, size, vectors, lanes)
+    assert isinstance(method, Splitting)
+    check_splitting(system, method)
+    kick_first = method.scheme.kick_first and system.autonomous
+    return _kept(
+        system, len(method.scheme.b), deviations, compensated=precision.compensated, kick_first=kick_first
+    )
+
+
+def has_tangent_loop(method: Method) -> bool:
+    """Tell whether the deviations of a method are compiled beside the orbit."""
+    return method.family == "splitting"
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept(
+    system: HamiltonEquations, stages: int, deviations: Deviations, *, compensated: bool, kick_first: bool
+) -> TangentLoop:
+    loop = tangent_splitting_loop(system, stages, deviations, compensated=compensated, kick_first=kick_first)
+    return TangentLoop(loop, deviations)

@@ -1,0 +1,209 @@
+"""Lyapunov exponents and indicators of chaos: closed forms, published values, verdicts on orbits that are known."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from canon import RK4, Gauss, Hamiltonian, Lagrangian, Splitting, Taylor, TimeTransformed, coordinates
+from canon.flow import (
+    Regularity,
+    fast_lyapunov_indicator,
+    gali,
+    largest_lyapunov_exponent,
+    lyapunov_spectrum,
+    megno,
+    sali,
+)
+from canon.flow.chaos.regularity import judged_growth, mean_megno
+from canon.flow.run.non_finite_state import NonFiniteStateError
+from tests.flow.systems import (
+    DOUBLE_PENDULUM,
+    DOUBLE_PENDULUM_START,
+    HENON_HEILES,
+    KEPLER,
+    PENDULUM,
+    kepler_start,
+)
+
+x, y, z = coordinates("x y z")
+KAHAN_LI = {"method": Splitting("kahan-li-8"), "step": 0.2}
+REGULAR, CHAOTIC = [0.0, 0.1, 0.3838402445462608, 0.1], [0.0, -0.25, 0.4208127057650866, 0.0]
+"""Starts of the scene: energy 1/12 on an invariant curve, energy 1/8 in the chaotic sea."""
+
+
+def hamiltonian(V, *q):
+    return Hamiltonian(sum(s.momentum**2 for s in q) / 2 + V, list(q), [s.momentum for s in q])
+
+
+def on_the_section(energy, y0, p_y=0.0):
+    """Hénon and Heiles's start with x = 0 and p_x > 0."""
+    return [0.0, y0, float(np.sqrt(2 * energy - p_y**2 - y0**2 + 2 * y0**3 / 3)), p_y]
+
+
+def test_exponents_of_two_saddles_are_their_rates():
+    saddles = hamiltonian(-(x**2) / 2 - 4 * y**2 / 2, x, y)
+    found = lyapunov_spectrum(
+        saddles, (0, 60), [1e-9, 0, 0, 1e-9], samples=60, method="kahan-li-8", step=0.05
+    )
+    np.testing.assert_allclose(found.exponents, [2, 1, -1, -2], atol=1e-6)
+    assert found.pairing_defect < 1e-13
+    assert found.verdict is Regularity.CHAOTIC
+    np.testing.assert_allclose(found.errors, 2 / 60, rtol=1e-6)
+
+
+def test_a_chaotic_and_a_regular_orbit_are_told_apart_by_every_indicator():
+    starts = np.array([REGULAR, CHAOTIC]).T
+    wanted = [Regularity.REGULAR, Regularity.CHAOTIC]
+    both = lyapunov_spectrum(HENON_HEILES, (0, 3000), starts, **KAHAN_LI)
+    assert list(both.verdict) == wanted
+    assert (both.pairing_defect < 1e-13).all()
+    assert both.largest[0] < both.detection_limit < both.largest[1]
+    assert abs(both.largest[1] - 0.05) < 0.02
+    for indicator in (megno, fast_lyapunov_indicator, sali):
+        assert list(indicator(HENON_HEILES, (0, 3000), starts, **KAHAN_LI).verdict) == wanted
+    assert list(gali(HENON_HEILES, (0, 3000), starts, vectors=3, **KAHAN_LI).verdict) == wanted
+
+
+def test_megno_of_growth_that_is_known():
+    how = {"method": Splitting("kahan-li-8"), "step": 0.05, "samples": 400}
+    assert megno(KEPLER, (0, 600), kepler_start(0.3), **how).value == pytest.approx(2, abs=0.2)
+    linear = hamiltonian(x**2 / 2 + y**2, x, y)
+    oscillators = megno(linear, (0, 600), [1, 0.5, 0, 0.2], **how)
+    assert abs(oscillators.value) < 0.05
+    assert oscillators.verdict is Regularity.REGULAR
+    saddle = hamiltonian(-(x**2) / 2, x)
+    assert megno(saddle, (0, 60), [1e-9, 0], **how).value == pytest.approx(30, abs=2)
+
+
+def test_a_deviation_along_the_orbit_shows_nothing():
+    E = 1 / 8
+    start = on_the_section(E, -0.25)
+    force = [start[2], start[3], 0.0, -start[1] + start[1] ** 2]
+    along = megno(HENON_HEILES, (0, 200), start, deviation=force, **KAHAN_LI)
+    assert abs(along.value) < 0.5
+    assert megno(HENON_HEILES, (0, 200), REGULAR, deviation=[1, 0.3, 0.2, 0.1], **KAHAN_LI).value > 1
+
+
+@pytest.mark.slow
+def test_the_volume_of_regular_motion_falls_as_a_power_beyond_the_torus():
+    """GALI_k ~ t^(−2(k − n)) of motion on an n-torus in 2n dimensions, Skokos, Bountis and Antonopoulos (2007)."""
+    for vectors, power in ((2, 0), (3, -2), (4, -4)):
+        found = gali(HENON_HEILES, (0, 20000), REGULAR, vectors=vectors, samples=2000, **KAHAN_LI)
+        late, early = found.t[-200:].mean() / found.t[180:220].mean(), np.log(found.history)
+        fitted = (early[-200:].mean() - early[180:220].mean()) / np.log(late)
+        assert fitted == pytest.approx(power, abs=0.35)
+
+
+def test_orbits_that_leave_are_told():
+    beyond = on_the_section(0.3, 0.2)
+    with pytest.raises(NonFiniteStateError, match="stops being finite"):
+        megno(HENON_HEILES, (0, 3000), beyond, **KAHAN_LI)
+    found = megno(HENON_HEILES, (0, 3000), np.array([REGULAR, beyond]).T, **KAHAN_LI)
+    assert list(found.verdict) == [Regularity.REGULAR, Regularity.LEFT]
+    assert np.isnan(found.value[1])
+    assert "1 left" in repr(found)
+
+
+def test_what_cannot_be_done_is_told():
+    with pytest.raises(ValueError, match=r"does not split.*Gauss"):
+        megno(DOUBLE_PENDULUM, (0, 10), DOUBLE_PENDULUM_START, **KAHAN_LI)
+    with pytest.raises(ValueError, match="vectors=5: the system has exponents 1 … 4"):
+        lyapunov_spectrum(HENON_HEILES, (0, 10), REGULAR, vectors=5, **KAHAN_LI)
+    with pytest.raises(ValueError, match="an alignment index takes 2 … 4"):
+        gali(HENON_HEILES, (0, 10), REGULAR, vectors=1, **KAHAN_LI)
+    with pytest.raises(ValueError, match="a verdict takes at least 32"):
+        megno(HENON_HEILES, (0, 10), REGULAR, samples=10, **KAHAN_LI)
+    with pytest.raises(ValueError, match="deviation vector 0 is zero"):
+        megno(HENON_HEILES, (0, 10), REGULAR, deviation=[0, 0, 0, 0], **KAHAN_LI)
+    with pytest.raises(ValueError, match="give one vector"):
+        megno(HENON_HEILES, (0, 10), REGULAR, deviation=np.eye(4), **KAHAN_LI)
+    method = TimeTransformed(Splitting("verlet"))
+    with pytest.raises(ValueError, match="carries no deviations here"):
+        megno(KEPLER, (0, 10), kepler_start(0.3), method=method, step=0.1)
+    damped = Lagrangian(x.dot**2 / 2 - x**2 / 2, [x], forces=[-x.dot / 5])
+    with pytest.raises(ValueError, match="make a Hamiltonian of the system"):
+        megno(damped, (0, 10), [1, 0], method=RK4(), step=0.1)
+    with pytest.raises(ValueError, match="pairs take the whole spectrum"):
+        _ = largest_lyapunov_exponent(HENON_HEILES, (0, 10), REGULAR, **KAHAN_LI).pairing_defect
+
+
+# the rule of the verdicts -------------------------------------------------------------------------------
+
+TIMES = np.linspace(0, 1000, 401)
+
+
+@given(
+    power=st.floats(0, 2),
+    start=st.floats(0.1, 20),
+    swing=st.floats(0, 1),
+    frequency=st.floats(0.05, 3),
+    rate=st.floats(0, 0.001),
+)
+def test_growth_as_a_power_of_time_is_never_called_chaotic(power, start, swing, frequency, rate):
+    log = power * np.log1p(TIMES / start) + swing * np.sin(frequency * TIMES) + rate * TIMES
+    judged = judged_growth(TIMES, log[:, np.newaxis])
+    assert judged.verdicts[0] is not Regularity.CHAOTIC
+
+
+@given(rate=st.floats(1.1, 100), swing=st.floats(0, 0.5), frequency=st.floats(0.05, 3))
+def test_an_exponent_above_the_detection_limit_is_found(rate, swing, frequency):
+    limit = judged_growth(TIMES, np.zeros((401, 1))).detection_limit
+    log = rate * limit * TIMES + swing * np.sin(frequency * TIMES)
+    assert judged_growth(TIMES, log[:, np.newaxis]).verdicts[0] is Regularity.CHAOTIC
+
+
+def test_one_passage_near_a_saddle_is_not_taken_for_chaos():
+    early = np.minimum(TIMES[:, np.newaxis], [10.0, 25.0, 100.0, 240.0])
+    assert Regularity.CHAOTIC not in judged_growth(TIMES, early).verdicts
+    near = megno(PENDULUM, (0, 200), [np.pi - 1e-9, 0.0], **KAHAN_LI)
+    assert near.verdict is not Regularity.CHAOTIC
+
+
+@given(power=st.floats(0.1, 3))
+def test_megno_of_a_power_is_twice_the_power(power):
+    t = np.linspace(0, 1, 20001)
+    log = power * np.log(np.maximum(t, 1e-5))[:, np.newaxis]
+    assert mean_megno(t, log - log[0])[-1, 0] == pytest.approx(2 * power, rel=0.02)
+
+
+# long runs ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("energy", "y0", "published", "about"),
+    [(1 / 8, -0.25, 0.045, 0.012), (0.16666, -0.1, 0.128, 0.01)],
+    ids=["1/8", "1/6"],
+)
+def test_published_exponents_of_henon_and_heiles(energy, y0, published, about):
+    """G. Benettin, L. Galgani, J.-M. Strelcyn, Phys. Rev. A 14 (1976) 2338–2345, doi:10.1103/PhysRevA.14.2338."""
+    found = lyapunov_spectrum(HENON_HEILES, (0, 100_000), on_the_section(energy, y0), **KAHAN_LI)
+    assert found.verdict is Regularity.CHAOTIC
+    assert abs(found.largest - published) < about + 2 * found.errors[0]
+    assert found.pairing_defect < 1e-13
+    assert abs(found.exponents[1]) < 3 * found.errors[1]
+    assert abs(found.exponents.sum()) < 1e-12
+
+
+@pytest.mark.slow
+def test_methods_agree_on_exponents_within_their_errors():
+    """Orbits part, so only the means agree; of a regular orbit the histories do."""
+    start = on_the_section(1 / 8, -0.25)
+    ways = [KAHAN_LI, {"method": Splitting("blanes-moan-6"), "step": 0.1}, {"method": Gauss(4), "step": 0.2}]
+    found = [largest_lyapunov_exponent(HENON_HEILES, (0, 20_000), start, samples=400, **way) for way in ways]
+    for one in found[1:]:
+        assert abs(one.largest - found[0].largest) < 3 * np.hypot(one.errors[0], found[0].errors[0])
+    regular = [
+        lyapunov_spectrum(HENON_HEILES, (0, 500), REGULAR, samples=50, **way)
+        for way in (*ways, {"method": Taylor()})
+    ]
+    for one in regular[1:]:
+        np.testing.assert_allclose(one.history, regular[0].history, atol=1e-7)
+
+
+@pytest.mark.slow
+def test_the_pairs_of_a_method_that_is_not_symplectic_part():
+    good = lyapunov_spectrum(HENON_HEILES, (0, 2000), CHAOTIC, method=Splitting("verlet"), step=0.1)
+    bad = lyapunov_spectrum(HENON_HEILES, (0, 2000), CHAOTIC, samples=100, method=RK4(), step=0.2)
+    assert good.pairing_defect < 1e-13 < 1e-8 < bad.pairing_defect
