@@ -49,7 +49,8 @@ def judgements(claim: Claim, kept: KeptExplanations | None = None) -> Iterator[t
         known = _cut(f"on the way SymPy meets what it can't build: {refusal(error)}")
         yield replace(invalid(claim, known), status="undecided"), True
         return
-    judgement = replace(_told(claim, finding.verdict), warnings=finding.reading.warnings)
+    assumed = finding.verdict.assumed if finding.verdict.holds else ()
+    judgement = replace(_told(claim, finding.verdict), warnings=(*finding.reading.warnings, *assumed))
     yield judgement, False
     yield from _explained(claim, finding, judgement, kept)
 

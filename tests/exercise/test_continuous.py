@@ -2,8 +2,9 @@
 
 import pytest
 
+from canon.exercise import check
 from canon.exercise.claim_verdict import judge
-from canon.exercise.sheet.sheet import Claim
+from canon.exercise.sheet.sheet import Claim, Sheet
 
 OSCILLATOR = {"q": "q", "p": "p", "H": "p**2/2 + q**2/2"}
 ENERGY = "p**2/2 + q**2/2"
@@ -237,3 +238,34 @@ def test_velocities_by_quadrature_do_not_jump():
     keys = {"q": "x", "equations": ["x_ddot"]}
     assert said("solution", **keys, rates={"x": "sign(x)"}).fails
     assert said("solution", **keys, rates={"x": "c"}, parameters={"c": "real"}).holds
+
+
+TWO = {"q": ["x", "y"], "p": ["a", "b"], "H": "(a**2 + b**2 + x**2 + 2*y**2)/2"}
+OF_ANGLES = [  # jumps by another number at each place, right answer of the same form
+    (OSCILLATOR, "exp(atan2(q, p) - t)", "atan2(q, p) - t"),
+    (OSCILLATOR, "(p**2 + q**2)*(atan(q/p) - t)", "(p**2 + q**2) - atan(q/p) + t"),
+    (OSCILLATOR, "sin((atan2(q, p) - t)/2)", "sin(atan2(q, p) - t)"),
+    (TWO, "sin(sqrt(2)*atan2(x, a) - atan2(sqrt(2)*y, b))", "sqrt(2)*atan2(x, a) - atan2(sqrt(2)*y, b)"),
+]
+
+
+@pytest.mark.parametrize(("system", "wrong", "right"), OF_ANGLES, ids=str)
+def test_a_constant_of_the_motion_has_the_same_value_after_each_turn_but_for_turns_of_an_angle(
+    system, wrong, right
+):
+    refused = said("constant-of-motion", **system, I=wrong)
+    assert refused.fails
+    assert "jumps at" in refused.feedback
+    assert said("constant-of-motion", **system, I=right).holds
+
+
+def test_angles_of_the_system_may_stand_in_its_energy():
+    H = "(a**2 + b**2)/2 + cos(2*atan2(y, x))/(x**2 + y**2)"
+    assert said("constant-of-motion", q=["x", "y"], p=["a", "b"], H=H, I=H).holds
+
+
+def test_what_a_proof_assumed_is_among_the_warnings():
+    sheet = Sheet("one", (Claim("a", "constant-of-motion", {**OSCILLATOR, "I": "atan2(q, p) - t"}),))
+    (told,) = check(sheet).judgements
+    assert told.status == "holds"
+    assert "is an angle that winds around p = 0, q = 0" in told.warnings[0]

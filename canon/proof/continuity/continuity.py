@@ -67,6 +67,8 @@ def continuity(
     budget: float = 20.0,
     name: str = "",
     given: Iterable[Expr] = (),
+    *,
+    angles: bool = True,
 ) -> Verdict:
     """Tell whether a function is continuous wherever it has a value near both sides, poles left aside.
 
@@ -84,6 +86,8 @@ def continuity(
         What a person would call it.
     given
         Functions that are given and may jump: where they do, so may this one.
+    angles
+        Whether angles that wind are taken as they are; otherwise they should not jump either.
 
     Returns
     -------
@@ -98,6 +102,8 @@ def continuity(
     'q - atan(tan(pi*q))/pi jumps at q = 1/2 from -0.5 to 0.5, which its derivatives do not show'
     >>> continuity(sp.atan(q / p), [q, p]).assumed
     ('atan(q/p) is an angle that winds around p = 0, q = 0; where it jumps is a matter of choice',)
+    >>> continuity(sp.atan(q / p), [q, p], angles=False).status
+    <Status.FAILS: 'fails'>
     """
     deadline, moving, name = time.monotonic() + budget, tuple(variables), name or str(f)
     f = without_complex_logarithms(with_moduli(off_the_kinks(f)))
@@ -106,7 +112,7 @@ def continuity(
     rough = [term for term in terms if _is_rough(term, moving, domain)]
     excused = _excused(rough, given, moving, domain)
     rough = [term for term in rough if term not in excused]
-    found = _of_cuts(sp.Add(*rough), moving, domain, deadline, name)
+    found = _of_cuts(sp.Add(*rough), moving, domain, deadline, name, angles=angles)
     found = replace(found, assumed=(*found.assumed, *(text.format(name) for text in excused.values())))
     if found.fails:
         return found
@@ -329,18 +335,20 @@ def _excused(
     return found
 
 
-def _of_cuts(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float, name: str) -> Verdict:
+def _of_cuts(
+    f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float, name: str, *, angles: bool
+) -> Verdict:
     cuts = _open_cuts(f, moving, domain)
     centres = {cut.part: _centre(cut, moving, domain) for cut in cuts}
-    angles = {angle: centre for angle, centre in centres.items() if centre}
+    winding = {angle: centre for angle, centre in centres.items() if centre and angles}
     assumed = tuple(
         f"{angle} is an angle that winds around {centre}; where it jumps is a matter of choice"
-        for angle, centre in angles.items()
+        for angle, centre in winding.items()
     )
-    at_angles = [cut for cut in cuts if cut.part in angles]
+    at_angles = [cut for cut in cuts if cut.part in winding]
     divided = [term for term in sp.Add.make_args(f) if _is_divided(term, moving, domain)]
     open_ = [root for term in divided for root in _touching_roots(term, moving, domain)]
-    for cut in (cut for cut in cuts if cut.part not in angles):
+    for cut in (cut for cut in cuts if cut.part not in winding):
         jump = find_jump(f, cut, moving, domain, deadline)
         if jump is None and _meets(f, cut, moving, domain, deadline):
             continue
