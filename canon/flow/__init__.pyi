@@ -4,9 +4,17 @@ from .chaos.chaos_indicators import ChaosIndicator as ChaosIndicator
 from .chaos.chaos_indicators import fast_lyapunov_indicator as fast_lyapunov_indicator
 from .chaos.chaos_indicators import megno as megno
 from .chaos.energy_surface import starts_of_energy as starts_of_energy
+from .chaos.floquet import FloquetMultipliers as FloquetMultipliers
+from .chaos.invariant_manifold import manifold_starts as manifold_starts
 from .chaos.lyapunov import LyapunovSpectrum as LyapunovSpectrum
 from .chaos.lyapunov import largest_lyapunov_exponent as largest_lyapunov_exponent
 from .chaos.lyapunov import lyapunov_spectrum as lyapunov_spectrum
+from .chaos.orbit_family import Bifurcation as Bifurcation
+from .chaos.orbit_family import OrbitFamily as OrbitFamily
+from .chaos.orbit_family import continue_family as continue_family
+from .chaos.periodic_orbit import NoPeriodicOrbitError as NoPeriodicOrbitError
+from .chaos.periodic_orbit import PeriodicOrbit as PeriodicOrbit
+from .chaos.periodic_orbit import periodic_orbit as periodic_orbit
 from .chaos.poincare_section import PoincareSection as PoincareSection
 from .chaos.poincare_section import SectionNotMetError as SectionNotMetError
 from .chaos.poincare_section import poincare_section as poincare_section

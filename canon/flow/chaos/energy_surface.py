@@ -66,7 +66,7 @@ def starts_of_energy(
     Examples
     --------
     >>> starts_of_energy("henon-heiles", 0.125, [0.0, 0.1, 0.0, 0.0], "p_x").round(6).tolist()
-    [0.0, 0.1, 0.49058, 0.0]
+    [0.0, 0.1, 0.490578, 0.0]
     """
     if sign not in (1, -1):
         raise ValueError(f"sign={sign}: 1 takes the larger momentum, -1 the smaller")

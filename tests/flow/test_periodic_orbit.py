@@ -1,0 +1,199 @@
+"""Periodic orbits: closed forms, published orbits and multipliers, families through their bifurcations."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.special import ellipk
+
+from canon import Hamiltonian, Lagrangian, Splitting, coordinates, propagate
+from canon.flow import (
+    NoPeriodicOrbitError,
+    continue_family,
+    manifold_starts,
+    periodic_orbit,
+)
+from canon.flow.chaos.floquet import floquet_multipliers
+
+x, y, z = coordinates("x y z")
+PENDULUM = Hamiltonian(x.momentum**2 / 2 - sp.cos(x), [x], [x.momentum])
+
+
+def oscillators(sign: int) -> Hamiltonian:
+    kinetic, other = x.momentum**2 + x**2, y.momentum**2 + 2 * y**2
+    return Hamiltonian((kinetic + sign * other) / 2, [x, y], [x.momentum, y.momentum])
+
+
+def restricted(mu: sp.Rational) -> Hamiltonian:
+    px, py, pz = x.momentum, y.momentum, z.momentum
+    far, near = (sp.sqrt((x + a) ** 2 + y**2 + z**2) for a in (mu, mu - 1))
+    H = (px**2 + py**2 + pz**2) / 2 + px * y - py * x - (1 - mu) / far - mu / near
+    return Hamiltonian(H, [x, y, z], [px, py, pz])
+
+
+@pytest.mark.parametrize("amplitude", [0.3, 2.0])
+def test_the_period_of_a_pendulum_is_that_of_its_energy(amplitude: float) -> None:
+    orbit = periodic_orbit(PENDULUM, [amplitude, 0.0], 7.0, reversal=["p_x"])
+    assert orbit.energy == pytest.approx(-np.cos(amplitude), abs=1e-14)
+    assert orbit.period == pytest.approx(4 * ellipk(np.sin(amplitude / 2) ** 2), rel=1e-13)
+    assert orbit.multipliers.values.size == 0
+    assert orbit.multipliers.stable
+
+
+def test_a_pendulum_that_turns_over_gains_a_turn_in_a_period() -> None:
+    orbit = periodic_orbit(PENDULUM, [0.0, 3.0], 2.4, turns={"x": 2 * np.pi})
+    m = 4 / (3.0**2)
+    assert orbit.period == pytest.approx(2 * np.sqrt(m) * ellipk(m), rel=1e-13)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_multipliers_of_two_oscillators_and_their_krein_signs(sign: int) -> None:
+    orbit = periodic_orbit(oscillators(sign), [1.0, 0.001, 0.0, 0.002], 6.2)
+    turn = np.exp(2j * np.pi * np.sqrt(2))
+    found = dict(
+        zip(orbit.multipliers.values.round(9).tolist(), orbit.multipliers.krein.tolist(), strict=True)
+    )
+    assert orbit.period == pytest.approx(2 * np.pi, rel=1e-12)
+    # e^{iωT} is of the first kind where the oscillation has positive energy.
+    assert found == {complex(turn.round(9)): sign, complex(turn.conjugate().round(9)): -sign}
+    assert orbit.multipliers.stable
+    assert orbit.multipliers.indices.real == pytest.approx([2 * turn.real], abs=1e-12)
+
+
+def test_a_system_that_depends_on_time_keeps_its_period() -> None:
+    t = sp.Symbol("t", real=True)
+    driven = Hamiltonian(x.momentum**2 / 2 + x**2 - x * sp.cos(t), [x], [x.momentum], t)
+    orbit = periodic_orbit(driven, [0.4, 0.3], 2 * np.pi)
+    # ẍ + 2x = cos t is answered by x = cos t; others turn by √2 in the meantime.
+    assert orbit.y == pytest.approx([1.0, 0.0], abs=1e-12)
+    assert orbit.multipliers.indices.real == pytest.approx([2 * np.cos(2 * np.pi * np.sqrt(2))], abs=1e-11)
+
+
+def test_a_method_of_fixed_steps_has_periodic_orbits_of_its_own() -> None:
+    own = periodic_orbit(
+        "henon-heiles", [0, 0.1, 0.4, 0], 6.2, method=Splitting("verlet"), step=0.1, fixed_period=True
+    )
+    steps = propagate("henon-heiles", (0, own.period), own.y, method=Splitting("verlet"), step=0.1, samples=1)
+    assert abs(steps.final - own.y).max() < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("values", "kinds", "stable"),
+    [
+        (np.diag([2.0, 0.5]), ("hyperbolic",), False),
+        (np.diag([-2.0, -0.5]), ("inverse hyperbolic",), False),
+        (np.array([[1.0, 1.0], [0.0, 1.0]]), ("parabolic",), None),
+        (np.array([[0.0, 1.0], [-1.0, 0.0]]), ("elliptic",), True),
+    ],
+)
+def test_kinds_of_multipliers(values: np.ndarray, kinds: tuple[str, ...], stable: bool | None) -> None:
+    found = floquet_multipliers(values, None)
+    assert found.kinds == kinds
+    assert found.stable is stable
+
+
+def test_pairs_that_left_the_circle_are_complex() -> None:
+    # The real form of λ = 2 e^{i} with its partners 1/λ and conjugates, in q and p = A⁻ᵀ.
+    A = 2 * np.array([[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]])
+    found = floquet_multipliers(
+        np.block([[A, np.zeros((2, 2))], [np.zeros((2, 2)), np.linalg.inv(A).T]]), None
+    )
+    assert found.kinds == ("complex", "complex")
+    assert (found.krein == 0).all()
+
+
+def test_what_is_no_periodic_orbit_is_told() -> None:
+    free = Hamiltonian(x.momentum**2 / 2, [x], [x.momentum])
+    with pytest.raises(NoPeriodicOrbitError, match="no periodic orbit is found") as lost:
+        periodic_orbit(free, [0.0, 1.0], 1.0)
+    assert lost.value.defect > 0.1
+    with pytest.raises(ValueError, match="changing the signs of x does not reverse the motion"):
+        periodic_orbit(
+            Hamiltonian(x.momentum**2 / 2 + x**4 + x, [x], [x.momentum]), [0.5, 0.0], 3.0, reversal=["x"]
+        )
+    with pytest.raises(KeyError, match="there is no variable z, the motion has x, y, p_x, p_y"):
+        periodic_orbit("henon-heiles", [0, 0.1, 0.4, 0], 6.2, reversal=["z"])
+    with pytest.raises(TypeError, match="no Hamiltonian"):
+        periodic_orbit(Lagrangian(x.dot**2 / 2, [x], forces=[-x.dot]), [1.0, 0.0], 6.0)
+    with pytest.raises(ValueError, match="the period is fixed"):
+        periodic_orbit(PENDULUM, [1.0, 0.0], 6.5, energy=0.1, fixed_period=True)
+
+
+@pytest.mark.slow
+def test_a_family_passes_its_bifurcation() -> None:
+    # On the axis x = 0 of Hénon and Heiles, y¨ = −y + y²: the orbit that passes between the saddle's sides.
+    first = periodic_orbit("henon-heiles", [0.0, 0.05, 0.0, 0.0], 6.3, reversal=["p_x", "p_y"])
+    family = continue_family(first, 40, 0.05, to_energy=0.16)
+    assert (np.diff(family.energies) > 0).all()
+    assert family.energies[-1] >= 0.16
+    assert family.ended == "the energy 0.16 is reached"
+    assert abs(np.array([orbit.y[[0, 2, 3]] for orbit in family.orbits])).max() < 1e-9
+    kinds = [orbit.multipliers.kinds[0] for orbit in family.orbits]
+    changes = sum(a != b for a, b in itertools.pairwise(kinds))
+    assert len(family.bifurcations) >= changes - kinds.count("parabolic") > 0
+
+
+@pytest.mark.slow
+def test_figure_eight_has_the_multipliers_of_simo() -> None:
+    """C. Simó (2002), in Celestial Mechanics, Contemp. Math. 292, 209: ν = 0.00842272, 0.29809253."""
+    orbit = periodic_orbit("figure-eight", None, 6.3259)
+    turns = np.sort(abs(np.angle(orbit.multipliers.values)) / (2 * np.pi))
+    assert orbit.period == pytest.approx(6.32591398, abs=1e-7)
+    assert turns[-1] == pytest.approx(0.29809253, abs=1e-8)
+    assert turns[-3] == pytest.approx(0.00842272, abs=1e-8)
+    assert orbit.multipliers.kinds.count("elliptic") == 2
+    assert orbit.multipliers.stable is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("x0", "z0", "rate", "half"),
+    [(0.723268, 0.040000, 0.198019, 1.300177), (0.729988, 0.215589, 0.397259, 1.348532)],
+)
+def test_halo_orbits_of_howell(x0: float, z0: float, rate: float, half: float) -> None:
+    """K. C. Howell, Celest. Mech. 32 (1984) 53, Table I, µ = 0.04, doi:10.1007/BF01358403: six decimals."""
+    H = restricted(sp.Rational(4, 100))
+    guess = [x0 + 1e-4, 0, z0, 0, rate + x0 + 1e-4, 0]
+    orbit = periodic_orbit(
+        H, guess, 2.01 * half, reversal=("y", "p_x", "p_z"), energy=_energy(H, x0, z0, rate)
+    )
+    assert orbit.y[0] == pytest.approx(x0, abs=3e-5)
+    assert orbit.y[2] == pytest.approx(z0, abs=3e-5)
+    assert orbit.period / 2 == pytest.approx(half, abs=3e-6)
+    assert "hyperbolic" in orbit.multipliers.kinds
+
+
+def _energy(H: Hamiltonian, x0: float, z0: float, rate: float) -> float:
+    start = dict(zip((*H.q, *H.p), (x0, 0, z0, 0, rate + x0, 0), strict=True))
+    return float(H.H.subs(start))
+
+
+@pytest.mark.slow
+def test_orbit_of_arenstorf() -> None:
+    """Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, (0.1): the period to 27 digits."""
+    orbit = periodic_orbit("restricted-three-body", "Arenstorf", 17.07, reversal=("y", "p_x"))
+    assert orbit.period == pytest.approx(17.0652165601579625589, abs=1e-11)
+    assert orbit.y[0] == pytest.approx(0.994, abs=1e-11)
+    whole = periodic_orbit("restricted-three-body", "Arenstorf", 17.0652166)
+    assert whole.multipliers.indices.real == pytest.approx(orbit.multipliers.indices.real, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_manifolds_leave_an_orbit_and_fall_into_it() -> None:
+    orbit = periodic_orbit("henon-heiles", [0.01, 0.1, 0.4, 0.1], 6.5)
+    growth = abs(orbit.multipliers.values[0])
+    for branch, time in (("unstable", orbit.period), ("stable", -orbit.period)):
+        starts = manifold_starts(orbit, branch, count=5, distance=1e-7)
+        ends = propagate("henon-heiles", (0, time), starts, samples=1).y[:, -1]
+        places = propagate(
+            "henon-heiles", (0, orbit.period), orbit.y, times=orbit.period / 5 * np.arange(1, 5)
+        ).y[:, :5]
+        parted = np.linalg.norm(ends - places, axis=0) / np.linalg.norm(starts - places, axis=0)
+        assert parted == pytest.approx(growth, rel=1e-4)
+        energies = propagate("henon-heiles", (0, 1), starts, samples=1).energy[0]
+        assert energies == pytest.approx(orbit.energy, abs=1e-12)
+    with pytest.raises(ValueError, match="no real multiplier"):
+        manifold_starts(periodic_orbit(oscillators(1), [1.0, 0.001, 0.0, 0.002], 6.2))
