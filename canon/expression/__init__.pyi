@@ -3,6 +3,11 @@ from .graph.sympy_conversion import NotModelledError as NotModelledError
 from .parse import parse_condition as parse_condition
 from .parse import parse_equation as parse_equation
 from .parse import parse_expression as parse_expression
+from .symbols.jacobi_functions import jacobi_am as jacobi_am
+from .symbols.jacobi_functions import jacobi_cn as jacobi_cn
+from .symbols.jacobi_functions import jacobi_dn as jacobi_dn
+from .symbols.jacobi_functions import jacobi_epsilon as jacobi_epsilon
+from .symbols.jacobi_functions import jacobi_sn as jacobi_sn
 from .symbols.symbol import Coordinate as Coordinate
 from .symbols.symbol import Momentum as Momentum
 from .symbols.symbol import Rate as Rate

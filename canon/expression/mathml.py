@@ -39,7 +39,8 @@ _RELATIONS = {"<=": "≤", ">=": "≥", "!=": "≠", "==": "="}
 _FUNCTIONS = {
     "log": "ln", "asin": "arcsin", "acos": "arccos", "atan": "arctan", "acot": "arccot", "asinh": "arsinh",
     "acosh": "arcosh", "atanh": "artanh", "sign": "sgn", "Max": "max", "Min": "min", "LambertW": "W",
-    "elliptic_k": "K", "elliptic_e": "E",
+    "elliptic_k": "K", "elliptic_e": "E", "elliptic_f": "F", "elliptic_pi": "Π", "jacobi_am": "am", "jacobi_sn": "sn",
+    "jacobi_cn": "cn", "jacobi_dn": "dn", "jacobi_epsilon": "ε",
 }  # fmt: skip
 _RAISED = ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh")
 """Functions whose powers are written sin²(x)."""

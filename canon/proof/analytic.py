@@ -13,6 +13,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef, Derivative
 from sympy.polys.polyerrors import PolynomialError
 
+from canon.expression.symbols.jacobi_functions import JACOBI
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.limits import QUICK, Full, OutOfTime, TooLarge
 from canon.proof.domain.reality import certainly_real
@@ -83,6 +84,8 @@ def _fresh(expr: sp.Basic, hull: Domain, seen: dict[sp.Basic, bool]) -> bool:
             return proved_sign(arguments(expr)[0], hull) == "+" and _without_poles(arguments(expr)[0], hull)
         case sp.atan() | sp.asinh():
             return certainly_real(arguments(expr)[0]) and _without_poles(arguments(expr)[0], hull)
+        case _ if isinstance(expr, JACOBI):
+            return all(certainly_real(a) and _without_poles(a, hull) for a in arguments(expr))
         case _:
             return isinstance(expr, (*ENTIRE, AppliedUndef)) or (isinstance(expr, sp.Expr) and expr.is_number)
 

@@ -17,6 +17,7 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.sheet.quantities.dimension_texts import NUMBER, Dimension
+from canon.expression.symbols.jacobi_functions import JACOBI
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,7 +28,8 @@ MOST_POWER = 1_000
 """Largest numerator or denominator of a power whose dimension is told."""
 _OF_NUMBERS = (
     sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc, sp.asin, sp.acos, sp.atan, sp.acot, sp.sinh, sp.cosh,
-    sp.tanh, sp.coth, sp.asinh, sp.acosh, sp.atanh, sp.exp, sp.LambertW, sp.elliptic_k, sp.elliptic_e, sp.gamma,
+    sp.tanh, sp.coth, sp.asinh, sp.acosh, sp.atanh, sp.exp, sp.LambertW, sp.elliptic_k, sp.elliptic_e, sp.elliptic_f,
+    sp.elliptic_pi, *JACOBI, sp.gamma,
 )  # fmt: skip
 """Functions of numbers only, whose values are numbers."""
 _AS_IT_IS = (sp.Abs, sp.re, sp.im, sp.conjugate)

@@ -13,8 +13,10 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.question.deadline import SIDE_SECONDS
+from canon.expression.symbols.jacobi_functions import JACOBI
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.proof.analytic import proved_sign
+from canon.proof.domain.reality import certainly_real
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.trees.sympy_types import arguments
@@ -91,8 +93,12 @@ def _analytic(part: Expr, place: Mapping[Symbol, Expr], domain: Domain) -> bool:
             return proved_sign(there[0], domain) in ("+", "-")
         case sp.LambertW():
             return len(there) == 1 and positive(1 + sp.E * there[0])
-        case sp.elliptic_k() | sp.elliptic_e():
+        case sp.elliptic_k() | sp.elliptic_e() | sp.elliptic_f():
             return positive(1 - there[-1])
+        case sp.elliptic_pi():
+            return positive(1 - there[-1]) and positive(1 - there[0])
+        case _ if isinstance(part, JACOBI):
+            return all(map(certainly_real, there))
         case sp.atan2():
             return positive(there[1]) or proved_sign(there[0], domain) in ("+", "-")
         case sp.Abs() | sp.sign():

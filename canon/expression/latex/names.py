@@ -16,7 +16,9 @@ from canon.expression.text.syntax import LanguageError, Name, Number
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["FUNCTIONS", "Applied", "Function", "Item", "Mark", "Names", "Pieces", "spellings", "stems"]
+__all__ = [
+    "FUNCTIONS", "UPRIGHT", "Applied", "Function", "Item", "Mark", "Names", "Pieces", "spellings", "stems",
+]  # fmt: skip
 
 FUNCTIONS = {
     **{name: name for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "coth", "exp")},
@@ -28,6 +30,8 @@ FUNCTIONS = {
     **{name: name for name in ("asin", "acos", "atan", "acot", "asinh", "acosh", "atanh", "sign", "LambertW")},
 }  # fmt: skip
 r"""What ``\sin``, ``\operatorname{arsinh}``, … are called in the plain language."""
+UPRIGHT = {name: f"jacobi_{name}" for name in ("am", "sn", "cn", "dn")}
+r"""Functions whose letters are taken for factors unless they stand upright, ``\operatorname{sn}``."""
 
 _GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu",
           "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta",

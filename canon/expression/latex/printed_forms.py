@@ -40,7 +40,7 @@ PLAIN = re.compile(
 PARTIAL = re.compile(
     r"\\partial\s*(?:\^\s*([2-9])\s*)?_\s*(?:\{([^{}]{1,60})\}|(\\[A-Za-z]+|[A-Za-z]))(?:\s*\^\s*([2-9]))?"
 )
-OF_SPECIAL_FUNCTIONS = {"W": "LambertW", "K": "elliptic_k", "E": "elliptic_e"}
+OF_SPECIAL_FUNCTIONS = {"W": "LambertW", "K": "elliptic_k", "E": "elliptic_e", "F": "elliptic_f"}
 PRINTED_CALL = re.compile(r"(?:\^\{(?:[^{}]|\{(?:[^{}]|\{[^{}]{0,99}+\}){0,99}+\}){1,99}+\})?\\left\(")
 r"""How SymPy prints their argument, after a power."""
 

@@ -13,6 +13,7 @@ from canon.expression.latex.characters import REMEDIES, SIGNS, figure, letter, r
 from canon.expression.latex.latex_layout import CASES
 from canon.expression.latex.names import (
     FUNCTIONS,
+    UPRIGHT,
     Applied,
     Function,
     Item,
@@ -265,8 +266,8 @@ class _Reader:
                     column, "the imaginary unit can't be written here: I is declared", "rename the symbol I"
                 )
             self.put([Name("I", 0, column)], column)
-        elif word in FUNCTIONS and not self.names.declares(word):
-            self.put([Function(FUNCTIONS[word], column)], column)
+        elif (known := FUNCTIONS.get(word, UPRIGHT.get(word, ""))) and not self.names.declares(word):
+            self.put([Function(known, column)], column)
         else:
             self.named((word,), start)
 

@@ -28,6 +28,8 @@ _CAPITAL = {name.capitalize(): name for name in (
     "sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "sqrt", "log", "sign"
 )}  # fmt: skip
 """Functions as Mathematica writes them."""
+_TWO_LETTERS = ("am", "sn", "cn", "dn")
+"""Jacobi's functions as books write them, unless both letters are declared: then they are factors."""
 _GREEK = frozenset(GREEK.values())
 _CALLED = frozenset((
     *FUNCTIONS, "Derivative", "diff", "Piecewise", "Eq", "Ne", "Symbol", "Function", "Integer", "Rational", "Mul",
@@ -58,6 +60,8 @@ def function_name(word: str, scope: Scope) -> str:
     ('atan', 'sin', '')
     """
     if word in scope.functions or scope.symbol(word) is not None:
+        return ""
+    if word in _TWO_LETTERS and all(scope.declares(letter) for letter in word):
         return ""
     for name in (word, OTHER_NAMES.get(word, ""), _CAPITAL.get(word, "")):
         known = OTHER_NAMES.get(name, name)

@@ -7,6 +7,14 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.expression.symbols.jacobi_functions import (
+    jacobi_am,
+    jacobi_cn,
+    jacobi_dn,
+    jacobi_epsilon,
+    jacobi_sn,
+)
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -24,6 +32,11 @@ def _acot(x: Expr) -> Expr:
     return sp.acot(x, evaluate=False) if extracted else sp.acot(x)
 
 
+def _elliptic_pi(*arguments: Expr, evaluate: bool = True) -> Expr:
+    """Return Π(n, m) or Π(n, φ, m); SymPy's formulas for special n and m of the latter are wrong for φ > π/2."""
+    return sp.elliptic_pi(*arguments, evaluate=evaluate and len(arguments) == 2)
+
+
 FUNCTIONS: Mapping[str, tuple[Callable[..., Expr], int, int]] = MappingProxyType(
     {
         **{
@@ -37,6 +50,13 @@ FUNCTIONS: Mapping[str, tuple[Callable[..., Expr], int, int]] = MappingProxyType
         "log": (sp.log, 1, 2),
         "atan2": (sp.atan2, 2, 2),
         "elliptic_e": (sp.elliptic_e, 1, 2),
+        "elliptic_f": (sp.elliptic_f, 2, 2),
+        "elliptic_pi": (_elliptic_pi, 2, 3),
+        "jacobi_am": (jacobi_am, 2, 2),
+        "jacobi_sn": (jacobi_sn, 2, 2),
+        "jacobi_cn": (jacobi_cn, 2, 2),
+        "jacobi_dn": (jacobi_dn, 2, 2),
+        "jacobi_epsilon": (jacobi_epsilon, 2, 2),
         "Max": (sp.Max, 1, MAX_CHOICES),
         "Min": (sp.Min, 1, MAX_CHOICES),
     }
@@ -53,7 +73,11 @@ OTHER_NAMES = {"ln": "log", "Log": "log", "arcsin": "asin", "arccos": "acos", "a
                 "artanh": "atanh", "arctan2": "atan2", "fabs": "Abs", "sgn": "sign", "cosec": "csc",
                 "ArcSin": "asin", "ArcCos": "acos", "ArcTan": "atan", "ArcSinh": "asinh", "ArcCosh": "acosh",
                 "ArcTanh": "atanh", "ArcCot": "acot", "elliptic_kc": "elliptic_k", "elliptic_ec": "elliptic_e",
-                "EllipticK": "elliptic_k", "EllipticE": "elliptic_e", "ProductLog": "LambertW",
+                "EllipticK": "elliptic_k", "EllipticE": "elliptic_e", "EllipticF": "elliptic_f",
+                "EllipticPi": "elliptic_pi", "JacobiAmplitude": "jacobi_am",
+                "JacobiSN": "jacobi_sn", "JacobiCN": "jacobi_cn",
+                "JacobiDN": "jacobi_dn", "JacobiEpsilon": "jacobi_epsilon",
+                "am": "jacobi_am", "sn": "jacobi_sn", "cn": "jacobi_cn", "dn": "jacobi_dn", "ProductLog": "LambertW",
                 "signum": "sign"}  # fmt: skip
 WHICH_E = "is e Euler's number, or a name that is not declared, as that of an eccentricity?"
 WRITTEN_OUT = {

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from canon.expression.symbols.jacobi_functions import JACOBI, jacobi_sn
 from canon.proof.analytic import ENTIRE
+from canon.proof.domain.reality import certainly_real
 from canon.proof.trees.replacement import LAZY
 from canon.proof.trees.sympy_types import arguments
 from canon.proof.trees.worked_out import known
@@ -90,6 +92,13 @@ def _of(part: sp.Basic) -> Iterator[Hazard]:
             yield Hazard(part, args[0] ** 2 + args[1] ** 2, "it takes atan2(0, 0), as {} is zero")
         case sp.elliptic_k():
             yield Hazard(part, 1 - args[0], "it has the pole of elliptic_k, as {} is zero")
+        case sp.elliptic_pi():
+            yield Hazard(part, 1 - args[-1], "it has the pole of elliptic_pi, as {} is zero")
+            yield Hazard(part, 1 - args[0], "it has the pole of elliptic_pi, as {} is zero")
+        case _ if isinstance(part, JACOBI) and not all(map(certainly_real, args)):
+            u, m = args
+            from_pole = jacobi_sn(u - sp.I * sp.elliptic_k(1 - m), m)
+            yield Hazard(part, from_pole, f"it has the pole of {part.func}, as {{}} is zero")
         case sp.LambertW() if len(args) > 1:
             yield Hazard(part, args[0], "it takes a branch of LambertW of {}, which is zero")
         case _:

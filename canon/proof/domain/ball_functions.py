@@ -7,6 +7,15 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 from flint import acb, arb
 
+from canon.expression.symbols.jacobi_functions import (
+    jacobi_am,
+    jacobi_cn,
+    jacobi_dn,
+    jacobi_epsilon,
+    jacobi_sn,
+)
+from canon.proof.domain.theta_quotients import amplitude, epsilon, sn_cn_dn
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -117,6 +126,10 @@ def _elliptic_e(z: acb, m: acb | None = None) -> acb:
     return z.elliptic_e() if m is None else acb.elliptic_e_inc(z, m)
 
 
+def _elliptic_pi(n: acb, z: acb, m: acb | None = None) -> acb:
+    return acb.elliptic_pi(n, z) if m is None else acb.elliptic_pi_inc(n, z, m)
+
+
 def _lambert_w(z: acb, branch: acb | None = None) -> acb:
     if branch is None:
         return z.lambertw()
@@ -188,6 +201,12 @@ FUNCTIONS: dict[Any, Callable[..., acb]] = {
     sp.elliptic_k: lambda m: m.elliptic_k(),
     sp.elliptic_e: _elliptic_e,
     sp.elliptic_f: lambda z, m: acb.elliptic_f(z, m),
+    sp.elliptic_pi: _elliptic_pi,
+    jacobi_am: amplitude,
+    jacobi_sn: lambda u, m: sn_cn_dn(u, m)[0],
+    jacobi_cn: lambda u, m: sn_cn_dn(u, m)[1],
+    jacobi_dn: lambda u, m: sn_cn_dn(u, m)[2],
+    jacobi_epsilon: epsilon,
     sp.gamma: lambda z: z.gamma(),
     sp.factorial: lambda z: (z + 1).gamma(),
     sp.binomial: lambda a, b: (a + 1).gamma() * (b + 1).rgamma() * (a - b + 1).rgamma(),

@@ -7,6 +7,13 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from canon.expression.symbols.jacobi_functions import (
+    jacobi_am,
+    jacobi_cn,
+    jacobi_dn,
+    jacobi_epsilon,
+    jacobi_sn,
+)
 from canon.proof.domain.declarations import declared_complex
 from canon.proof.trees.sympy_types import arguments
 
@@ -29,6 +36,11 @@ REAL_ON_REALS = (
     | sp.sign
     | sp.Max
     | sp.Min
+    | jacobi_am
+    | jacobi_sn
+    | jacobi_cn
+    | jacobi_dn
+    | jacobi_epsilon
 )
 """Functions that take real values at real arguments."""
 

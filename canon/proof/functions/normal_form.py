@@ -17,7 +17,18 @@ from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precisio
 from canon.proof.domain.declarations import declared_complex
 from canon.proof.domain.limits import THOROUGH, Limits
 from canon.proof.domain.reality import certainly_real
-from canon.proof.functions import angles, arcs, complex_parts, elliptic, gammas, large_powers, powers, waves
+from canon.proof.functions import (
+    angles,
+    arcs,
+    complex_parts,
+    elliptic,
+    elliptic_arcs,
+    gammas,
+    jacobi_addition,
+    large_powers,
+    powers,
+    waves,
+)
 from canon.proof.tower.forms import Forms
 
 if TYPE_CHECKING:
@@ -132,7 +143,7 @@ class NormalForm(Forms):
 
     def cos_sin_of_arc(self, kernel: tuple[object, ...], r: fmpq) -> tuple[Fraction, Fraction] | None:
         """Return cos and sin of r times an inverse circular function, where there is a rule."""
-        return arcs.cos_sin_of_arc(self, kernel, r)
+        return arcs.cos_sin_of_arc(self, kernel, r) or elliptic_arcs.cos_sin_of_amplitude(self, kernel, r)
 
     # -- recursion -------------------------------------------------------------------------------
 
@@ -181,6 +192,8 @@ class NormalForm(Forms):
             or complex_parts.elementary(self, expr)
             or gammas.elementary(self, expr)
             or elliptic.elementary(self, expr)
+            or elliptic_arcs.elementary(self, expr)
+            or jacobi_addition.elementary(self, expr)
         )
         return self._opaque(expr) if elementary is None else elementary
 

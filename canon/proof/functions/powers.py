@@ -103,9 +103,11 @@ def root(n: Forms, f: Fraction, r: fmpq) -> Fraction:
         return t.power(f, int(r.p))
     if t.is_zero(f):
         return t.power(t.number(0), 1 if r > 0 else -1)
+    f, known = _without_squares(n, f, r)
     content, outside, rest = split_signs(n, f)
     outside.sort(key=lambda power: n.signs.of(power[0].num) != "+")
-    factors = [_root_kernel(n, t.number(p), r * e, "+") for p, e in primes(content)]
+    factors = [known]
+    factors += [_root_kernel(n, t.number(p), r * e, "+") for p, e in primes(content)]
     factors.extend(_root_of_nonnegative(n, p, r * e) for p, e in outside)
     if rest.num.is_constant() and not rest.den:
         if rest.num.leading_coefficient() < 0:
@@ -114,6 +116,18 @@ def root(n: Forms, f: Fraction, r: fmpq) -> Fraction:
     else:
         factors.append(_root_kernel(n, rest, r, ""))
     return t.times(*factors)
+
+
+def _without_squares(n: Forms, f: Fraction, r: fmpq) -> tuple[Fraction, Fraction]:
+    """Return f without its factors σ² > 0 with a known root σ > 0, such as 1 − m sn² = dn², and their power."""
+    t = n.tower
+    known = t.number(1)
+    for square, sigma in n.squares if r.q == 2 else ():
+        quotient, remainder = divmod(f.num, square)
+        while remainder.is_zero() and not quotient.is_zero():
+            f, known = Fraction(quotient, f.den), t.times(known, t.power(sigma, int(r.p)))
+            quotient, remainder = divmod(f.num, square)
+    return f, known
 
 
 def learn_zero(n: Forms, p: fmpq_mpoly) -> None:

@@ -56,6 +56,8 @@ class Forms(ABC):
         self.moduli: list[tuple[Fraction, tuple[Fraction, Fraction]]] = []
         self.integrals: dict[Hashable, tuple[Fraction, Fraction]] = {}
         self.known_roots: dict[Hashable, Fraction] = {}
+        self.squares: list[tuple[fmpq_mpoly, Fraction]] = []
+        self.amplitudes: dict[Hashable, tuple[Fraction, Fraction]] = {}
         self.inside_root = False
         self.independent: dict[Hashable, Fraction] = {}
         self.gammas: list[tuple[Fraction, Fraction]] = []

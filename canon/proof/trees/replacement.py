@@ -11,6 +11,7 @@ from sympy.core.relational import Relational
 from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 from sympy.functions.elementary.trigonometric import InverseTrigonometricFunction, TrigonometricFunction
 
+from canon.expression.symbols.jacobi_functions import JACOBI
 from canon.proof.trees.anatomy import Anatomy, anatomy
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ UNWRITTEN = (
     sp.exp,
     sp.log,
     sp.Piecewise,
+    *JACOBI,
     *KINKED,
 )
 """Functions that stay as they are at large numbers."""
