@@ -133,10 +133,33 @@ def test_k_of_moving_maps_and_of_the_way_back():
 
 
 def test_no_k_of_a_map_that_is_not_canonical():
-    with pytest.raises(NoClosedInverseError, match="could not be proved; is_canonical"):
+    with pytest.raises(ValueError, match="not canonical, so it has no new Hamiltonian"):
         transformed_hamiltonian(CanonicalTransformation(q, p, atan2(q, p), q**2 + p**2), ENERGY, [Q], [P])
     with pytest.raises(ValueError, match="none of them an old variable"):
         transformed_hamiltonian(CanonicalTransformation(q, p, p, -q), ENERGY, [q], [P])
+
+
+def test_k_of_a_central_force_in_polar_coordinates_has_neither_sine_nor_cosine():
+    y, p_y = sp.symbols("y p_y", real=True)
+    radius = sp.sqrt(q**2 + y**2)
+    T = CanonicalTransformation(
+        [q, y], [p, p_y], [radius, atan2(y, q)], [(q * p + y * p_y) / radius, q * p_y - y * p]
+    )
+    K = transformed_hamiltonian(T, (p**2 + p_y**2) / 2, [Q, Q2], [P, P2]).H
+    assert sp.expand(K - P**2 / 2 - P2**2 / (2 * Q**2)) == 0
+
+
+def test_a_new_hamiltonian_is_that_of_a_canonical_map():
+    with pytest.raises(ValueError, match=r"so it has no new Hamiltonian; .* = 2, not 1"):
+        new_hamiltonian(CanonicalTransformation(q, p, 2 * q, p), ENERGY)
+    assert new_hamiltonian(CanonicalTransformation(q, p, 2 * q, p), ENERGY, valence=2) == 2 * ENERGY
+
+
+def test_the_domain_of_an_inverse_leaves_out_where_its_roots_are_not_real():
+    left = sp.Symbol("x", negative=True)
+    inverse = inverse_transformation(CanonicalTransformation(left, p, left**2, p / (2 * left)), [Q], [P])
+    assert inverse.images == (-sp.sqrt(Q), -2 * P * sp.sqrt(Q))
+    assert inverse.domain.conditions == (Q > 0,)
 
 
 def test_only_factors_that_keep_the_direction_leave_an_arc():

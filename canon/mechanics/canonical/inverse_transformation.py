@@ -15,7 +15,7 @@ from canon.mechanics.algebra.branch_point import branch_points, far_from_princip
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.canonical.point_inverse import point_branch
-from canon.mechanics.canonical.polar_inverse import free_angles, plain_sign, polar_branch
+from canon.mechanics.canonical.polar_inverse import free_angles, plain_sign, polar_branch, positive_radicands
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.proof.domain.domain import Domain
 
@@ -63,8 +63,9 @@ def inverse_transformation(
     >>> from sympy import atan2, symbols
     >>> q = symbols("q", positive=True); p, Q, P = symbols("p Q P", real=True)
     >>> T = CanonicalTransformation(q, p, q**2, p/(2*q))
-    >>> inverse_transformation(T, [Q], [P]).images
-    (sqrt(Q), 2*P*sqrt(Q))
+    >>> inverse = inverse_transformation(T, [Q], [P])
+    >>> inverse.images, inverse.domain.conditions
+    ((sqrt(Q), 2*P*sqrt(Q)), (Q > 0,))
 
     The oscillator by angle and action, whose branch is that of atan2 on the whole plane:
 
@@ -146,7 +147,7 @@ class _Search:
             return None
         claims = ((f"{z} comes back", substitute(solved[z], self.meaning) - z) for z in self.T.variables)
         right = self._all_vanish(claims, "the inverse is right", self.T.domain)
-        return self._inverse(solved) if right else None
+        return self._inverse(solved, tuple(positive_radicands(solved.values()))) if right else None
 
     def _all_vanish(self, claims: Iterable[tuple[str, Expr]], question: str, domain: Domain) -> bool:
         seconds = min(10.0, self.deadline - clock.monotonic())

@@ -68,6 +68,11 @@ def new_hamiltonian(
     valence
         The c of M J Mᵀ = c J.
 
+    Raises
+    ------
+    ValueError
+        Where the map is certainly not canonical with that valence.
+
     Examples
     --------
     >>> from canon import CanonicalTransformation, time as t
@@ -78,6 +83,9 @@ def new_hamiltonian(
     """
     _is_map(transformation)
     energy = _energy(H, transformation)
+    canonical = transformation.is_canonical(valence=given_expression(valence, "valence"))
+    if canonical.fails:
+        raise ValueError(f"the map is not canonical, so it has no new Hamiltonian; {canonical.feedback}")
     R = potential(rate_form(transformation), transformation.variables, transformation.domain)
     return None if R is None else given_expression(valence, "valence") * energy + R
 

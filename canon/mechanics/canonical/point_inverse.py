@@ -16,7 +16,7 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import shortened
-from canon.mechanics.canonical.polar_inverse import BranchOfInverse, polar_branch
+from canon.mechanics.canonical.polar_inverse import BranchOfInverse, polar_branch, positive_radicands
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -71,7 +71,8 @@ def point_branch(
         solved = solve_system([(place, Q) for Q, place in places.items()], q, inversion)
         if solved is None:
             return None
-        branch = BranchOfInverse({z: shortened(value) for z, value in solved.items()}, (), {})
+        values = {z: shortened(value) for z, value in solved.items()}
+        branch = BranchOfInverse(values, tuple(positive_radicands(values.values())), {})
     at_rest = dict.fromkeys(p, sp.S.Zero)
     shares = [P - meaning[P].xreplace(at_rest) for P in new_p]
     momenta = {

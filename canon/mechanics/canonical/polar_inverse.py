@@ -34,6 +34,7 @@ __all__ = [
     "plain_arcs",
     "plain_sign",
     "polar_branch",
+    "positive_radicands",
     "united_squares",
 ]
 
@@ -179,7 +180,7 @@ def polar_branch(
         return None
     values = {z: angles[z].value if z in angles else solved[z] for z in variables}
     signs = (cast("Boolean", sp.Gt(new, 0)) for new in sizes.values())
-    ranges = tuple(dict.fromkeys((*system.ranges, *signs, *_radicands(solved.values()))))
+    ranges = tuple(dict.fromkeys((*system.ranges, *signs, *positive_radicands(solved.values()))))
     return BranchOfInverse(values, ranges, angles, tuple(system.angles))
 
 
@@ -269,7 +270,7 @@ def _legs(arc: Expr, witness: BranchPoint) -> tuple[Expr, Expr, Expr]:
     return (-y, -x, pi / 2) if left else (y, x, pi / 2)
 
 
-def _radicands(values: Any) -> list[Boolean]:
+def positive_radicands(values: Any) -> list[Boolean]:
     """Return what must be positive under the square roots, where it is not by its symbols alone."""
     powers = {
         power for f in values for power in f.atoms(sp.Pow) if power.exp.is_Rational and power.exp.q == 2
@@ -286,18 +287,21 @@ def united_squares(f: Expr) -> Expr:
     >>> x, a, b = sp.symbols("x a b")
     >>> united_squares(a*cos(x)**2/(2*b) + a*sin(x)**2/(2*b))
     a/(2*b)
+    >>> united_squares((a*sin(x) + b*cos(x))**2 + (a*cos(x) - b*sin(x))**2)
+    a**2 + b**2
     """
     if not f.has(sin, cos) or not f.args:
         return f
     inside = f.func(*(united_squares(cast("Expr", part)) for part in f.args))
     if not inside.is_Add:
         return inside
+    multiplied = sp.expand(inside)
     squares = {
         g: (1 - cos(g.base.args[0]) ** 2) ** (g.exp / 2)
-        for g in inside.atoms(sp.Pow)
+        for g in multiplied.atoms(sp.Pow)
         if isinstance(g.base, sin) and g.exp.is_Integer and g.exp.is_positive and g.exp.is_even
     }
-    return min((inside, cast("Expr", sp.expand(exchanged(sp.expand(inside), squares)))), key=size)
+    return min((inside, cast("Expr", sp.expand(exchanged(multiplied, squares)))), key=size)
 
 
 def plain_arcs(f: Expr) -> Expr:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -13,6 +14,7 @@ from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import shortened, substitute
 from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError, meaning_of
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
+from canon.mechanics.canonical.point_inverse import point_branch
 from canon.mechanics.canonical.polar_inverse import polar_branch, united_squares
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
@@ -53,6 +55,8 @@ def transformed_hamiltonian(
     ------
     NoClosedInverseError
         Where no closed K was found or it could not be proved; the text says which.
+    ValueError
+        Where the map is certainly not canonical with that valence.
 
     Examples
     --------
@@ -71,8 +75,7 @@ def transformed_hamiltonian(
     here = new_hamiltonian(T, H, valence)
     if here is None:
         raise NoClosedInverseError(
-            "K was not found in the old variables: the map is not canonical at each t, or its rates ∂Q/∂t, ∂P/∂t "
-            "could not be integrated; ask is_canonical() first"
+            "K was not found in the old variables: the rates ∂Q/∂t, ∂P/∂t of the map could not be integrated"
         )
     before = H.H if isinstance(H, Hamiltonian) else H
     for values in _branches(T, meaning):
@@ -81,13 +84,16 @@ def transformed_hamiltonian(
             return Hamiltonian(K, new_q, new_p, T.t)
     raise NoClosedInverseError(
         "K was found in the old variables only, see new_hamiltonian: the map could not be solved for these on any "
-        "branch, or the K found so could not be proved; is_canonical() tells whether the map is canonical"
+        "branch, or the K found so could not be proved"
     )
 
 
 def _branches(T: CanonicalTransformation, meaning: Mapping[Symbol, Expr]) -> Iterator[Mapping[Symbol, Expr]]:
     symbols = set(T.variables).union(*(f.atoms(Symbol) for f in T.images))
     for witness in sorted(branch_points(symbols, meaning, T.domain, 12), key=far_from_principal)[:3]:
+        point = point_branch(T.q, T.p, meaning, witness, math.inf)
+        if point is not None:
+            yield point.values
         polar = polar_branch(T.variables, meaning, witness)
         if polar is not None:
             yield polar.values
