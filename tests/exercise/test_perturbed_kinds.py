@@ -156,6 +156,22 @@ def test_an_action_without_a_closed_form_is_refuted_by_quadrature():
     assert examine(Claim("a", "action-angle", {**keys, "J": [right]})).verdict.undecided
 
 
+@pytest.mark.slow
+def test_the_action_of_morses_potential_is_known_up_to_its_rim():
+    """Where the well is wide, balls held the integral of another root, and the formula was refused."""
+    H = "p**2/2 + D*(exp(-2*q) - 2*exp(-q))"
+    keys = {"q": ["q"], "p": ["p"], "H": H, "parameters": {"E": "negative", "D": "positive"}}
+    for J, holds in (("sqrt(2*D) - sqrt(-2*E)", True), ("sqrt(D) - sqrt(-2*E)", False)):
+        verdict = examine(Claim("a", "action-angle", {**keys, "domain": [f"{H} < 0"], "J": [J]})).verdict
+        assert (verdict.holds, verdict.fails) == (holds, not holds)
+
+
+def test_a_saddle_has_no_normal_form_in_the_actions_of_oscillators():
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 - q**2/2 + q**4", "actions": ["J"], "degree": 4}
+    for K in ("J + 3*J**2/2", "-J + 3*J**2/2", "J"):
+        assert examine(Claim("a", "normal-form", {**keys, "K": K})).verdict.undecided
+
+
 def test_the_action_of_a_quartic_wall_is_known_in_gamma_functions_and_elliptic_integrals():
     keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + q**4", "parameters": {"E": "positive"}}
     area = "4*elliptic_k(1/2)*E**(3/4)/(3*pi)"

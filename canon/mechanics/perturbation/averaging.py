@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Averaged", "AveragingError", "adiabatic_invariant", "average"]
 
+ZERO_SECONDS = 2.0
+"""Time for the proof that a divisor vanishes, which only those with roots or functions need."""
+
 
 class AveragingError(ValueError):
     """Raised where averaging ends before the order that was asked for.
@@ -254,8 +257,10 @@ def _stays(k: Harmonic, divisor: Expr, module: Module | None) -> bool:
 
 
 def _divisor(k: Harmonic, frequencies: Sequence[Expr]) -> Expr:
+    """Return k·ω, 0 where it is proved to vanish, as √(3 + 2√2) − (1 + √2) does."""
     factored: Any = sp.factor(sp.Add(*(j * omega for j, omega in zip(k, frequencies, strict=True))))
-    return factored
+    rational = not factored.has(sp.Function) and all(e.exp.is_Integer for e in factored.atoms(sp.Pow))
+    return factored if rational or not vanishes(factored, budget=ZERO_SECONDS).holds else sp.S.Zero
 
 
 def _diagonal(

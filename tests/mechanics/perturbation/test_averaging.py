@@ -117,6 +117,20 @@ def test_the_average_is_proved_and_its_wrong_twins_are_refuted(H, angles, order,
     assert "still has the fast term" in nothing_done.is_average().feedback
 
 
+def test_a_divisor_that_vanishes_by_its_roots_is_a_resonance():
+    """√(3 + 2√2) = 1 + √2, so that the term of θ − φ stays; divided by, it gave nan."""
+    first = sp.sqrt(3 + 2 * sp.sqrt(2))
+    H1 = eps * I * sp.cos(theta - phi)
+    same = average(
+        Hamiltonian(first * I + (1 + sp.sqrt(2)) * J + H1, [theta, phi], [I, J]), [theta, phi], 2, eps
+    )
+    assert same.terms[1:] == (I * sp.cos(theta - phi), 0)
+    other = average(
+        Hamiltonian(first * I + (1 + sp.sqrt(3)) * J + H1, [theta, phi], [I, J]), [theta, phi], 1, eps
+    )
+    assert other.terms[1] == 0
+
+
 def test_near_resonant_terms_stay_and_their_small_divisor_is_not_divided_by():
     free = average(RESONANT, [theta, phi], 1, eps)
     assert min(abs(d) for d in free.divisors.values()) == sp.Rational(1, 100)

@@ -216,6 +216,11 @@ def normal_form(reading: Reading) -> Iterator[Question]:
         known = form.in_actions()
     except (NormalFormError, NoDiagonalFormError, NoExactFieldError, NotAnalyticError) as reason:
         raise Undecided(f"the normal form was not found: {reason}") from None
+    if not all(form.diagonal.is_elliptic(j) for j in range(len(q))):
+        raise Undecided(
+            "the origin is no elliptic equilibrium, so that K is no function of actions (q² + p²)/2: a pair grows "
+            "and decays exponentially"
+        )
     right = substitute(known, dict(zip(form.actions, actions, strict=True)))
     yield _same_polynomials(reading, K, right, actions, int(degree) // 2)
 
