@@ -51,6 +51,7 @@ from .run.event import Event as Event
 from .run.non_finite_state import NonFiniteStateError as NonFiniteStateError
 from .run.observables_along import AccuracyWarning as AccuracyWarning
 from .run.samples import Statistics as Statistics
+from .system.hamiltonian_map import HamiltonianMap as HamiltonianMap
 from .system.sampled_function import sampled_function as sampled_function
 from .trajectory import Interrupted as Interrupted
 from .trajectory import Trajectory as Trajectory

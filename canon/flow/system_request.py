@@ -19,6 +19,13 @@ from canon.flow.equations.first_order_motion import moving_system
 from canon.flow.equations.lagrangian_motion import SPAN
 from canon.flow.method.method_text import method_of
 from canon.flow.run.event import Event
+from canon.flow.system.hamiltonian_map import (
+    DRIFT_AND_KICK,
+    KICK_AND_DRIFT,
+    HamiltonianMap,
+    check_whole,
+    kicked,
+)
 from canon.flow.system.parameter_values import SpareParameters, check_given, check_known, check_parameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_as_system import is_scene, opened
@@ -90,8 +97,36 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
     if scene:
         system, y0, parameters = opened(request.system, request.y0, request.parameters or {})
         request = replace(request, system=system, y0=y0, parameters=SpareParameters(parameters))
+    if isinstance(request.system, HamiltonianMap):
+        return _map_task(request, request.system), None
     if not is_hamiltonian(request.system):
         return _system_task(request)
+    return _hamiltonian_task(request), None
+
+
+def _map_task(request: Request, system: HamiltonianMap) -> Task:
+    """Return the task of iterating a map.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        As :func:`any_task`; or a method, a step or a time between iterations is given.
+    """
+    for name, given in (("method", request.method), ("step", request.step), ("tolerance", request.tolerance)):
+        if given is not None:
+            raise ValueError(f"{name}={given}: a map has no {name}, it is iterated; leave {name} out")
+    if request.events or request.cadence is not None:
+        raise ValueError("a map has no states between its iterations: leave events and cadence out")
+    begin, end = two_ends(request.t_span, request.y0)
+    check_whole(begin)
+    check_whole(end)
+    method = KICK_AND_DRIFT if end > begin else DRIFT_AND_KICK
+    made = _hamiltonian_task(replace(request, system=system.hamiltonian, method=method, step=1.0))
+    return replace(made, system=kicked(made.system))
+
+
+def _hamiltonian_task(request: Request) -> Task:
+    """Return the task of a Hamiltonian's motion."""
     variables = (*request.system.q, *request.system.p)
     if isinstance(request.y0, Mapping):
         request = replace(request, y0=state_in_order(request.y0, variables))
@@ -99,7 +134,7 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
         check_given(request.parameters, request.system.H.free_symbols, (*variables, request.system.t))
         if not isinstance(request.parameters, SpareParameters):
             check_known(request.parameters, _symbols_of(request) - {*variables, request.system.t})
-    return task_of(request), None
+    return task_of(request)
 
 
 def _symbols_of(request: Request) -> set[Any]:

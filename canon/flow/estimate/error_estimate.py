@@ -148,7 +148,17 @@ def error_estimate(
         H − H(start) at the samples, shape (times,) or (times, orbits).
     orbits
         Which orbits of many to estimate.
+
+    Raises
+    ------
+    ValueError
+        The motion is that of a map.
     """
+    if task.system.kicked:
+        raise ValueError(
+            "a map has no step that could be made smaller; iterate it in wider numbers and compare, "
+            "precision='double-double'"
+        )
     single = task.single
     chosen = list(range(samples.y.shape[2])) if orbits is None else list(orbits)
     rows = task.system.rows

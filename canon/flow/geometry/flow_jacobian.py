@@ -17,6 +17,7 @@ from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import Plan, fixed_plan
 from canon.flow.run_record import recorded
+from canon.flow.system.hamiltonian_map import DRIFT_AND_KICK, KICK_AND_DRIFT
 from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system_request import any_task, refuse_contacts
 from canon.flow.trajectory import finished
@@ -309,6 +310,9 @@ def reversal_error(
         back = Plan(Fraction(float(plan.instants[-1])), plan.instants[::-1].copy(), ends=plan.ends)
     else:
         back = fixed_plan(plan.last(-1), -plan.h, plan.stops)
+    if task.system.kicked:
+        forward = task.method == KICK_AND_DRIFT
+        task = replace(task, method=DRIFT_AND_KICK if forward else KICK_AND_DRIFT)
     returned = finished(recorded(replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back)))
     end = returned.record.samples
     missed = ((end.y[:, -1] - high) + (end.carried[:, -1] - low))[task.system.rows]

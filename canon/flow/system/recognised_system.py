@@ -30,11 +30,13 @@ if TYPE_CHECKING:
 
     from canon.flow.equations.first_order_motion import FirstOrderMotion
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.system.hamiltonian_map import HamiltonianMap
     from canon.flow.system.scene_as_system import SceneLike
     from canon.mechanics.lagrange.body import Body
 
     MovableSystem = (
         HamiltonianSystem
+        | HamiltonianMap
         | Lagrangian
         | ConstrainedLagrangian
         | UnilateralLagrangian

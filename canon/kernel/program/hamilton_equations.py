@@ -55,6 +55,8 @@ class HamiltonEquations:
         halves are what is integrated along unseen.
     spare
         How many of p before those only fill up the second half, at rate 0.
+    kicked
+        Whether they are those of a map: T + V of which a step is a kick and a drift, and nothing between.
     named
         The nodes of further symbols that functions along the motion may hold, such as multipliers.
     """
@@ -73,6 +75,7 @@ class HamiltonEquations:
     varying: int = 0
     canonical: bool = True
     spare: int = 0
+    kicked: bool = False
     named: Mapping[Symbol, int] = field(default_factory=lambda: FrozenMapping({}))
 
     @property
