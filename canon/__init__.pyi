@@ -15,8 +15,6 @@ from .flow.method.method import RK4 as RK4
 from .flow.method.method import Gauss as Gauss
 from .flow.method.method import Splitting as Splitting
 from .flow.method.method import TimeTransformed as TimeTransformed
-from .flow.method.nonseparable_splitting import ExtendedPhaseSpace as ExtendedPhaseSpace
-from .flow.method.nonseparable_splitting import SemiexplicitSplitting as SemiexplicitSplitting
 from .flow.method.solvable_splitting import SABA as SABA
 from .flow.method.solvable_splitting import WisdomHolman as WisdomHolman
 from .flow.propagation import propagate as propagate
