@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import sympy as sp
-from flint import fmpq
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from canon import Hamiltonian, birkhoff_normal_form
@@ -210,8 +209,10 @@ def long_bracket(partner: int) -> tuple[int, int, float]:
     cubic = [powers for powers in monomials if sum(powers) in (3, 4)]
 
     def series(among: list[tuple[int, ...]]) -> PhasePolynomial:
-        numbers = {(0, *powers): fmpq(chance.randint(1, 99), chance.choice((1, 2, 3, 8))) for powers in among}
-        return PhasePolynomial(ring, ring.context.from_dict(numbers), ring.nothing, ring.unit)
+        numbers = {
+            (*powers, 0): chance.randint(1, 99) * 24 // chance.choice((1, 2, 3, 8)) for powers in among
+        }
+        return ring.real(ring.context.from_dict(numbers), ring.context.constant(24))
 
     f, g, bracket = series(monomials), series(chance.sample(cubic, partner)), Brackets((ring.one,) * 3)
     found = bracket(f, g)

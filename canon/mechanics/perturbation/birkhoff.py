@@ -17,6 +17,7 @@ from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.perturbation.coefficient_field import ring_over
 from canon.mechanics.perturbation.lie_transform import chain, transformed
 from canon.mechanics.perturbation.normal_form_step import (
+    Divisors,
     Module,
     SmallDivisor,
     ZeroDivisorError,
@@ -276,8 +277,8 @@ def _normalised(
 ) -> NormalForm:
     size = 2 * len(H.q)
     values = [complex(e.subs(dict.fromkeys(e.free_symbols, 1)).evalf()) for e in diagonal.exponents]
-    known: dict[tuple[int, ...], PhasePolynomial | None] = {}
-    divisors: dict[tuple[int, ...], SmallDivisor] = {}
+    divisors = Divisors(diagonal.eigenvalues, values, module)
+    divided_by: dict[tuple[int, ...], SmallDivisor] = {}
     generators: list[tuple[int, PhasePolynomial]] = []
     parts = dict(original)
     named = None if module is None else module.resonances
@@ -285,7 +286,7 @@ def _normalised(
     def result(reached: int) -> NormalForm:
         kept = {d: f for d, f in parts.items() if d <= reached}
         steps = tuple((d, chi) for d, chi in generators if d <= reached)
-        small = tuple(sorted(divisors.values(), key=lambda s: s.value))
+        small = tuple(sorted(divided_by.values(), key=lambda s: s.value))
         return NormalForm(H, place, reached, named, diagonal, original, kept, steps, small)
 
     for degree in range(3, order + 1):
@@ -296,14 +297,13 @@ def _normalised(
             )
         if degree not in parts:
             continue
-        met: dict[tuple[int, ...], float] = {}
         try:
-            _, chi = homological_solution(parts[degree], diagonal.eigenvalues, module, values, known, met)
+            _, chi, met = homological_solution(parts[degree], divisors)
         except ZeroDivisorError as zero:
             raise _ended(f"at degree {degree} {zero}", result(degree - 1)) from zero
         for k, value in met.items():
             either_sign = _either_sign(k)
-            divisors.setdefault(either_sign, SmallDivisor(either_sign, value, degree))
+            divided_by.setdefault(either_sign, SmallDivisor(either_sign, value, degree))
         if chi:
             generators.append((degree, chi))
             parts = transformed(parts, chi, degree, order, diagonal.brackets)

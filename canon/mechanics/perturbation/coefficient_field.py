@@ -61,8 +61,18 @@ def ring_over(constants: Iterable[Expr], size: int) -> PolynomialRing:
             "take parameters with simpler values"
         )
     field = sp.QQ.algebraic_field(*sorted(radicals, key=sp.default_sort_key))
-    relation = tuple(sp.Rational(int(c.numerator), int(c.denominator)) for c in reversed(field.mod.to_list()))
-    return PolynomialRing(size, parameters, field.ext.as_expr(), relation)
+    return _with_number(field, size, parameters)
+
+
+def _with_number(field: Any, size: int, parameters: tuple[Symbol, ...]) -> PolynomialRing:
+    """Return the ring over a field of numbers, whose generator is multiplied until its equation has whole numbers."""
+    found: list[Any] = [
+        sp.Rational(int(c.numerator), int(c.denominator)) for c in reversed(field.mod.to_list())
+    ]
+    monic, degree = [c / found[-1] for c in found], len(found) - 1
+    factor = sp.ilcm(*(c.q for c in monic))
+    relation = tuple(c * factor ** (degree - k) for k, c in enumerate(monic))
+    return PolynomialRing(size, parameters, factor * field.ext.as_expr(), relation)
 
 
 def _radical_parts(values: Iterable[Any]) -> list[Expr]:

@@ -5,14 +5,40 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from flint import fmpq
-
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial
+    from flint import fmpz_mpoly
 
-__all__ = ["Brackets", "added", "bracket_parts", "chain", "transformed", "truncated_product"]
+    from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial, Sides
+
+__all__ = ["Brackets", "PhaseField", "added", "bracket_parts", "chain", "transformed", "truncated_product"]
+
+
+@dataclass(frozen=True)
+class PhaseField:
+    """A vector field in the phase variables whose components have one denominator.
+
+    Parameters
+    ----------
+    components
+        The real and the imaginary part of each numerator.
+    den
+        The denominator.
+    """
+
+    components: tuple[Sides, ...]
+    den: fmpz_mpoly
+
+    @classmethod
+    def of(cls, components: Sequence[PhasePolynomial]) -> PhaseField:
+        """Return the field with these components."""
+        common = components[0].den
+        for f in components[1:]:
+            if f.den != common:
+                common = common * (f.den / f.den.gcd(common))
+        raised = [(f, common / f.den) for f in components]
+        return cls(tuple((f.re * factor, f.im * factor) for f, factor in raised), common)
 
 
 @dataclass(frozen=True)
@@ -23,21 +49,14 @@ class Brackets:
 
     def __call__(self, f: PhasePolynomial, g: PhasePolynomial) -> PhasePolynomial:
         """Return {f, g} = Σ cⱼ (∂f/∂aⱼ ∂g/∂bⱼ − ∂f/∂bⱼ ∂g/∂aⱼ)."""
-        n, ring = len(self.constants), f.ring
-        same = all(c == self.constants[0] for c in self.constants)
-        parts = [
-            (
-                (f.derivative(j), g.derivative(n + j)),
-                (-f.derivative(n + j), g.derivative(j)),
-            )
-            for j in range(n)
-        ]
-        if same:
-            return ring.sum_of_products([pair for both in parts for pair in both]) * self.constants[0]
-        total = ring.zero
-        for c, both in zip(self.constants, parts, strict=True):
-            total = total + ring.sum_of_products(both) * c
-        return total
+        return f.along(self.field(g))
+
+    def field(self, g: PhasePolynomial) -> PhaseField:
+        """Return the Hamiltonian vector field ({a₁, g}, … {b₁, g}, …)."""
+        n = len(self.constants)
+        ahead = [g.derivative(n + j) * c for j, c in enumerate(self.constants)]
+        back = [-(g.derivative(j) * c) for j, c in enumerate(self.constants)]
+        return PhaseField.of([*ahead, *back])
 
 
 def transformed(
@@ -48,10 +67,11 @@ def transformed(
     Each bracket with χ of degree s raises the degree by s − 2, which is at least 1.
     """
     found = dict(parts)
+    field = bracket.field(chi)
     for start, part in parts.items():
         term, at, k = part, start, 1
         while at + degree - 2 <= order and term:
-            term = bracket(term, chi).times(fmpq(1, k))
+            term = term.along(field, k)
             at, k = at + degree - 2, k + 1
             if term:
                 found[at] = found[at] + term if at in found else term
@@ -85,10 +105,11 @@ def bracket_parts(
 ) -> dict[int, PhasePolynomial]:
     """Return {f, g} to an order, of polynomials given by their homogeneous parts; what vanishes is left out."""
     total: dict[int, PhasePolynomial] = {}
-    for d, a in f.items():
-        for e, b in g.items():
+    for e, b in g.items():
+        field = bracket.field(b)
+        for d, a in f.items():
             if d + e - 2 <= order:
-                total = added(total, {d + e - 2: bracket(a, b)})
+                total = added(total, {d + e - 2: a.along(field)})
     return {d: part for d, part in sorted(total.items()) if part}
 
 

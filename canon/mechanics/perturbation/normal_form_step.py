@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -12,7 +12,14 @@ if TYPE_CHECKING:
 
     from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial
 
-__all__ = ["Module", "SmallDivisor", "ZeroDivisorError", "homological_solution", "weight_of"]
+__all__ = [
+    "Divisors",
+    "Module",
+    "SmallDivisor",
+    "ZeroDivisorError",
+    "homological_solution",
+    "weight_of",
+]
 
 Weight = tuple[int, ...]
 
@@ -72,61 +79,85 @@ def weight_of(exponents: tuple[int, ...]) -> Weight:
     return tuple(int(exponents[j] - exponents[n + j]) for j in range(n))  # FLINT counts in its own integers
 
 
-def homological_solution(
-    part: PhasePolynomial,
-    eigenvalues: Sequence[PhasePolynomial],
-    module: Module | None,
-    values: Sequence[complex],
-    known: dict[Weight, PhasePolynomial | None],
-    divisors: dict[Weight, float],
-) -> tuple[PhasePolynomial, PhasePolynomial]:
-    """Return (kept, χ) with part + {H₂, χ} = kept.
+@dataclass(frozen=True)
+class Divisors:
+    """The divisors k·λ of a normal form: which terms are kept, and the reciprocals of the others, each found once.
 
     Parameters
     ----------
-    part
-        A homogeneous polynomial in (a, b).
     eigenvalues, values
         λ₁ … λₙ exactly, and as numbers.
     module
         Which terms are kept; None for those with k·λ = 0.
-    known
-        1/(k·λ) of the k met so far, None of those kept; filled here.
+    """
+
+    eigenvalues: Sequence[PhasePolynomial]
+    values: Sequence[complex]
+    module: Module | None
+    reciprocals: dict[str, PhasePolynomial] = field(default_factory=dict, repr=False)
+    names: dict[Weight, str | None] = field(default_factory=dict, repr=False)
+
+    def name(self, weight: Weight) -> str | None:
+        """Return the text of k·λ, by which its reciprocal is found; None where the term of k is kept.
+
+        Raises
+        ------
+        ZeroDivisorError
+            Where k·λ = 0 for a k that is not in the module.
+        """
+        if weight not in self.names:
+            self.names[weight] = self._name(weight)
+        return self.names[weight]
+
+    def modulus(self, weight: Weight) -> float:
+        """Return |k·λ|."""
+        return abs(sum(k * v for k, v in zip(weight, self.values, strict=True)))
+
+    def _name(self, weight: Weight) -> str | None:
+        ring = self.eigenvalues[0].ring
+        if self.module is not None and weight in self.module:
+            return None
+        divisor = ring.total(value.times(k) for k, value in zip(weight, self.eigenvalues, strict=True))
+        if not divisor and self.module is None:
+            return None
+        if not divisor:
+            raise ZeroDivisorError(
+                f"the term of k = {weight} has the divisor k·λ = 0 and is not among the resonances; "
+                f"name it: resonances=[{weight}], or leave resonances out to keep every such term"
+            )
+        text = f"({divisor.re} + i ({divisor.im}))/({divisor.den})"
+        if text not in self.reciprocals:
+            self.reciprocals[text] = divisor.inverse()
+        return text
+
+
+def homological_solution(
+    part: PhasePolynomial, divisors: Divisors
+) -> tuple[PhasePolynomial, PhasePolynomial, dict[Weight, float]]:
+    """Return (kept, χ) with part + {H₂, χ} = kept, and |k·λ| of the k that were divided by.
+
+    Parameters
+    ----------
+    part
+        A polynomial in (a, b).
     divisors
-        |k·λ| of the k divided by; filled here.
+        Those of H₂.
 
     Raises
     ------
     ZeroDivisorError
         Where k·λ = 0 for a k that is not in the module.
     """
-    ring = part.ring
-    kept, chi = ring.zero, ring.zero
-    for weight, term in part.split(weight_of).items():
-        if weight not in known:
-            known[weight] = _reciprocal(weight, eigenvalues, module, ring.zero)
-        inverse = known[weight]
-        if inverse is None:
-            kept = kept + term
-        else:
-            divisors[weight] = abs(sum(k * v for k, v in zip(weight, values, strict=True)))
-            chi = chi + term * inverse
-    return kept, chi
+    met: dict[Weight, float] = {}
 
+    def name(exponents: tuple[int, ...]) -> str | None:
+        weight = weight_of(exponents)
+        found = divisors.name(weight)
+        if found is not None and weight not in met:
+            met[weight] = divisors.modulus(weight)
+        return found
 
-def _reciprocal(
-    weight: Weight, eigenvalues: Sequence[PhasePolynomial], module: Module | None, zero: PhasePolynomial
-) -> PhasePolynomial | None:
-    divisor = zero
-    for k, value in zip(weight, eigenvalues, strict=True):
-        divisor = divisor + value.times(k)
-    if module is None:
-        return divisor.inverse() if divisor else None
-    if weight in module:
-        return None
-    if not divisor:
-        raise ZeroDivisorError(
-            f"the term of k = {weight} has the divisor k·λ = 0 and is not among the resonances; "
-            f"name it: resonances=[{weight}], or leave resonances out to keep every such term"
-        )
-    return divisor.inverse()
+    by_divisor = part.split(name)
+    kept = by_divisor.pop(None, part.ring.zero)
+    chi = part.ring.total(f * divisors.reciprocals[text] for text, f in by_divisor.items() if text)
+    return kept, chi, met

@@ -11,6 +11,8 @@ import sympy as sp
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from flint import fmpz_mpoly
+
     from canon.mechanics.perturbation.birkhoff import NormalForm
     from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial
     from canon.mechanics.perturbation.quadratic_form import DiagonalForm
@@ -104,12 +106,12 @@ def optimal_order(form: NormalForm, radii: Sequence[float] | float) -> OptimalOr
 
 
 def _number(c: PhasePolynomial) -> complex:
-    if c.ring.root is None and c.den.is_one():
-        return complex(_rational(c.re), _rational(c.im))
+    if c.ring.root is None and c.den.is_constant():
+        below = int(c.den.leading_coefficient())
+        return complex(_whole(c.re) / below, _whole(c.im) / below)
     shown = c.ring.expression(c, [sp.S.One] * c.ring.size)
     return complex(shown.evalf(20))
 
 
-def _rational(part: object) -> float:
-    coefficients = part.coeffs()  # pyright: ignore[reportAttributeAccessIssue]
-    return float(int(coefficients[0].p) / int(coefficients[0].q)) if coefficients else 0.0
+def _whole(part: fmpz_mpoly) -> int:
+    return int(part.leading_coefficient()) if part else 0
