@@ -13,14 +13,17 @@ from matplotlib.patches import Rectangle
 
 import canon
 from canon import RK4, Gauss, Splitting, Taylor, propagate
+from canon.flow import megno, poincare_section, starts_of_energy
 from canon.flow.run.event import Event
 from canon.plot import (
     COLOURS,
     plot_block_means,
+    plot_chaos_map,
     plot_drift_by_step,
     plot_energy_error,
     plot_ensemble_fan,
     plot_poincare_section,
+    plot_section,
     plot_study_heatmap,
     plot_work_precision,
 )
@@ -197,6 +200,36 @@ def test_a_section_is_drawn_over_its_reference():
         plot_poincare_section({"RK4": []})
     with pytest.raises(ValueError, match="0 … 1, not 2"):
         plot_poincare_section({"RK4": states}, degree=2)
+
+
+def test_sections_and_maps_of_chaos_show_each_orbit_as_what_it_is():
+    y = np.linspace(-0.3, 0.5, 6)
+    across, up = (part.ravel() for part in np.meshgrid(y, [0.0, 0.1]))
+    zero = np.zeros_like(across)
+    starts = starts_of_energy(
+        "henon-heiles", 0.125, np.array([zero, across, zero, up]), "p_x", inside_only=True
+    )
+    how = {"method": "kahan-li-8", "step": 0.2}
+    section = poincare_section("henon-heiles", (0, 200), starts, "x", points=20, **how)
+    found = megno("henon-heiles", (0, 3000), starts, **how)
+    axes = plot_section(section, "y", "p_y", verdicts=found.verdict)
+    shown = {each.get_label(): len(each.get_offsets()) for each in axes.collections}
+    assert shown == {kind: 20 * sum(v.value == kind for v in found.verdict) for kind in shown}
+    assert len(shown) == 2
+    assert len(plot_section(section, "y", "p_y").collections[0].get_offsets()) == len(section.t)
+    picture = plot_chaos_map(found, starts[1], starts[3]).collections[0]
+    values = picture.get_array()
+    for k, value in enumerate(found.value):
+        place = (
+            int(np.argmin(abs(np.array([0.0, 0.1]) - starts[3, k]))),
+            int(np.argmin(abs(y - starts[1, k]))),
+        )
+        assert values[place] == value
+    assert values.mask.sum() == 12 - starts.shape[1]
+    with pytest.raises(ValueError, match=r"verdicts of shape \(2,\): one for each of"):
+        plot_section(section, "y", "p_y", verdicts=found.verdict[:2])
+    with pytest.raises(ValueError, match="places of shape"):
+        plot_chaos_map(found, starts[1, :3], starts[3])
 
 
 def test_the_report_holds_everything_and_needs_nothing(results):

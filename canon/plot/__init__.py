@@ -6,6 +6,7 @@ loaded when the first picture is asked for.
 
 from __future__ import annotations
 
+from canon.plot.chaos import plot_chaos_map, plot_section
 from canon.plot.energy import plot_block_means, plot_energy_error, plot_errors
 from canon.plot.ensemble import plot_ensemble_fan
 from canon.plot.integral_drift_plot import plot_integral_drift
@@ -21,6 +22,7 @@ __all__ = [
     "PlotError",
     "animate_scene",
     "plot_block_means",
+    "plot_chaos_map",
     "plot_drift_by_step",
     "plot_energy_error",
     "plot_ensemble_fan",
@@ -29,6 +31,7 @@ __all__ = [
     "plot_phase_portrait",
     "plot_poincare_section",
     "plot_scene",
+    "plot_section",
     "plot_study_heatmap",
     "plot_work_precision",
 ]
