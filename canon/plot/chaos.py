@@ -1,4 +1,4 @@
-"""Pictures of order and chaos: sections of many orbits, and maps of an indicator over a plane of starts or parameters."""
+"""Pictures of order and chaos: sections of many orbits, maps of an indicator over a plane of starts or parameters."""
 
 from __future__ import annotations
 
@@ -118,8 +118,8 @@ def plot_chaos_map(
     rows, row = _line(up, values.size)
     if columns.size * rows.size > _EMPTY * values.size:
         raise ValueError(
-            f"{values.size} orbits at {columns.size} values across and {rows.size} up are no grid: take the starts from "
-            "numpy.meshgrid"
+            f"{values.size} orbits at {columns.size} values across and {rows.size} up are no grid: take the "
+            "starts from numpy.meshgrid"
         )
     left = np.array([each.value == "left" for each in np.ravel(np.asarray(verdict, dtype=object))])
     shown = np.ma.masked_all((rows.size, columns.size))
