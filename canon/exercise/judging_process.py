@@ -94,7 +94,7 @@ class Worker:
             return _open(claim, "no process could be started to judge it", 0.0)
         self.judged += 1
         start = time.monotonic()
-        child.send(lambda: _encoded(claim), claim.budget)
+        child.send(lambda: _encoded(claim), PATIENCE * (claim.budget + GRACE))  # as long as it is waited for
         return self._answer(child, claim, start)
 
     def _answer(self, child: Child, claim: Claim, start: float) -> Judgement:

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import sys
+import threading
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 
 import pytest
@@ -13,8 +14,10 @@ import pytest
 import canon
 from canon.exercise import JudgePool, Sheet, SheetError, read_sheet
 from canon.exercise.judge_pool import CLAIMS_A_PROCESS
+from canon.exercise.judging_process import Worker
 from canon.exercise.sheet.sheet import Claim
 from canon.exercise.waiting_claims import AHEAD, WaitingClaims
+from canon.process import ABANDONED
 
 RIGHT = {"id": "right", "kind": "equality-only", "lhs": "2*x", "rhs": "x + x", "parameters": {"x": "real"}}
 WRONG = {**RIGHT, "id": "wrong", "rhs": "x + 1"}
@@ -152,3 +155,18 @@ def test_a_pool_that_is_closed_meanwhile_says_so_to_whoever_waits():
         pool.close()
         with pytest.raises((CancelledError, ValueError, OSError)):
             list(judged)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="no process is halted there")
+def test_a_process_that_others_keep_from_the_processor_is_waited_for():
+    """Its own timer counts seconds on the clock: it ended itself while the pool still waited, "memory, or a fault"."""
+    with Worker() as worker:
+        assert worker.judge(Claim("first", "equality-only", {"lhs": "1", "rhs": "1"})).status == "holds"
+        pid = worker.pid
+        os.kill(pid, signal.SIGSTOP)
+        halted = threading.Timer(2.0 + ABANDONED + 0.5, os.kill, (pid, signal.SIGCONT))
+        halted.start()
+        found = worker.judge(Claim("a", "equality-only", {"lhs": "1", "rhs": "1"}, budget=2.0))
+        halted.join()
+    assert found.status == "holds"
