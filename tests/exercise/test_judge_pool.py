@@ -14,7 +14,7 @@ import pytest
 import canon
 from canon.exercise import JudgePool, Sheet, SheetError, read_sheet
 from canon.exercise.judge_pool import CLAIMS_A_PROCESS
-from canon.exercise.judging_process import Worker
+from canon.exercise.judging_process import BROKE_OFF, Worker
 from canon.exercise.sheet.sheet import Claim
 from canon.exercise.waiting_claims import AHEAD, WaitingClaims
 from canon.process import ABANDONED
@@ -161,12 +161,12 @@ def test_a_pool_that_is_closed_meanwhile_says_so_to_whoever_waits():
 @pytest.mark.skipif(sys.platform == "win32", reason="no process is halted there")
 def test_a_process_that_others_keep_from_the_processor_is_waited_for():
     """Its own timer counts seconds on the clock: it ended itself while the pool still waited, "memory, or a fault"."""
+    keys = {key: text for key, text in LONG.items() if key not in ("id", "kind")}
     with Worker() as worker:
         assert worker.judge(Claim("first", "equality-only", {"lhs": "1", "rhs": "1"})).status == "holds"
         pid = worker.pid
-        os.kill(pid, signal.SIGSTOP)
-        halted = threading.Timer(2.0 + ABANDONED + 0.5, os.kill, (pid, signal.SIGCONT))
-        halted.start()
-        found = worker.judge(Claim("a", "equality-only", {"lhs": "1", "rhs": "1"}, budget=2.0))
-        halted.join()
-    assert found.status == "holds"
+        for seconds, sign in ((0.5, signal.SIGSTOP), (2.0 + ABANDONED + 0.5, signal.SIGCONT)):
+            threading.Timer(seconds, os.kill, (pid, sign)).start()
+        found = worker.judge(Claim("a", "equality-only", keys, budget=2.0))
+    assert found.status != "invalid"
+    assert BROKE_OFF not in found.known
