@@ -102,7 +102,7 @@ def _command(choice: Choice, arguments: argparse.Namespace) -> str:
     """Return the command that runs the choice."""
     name = str(choice.method).partition("(")[0].lower()
     if name == "gauss":
-        name = f"gauss-{choice.method.order // 2}"
+        name = f"gauss-{choice.method.order // 2}{'-newton' if 'newton' in str(choice.method) else ''}"
     knob = f"--step {choice.step:.6g}" if choice.step is not None else f"--tolerance {choice.tolerance:.3g}"
     words = ["canon drift", arguments.scene, *(f"--set {each}" for each in arguments.set)]
     words += [f'--start "{arguments.start}"'] if arguments.start else []

@@ -12,7 +12,12 @@ from canon.flow import reversal_error
 from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
 from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.method import Splitting
-from canon.flow.method.nonseparable_splitting import COMPOSITIONS, ExtendedPhaseSpace, SemiexplicitSplitting
+from canon.flow.method.nonseparable_splitting import (
+    COMPOSITIONS,
+    ExtendedPhaseSpace,
+    SemiexplicitSplitting,
+    weights_of_order,
+)
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import fixed_plan
@@ -210,7 +215,7 @@ def test_parameters_by_orbit():
 
 
 def test_coefficients_are_exact():
-    weights, h = SemiexplicitSplitting(4).weights, Fraction(1, 8)
+    weights, h = weights_of_order(4), Fraction(1, 8)
     halves = projecting_coefficients(weights, h)
     assert sum(halves[::2]) == sum(halves[1::2]) == h / 2
     rows = mixing_coefficients(weights, Fraction(3), h)

@@ -91,6 +91,7 @@ def test_a_wrong_number_of_stages_is_told_as_such(wrong):
 def test_the_words_of_a_method_name_it():
     for method in (
         Gauss(6),
+        Gauss(3, iteration="newton"),
         RK4(),
         Taylor(),
         Splitting("kahan-li-8"),

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.fixed_step.partial_step import PartialSteps
+from canon.flow.method.nonseparable_splitting import weights_of_order
 from canon.kernel.llvm.loop import Loop, runge_kutta_loop
 from canon.kernel.llvm.machine_code import simd_bytes
 from canon.kernel.loops.doubled_phase_space import (
@@ -70,20 +71,27 @@ def compiled_loop(system: HamiltonEquations, method: Method, precision: Precisio
 
 
 def _gauss(system: HamiltonEquations, method: Gauss, precision: Precision, _orbits: int) -> Loop:
-    return _kept_gauss(system, method.stages, precision.number, compensated=precision.compensated)
+    newton = method.iteration == "newton"
+    return _kept_gauss(
+        system, method.stages, precision.number, compensated=precision.compensated, newton=newton
+    )
 
 
 def _extended(
     system: HamiltonEquations, method: ExtendedPhaseSpace, precision: Precision, orbits: int
 ) -> Loop:
     number = _with_lanes(precision.number, system, orbits, 0)
-    return _kept_mixing(system, len(method.weights), number, compensated=precision.compensated)
+    return _kept_mixing(
+        system, len(weights_of_order(method.order)), number, compensated=precision.compensated
+    )
 
 
 def _semiexplicit(
     system: HamiltonEquations, method: SemiexplicitSplitting, precision: Precision, _orbits: int
 ) -> Loop:
-    return _kept_projecting(system, len(method.weights), precision.number, compensated=precision.compensated)
+    return _kept_projecting(
+        system, len(weights_of_order(method.order)), precision.number, compensated=precision.compensated
+    )
 
 
 def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, orbits: int) -> Loop:
@@ -169,8 +177,10 @@ def _kept_runge_kutta(system: HamiltonEquations, number: MachineType, *, compens
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_gauss(system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool) -> Loop:
-    return gauss_loop(system, stages, compensated=compensated, number=number)
+def _kept_gauss(
+    system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool, newton: bool
+) -> Loop:
+    return gauss_loop(system, stages, compensated=compensated, number=number, newton=newton)
 
 
 @functools.lru_cache(maxsize=_KEPT)
@@ -230,11 +240,11 @@ def _of_splitting(method: Splitting, _number: MachineType, h: Fraction) -> list[
 
 
 def _of_extended(method: ExtendedPhaseSpace, _number: MachineType, h: Fraction) -> list[Fraction]:
-    return mixing_coefficients(method.weights, Fraction(method.omega), h)
+    return mixing_coefficients(weights_of_order(method.order), Fraction(method.omega), h)
 
 
 def _of_semiexplicit(method: SemiexplicitSplitting, _number: MachineType, h: Fraction) -> list[Fraction]:
-    return projecting_coefficients(method.weights, h)
+    return projecting_coefficients(weights_of_order(method.order), h)
 
 
 _COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]] = {

@@ -202,13 +202,15 @@ class LoopBuffers:
         change = float(after[(self.size + 1) * self._scalars]) if self.loop.implicit else 0.0
         orbit = block * number.lanes + lane if self.orbits > 1 else None
         state = state if rows is None else state[rows]
-        return _complaint(self.t0 + first * self.h, first + 1, state, change, orbit)
+        return _complaint(self.loop, self.t0 + first * self.h, first + 1, state, change, orbit)
 
 
-def _complaint(t: float, step: int, state: Array, change: float, orbit: int | None) -> NonFiniteStateError:
+def _complaint(
+    loop: Loop, t: float, step: int, state: Array, change: float, orbit: int | None
+) -> NonFiniteStateError:
     if change:
-        what = f"the stages of step {step} do not converge (last change {change:.2g})"
-        why = "the step is too large for the iteration; take a smaller one, or Taylor()"
+        what = f"{loop.iterated} of step {step} do not converge (last change {change:.2g})"
+        why = loop.remedy
     else:
         what = f"the state stops being finite in step {step}"
         why = "a collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()"

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DOP853",
+    "ITERATIONS",
     "RK4",
     "FixedStep",
     "Gauss",
@@ -179,7 +180,11 @@ def _exact(x: Coefficient) -> Fraction:
     return Fraction(x)
 
 
-@dataclass(frozen=True)
+ITERATIONS = "fixed-point", "newton"
+"""How the stages of Gauss methods are found."""
+
+
+@dataclass(frozen=True, repr=False)
 class Gauss:
     """A Gauss–Legendre method: implicit, symplectic and symmetric for every Hamiltonian, of order 2s.
 
@@ -187,14 +192,30 @@ class Gauss:
     ----------
     stages
         s = 1 (the implicit midpoint rule) … 8.
+    iteration
+        How the stages are found: ``"fixed-point"``, cheapest where the step is set by the motion, or ``"newton"``, by
+        Newton's method, which converges where stiff springs are much faster than the motion that is
+        followed.
+
+    Raises
+    ------
+    ValueError
+        No such number of stages, or no such iteration.
+
+    Notes
+    -----
+    Steps that are long beside the period of a stiff spring do not follow its swings; they follow the motion along which
+    it hardly swings. Where the spring turns on the way, as in a pendulum, the method's error excites its swings, and
+    they grow where a step is more than some 10³ of its radians: take a constraint in its place then, or smaller steps.
 
     Examples
     --------
-    >>> Gauss(6).order
-    12
+    >>> Gauss(6).order, Gauss(2, iteration="newton")
+    (12, Gauss(stages=2, iteration='newton'))
     """
 
     stages: int = 6
+    iteration: str = "fixed-point"
     citation = (
         "E. Hairer, R. I. McLachlan, A. Razakarivony, Achieving Brouwer’s law with implicit Runge–Kutta methods, "
         "BIT 48 (2008) 231–243, doi:10.1007/s10543-008-0170-3"
@@ -205,14 +226,26 @@ class Gauss:
     def __post_init__(self) -> None:
         if self.stages not in range(1, HIGHEST_STAGES + 1):
             raise ValueError(f"Gauss({self.stages}): the number of stages is 1 … {HIGHEST_STAGES}")
+        if self.iteration not in ITERATIONS:
+            raise ValueError(f"iteration={self.iteration!r}: there are {' and '.join(map(repr, ITERATIONS))}")
+
+    @property
+    def _choice(self) -> dict[str, str]:
+        """The iteration where it is not the usual one."""
+        return {} if self.iteration == ITERATIONS[0] else {"iteration": self.iteration}
+
+    def __repr__(self) -> str:
+        return (
+            f"Gauss(stages={self.stages}{''.join(f', iteration={each!r}' for each in self._choice.values())})"
+        )
 
     def __str__(self) -> str:
-        return f"Gauss({self.stages})"
+        return f"Gauss({self.stages}{''.join(f', {each}' for each in self._choice.values())})"
 
     @property
     def written(self) -> dict[str, Any]:
         """The method as JSON and TOML can hold it."""
-        return {"gauss": self.stages}
+        return {"gauss": self.stages, **self._choice}
 
     @property
     def order(self) -> int:

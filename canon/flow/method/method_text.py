@@ -32,6 +32,8 @@ _EIGHT = range(1, 9)
 
 _NUMBERED = re.compile(r"(gauss|saba|sbab)([0-9]{1,3})")
 
+_NEWTON = re.compile(r"gauss([0-9]{1,3})newton")
+
 _TAO = re.compile(
     r"\s*tao[-_ ]?([0-9]{1,3})[,;]?\s*omega\s*=?\s*([0-9.]{1,30}(?:e[-+]?[0-9]{1,3})?)\s*", re.IGNORECASE
 )
@@ -116,6 +118,8 @@ def method_named(name: str) -> Method:
         return {"gauss": Gauss, "saba": SABA, "sbab": SBAB}[family](
             int(stages)
         )  # which says how many there are
+    if (newton := _NEWTON.fullmatch(_folded(name))) is not None:
+        return Gauss(int(newton[1]), iteration="newton")
     if (tao := _TAO.fullmatch(name)) is not None:
         return ExtendedPhaseSpace(int(tao[1]), omega=float(tao[2]))
     if (here := _ELSEWHERE.get(_folded(name))) is not None:
@@ -200,6 +204,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return _time_transformed(method_from(inner))
         case {"gauss": int() as stages, **rest} if not rest and stages is not True:
             return Gauss(stages)
+        case {"gauss": int() as stages, "iteration": str() as iteration, **rest} if not rest:
+            return Gauss(stages, iteration=iteration)
         case {"semiexplicit": int() as order, **rest} if not rest:
             return SemiexplicitSplitting(order)
         case {"extended_phase_space": int() as order, "omega": int() | float() as omega, **rest} if not rest:
@@ -218,7 +224,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             known = ", ".join(f"{key} = {reprlib.repr(value)}" for key, value in written.items())[:200]
             raise ValueError(
                 f"no method is written {known}; there are names, {_those_there_are()}, and tables, "
-                "{ gauss = stages }, { taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
+                "{ gauss = stages, iteration = name }, "
+                "{ taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
                 "{ splitting = { a, b } }, { semiexplicit = order }, { extended_phase_space = order, omega = number }, "
                 "{ solvable = name, corrector = order, commutator = true, coordinates = name }"
             )

@@ -12,7 +12,7 @@ from canon.kernel.schemes.splitting_schemes import SCHEMES
 if TYPE_CHECKING:
     from fractions import Fraction
 
-__all__ = ["COMPOSITIONS", "ExtendedPhaseSpace", "SemiexplicitSplitting"]
+__all__ = ["COMPOSITIONS", "ExtendedPhaseSpace", "SemiexplicitSplitting", "weights_of_order"]
 
 COMPOSITIONS = {2: "verlet", 4: "suzuki-4", 6: "kahan-li-6", 8: "kahan-li-8"}
 """The scheme whose kicks are the lengths of the steps of order 2 that a method of each order is composed of."""
@@ -78,14 +78,9 @@ class ExtendedPhaseSpace:
         return {"extended_phase_space": self.order, "omega": float(self.omega)}
 
     @property
-    def weights(self) -> tuple[Fraction, ...]:
-        """The lengths of the steps of order 2, in steps."""
-        return _weights(self.order)
-
-    @property
     def stages(self) -> int:
         """Evaluations of the derivatives of H in a step."""
-        return 3 * len(self.weights)
+        return 3 * len(weights_of_order(self.order))
 
 
 @dataclass(frozen=True)
@@ -137,17 +132,13 @@ class SemiexplicitSplitting:
         return {"semiexplicit": self.order}
 
     @property
-    def weights(self) -> tuple[Fraction, ...]:
-        """The lengths of the steps of order 2, in steps."""
-        return _weights(self.order)
-
-    @property
     def stages(self) -> int:
         """Evaluations of the derivatives of H in one repetition of a step."""
-        return 2 * len(self.weights) + 1
+        return 2 * len(weights_of_order(self.order)) + 1
 
 
-def _weights(order: int) -> tuple[Fraction, ...]:
+def weights_of_order(order: int) -> tuple[Fraction, ...]:
+    """Return the lengths, in steps, of the steps of order 2 that a method of an order is composed of."""
     return SCHEMES[COMPOSITIONS[order]].b
 
 

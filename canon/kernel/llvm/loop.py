@@ -67,6 +67,8 @@ class Loop:
         did not converge (0 where all did).
     coefficients
         What the loop reads of c after t0 and h, a function of h, where the method alone does not say.
+    iterated, remedy
+        In words, what an implicit method's iteration finds, and what to do where it does not converge.
     """
 
     code: MachineCode
@@ -76,6 +78,8 @@ class Loop:
     carry: int
     implicit: bool = False
     coefficients: Callable[[Fraction], list[Fraction]] | None = None
+    iterated: str = "the stages"
+    remedy: str = "the step is too large for the iteration; take a smaller one, or Taylor()"
 
 
 def runge_kutta_loop(system: HamiltonEquations, *, compensated: bool, number: MachineType = DOUBLE) -> Loop:

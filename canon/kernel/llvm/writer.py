@@ -268,9 +268,10 @@ class Writer:
         """Reserve local memory for so many numbers."""
         # Arrays whose addresses differ by multiples of 4096 bytes delay each other: long ones are set apart.
         apart = 24 if length >= _LONG else 0
-        return self._reserve(f"[{length + apart} x {self.number.name}], align 64")
+        return self.reserve(f"[{length + apart} x {self.number.name}], align 64")
 
-    def _reserve(self, what: str) -> str:
+    def reserve(self, what: str) -> str:
+        """Reserve local memory for what LLVM calls so, and return its address."""
         # All in the function's first block: memory reserved inside a loop would pile up.
         name = f"%r{next(self._names)}"
         self.reserved.append(f"  {name} = alloca {what}")
@@ -317,7 +318,7 @@ class Writer:
     def loop(self, start: str | int, stop: str | int) -> Generator[str]:
         """Repeat what is written inside for i = start … stop − 1 and yield i."""
         label = f"loop{next(self._names)}"
-        counter = self._reserve("i64")
+        counter = self.reserve("i64")
         self.line(f"store i64 {start}, ptr {counter}")
         self.line(f"br label %{label}.test")
         self.lines.append(f"{label}.test:")

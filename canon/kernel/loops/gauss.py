@@ -13,17 +13,21 @@ doi:10.1007/s11075-017-0287-z.
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from canon.kernel.llvm.lane_rows import row_of, store_row
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, SINGLE
 from canon.kernel.llvm.writer import Writer
+from canon.kernel.loops.newton_stages import newton_stages
 from canon.kernel.schemes.gauss_tableau import lanes_for
 
 if TYPE_CHECKING:
     from canon.kernel.llvm.number_types import MachineType
+    from canon.kernel.loops.newton_stages import NewtonStages
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["gauss_loop"]
@@ -32,19 +36,37 @@ _ITERATIONS = 100
 _HALVES = 2
 """Coordinates and momenta: they are measured each by their own largest, as one may be 10¹⁰ times the other."""
 
+_STIFF_SETTLED = 30
+"""The same for Newton's changes, of which the rounding of large forces is a larger part."""
+
+_NEAR = 26
+"""Changes below 2⁻²⁶ of the largest component are a Newton step's error of the factors that are kept then."""
+
+_STIFF = (
+    "the step is too large for the iteration; take a smaller one, Taylor(), or iteration='newton' in Gauss(…), where a "
+    "stiff part of H and not the motion asks for small steps"
+)
+_SINGULAR = "the step is too large for Newton's method; take a smaller one, or Taylor()"
+
 _SETTLED, _CONVERGED = 42, 20
 """In doubles, changes above 2⁻⁴² of the largest component are not taken for round-off while iterations are left; a
 last change above 2⁻²⁰ of it means that the iteration has not converged. In other numbers accordingly."""
 
 
 def gauss_loop(
-    system: HamiltonEquations, stages: int, *, compensated: bool, number: MachineType = DOUBLE
+    system: HamiltonEquations,
+    stages: int,
+    *,
+    compensated: bool,
+    number: MachineType = DOUBLE,
+    newton: bool = False,
 ) -> Loop:
     """Compile Gauss–Legendre steps, the stages side by side in SIMD lanes.
 
     After the 2n numbers of compensation, ``e`` keeps the number of iterations, the last change of an iteration
     that did not converge, and the stages L, from which the next step's are predicted. A step whose
-    iteration does not converge makes the state NaN. In single precision iterations are counted up to 2²⁴.
+    iteration does not converge makes the state NaN. In single precision iterations are counted up to 2²⁴. Iterated are
+    the equations themselves, or Newton's steps (:mod:`canon.kernel.loops.newton_stages`).
     """
     size, lanes = 2 * len(system.q), lanes_for(stages)
     w = Writer(number)
@@ -52,11 +74,24 @@ def gauss_loop(
     carry = size + 2 + size * lanes
     y, e = w.array(size), w.array(size) if compensated else ""
     method = _Stages(w, v, w.at("%c", METHOD), stages)
-    iteration = _Iteration.of(w, v, system, y, e, method)
+    with contextlib.ExitStack() as memory:
+        solver = (
+            memory.enter_context(newton_stages(w, v, system, method.weight, method.mu)) if newton else None
+        )
+        _write_steps(w, v, system, (y, e, carry), _Iteration.of(w, v, system, y, e, method, solver))
+    made = compile_loop(w, len(system.q), compensated=compensated, carry=carry)
+    return replace(made, remedy=_SINGULAR if newton else _STIFF)
+
+
+def _write_steps(
+    w: Writer, v: Writer, system: HamiltonEquations, state: tuple[str, str, int], iteration: _Iteration
+) -> None:
+    """Write all steps of all blocks."""
+    (y, e, carry), size, stages = state, 2 * len(system.q), iteration.method.stages
     with blocks_of(w, y, e, size, carry) as kept:
         count, failed, guess = size, size + 1, w.at(kept, size + 2)
         with w.loop(0, size) as i:
-            v.store(_row(w, v, guess, i), iteration.stage, i)
+            v.store(row_of(w, v, guess, i), iteration.stage, i)
         with steps_of(w, system) as time:
             clock = iteration.begin(time)
             with w.loop(0, _ITERATIONS):
@@ -71,8 +106,7 @@ def gauss_loop(
                 for j in range(stages):
                     increase(w, y, e, i, w.constant(Fraction(1)), v.lane(found, j))
         with w.loop(0, size) as i:
-            _store_row(w, v, v.load(iteration.stage, i), guess, i)
-    return compile_loop(w, len(system.q), compensated=compensated, carry=carry)
+            store_row(w, v, v.load(iteration.stage, i), guess, i)
 
 
 @dataclass(frozen=True)
@@ -93,6 +127,8 @@ class _Iteration:
         The least change so far, by component and stage.
     done, change, reach
         Whether no change decreased; the largest changes of coordinates and of momenta; the sizes of what changed.
+    newton
+        What finds the changes by Newton's method, where it does.
     """
 
     w: Writer
@@ -110,17 +146,25 @@ class _Iteration:
     done: str
     change: str
     reach: str
+    newton: NewtonStages | None = None
 
     @classmethod
     def of(
-        cls, w: Writer, v: Writer, system: HamiltonEquations, y: str, e: str, method: _Stages
+        cls,
+        w: Writer,
+        v: Writer,
+        system: HamiltonEquations,
+        y: str,
+        e: str,
+        method: _Stages,
+        newton: NewtonStages | None = None,
     ) -> _Iteration:
         size = 2 * len(system.q)
         # Changes and sizes are watched in numbers no wider than doubles, of pairs by their high parts.
         watched = w.number if w.number == SINGLE else DOUBLE
         d, g = (each.in_numbers(replace(watched, lanes=each.number.lanes)) for each in (w, v))
         arrays = v.array(size), v.array(size), g.array(size), d.array(1), g.array(_HALVES), g.array(_HALVES)
-        return cls(w, v, d, g, system, y, e, method, watched, *arrays)
+        return cls(w, v, d, g, system, y, e, method, watched, *arrays, newton)
 
     @property
     def size(self) -> int:
@@ -134,6 +178,8 @@ class _Iteration:
             v.store(self.method.predicted(v.load(self.stage, i)), self.stage, i)
             g.store(g.infinity(), self.least, i)
         self.d.store(self._zero, self.done, 0)
+        if self.newton is not None:
+            self.newton.begin()
         return clock
 
     def once(self, clock: str) -> None:
@@ -144,12 +190,21 @@ class _Iteration:
         for half in range(_HALVES):
             g.store(g.constant(Fraction(0)), self.change, half)
             g.store(g.constant(Fraction(0)), self.reach, half)
-        d.store(d.constant(Fraction(1)), self.done, 0)
+        one = d.constant(Fraction(1))
+        d.store(one, self.done, 0)
         field = self.system.program(self.system.rates)
         places = [v.load(self.place, i) for i in range(self.size)]
-        for i, rate in enumerate(v.program(field, [*places, clock])):
-            self._renew(i, v.algebra("mul", self.method.weight, rate))
-        coarse = self._moves_by_more_than(_SETTLED)
+        found = [v.algebra("mul", self.method.weight, rate) for rate in v.program(field, [*places, clock])]
+        if self.newton is not None:
+            self.newton.factorise(places, clock)
+            old = [v.load(self.stage, i) for i in range(self.size)]
+            found = self.newton.improved(old, found)
+        for i, new in enumerate(found):
+            self._renew(i, new)
+        if self.newton is not None:
+            self.newton.keep_factors(self._moves_by_more_than(_NEAR))
+            d.store(d.select(self.newton.halved(self._relative_change()), self._zero, one), self.done, 0)
+        coarse = self._moves_by_more_than(_SETTLED if self.newton is None else _STIFF_SETTLED)
         d.store(d.select(coarse, self._zero, d.load(self.done, 0)), self.done, 0)
         still = w.let(f"xor i1 {g.any_lane(g.less(g.constant(Fraction(0)), self._largest_change()))}, true")
         w.leave_if(w.let(f"or i1 {last}, {still}"))
@@ -193,6 +248,15 @@ class _Iteration:
         g = self.g
         return g.intrinsic("maxnum", *(g.load(self.change, half) for half in range(_HALVES)))
 
+    def _relative_change(self) -> str:
+        """Return the largest change in parts of the size of what changed, coordinates and momenta apart."""
+        d, g, largest = self.d, self.g, self._zero
+        for half in range(_HALVES):
+            change, reach = (g.greatest(g.load(each, half)) for each in (self.change, self.reach))
+            part = d.select(d.less(self._zero, change), d.algebra("div", change, reach), self._zero)
+            largest = d.intrinsic("maxnum", largest, part)
+        return self.w.widened(largest, self.watched)
+
     def _moves_by_more_than(self, bits: int) -> str:
         """Return whether a change is above 2⁻ᵇⁱᵗˢ of the size of what changed, coordinates and momenta apart."""
         d, g = self.d, self.g
@@ -212,22 +276,6 @@ def _size(v: Writer, g: Writer, value: str) -> str:
     return g.intrinsic("fabs", value)
 
 
-def _row(w: Writer, v: Writer, table: str, k: int | str) -> str:
-    """Read numbers that lie in memory one by one into lanes."""
-    lanes = v.number.lanes
-    if lanes == 1 or not (v.number.pair or v.number.scalar == "x86_fp80"):
-        return v.load(table, k)
-    first = w.let(f"mul i64 {k}, {lanes}")
-    return v.from_lanes([w.load(table, w.let(f"add i64 {first}, {lane}")) for lane in range(lanes)])
-
-
-def _store_row(w: Writer, v: Writer, value: str, table: str, k: str) -> None:
-    """Store lanes as numbers that lie in memory one by one."""
-    first = w.let(f"mul i64 {k}, {v.number.lanes}")
-    for lane in range(v.number.lanes):
-        w.store(v.lane(value, lane), table, w.let(f"add i64 {first}, {lane}"))
-
-
 class _Stages:
     """The method's numbers, read from the loop's coefficients, and the sums over stages made with them."""
 
@@ -235,7 +283,7 @@ class _Stages:
         self.v, self.stages = v, stages
 
         def row(k: int) -> str:
-            return _row(w, v, table, k)
+            return row_of(w, v, table, k)
 
         self.weight, self.node = row(0), row(1)
         columns = [row(2 + column) for column in range(2 * stages)]
