@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import reprlib
 from collections.abc import Mapping
@@ -131,20 +132,27 @@ def _hamiltonian_task(request: Request) -> Task:
     if isinstance(request.y0, Mapping):
         request = replace(request, y0=state_in_order(request.y0, variables))
     if request.parameters:
-        check_given(request.parameters, request.system.H.free_symbols, (*variables, request.system.t))
+        check_given(request.parameters, _free_symbols(request.system.H), (*variables, request.system.t))
         if not isinstance(request.parameters, SpareParameters):
             check_known(request.parameters, _symbols_of(request) - {*variables, request.system.t})
     return task_of(request)
 
 
+@functools.lru_cache(maxsize=64)
+def _free_symbols(H: Any) -> frozenset[Any]:
+    """Return the symbols of a Hamiltonian, for which SymPy walks the whole tree, as of an earlier call."""
+    return frozenset(sympify(H, strict=True).free_symbols)
+
+
 def _symbols_of(request: Request) -> set[Any]:
     """Return the symbols of a Hamiltonian and of the functions along its motion."""
-    functions = [request.system.H, *functions_by_name(request.observables).values()]
+    functions = list(functions_by_name(request.observables).values())
     for event in request.events:
         if isinstance(event.action, Mapping):
             functions += event.action.values()
         functions.append(event.function)
-    return {symbol for f in functions for symbol in sympify(f, strict=True).free_symbols}
+    others = {symbol for f in functions for symbol in sympify(f, strict=True).free_symbols}
+    return others | _free_symbols(request.system.H)
 
 
 def _check_direction(contacts: Contacts, ends: tuple[Fraction, Fraction]) -> None:

@@ -2,48 +2,100 @@
 
 from __future__ import annotations
 
-from math import prod
+import functools
+import operator
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
+    from typing import TypeAlias
 
     from sympy import Symbol
 
     from canon.expression.graph.arena import Arena
     from canon.expression.graph.number_systems import Arithmetic
 
+    _Step: TypeAlias = tuple[Callable[..., Any] | None, tuple[int, ...], Any]
+
 __all__ = ["evaluate"]
+
+_KEPT, _LARGE = 256, 5_000
+"""Of so many evaluations it is kept how they go, and of none of so many operations: what is small is asked again."""
 
 
 def evaluate(
     graph: Arena, nodes: Sequence[int], values: Mapping[Symbol, Any], arithmetic: Arithmetic
 ) -> list[Any]:
     """Return the values of nodes; see :meth:`canon.expression.graph.graph.Graph.evaluate`."""
-    done = dict[int, Any]()
+    wanted, done = tuple(nodes), list[Any]()
+    reached = graph.reachable(wanted)
     with arithmetic.quiet():
-        for each in graph.reachable(nodes):
-            kind, operands, value = graph.nodes[each]
-            if kind == "symbol":
-                if value not in values:
-                    raise KeyError(f"no value given for the symbol {value}; give it one")
-                done[each] = values[value]
+        if len(reached) <= _LARGE and (arithmetic is FLOAT64 or arithmetic is LONGDOUBLE):
+            steps, places = _kept_steps(graph, wanted, wide=arithmetic is LONGDOUBLE)
+        else:
+            steps, places = _steps(graph, wanted, arithmetic)
+        for function, operands, value in steps:
+            if function is None:
+                done.append(value)
+            elif function is _value_of:
+                done.append(_value_of(values, value))
+            elif len(operands) == 1:
+                done.append(function(done[operands[0]]))
             else:
-                done[each] = _value(graph, each, [done[o] for o in operands], arithmetic)
-    return [done[node] for node in nodes]
+                found = function(done[operands[0]], done[operands[1]])
+                for more in operands[2:]:
+                    found = function(found, done[more])
+                done.append(found)
+    return [done[place] for place in places]
 
 
-def _value(graph: Arena, node: int, x: list[Any], arithmetic: Arithmetic) -> Any:
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_steps(graph: Arena, nodes: tuple[int, ...], *, wide: bool) -> tuple[list[_Step], list[int]]:
+    return _steps(graph, nodes, LONGDOUBLE if wide else FLOAT64)
+
+
+def _steps(graph: Arena, nodes: tuple[int, ...], arithmetic: Arithmetic) -> tuple[list[_Step], list[int]]:
+    """Return what to do in order, on what was done before, and where the nodes' values are then.
+
+    A step without a function is a constant; sums and products go from the left.
+    """
+    reached = graph.reachable(nodes)
+    place = {node: k for k, node in enumerate(reached)}
+    steps = [_step(graph, node, place, arithmetic) for node in reached]
+    return steps, [place[node] for node in nodes]
+
+
+def _step(graph: Arena, node: int, place: Mapping[int, int], arithmetic: Arithmetic) -> _Step:
     kind, operands, value = graph.nodes[node]
+    own = tuple(place[o] for o in operands)
+    if kind == "symbol":
+        return _value_of, (), value
     if kind == "number":
-        return arithmetic.number(value)
+        return None, (), arithmetic.number(value)
     if kind == "named":
-        return arithmetic.named(value)
-    if kind == "add":
-        return sum(x[1:], x[0])
-    if kind == "mul":
-        return prod(x[1:], start=x[0])
-    if kind == "pow":
-        exponent = graph.nodes[operands[1]]
-        return arithmetic.power(x[0], exponent.value if exponent.kind == "number" else x[1])
-    return arithmetic.functions[kind](*x)
+        return None, (), arithmetic.named(value)
+    if kind in _FOLDED:
+        return _FOLDED[kind], own, None
+    if kind != "pow":
+        return arithmetic.functions[kind], own, None
+    exponent = graph.nodes[operands[1]]
+    if exponent.kind == "number":
+        assert isinstance(exponent.value, Fraction)
+        return functools.partial(_raised, arithmetic, exponent.value), own[:1], None
+    return arithmetic.power, own, None
+
+
+_FOLDED: dict[str, Callable[..., Any]] = {"add": operator.add, "mul": operator.mul}
+
+
+def _raised(arithmetic: Arithmetic, exponent: Fraction, base: Any) -> Any:
+    return arithmetic.power(base, exponent)
+
+
+def _value_of(values: Mapping[Symbol, Any], symbol: Symbol) -> Any:
+    if symbol not in values:
+        raise KeyError(f"no value given for the symbol {symbol}; give it one")
+    return values[symbol]

@@ -21,11 +21,12 @@ from canon.kernel.loops.gauss import gauss_loop
 from canon.kernel.loops.splitting import splitting_loop
 from canon.kernel.schemes.gauss_tableau import gauss_coefficients
 from canon.kernel.schemes.perturbed_schemes import corrector
+from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_loop import solvable_loop
 from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableError, named_part, solvable_part
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from canon.flow.method.method import RK4, Gauss, Method, Splitting
     from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
@@ -235,7 +236,16 @@ def _of_runge_kutta(_method: RK4, _number: MachineType, h: Fraction) -> list[Fra
 
 
 def _of_splitting(method: Splitting, _number: MachineType, h: Fraction) -> list[Fraction]:
-    a, b = method.scheme.a, method.scheme.b
+    name = method.scheme.name
+    return list(_of_named_splitting(name, h)) if name else _times_step(method.scheme.a, method.scheme.b, h)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _of_named_splitting(name: str, h: Fraction) -> tuple[Fraction, ...]:
+    return tuple(_times_step(SCHEMES[name].a, SCHEMES[name].b, h))
+
+
+def _times_step(a: Sequence[Fraction], b: Sequence[Fraction], h: Fraction) -> list[Fraction]:
     return [h * c for pair in zip(a, b, strict=False) for c in pair] + [h * a[-1]]
 
 
