@@ -27,6 +27,7 @@ BENCHMARKS = {
     "classroom": "A class of two hundred",
     "feedback": "Wrong answers whose slip is known",
     "growth": "How the time grows: sites, bodies, links, claims, cases, samples, orbits",
+    "sections": "Poincaré sections of ensembles",
     "kernels": "Compiled loops, beside a C program",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",
