@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import DOP853, RK4, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon import DOP853, RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinates, propagate
 from canon.flow.chaos.compiled_deviations import CompiledDeviations
 from canon.flow.chaos.deviation_frame import given_frame, random_frame
 from canon.flow.chaos.deviation_growth import DeviationRun, deviation_growth, deviation_task
 from canon.flow.chaos.variational_deviations import VariationalDeviations
 from canon.flow.geometry.flow_jacobian import flow_jacobian, symplecticity_defect
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
@@ -20,6 +21,8 @@ from tests.flow.systems import (
     HENON_HEILES_START,
     KEPLER,
     PENDULUM,
+    RELATIVISTIC,
+    RELATIVISTIC_START,
     kepler_start,
 )
 
@@ -86,7 +89,18 @@ LONG = {
 }
 
 
-def check_splitting(system, y0, method):
+GAUSS = {
+    **{
+        f"double pendulum, {s} stages": (DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(s))
+        for s in range(1, 9)
+    },
+    "driven": (DRIVEN, DRIVEN_START, Gauss(2)),
+    "relativistic": (RELATIVISTIC, RELATIVISTIC_START, Gauss(3)),
+    "chain 8": (chain(9), start_of(8), Gauss(4)),
+}
+
+
+def check_tangent_map(system, y0, method):
     going, M = moved(system, y0, method, 0.05)
     motion = propagate(system, (0, 2), y0, method=method, step=0.05, samples=40)
     np.testing.assert_array_equal(going.states()[:, 0], motion.y[:, -1])
@@ -101,13 +115,32 @@ def check_splitting(system, y0, method):
 
 @pytest.mark.parametrize(("system", "y0", "method"), SPLIT.values(), ids=SPLIT)
 def test_splittings_carry_their_exact_derivative_beside_the_same_orbit(system, y0, method):
-    check_splitting(system, y0, method)
+    check_tangent_map(system, y0, method)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("system", "y0", "method"), LONG.values(), ids=LONG)
 def test_every_splitting_and_large_systems_do(system, y0, method):
-    check_splitting(system, y0, method)
+    check_tangent_map(system, y0, method)
+
+
+def test_gauss_methods_differentiate_their_stages():
+    check_tangent_map(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(2))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("system", "y0", "method"), GAUSS.values(), ids=GAUSS)
+def test_every_gauss_method_does(system, y0, method):
+    check_tangent_map(system, y0, method)
+
+
+def test_steps_too_long_are_told_for_the_orbit_and_for_its_deviations():
+    with pytest.raises(NonFiniteStateError, match="the state stops being finite"):
+        moved(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(2), 4.0, span=40.0, samples=2)
+    with pytest.raises(NonFiniteStateError, match="the deviations stop being finite"):
+        moved(
+            PENDULUM, [0.0, 0.0], Gauss(2), 4.0, span=40.0, samples=2
+        )  # at rest, so that the orbit converges
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from canon.flow.fixed_step.compiled_loop import steps_between
 from canon.flow.fixed_step.loop_buffers import LoopBuffers
 from canon.flow.fixed_step.partial_step import coefficient_pairs
 from canon.flow.method.number_formats import fixed_precision
+from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.kernel.loops.renormalising_loop import renormalising_function
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ class CompiledDeviations:
 
     def _behind(self, e: Array) -> Array:
         """Return the deviations in e, shape (blocks, numbers)."""
-        return e[:, self.tangent.deviations.state * self.buffers.loop.number.lanes :]
+        return e[:, self.tangent.deviations.before * self.buffers.loop.number.lanes :]
 
     def _packed(self, frame: Array) -> Array:
         """Return a frame as it lies in memory: by groups, components, lanes."""
@@ -103,11 +104,22 @@ class CompiledDeviations:
             self.buffers.y[:], self.buffers.e[:] = y, e
         if self.orbits == 1 and not self.buffers.finite():
             raise self.buffers.lost(y, e, first, steps, self.rows)
+        if self.orbits == 1 and not known.all():
+            raise self._deviations_lost(first)
         largest = np.abs(growth[:, known]).max(initial=0.0) / -(-steps // self.every)
         if left > _PLENTY and largest < _SMALL and self.every < _LONGEST:
             self.every *= 2
         self.sample += 1
         return growth
+
+    def _deviations_lost(self, first: int) -> NonFiniteStateError:
+        t, state = self.buffers.t0 + first * self.buffers.h, self.states()[:, 0]
+        return NonFiniteStateError(
+            f"the deviations stop being finite after {time_and_state(t, state)}, the orbit does not: neighbours part "
+            "too fast for this step, or an implicit method's stages do not converge for them; take a smaller step",
+            t,
+            state,
+        )
 
     def _attempt(self, first: int, steps: int) -> tuple[Array, float]:
         """Take steps, and return the growth and the least part of a squared length that was left."""

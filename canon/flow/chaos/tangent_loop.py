@@ -7,9 +7,10 @@ import functools
 from typing import TYPE_CHECKING
 
 from canon.flow.fixed_step.compiled_loop import check_splitting
-from canon.flow.method.method import Splitting
+from canon.flow.method.method import Gauss, Splitting
 from canon.kernel.llvm.machine_code import simd_bytes
 from canon.kernel.loops.deviations import Deviations
+from canon.kernel.loops.tangent_gauss import numbers_of_method, tangent_gauss_loop
 from canon.kernel.loops.tangent_splitting import tangent_splitting_loop
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ __all__ = ["TangentLoop", "has_tangent_loop", "tangent_loop"]
 _KEPT = 32
 """Compiled loops kept for the next call."""
 
-_INTERLEAVED = 2
+_INTERLEAVED = 4
 """SIMD registers' worth of orbits stepped together, each with its deviations."""
 
 
@@ -59,6 +60,10 @@ def tangent_loop(
         )
     registers = simd_bytes() // number.alignment
     state, size = 2 * len(system.q), 2 * (len(system.q) - system.varying)
+    if isinstance(method, Gauss):
+        kept = numbers_of_method(system, method.stages)
+        deviations = Deviations(number, state, size, vectors, method=kept)
+        return _kept_gauss(system, method.stages, deviations, compensated=precision.compensated)
     if orbits > 1:
         number, lanes = dataclasses.replace(number, lanes=registers * _INTERLEAVED), 1
     else:
@@ -67,19 +72,25 @@ def tangent_loop(
     assert isinstance(method, Splitting)
     check_splitting(system, method)
     kick_first = method.scheme.kick_first and system.autonomous
-    return _kept(
-        system, len(method.scheme.b), deviations, compensated=precision.compensated, kick_first=kick_first
-    )
+    stages, compensated = len(method.scheme.b), precision.compensated
+    return _kept_splitting(system, stages, deviations, compensated=compensated, kick_first=kick_first)
 
 
 def has_tangent_loop(method: Method) -> bool:
     """Tell whether the deviations of a method are compiled beside the orbit."""
-    return method.family == "splitting"
+    return method.family in ("splitting", "gauss")
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept(
+def _kept_splitting(
     system: HamiltonEquations, stages: int, deviations: Deviations, *, compensated: bool, kick_first: bool
 ) -> TangentLoop:
     loop = tangent_splitting_loop(system, stages, deviations, compensated=compensated, kick_first=kick_first)
     return TangentLoop(loop, deviations)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_gauss(
+    system: HamiltonEquations, stages: int, deviations: Deviations, *, compensated: bool
+) -> TangentLoop:
+    return TangentLoop(tangent_gauss_loop(system, stages, deviations, compensated=compensated), deviations)

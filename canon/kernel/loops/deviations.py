@@ -28,6 +28,8 @@ class Deviations:
         Deviation vectors of each orbit.
     lanes
         Vectors side by side; 1 where orbits are.
+    method
+        Numbers that the method keeps between the compensation and the deviations.
     """
 
     number: MachineType
@@ -35,6 +37,7 @@ class Deviations:
     size: int
     vectors: int
     lanes: int = 1
+    method: int = 0
 
     @property
     def groups(self) -> int:
@@ -48,8 +51,13 @@ class Deviations:
 
     @property
     def carry(self) -> int:
-        """Numbers behind a block's state: its compensation, then the deviations."""
-        return self.state + self.numbers
+        """Numbers behind a block's state: its compensation, those of the method, then the deviations."""
+        return self.before + self.numbers
+
+    @property
+    def before(self) -> int:
+        """Numbers before the deviations."""
+        return self.state + self.method
 
     def writer(self, w: Writer) -> Writer:
         """Return the writer of their numbers in a function that w writes."""

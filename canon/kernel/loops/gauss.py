@@ -26,11 +26,13 @@ from canon.kernel.loops.newton_stages import newton_stages
 from canon.kernel.schemes.gauss_tableau import lanes_for
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.loops.newton_stages import NewtonStages
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["gauss_loop"]
+__all__ = ["GaussIteration", "gauss_loop", "remedy", "write_gauss"]
 
 _ITERATIONS = 100
 _HALVES = 2
@@ -68,23 +70,64 @@ def gauss_loop(
     iteration does not converge makes the state NaN. In single precision iterations are counted up to 2²⁴. Iterated are
     the equations themselves, or Newton's steps (:mod:`canon.kernel.loops.newton_stages`).
     """
-    size, lanes = 2 * len(system.q), lanes_for(stages)
     w = Writer(number)
+    carry = write_gauss(w, system, stages, compensated=compensated, newton=newton)
+    made = compile_loop(w, len(system.q), compensated=compensated, carry=carry)
+    return replace(made, remedy=remedy(newton=newton))
+
+
+def remedy(*, newton: bool) -> str:
+    """Return what helps where the stages do not converge."""
+    return _SINGULAR if newton else _STIFF
+
+
+def write_gauss(
+    w: Writer,
+    system: HamiltonEquations,
+    stages: int,
+    *,
+    compensated: bool,
+    newton: bool,
+    more: int = 0,
+    beside: Callable[[GaussIteration, str, str], None] | None = None,
+) -> int:
+    """Write the steps of a Gauss method, and return how many numbers ``e`` holds.
+
+    Parameters
+    ----------
+    w, system, stages, compensated, newton
+        What to write, as :func:`gauss_loop` takes it.
+    more
+        Numbers that ``e`` holds after those of the method.
+    beside
+        Writes what else is done in a step, given the converged stages, their times, and the address of those numbers.
+    """
+    size, lanes = 2 * len(system.q), lanes_for(stages)
     v = w.side_by_side(lanes)
-    carry = size + 2 + size * lanes
+    own = size + 2 + size * lanes
     y, e = w.array(size), w.array(size) if compensated else ""
     method = _Stages(w, v, w.at("%c", METHOD), stages)
     with contextlib.ExitStack() as memory:
         solver = (
             memory.enter_context(newton_stages(w, v, system, method.weight, method.mu)) if newton else None
         )
-        _write_steps(w, v, system, (y, e, carry), _Iteration.of(w, v, system, y, e, method, solver))
-    made = compile_loop(w, len(system.q), compensated=compensated, carry=carry)
-    return replace(made, remedy=_SINGULAR if newton else _STIFF)
+        iteration = GaussIteration.of(w, v, system, y, e, method, solver)
+
+        def also(clock: str, kept: str) -> None:
+            if beside is not None:
+                beside(iteration, clock, w.at(kept, own))
+
+        _write_steps(w, v, system, (y, e, own + more), iteration, also)
+    return own + more
 
 
 def _write_steps(
-    w: Writer, v: Writer, system: HamiltonEquations, state: tuple[str, str, int], iteration: _Iteration
+    w: Writer,
+    v: Writer,
+    system: HamiltonEquations,
+    state: tuple[str, str, int],
+    iteration: GaussIteration,
+    also: Callable[[str, str], None],
 ) -> None:
     """Write all steps of all blocks."""
     (y, e, carry), size, stages = state, 2 * len(system.q), iteration.method.stages
@@ -98,6 +141,7 @@ def _write_steps(
                 w.store(w.algebra("add", w.load(kept, count), w.constant(Fraction(1))), kept, count)
                 iteration.once(clock)
             lost, last_change = iteration.end()
+            also(clock, kept)
             w.store(w.select(lost, last_change, w.load(kept, failed)), kept, failed)
             nothing = w.widened(iteration.d.nan(), iteration.watched)
             with w.loop(0, size) as i:
@@ -110,7 +154,7 @@ def _write_steps(
 
 
 @dataclass(frozen=True)
-class _Iteration:
+class GaussIteration:
     """Writes the fixed-point iteration for the stages of one step.
 
     Parameters
@@ -158,7 +202,8 @@ class _Iteration:
         e: str,
         method: _Stages,
         newton: NewtonStages | None = None,
-    ) -> _Iteration:
+    ) -> GaussIteration:
+        """Return the writer for a loop, with memory of its own for the stages."""
         size = 2 * len(system.q)
         # Changes and sizes are watched in numbers no wider than doubles, of pairs by their high parts.
         watched = w.number if w.number == SINGLE else DOUBLE
@@ -168,6 +213,7 @@ class _Iteration:
 
     @property
     def size(self) -> int:
+        """Numbers of a state."""
         return 2 * len(self.system.q)
 
     def begin(self, time: str) -> str:

@@ -71,7 +71,7 @@ class _Renormalising:
     def __init__(self, w: Writer, deviations: Deviations, block: str, *, orthogonal: bool) -> None:
         self.w, self.v, self.deviations, self.orthogonal = w, deviations.writer(w), deviations, orthogonal
         self.size, groups = deviations.size, deviations.groups
-        behind = w.let(f"add i64 {w.let(f'mul i64 {block}, {deviations.carry}')}, {deviations.state}")
+        behind = w.let(f"add i64 {w.let(f'mul i64 {block}, {deviations.carry}')}, {deviations.before}")
         self.array = w.at("%e", behind)
         self.logs = self.v.at("%logs", w.let(f"mul i64 {block}, {2 * groups}"))
         self.least = self.v.at("%least", block)

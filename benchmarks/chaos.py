@@ -1,0 +1,405 @@
+"""Chaos: what deviations cost beside an orbit, a map of MEGNO beside heyoka, and how often the verdicts err.
+
+    python benchmarks/chaos.py            # costs, a part of the map, verdicts
+    python benchmarks/chaos.py --whole    # and the whole map, 256 × 256 orbits over 1000 periods
+
+Seconds are of the processor, all threads together; ratios within one run are what can be compared.
+"""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import sys
+import time
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy as sp
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from canon import Gauss, Hamiltonian, Splitting, coordinates, propagate
+from canon.flow import (
+    Regularity,
+    fast_lyapunov_indicator,
+    gali,
+    largest_lyapunov_exponent,
+    lyapunov_spectrum,
+    megno,
+    sali,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+x, y, z = coordinates("x y z")
+PERIOD = 2 * np.pi
+
+
+def of_potential(V: Any, *q: Any) -> Hamiltonian:
+    return Hamiltonian(sum(s.momentum**2 for s in q) / 2 + V, list(q), [s.momentum for s in q])
+
+
+HENON_HEILES = of_potential((x**2 + y**2) / 2 + x**2 * y - y**3 / 3, x, y)
+REGULAR, CHAOTIC = [0.0, 0.1, 0.3838402445462608, 0.1], [0.0, -0.25, 0.4208127057650866, 0.0]
+
+
+def chain(masses: int) -> Hamiltonian:
+    q = [coordinates(f"q{i}") for i in range(masses)]
+    stretched = [b - a for a, b in zip([0, *q], [*q, 0], strict=True)]
+    return of_potential(sum(r**2 / 2 + r**3 / 12 for r in stretched), *q)
+
+
+def seconds(work: Callable[[], object], repeats: int = 3) -> float:
+    """The least processor time of some runs, after one that compiles."""
+    work()
+    best = float("inf")
+    for _ in range(repeats):
+        started = time.process_time()
+        work()
+        best = min(best, time.process_time() - started)
+    return best
+
+
+# what deviations cost -----------------------------------------------------------------------------------
+
+
+def costs() -> None:
+    print("cost in orbits alone, by propagate with the same method, step and samples")
+    print(f"{'':34}{'1 vector':>10}{'2n vectors':>12}{'   wanted':>10}")
+    start = [*np.sin(np.pi * np.arange(1, 33) / 33), *[0.0] * 32]
+    cases: list[tuple[str, Any, list[float], Any, float, float, str]] = [
+        ("Hénon–Heiles, verlet", HENON_HEILES, CHAOTIC, Splitting("verlet"), 0.05, 100_000, "2.5, 5"),
+        ("Hénon–Heiles, kahan-li-8", HENON_HEILES, CHAOTIC, Splitting("kahan-li-8"), 0.2, 50_000, "2.5, 5"),
+        ("Hénon–Heiles, gauss-4", HENON_HEILES, CHAOTIC, Gauss(4), 0.2, 10_000, "2.5, 5"),
+        ("FPUT, 32 masses, verlet", chain(32), start, Splitting("verlet"), 0.1, 50_000, "2.5, 40"),
+        ("FPUT, 32 masses, kahan-li-8", chain(32), start, Splitting("kahan-li-8"), 0.4, 20_000, "2.5, 40"),
+    ]
+    for name, system, y0, method, step, span, wanted in cases:
+        how = {"method": method, "step": step, "samples": 100}
+        alone, one, whole = (
+            seconds(functools.partial(follow, system, (0, span), y0, **how))
+            for follow in (propagate, largest_lyapunov_exponent, lyapunov_spectrum)
+        )
+        print(f"{name:34}{one / alone:10.1f}{whole / alone:12.1f}{wanted:>10}")
+
+
+# a map --------------------------------------------------------------------------------------------------
+
+
+def on_the_section(energy: float, side: int) -> np.ndarray:
+    """Starts with x = 0, p_x > 0 on a square grid of (y, p_y) where the energy reaches, repeated to fill the square."""
+    ys, ps = np.meshgrid(np.linspace(-0.45, 0.65, side), np.linspace(-0.5, 0.5, side))
+    rest = 2 * energy - ps**2 - ys**2 + 2 * ys**3 / 3
+    reached = np.flatnonzero(rest.ravel() > 0)
+    filled = np.resize(reached, side * side)
+    ys, ps, rest = (each.ravel()[filled] for each in (ys, ps, rest))
+    return np.array([0 * ys, ys, np.sqrt(rest), ps])
+
+
+def heyoka_seconds(starts: np.ndarray, span: float, tolerance: float) -> float:
+    """Processor time of heyoka's batch integrator with one deviation, four orbits at a time."""
+    import heyoka as hy
+
+    q = hy.make_vars("x", "y", "px", "py")
+    d = hy.make_vars("dx", "dy", "dpx", "dpy")
+    (u, v, pu, pv), (a, b, pa, pb) = q, d
+    field = [(u, pu), (v, pv), (pu, -u - 2.0 * u * v), (pv, -v - u * u + v * v)]
+    beside = [
+        (a, pa),
+        (b, pb),
+        (pa, -a - 2.0 * (a * v + u * b)),
+        (pb, -b - 2.0 * u * a + 2.0 * v * b),
+    ]
+    batch = 4
+    first = np.concatenate([starts[:, :batch], np.full((4, batch), 0.5)])
+    going = hy.taylor_adaptive_batch(field + beside, np.ascontiguousarray(first), tol=tolerance)
+    started = time.process_time()
+    for k in range(0, starts.shape[1] - batch + 1, batch):
+        going.set_time(0.0)
+        going.state[:4], going.state[4:] = starts[:, k : k + batch], 0.5
+        for end in np.linspace(0, span, 101)[1:]:
+            going.propagate_until(float(end))
+            going.state[4:] /= np.linalg.norm(going.state[4:], axis=0)
+    return time.process_time() - started
+
+
+def map_of_megno(*, whole: bool) -> None:
+    periods = 1000
+    side = 256 if whole else 64
+    starts = on_the_section(1 / 8, side)
+    print(
+        f"\nmap of MEGNO: Hénon–Heiles at E = 1/8, {side} × {side} orbits over {periods} periods of the linear motion"
+    )
+    how = {"method": Splitting("blanes-moan-4"), "step": PERIOD / 20, "samples": 100}
+    megno(HENON_HEILES, (0, 60 * PERIOD), starts, **how)
+    wall, cpu = time.perf_counter(), time.process_time()
+    found = megno(HENON_HEILES, (0, periods * PERIOD), starts, **how)
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    each = cpu / side**2
+    print(f"canon, blanes-moan-4, T/20: {cpu:.1f} s of the processor, {wall:.1f} s of the clock")
+    print(f"  so 256 × 256 orbits take {each * 65536:.1f} s of the processor")
+    print(f"  {found}")
+    motion = propagate(HENON_HEILES, (0, periods * PERIOD), starts[:, :64], **how)
+    print(
+        f"  largest relative error of the energy: {np.abs(motion.energy_error / motion.energy[0]).max():.1e}"
+    )
+    few = starts[:, :: max(1, side**2 // 32)][:, :32]
+    for tolerance in (1e-15, 1e-9):
+        own = heyoka_seconds(few, periods * PERIOD, tolerance) / few.shape[1]
+        print(
+            f"heyoka in batches of 4, one deviation, tolerance {tolerance:.0e}: {own / each:.1f} × as much for an orbit"
+        )
+
+
+# verdicts -----------------------------------------------------------------------------------------------
+
+
+def known_orbits() -> Iterator[tuple[str, Hamiltonian, np.ndarray, Any, float, float, Regularity]]:
+    """Name, system, starts (2n, orbits), method, step, period, and what the orbits are."""
+    regular, chaotic = Regularity.REGULAR, Regularity.CHAOTIC
+    kahan_li, moan = Splitting("kahan-li-8"), Splitting("blanes-moan-6")
+    r = sp.sqrt(x**2 + y**2)
+    toda = sp.exp(x - y) + sp.exp(y - z) + sp.exp(z - x) - 3
+    a, b, c = x, y, z
+    yield "Hénon–Heiles, E = 1/100", HENON_HEILES, random_section(1 / 100, 8), kahan_li, 0.2, PERIOD, regular
+    yield "Hénon–Heiles, E = 1/30", HENON_HEILES, random_section(1 / 30, 6), kahan_li, 0.2, PERIOD, regular
+    twin = of_potential((x**2 + y**2) / 2 + x**2 * y + y**3 / 3, x, y)
+    yield (
+        "its integrable twin",
+        twin,
+        np.array([[0, 0.1, 0.3, 0.2], [0.2, 0.1, 0.1, 0.3], [0.1, -0.2, 0, 0.2]]).T,
+        kahan_li,
+        0.2,
+        PERIOD,
+        regular,
+    )
+    ellipses = np.array([[1 - e, 0, 0, np.sqrt((1 + e) / (1 - e))] for e in (0.1, 0.3, 0.6, 0.8)]).T
+    yield "Kepler", of_potential(-1 / r, x, y), ellipses, kahan_li, 0.02, PERIOD, regular
+    yield (
+        "central, r⁴",
+        of_potential(r**4 / 4, x, y),
+        np.array([[1, 0, 0, 0.4], [1, 0, 0.3, 1.2]]).T,
+        kahan_li,
+        0.1,
+        5.0,
+        regular,
+    )
+    yield (
+        "central, ln r",
+        of_potential(sp.log(x**2 + y**2) / 2, x, y),
+        np.array([[1, 0, 0, 0.3], [1, 0, 0.5, 0.8]]).T,
+        kahan_li,
+        0.02,
+        4.0,
+        regular,
+    )
+    yield (
+        "oscillators",
+        of_potential(x**2 / 2 + y**2 + 3 * z**2 / 2, x, y, z),
+        np.array([[1, 0.5, 0.2, 0, 0.3, 0.1], [0.1, 0, 0.2, 1, 0, 0]]).T,
+        kahan_li,
+        0.1,
+        PERIOD,
+        regular,
+    )
+    yield (
+        "one oscillator",
+        of_potential(x**2 / 2, x),
+        np.array([[1.0, 0.0]]).T,
+        kahan_li,
+        0.2,
+        PERIOD,
+        regular,
+    )
+    yield (
+        "Toda, 3 masses",
+        of_potential(toda, a, b, c),
+        np.array(
+            [
+                [1, 0.5, -1.5, 0, 0.3, -0.3],
+                [0.1, 0, -0.1, 0.1, 0, -0.1],
+                [2, 0, -2, 1, 0, -1],
+                [3, -1, -2, 0, 0, 0],
+            ]
+        ).T,
+        kahan_li,
+        0.1,
+        4.0,
+        regular,
+    )
+    yield (
+        "pendulum",
+        of_potential(-sp.cos(x), x),
+        np.array([[0.5, 0], [3.0, 0], [0, 2.1], [0, 3], [np.pi - 1e-6, 0]]).T,
+        kahan_li,
+        0.1,
+        PERIOD,
+        regular,
+    )
+    yield (
+        "x⁴ + y⁴",
+        of_potential(x**4 + y**4, x, y),
+        np.array([[1, 0.3, 0, 0.2], [0.5, 1, 0.1, 0]]).T,
+        kahan_li,
+        0.05,
+        3.0,
+        regular,
+    )
+    yield "FPUT, 8 masses, small", chain(8), chain_starts(0.05, 2), moan, 0.2, PERIOD, regular
+
+    yield (
+        "Hénon–Heiles, E = 0.1665",
+        HENON_HEILES,
+        section(
+            0.1665,
+            [
+                (-0.1, 0),
+                (0.05, 0.2),
+                (0.0, 0.3),
+                (-0.2, 0.1),
+                (0.4, 0.1),
+                (-0.3, 0.05),
+                (0.1, -0.35),
+                (0.6, 0.05),
+            ],
+        ),
+        kahan_li,
+        0.15,
+        PERIOD,
+        chaotic,
+    )
+    yield (
+        "Hénon–Heiles, E = 1/8",
+        HENON_HEILES,
+        section(1 / 8, [(-0.25, 0), (-0.23, 0.02), (0.55, 0.0), (-0.26, -0.05)]),
+        kahan_li,
+        0.2,
+        PERIOD,
+        chaotic,
+    )
+    quartic = of_potential(x**2 * y**2 / 2 + (x**4 + y**4) / 80, x, y)
+    yield (
+        "x²y² and a little more",
+        quartic,
+        np.array([[1, 0.3, 0, 0.2], [0.5, 1, 0.1, 0], [2, 0.1, 0.3, 0.5], [1, 1.1, -0.4, 0.7]]).T,
+        moan,
+        0.05,
+        6.0,
+        chaotic,
+    )
+    yield "FPUT, 8 masses, large", chain(8), chain_starts(6.0, 3), moan, 0.05, PERIOD, chaotic
+    theta, phi = coordinates("theta phi")
+    p, s = theta.momentum, phi.momentum
+    double = Hamiltonian(
+        (p**2 + 2 * s**2 - 2 * p * s * sp.cos(theta - phi)) / (2 * (1 + sp.sin(theta - phi) ** 2))
+        - 2 * sp.cos(theta)
+        - sp.cos(phi),
+        [theta, phi],
+        [p, s],
+    )
+    yield (
+        "double pendulum, high",
+        double,
+        np.array([[2.0, 2.5, 0, 0], [2.5, 0.5, 0, 0], [1.8, -1.0, 0.5, 0]]).T,
+        Gauss(4),
+        0.05,
+        PERIOD,
+        chaotic,
+    )
+    yield (
+        "double pendulum, low",
+        double,
+        np.array([[0.1, 0.05, 0, 0], [0.2, -0.1, 0, 0.1]]).T,
+        Gauss(4),
+        0.1,
+        PERIOD,
+        regular,
+    )
+
+
+def section(energy: float, places: list[tuple[float, float]]) -> np.ndarray:
+    """Starts with x = 0, p_x > 0 at places (y, p_y)."""
+    return np.array(
+        [[0, v, np.sqrt(2 * energy - p**2 - v**2 + 2 * v**3 / 3), p] for v, p in places], dtype=float
+    ).T
+
+
+def random_section(energy: float, count: int) -> np.ndarray:
+    random, size = np.random.default_rng(11), np.sqrt(2 * energy)
+    return section(energy, [tuple(random.uniform(-0.6, 0.6, 2) * size) for _ in range(count)])
+
+
+def chain_starts(size: float, count: int) -> np.ndarray:
+    """Starts at rest in the lowest modes."""
+    places = np.arange(1, 9) / 9
+    modes = [np.concatenate([size * np.sin((k + 1) * np.pi * places), np.zeros(8)]) for k in range(count)]
+    return np.array(modes).T
+
+
+def verdicts(spans: tuple[int, ...] = (100, 300, 1000)) -> None:
+    indicators: dict[str, Callable[..., Any]] = {
+        "megno": megno,
+        "fast_lyapunov_indicator": fast_lyapunov_indicator,
+        "lyapunov_spectrum": lyapunov_spectrum,
+        "sali": sali,
+        "gali, 3 vectors": lambda *a, **k: gali(*a, vectors=3, **k),
+    }
+    orbits, said_of = list(known_orbits()), (Regularity.REGULAR, Regularity.CHAOTIC)
+    counts = {
+        kind: sum(o[2].shape[1] for o in orbits if o[6] is kind)
+        for kind in (Regularity.REGULAR, Regularity.CHAOTIC)
+    }
+    regular, chaotic = counts[Regularity.REGULAR], counts[Regularity.CHAOTIC]
+    print(
+        f"\nverdicts on {regular} regular and {chaotic} chaotic orbits, 3 directions of the deviations each"
+    )
+    print(f"{'':26}{'periods':>8}{'regular called':>32}{'chaotic called':>32}")
+    print(f"{'':34}{'regular   chaotic   not known':>32}{'regular   chaotic   not known':>32}")
+    for name, indicator in indicators.items():
+        for periods in spans:
+            found: dict[tuple[Regularity, Regularity], int] = {}
+            for _, system, starts, method, step, period, truth in orbits:
+                if "gali" in name and len(starts) < 4:
+                    continue
+                for seed in range(3):
+                    judged = indicator(
+                        system,
+                        (0, periods * period),
+                        starts,
+                        method=method,
+                        step=step,
+                        seed=seed,
+                        samples=min(1000, 4 * periods),
+                    )
+                    for verdict in judged.verdict:
+                        found[truth, verdict] = found.get((truth, verdict), 0) + 1
+            row = [
+                found.get((truth, said), 0) for truth in said_of for said in (*said_of, Regularity.NOT_KNOWN)
+            ]
+            print(
+                f"{name:26}{periods:8}{row[0]:12}{row[1]:10}{row[2]:10}{row[3]:12}{row[4]:10}{row[5]:10}",
+                flush=True,
+            )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--whole", action="store_true", help="the whole map, 256 × 256 orbits")
+    parser.add_argument("--only", choices=["costs", "map", "verdicts"], help="one part")
+    given = parser.parse_args()
+    warnings.simplefilter("error", RuntimeWarning)
+    if given.only in (None, "costs"):
+        costs()
+    if given.only in (None, "map"):
+        map_of_megno(whole=given.whole)
+    if given.only in (None, "verdicts"):
+        verdicts()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,159 @@
+"""Tangent maps of Gauss methods: deviations moved by the exact derivative of an implicit step, beside the orbit.
+
+The derivative of the stages L_i = h b_i f(Y_i), Y_i = y + Σ_j µ_ij L_j solves ΔL_i = h b_i f′(Y_i) ΔY_i with
+ΔY_i = δ + Σ_j µ_ij ΔL_j, a linear system, by the iteration that the stages themselves are found by: it converges as
+fast as theirs. δ + Σ ΔL_i is then the deviation after the step, and symplectic in δ, as µ_ij + µ_ji = 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from canon.kernel.llvm.loop import PARAMETERS, SIGNATURE, Loop, compiled_function
+from canon.kernel.llvm.writer import Writer
+from canon.kernel.loops.gauss import write_gauss
+from canon.kernel.program.program import exact_value
+from canon.kernel.program.slopes import slopes
+from canon.kernel.schemes.gauss_tableau import lanes_for
+
+if TYPE_CHECKING:
+    from canon.kernel.loops.deviations import Deviations
+    from canon.kernel.loops.gauss import GaussIteration
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
+    from canon.kernel.program.slopes import Slopes
+
+__all__ = ["numbers_of_method", "tangent_gauss_loop"]
+
+_ITERATIONS = 100
+_SETTLED = Fraction(1, 2**54)
+"""A change of ΔL that is this part of the largest ΔY is lost in rounding; the last iteration makes it smaller still."""
+
+
+def numbers_of_method(system: HamiltonEquations, stages: int) -> int:
+    """Return how many numbers a Gauss loop keeps behind the compensation."""
+    return 2 + 2 * len(system.q) * lanes_for(stages)
+
+
+def tangent_gauss_loop(
+    system: HamiltonEquations, stages: int, deviations: Deviations, *, compensated: bool
+) -> Loop:
+    """Compile the steps of :func:`canon.kernel.loops.gauss.gauss_loop` with deviations beside the orbit.
+
+    The deviations lie in ``e`` behind what the method keeps. Where their iteration does not converge they become NaN.
+    """
+    w = Writer(deviations.number)
+    half, n = deviations.size // 2, len(system.q)
+    moving = [*range(half), *range(n, n + half)]
+    inputs = (*system.q, *system.p)
+    rates = [(*system.velocity, *system.force)[k] for k in moving]
+    matrix = slopes(system.graph, rates, [inputs[k] for k in moving])
+
+    def beside(iteration: GaussIteration, clock: str, array: str) -> None:
+        _TangentStages.of(iteration, clock, array, matrix).write(deviations.groups)
+
+    carry = write_gauss(w, system, stages, compensated=compensated, more=deviations.numbers, beside=beside)
+    code = compiled_function(w, "advance", PARAMETERS, SIGNATURE)
+    return Loop(code, n, compensated, w.number, carry, implicit=True)
+
+
+@dataclass(frozen=True)
+class _TangentStages:
+    """Writes the deviations of one step.
+
+    Parameters
+    ----------
+    iteration
+        The stages of the orbit.
+    array
+        Where the deviations lie, each after the one before.
+    matrix, entries
+        The slopes of the rates, and their numbers: those that vary in memory, in lanes over the stages.
+    delta, moved
+        ΔL, and ΔY, in lanes over the stages.
+    change, reach
+        The largest change of ΔL, and the largest size of ΔY.
+    """
+
+    iteration: GaussIteration
+    array: str
+    matrix: Slopes
+    entries: str
+    delta: str
+    moved: str
+    change: str
+    reach: str
+
+    @classmethod
+    def of(cls, iteration: GaussIteration, clock: str, array: str, matrix: Slopes) -> _TangentStages:
+        v, size = iteration.v, len(matrix.rows)
+        entries = ""
+        if matrix.varying:
+            entries = v.array(len(matrix.varying))
+            places = [v.load(iteration.place, i) for i in range(iteration.size)]
+            program = iteration.system.program(matrix.varying)
+            for k, value in enumerate(v.program(program, [*places, clock])):
+                v.store(value, entries, k)
+        return cls(iteration, array, matrix, entries, v.array(size), v.array(size), v.array(1), v.array(1))
+
+    @property
+    def size(self) -> int:
+        return len(self.matrix.rows)
+
+    def write(self, vectors: int) -> None:
+        """Move every deviation."""
+        w, v = self.iteration.w, self.iteration.v
+        with w.loop(0, vectors) as g:
+            own = w.at(self.array, w.let(f"mul i64 {g}, {self.size}"))
+            with w.loop(0, self.size) as i:
+                v.store(v.constant(Fraction(0)), self.delta, i)
+            with w.loop(0, _ITERATIONS):
+                self._once(own)
+                w.leave_if(self._has_settled())
+            lost = w.let(f"xor i1 {self._has_settled()}, true")
+            with w.loop(0, self.size) as i:
+                found = v.load(self.delta, i)
+                # A sum over stages from the smallest: the deviation itself is added last.
+                change = w.constant(Fraction(0))
+                for j in range(self.iteration.method.stages):
+                    change = w.algebra("add", change, v.lane(found, j))
+                new = w.algebra("add", w.load(own, i), change)
+                w.store(w.select(lost, w.nan(), new), own, i)
+
+    def _once(self, own: str) -> None:
+        """Write one iteration, ΔY from ΔL and ΔL from ΔY."""
+        w, v, method = self.iteration.w, self.iteration.v, self.iteration.method
+        zero = v.constant(Fraction(0))
+        v.store(zero, self.change, 0)
+        v.store(zero, self.reach, 0)
+        with w.loop(0, self.size) as i:
+            moved = method.moved(v.splat(w.load(own, i)), v.load(self.delta, i))
+            v.store(moved, self.moved, i)
+            self._enlarge(self.reach, moved)
+        place = {node: k for k, node in enumerate(self.matrix.varying)}
+        for i, row in enumerate(self.matrix.rows):
+            total = ""
+            for j, node in row:
+                x = v.load(self.moved, j)
+                slope = (
+                    v.load(self.entries, place[node])
+                    if node in place
+                    else v.constant(exact_value(self.matrix.graph, node))
+                )
+                total = v.multiply_add(slope, x, total) if total else v.algebra("mul", slope, x)
+            if not total:
+                continue
+            new = v.algebra("mul", method.weight, total)
+            self._enlarge(self.change, v.algebra("sub", new, v.load(self.delta, i)))
+            v.store(new, self.delta, i)
+
+    def _enlarge(self, largest: str, value: str) -> None:
+        v = self.iteration.v
+        v.store(v.intrinsic("maxnum", v.load(largest, 0), v.intrinsic("fabs", value)), largest, 0)
+
+    def _has_settled(self) -> str:
+        w, v = self.iteration.w, self.iteration.v
+        change, reach = v.greatest(v.load(self.change, 0)), v.greatest(v.load(self.reach, 0))
+        limit = w.algebra("mul", reach, w.constant(_SETTLED))
+        return w.let(f"fcmp ole {w.number.name} {change}, {limit}")
