@@ -5,6 +5,10 @@ from .chaos.chaos_indicators import fast_lyapunov_indicator as fast_lyapunov_ind
 from .chaos.chaos_indicators import megno as megno
 from .chaos.energy_surface import starts_of_energy as starts_of_energy
 from .chaos.floquet import FloquetMultipliers as FloquetMultipliers
+from .chaos.frequency_analysis import FrequencyAnalysis as FrequencyAnalysis
+from .chaos.frequency_analysis import FrequencyDiffusion as FrequencyDiffusion
+from .chaos.frequency_analysis import frequency_analysis as frequency_analysis
+from .chaos.frequency_analysis import frequency_diffusion as frequency_diffusion
 from .chaos.invariant_manifold import manifold_starts as manifold_starts
 from .chaos.lyapunov import LyapunovSpectrum as LyapunovSpectrum
 from .chaos.lyapunov import largest_lyapunov_exponent as largest_lyapunov_exponent
@@ -19,6 +23,7 @@ from .chaos.poincare_section import PoincareSection as PoincareSection
 from .chaos.poincare_section import SectionNotMetError as SectionNotMetError
 from .chaos.poincare_section import poincare_section as poincare_section
 from .chaos.regularity import Regularity as Regularity
+from .chaos.reversal_test import reversal_test as reversal_test
 from .compiled_right_hand_side import RightHandSide as RightHandSide
 from .compiled_right_hand_side import right_hand_side as right_hand_side
 from .estimate.error_estimate import ErrorEstimate as ErrorEstimate

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.chaos.chaos_indicators import ChaosIndicator, indicator_of
-from canon.flow.chaos.deviation_frame import random_vectors
-from canon.flow.chaos.deviation_growth import DeviationRun, deviation_growth, deviation_task
 from canon.flow.chaos.regularity import Judged, Regularity, quarters
+from canon.flow.tangent.deviation_frame import random_vectors
+from canon.flow.tangent.deviation_growth import DeviationRun, deviation_growth, deviation_task
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

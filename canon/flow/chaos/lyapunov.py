@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
-from canon.flow.chaos.deviation_frame import random_frame
-from canon.flow.chaos.deviation_growth import DeviationRun, deviation_growth, deviation_task
 from canon.flow.chaos.regularity import Regularity, judged_growth
+from canon.flow.tangent.deviation_frame import random_frame
+from canon.flow.tangent.deviation_growth import DeviationRun, deviation_growth, deviation_task
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.array import Array
-    from canon.flow.chaos.deviation_growth import DeviationGrowth
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.system.recognised_system import MovableSystem
+    from canon.flow.tangent.deviation_growth import DeviationGrowth
 
 __all__ = ["LyapunovSpectrum", "largest_lyapunov_exponent", "lyapunov_spectrum"]
 

@@ -34,8 +34,9 @@ class Slopes:
 
     @cached_property
     def varying(self) -> tuple[int, ...]:
-        """The nodes of the entries that are no constants, each once."""
-        nodes = dict.fromkeys(node for row in self.rows for _, node in row)
+        """The nodes of the entries that are no constants, each once, by diagonals: along a chain they lie in order."""
+        entries = sorted((abs(j - i), i, node) for i, row in enumerate(self.rows) for j, node in row)
+        nodes = dict.fromkeys(node for _, _, node in entries)
         return tuple(node for node in nodes if not self.graph.is_constant(node))
 
     @property

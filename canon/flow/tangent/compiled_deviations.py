@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.chaos.tangent_loop import tangent_loop
 from canon.flow.fixed_step.compiled_loop import steps_between
 from canon.flow.fixed_step.loop_buffers import LoopBuffers
 from canon.flow.fixed_step.partial_step import coefficient_pairs
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
+from canon.flow.tangent.tangent_loop import tangent_loop
 from canon.kernel.loops.renormalising_loop import renormalising_function
 
 if TYPE_CHECKING:

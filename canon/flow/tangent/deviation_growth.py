@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.flow.chaos.compiled_deviations import CompiledDeviations
-from canon.flow.chaos.tangent_loop import has_tangent_loop
-from canon.flow.chaos.variational_deviations import VariationalDeviations
 from canon.flow.request import Request
 from canon.flow.system_request import any_task, refuse_contacts
+from canon.flow.tangent.compiled_deviations import CompiledDeviations
+from canon.flow.tangent.tangent_loop import has_tangent_loop
+from canon.flow.tangent.variational_deviations import VariationalDeviations
 from canon.progress import reporting
 
 if TYPE_CHECKING:

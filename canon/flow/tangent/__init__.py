@@ -1,0 +1,1 @@
+"""Tangent maps beside motions: deviations from orbits, moved by the derivative of every step and renormalised."""
