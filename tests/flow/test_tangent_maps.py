@@ -97,7 +97,29 @@ GAUSS = {
     "driven": (DRIVEN, DRIVEN_START, Gauss(2)),
     "relativistic": (RELATIVISTIC, RELATIVISTIC_START, Gauss(3)),
     "chain 8": (chain(9), start_of(8), Gauss(4)),
+    "Newton's iteration": (DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(3, iteration="newton")),
 }
+
+
+@pytest.mark.slow
+def test_a_stiff_spring_is_symplectic_at_steps_of_the_slow_motion():
+    """A pendulum on a spring of 10⁶, with a step of a hundred of its periods and more, by Newton's iteration."""
+    x, y = coordinates("x y")
+    r = sp.sqrt(x**2 + y**2)
+    spring = Hamiltonian(
+        (x.momentum**2 + y.momentum**2) / 2 + y + 10**6 * (r - 1) ** 2 / 2, [x, y], [x.momentum, y.momentum]
+    )
+    y0, method = [np.sin(0.5), -np.cos(0.5), 0.0, 0.0], Gauss(2, iteration="newton")
+    going, M = moved(spring, y0, method, 0.05, span=5.0)
+    motion = propagate(spring, (0, 5), y0, method=method, step=0.05, samples=40)
+    np.testing.assert_array_equal(going.states()[:, 0], motion.y[:, -1])
+    assert symplecticity_defect(M) < 1e-9 * abs(M).max() ** 2
+    near = [
+        propagate(spring, (0, 5), [y0[0] + d, *y0[1:]], method=method, step=0.05, samples=1).y[:, -1]
+        for d in (1e-7, -1e-7)
+    ]
+    slope = (near[0] - near[1]) / 2e-7
+    np.testing.assert_allclose(M[:, 0], slope, atol=1e-4 * abs(slope).max())
 
 
 def check_tangent_map(system, y0, method):

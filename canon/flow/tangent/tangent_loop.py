@@ -63,7 +63,10 @@ def tangent_loop(
     if isinstance(method, Gauss):
         kept = numbers_of_method(system, method.stages)
         deviations = Deviations(number, state, size, vectors, method=kept)
-        return _kept_gauss(system, method.stages, deviations, compensated=precision.compensated)
+        newton = method.iteration == "newton"
+        return _kept_gauss(
+            system, method.stages, deviations, compensated=precision.compensated, newton=newton
+        )
     if orbits > 1:
         number, lanes = dataclasses.replace(number, lanes=registers * _INTERLEAVED), 1
     else:
@@ -91,6 +94,7 @@ def _kept_splitting(
 
 @functools.lru_cache(maxsize=_KEPT)
 def _kept_gauss(
-    system: HamiltonEquations, stages: int, deviations: Deviations, *, compensated: bool
+    system: HamiltonEquations, stages: int, deviations: Deviations, *, compensated: bool, newton: bool
 ) -> TangentLoop:
-    return TangentLoop(tangent_gauss_loop(system, stages, deviations, compensated=compensated), deviations)
+    loop = tangent_gauss_loop(system, stages, deviations, compensated=compensated, newton=newton)
+    return TangentLoop(loop, deviations)
