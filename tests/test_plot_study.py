@@ -114,6 +114,12 @@ def test_drift_by_step_tells_drifts_from_limits(results):
     assert order == pytest.approx(2.0, abs=0.1)
 
 
+@pytest.mark.parametrize(("times", "resonant"), [(9.0, False), (11.0, True), (1 / 11.0, False)])
+def test_a_resonant_step_errs_ten_times_as_much_as_its_neighbours_let_expect(times, resonant):
+    h = np.array([0.1, 0.2, 0.4])
+    assert resonant_steps(h, h**4 * [1.0, times, 1.0]).tolist() == [False, resonant, False]
+
+
 def test_resonant_steps_are_ringed():
     h = np.geomspace(0.05, 0.4, 9)
     error = 1e-3 * h**4

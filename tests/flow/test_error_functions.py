@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Any
 
@@ -113,3 +114,11 @@ def test_long_doubles_have_their_own_digits() -> None:
             above, below = value.as_integer_ratio()
             miss = abs(mpmath.mpf(above) / below - mpmath.erf(at))
             assert miss < 2 * float(np.finfo(np.longdouble).eps)
+
+
+def test_functions_nested_deeper_than_pythons_compiler_reads():
+    graph, x = Graph(), sp.Symbol("x")
+    node, value = graph.from_sympy(x), 0.5
+    for _ in range(150):
+        node, value = graph.function("sin", node), math.sin(value)
+    assert python_function(graph, [node], [x])((0.5,)) == (value,)

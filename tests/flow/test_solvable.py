@@ -309,6 +309,9 @@ KINETIC = (x.momentum**2 + y.momentum**2) / 2
     [
         (DRIVEN, SABA(2), "depends on t"),
         (KEPLER, SABA(2, parts=(KINETIC, -2 / sp.sqrt(x**2 + y**2))), "is not H"),
+        (KEPLER, SABA(2, parts=(KINETIC - 1 / sp.sqrt(x**2 + y**2), x)), "is not H"),
+        (KEPLER, SABA(2, parts=(KINETIC, 1 / sp.sqrt(x**2 + y**2))), "is not H"),
+        (KEPLER, SABA(2, parts=(-KINETIC, -1 / sp.sqrt(x**2 + y**2))), "is not H"),
         (KEPLER, SABA(2, parts=(-1 / sp.sqrt(x**2 + y**2), KINETIC)), "p_x"),
         (System(KINETIC + 1 / sp.sqrt(x**2 + y**2), (x, y), KEPLER.p), SABA(2), "repels"),
         (

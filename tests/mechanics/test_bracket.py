@@ -18,6 +18,7 @@ from canon.mechanics.hamilton.bracket import (
     symplectic_unit,
 )
 from canon.mechanics.hamilton.vector_field import VectorField, hamiltonian_field
+from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
 x, y, px, py = z = sp.symbols("x y px py", real=True)
@@ -88,6 +89,27 @@ def test_brackets_are_invariant_under_canonical_maps(f, g):
     to_new = dict(zip(z, (Q1, Q2, P1, P2), strict=True))
     f, g = f.subs(to_new, simultaneous=True), g.subs(to_new, simultaneous=True)
     assert law.invariance(f, g, exchange, [Q1, Q2], [P1, P2]).holds
+
+
+def test_brackets_are_invariant_where_the_map_is_meant():
+    """√q² is q for q > 0 and −q beyond: canonical here, of valence −1 there, and neither everywhere."""
+    u, v, U, V = sp.symbols("u v U V", real=True)
+
+    def modulus(domain=None):
+        return CanonicalTransformation(u, v, sp.sqrt(u**2), v, domain)
+
+    right = modulus(Domain([u > 0]))
+    assert law.invariance(U * V, V**2, right, [U], [V]).holds
+    assert law.invariance(U * V, V**2, right, [U], [V], Domain([u < 0])).fails
+    assert law.invariance(U * V, V**2, modulus(), [U], [V]).fails
+
+
+def test_old_variables_are_no_names_for_new_ones():
+    u, v = sp.symbols("u v", real=True)
+    exchange = CanonicalTransformation(u, v, v, -u)
+    for new_q, new_p in (([u], [v]), ([v], [u]), ([u], [sp.Symbol("V")]), ([sp.Symbol("U")], [v])):
+        with pytest.raises(ValueError, match="none of them an old variable"):
+            inverse_transformation(exchange, new_q, new_p)
 
 
 def test_brackets_are_not_invariant_under_others():

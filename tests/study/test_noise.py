@@ -130,8 +130,9 @@ def test_walk_false_alarms_come_once_in_a_hundred():
 def test_a_pure_walk_is_found_and_measured():
     found = [walk_of(means) for means in draws(np.inf, 400, seed=7)]
     assert np.mean([walk.evidence > 5.4 for walk in found]) > 0.95
+    # The slope that is taken out has a share of the walk: 0.935 of 4 000 walks.
     size = np.sqrt(np.mean([walk.size**2 for walk in found]) / (WINDOWS + WIDTH))
-    assert 0.9 < size < 1.1
+    assert 0.90 < size < 0.97
 
 
 @pytest.mark.parametrize("ratio", [1.0, np.inf])
