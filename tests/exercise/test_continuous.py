@@ -257,6 +257,8 @@ def test_a_constant_of_the_motion_has_the_same_value_after_each_turn_but_for_tur
     assert refused.fails
     assert "jumps at" in refused.feedback
     assert said("constant-of-motion", **system, I=right).holds
+    assert said("conserved-or-not", **system, not_conserved=[wrong]).undecided
+    assert said("conserved-or-not", **system, not_conserved=[right]).fails
 
 
 def test_angles_of_the_system_may_stand_in_its_energy():

@@ -47,6 +47,7 @@ from canon.mechanics.hamilton.symmetry import is_symmetry
 from canon.proof.analytic import is_analytic
 from canon.proof.continuity.continuity import continuity, is_locally_constant
 from canon.proof.continuity.one_sided import cuts_of
+from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.continuity.winding_centre import common_zero
 from canon.proof.domain.domain import Domain
 
@@ -135,6 +136,19 @@ def test_an_angle_is_taken_as_it_is_and_named(f):
     found = continuity(f, (*ALL,))
     assert found.holds
     assert "winds around" in found.assumed[0]
+
+
+TURNING = [  # steps by another number at each place, and by a fixed one
+    (sp.exp(atan2(q, p) - t), atan2(q, p) - t),
+    ((q**2 + p**2) * (atan2(q, p) - t), sp.sqrt(2) * atan(q / p) - t),
+    (sin(atan2(q, p) / 2 - t), sin(2 * atan2(q, p) - t)),
+]
+
+
+@pytest.mark.parametrize(("other", "same"), TURNING, ids=str)
+def test_the_same_value_after_each_turn_or_a_fixed_step(other, same):
+    assert continuity_but_for_turns(other, [q, p, t]).fails
+    assert continuity_but_for_turns(same, [q, p, t]).holds
 
 
 SMOOTH = [

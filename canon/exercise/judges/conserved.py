@@ -9,7 +9,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judges.energy_and_force import shown_short
-from canon.exercise.question.continuous_answer import constants_are_continuous, is_continuous
+from canon.exercise.question.continuous_answer import constants_are_continuous
 from canon.exercise.question.question import Differ, Part, Question, Same, Tells
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
@@ -68,7 +68,7 @@ def _check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
     Undecided
         Where the quantity may jump.
     """
-    if not is_continuous(I, state, domain, str(I)).holds:
+    if not all(verdict.holds for verdict in constants_are_continuous(I, state, domain)):
         raise Undecided(f"{I} may jump, which its rate does not show; narrow the domain to where it does not")
 
 

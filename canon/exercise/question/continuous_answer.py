@@ -5,13 +5,12 @@ Such a function may have jumped from one constant to another, which no derivativ
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
-
-import sympy as sp
+from typing import TYPE_CHECKING
 
 from canon.exercise.question.deadline import PROOF_SECONDS
 from canon.exercise.question.question import fails
 from canon.proof.continuity.continuity import continuity, is_locally_constant
+from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
     from canon.proof.domain.verdict import Verdict
 
 __all__ = ["constants_are_continuous", "is_continuous"]
-
-LARGE = 2_000
-"""Operations of a slope up to which its fractions are cancelled."""
 
 
 def is_continuous(
@@ -42,9 +38,7 @@ def constants_are_continuous(
     An angle that winds may jump by what it grows in a turn, always the same number: its slopes do not jump. A function
     of it that jumps otherwise, such as exp(θ − t), has another value after each turn, and is no constant.
     """
-    verdict = is_continuous(I, state, domain, str(I), given)
-    if verdict.holds and verdict.assumed:
-        verdict = _of_angles(I, state, domain, tuple(given), verdict)
+    verdict = continuity_but_for_turns(I, state, domain, PROOF_SECONDS, str(I), given)
     if verdict.fails and is_locally_constant(I, state, domain):
         why = (
             f"{I} says nothing about the motion: all its derivatives vanish identically, "
@@ -53,26 +47,3 @@ def constants_are_continuous(
         yield fails(f"{I} is a constant of the motion", why, I)
         return
     yield verdict
-
-
-def _of_angles(
-    I: Expr, state: Sequence[Symbol], domain: Domain, given: tuple[Expr, ...], taken: Verdict
-) -> Verdict:
-    """Return whether a function of angles that wind jumps by a fixed number at most; ``taken`` says which angles."""
-    whole = continuity(I, state, domain, PROOF_SECONDS, str(I), given, angles=False)
-    if whole.holds:
-        return whole
-    slopes = [
-        continuity(_cancelled(I.diff(s)), state, domain, PROOF_SECONDS, f"∂({I})/∂{s}", given, angles=False)
-        for s in state
-        if I.has(s)
-    ]
-    worst = min(slopes, key=lambda verdict: (verdict.holds, verdict.undecided))
-    if worst.holds:
-        return taken
-    return whole if worst.fails and whole.fails else worst
-
-
-def _cancelled(slope: Expr) -> Expr:
-    """Return a slope without the poles that d atan(q/p) has where p = 0, as it is written."""
-    return cast("Expr", sp.cancel(slope)) if sp.count_ops(slope) < LARGE else slope

@@ -24,6 +24,7 @@ from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.smooth import PIECED
+from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Verdict, all_hold
 from canon.proof.equivalence import equivalent_equations
@@ -81,7 +82,10 @@ def is_constant_of_motion(
     verdict = all_vanish([("dI/dt = 0", rate)], f"{I} is a constant of motion", domain, budget)
     given = (system.H if isinstance(system, Hamiltonian) else system.L,)
     verdict = having_values(verdict, {str(I): function}, given, domain)
-    return _and_continuous(verdict, function, moving, everywhere, str(I), given)
+    if not verdict.holds:
+        return verdict
+    steady = continuity_but_for_turns(function, moving, everywhere, name=str(I), given=given)
+    return all_hold([verdict, steady], verdict.question)
 
 
 def _and_continuous(

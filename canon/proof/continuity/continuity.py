@@ -49,13 +49,10 @@ __all__ = ["continuity", "is_locally_constant"]
 CONTINUOUS = "is continuous"
 VALUES = 24
 """Points at which a locally constant function is evaluated."""
-
 LARGE = 2000
 """Size of an expression that is still multiplied out."""
-
 FEW = 4
 """Terms of which every sum is looked at."""
-
 SHARE = 0.5
 """Part of the time for one question about derivatives."""
 
@@ -102,8 +99,6 @@ def continuity(
     'q - atan(tan(pi*q))/pi jumps at q = 1/2 from -0.5 to 0.5, which its derivatives do not show'
     >>> continuity(sp.atan(q / p), [q, p]).assumed
     ('atan(q/p) is an angle that winds around p = 0, q = 0; where it jumps is a matter of choice',)
-    >>> continuity(sp.atan(q / p), [q, p], angles=False).status
-    <Status.FAILS: 'fails'>
     """
     deadline, moving, name = time.monotonic() + budget, tuple(variables), name or str(f)
     f = without_complex_logarithms(with_moduli(off_the_kinks(f)))
