@@ -119,6 +119,6 @@ def test_long_doubles_have_their_own_digits() -> None:
 def test_functions_nested_deeper_than_pythons_compiler_reads():
     graph, x = Graph(), sp.Symbol("x")
     node, value = graph.from_sympy(x), 0.5
-    for _ in range(150):
+    for _ in range(250):
         node, value = graph.function("sin", node), math.sin(value)
     assert python_function(graph, [node], [x])((0.5,)) == (value,)
