@@ -16,9 +16,9 @@ from .chaos.lyapunov import lyapunov_spectrum as lyapunov_spectrum
 from .chaos.orbit_family import Bifurcation as Bifurcation
 from .chaos.orbit_family import OrbitFamily as OrbitFamily
 from .chaos.orbit_family import continue_family as continue_family
-from .chaos.periodic_orbit import NoPeriodicOrbitError as NoPeriodicOrbitError
-from .chaos.periodic_orbit import PeriodicOrbit as PeriodicOrbit
 from .chaos.periodic_orbit import periodic_orbit as periodic_orbit
+from .chaos.periodic_search import NoPeriodicOrbitError as NoPeriodicOrbitError
+from .chaos.periodic_search import PeriodicOrbit as PeriodicOrbit
 from .chaos.poincare_section import PoincareSection as PoincareSection
 from .chaos.poincare_section import SectionNotMetError as SectionNotMetError
 from .chaos.poincare_section import poincare_section as poincare_section

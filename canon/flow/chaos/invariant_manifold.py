@@ -10,7 +10,7 @@ from canon.flow.geometry.flow_jacobian import flow_jacobian
 
 if TYPE_CHECKING:
     from canon.array import Array
-    from canon.flow.chaos.periodic_orbit import PeriodicOrbit
+    from canon.flow.chaos.periodic_search import PeriodicOrbit
 
 __all__ = ["manifold_starts"]
 

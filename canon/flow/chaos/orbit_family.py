@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
-from canon.flow.chaos.periodic_orbit import NoPeriodicOrbitError, PeriodicOrbit, PeriodicSearch
+from canon.flow.chaos.periodic_search import NoPeriodicOrbitError, PeriodicOrbit, PeriodicSearch
 from canon.progress import reporting
 
 if TYPE_CHECKING:

@@ -1,0 +1,298 @@
+"""Search for periodic orbits: Newton's method on what does not close, by the flow and its derivative."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from canon.flow.chaos.floquet import FloquetMultipliers, floquet_multipliers
+from canon.flow.geometry.flow_jacobian import flow_jacobian
+from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.system.named_values import variables_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+
+    from canon.array import Array
+    from canon.flow.request import Request
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
+
+__all__ = ["NoPeriodicOrbitError", "PeriodicOrbit", "PeriodicSearch"]
+
+_TRIES = 40
+_ROUNDING = 2.0**-52
+_PERIODS = 2.0
+"""The period found is not so many times longer or shorter than the guess."""
+_SMALLEST_SINGULAR = 1e-9
+"""Directions in which less changes than this part of the largest change are those of symmetries: none is followed."""
+
+
+class NoPeriodicOrbitError(ValueError):
+    """Raised where no periodic orbit is found from a start.
+
+    Parameters
+    ----------
+    message
+        What happened.
+    y, period, defect
+        The state and period that came nearest, and how far from closing.
+    """
+
+    def __init__(self, message: str, y: Array, period: float, defect: float) -> None:
+        super().__init__(message)
+        self.y, self.period, self.defect = y, period, defect
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit:
+    """A motion that comes back to its start, and how its neighbours move.
+
+    Parameters
+    ----------
+    y
+        A state on it, (q, p), shape (2n,).
+    period
+        The time after which it comes back.
+    energy
+        H there.
+    defect
+        How far from its start it arrives, in the largest component.
+    M
+        The monodromy matrix, the derivative of the flow over the period, shape (2n, 2n).
+    multipliers
+        The eigenvalues of M but for the two that are 1, their Krein signs and what they say of stability.
+    """
+
+    y: Array
+    period: float
+    energy: float
+    defect: float
+    M: Array
+    multipliers: FloquetMultipliers
+    search: PeriodicSearch = field(repr=False)
+
+    def __repr__(self) -> str:
+        stable = {True: "stable", False: "unstable", None: "of unknown stability"}[self.multipliers.stable]
+        kinds = ", ".join(self.multipliers.kinds)
+        return f"<PeriodicOrbit: period {self.period:.12g}, energy {self.energy:.12g}, {stable} ({kinds})>"
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSearch:
+    """Newton's method for the periodic orbits of one system.
+
+    Parameters
+    ----------
+    request
+        The system, its parameters and how to integrate.
+    equations
+        Its equations.
+    shift
+        What angles gain in a period.
+    signs
+        The signs of a reversing symmetry, or None.
+    fixed_period
+        Whether the period is kept.
+    """
+
+    request: Request
+    equations: HamiltonEquations
+    shift: Array
+    signs: Array | None
+    fixed_period: bool
+
+    def energy(self, y: Array) -> float:
+        """Return H."""
+        return float(self._values([self.equations.hamiltonian], y)[0])
+
+    def field(self, y: Array) -> Array:
+        """Return the rates (q̇, ṗ)."""
+        return self._values([*self.equations.velocity, *self.equations.force], y)
+
+    def slope(self, y: Array) -> Array:
+        """Return ∇H."""
+        n = len(y) // 2
+        rates = self.field(y)
+        return np.concatenate([-rates[n:], rates[:n]])
+
+    def _values(self, nodes: Sequence[int], y: Array) -> Array:
+        start = dict(zip(self.equations.inputs, (*y, 0.0), strict=True))
+        return np.array([float(x) for x in self.equations.graph.evaluate(nodes, start)])
+
+    def flow(self, y: Array, time: float) -> tuple[Array, Array]:
+        """Return where a state is after a time, and the derivative by the state."""
+        r = self.request
+        found = flow_jacobian(
+            r.system,
+            (0.0, time),
+            y,
+            method=r.method,
+            step=r.step,
+            tolerance=r.tolerance,
+            parameters=r.parameters,
+        )
+        return found.y[:, -1], found.final
+
+    def check_reversal(self, y: Array) -> None:
+        """Refuse signs that do not reverse the motion: S f(S y) = −f(y) is to hold.
+
+        Raises
+        ------
+        ValueError
+            They do not.
+        """
+        assert self.signs is not None
+        place = y + 0.1 * np.random.default_rng(20).standard_normal(len(y))
+        rates, mirrored = self.field(place), self.signs * self.field(self.signs * place)
+        if not abs(rates + mirrored).max() <= 1e-9 * max(abs(rates).max(), 1.0):
+            changed = [
+                s.name for s, sign in zip(variables_of(self.equations), self.signs, strict=True) if sign < 0
+            ]
+            raise ValueError(
+                f"changing the signs of {', '.join(changed)} does not reverse the motion of this system"
+            )
+
+    def found(
+        self, y: Array, period: float, energy: float | None, across: Array | None = None
+    ) -> PeriodicOrbit:
+        """Return the periodic orbit from a guess: of an energy, or at right angles to a direction in (y, T) from it.
+
+        Raises
+        ------
+        NoPeriodicOrbitError
+            Where Newton's method does not come to an end.
+        """
+        guess = _Guess.of(self, y, period)
+        for _ in range(_TRIES):
+            step = self._newton_step(guess, energy, across)
+            following = self._improved(guess, step, period)
+            if following is None:
+                if guess.settled:
+                    return self.orbit(guess)
+                break
+            guess = following
+        raise NoPeriodicOrbitError(
+            f"no periodic orbit is found: the nearest arrives {guess.size:.2g} from its start after "
+            f"{guess.period:.9g}; begin nearer to one, or at another period",
+            guess.y, guess.period, guess.size,
+        )  # fmt: skip
+
+    def _improved(self, guess: _Guess, step: Array, first: float) -> _Guess | None:
+        """Return a better guess along a step of Newton's, or None where there is none near the first period."""
+        for halvings in range(8):
+            part = 0.5**halvings
+            period = guess.period + part * step[-1]
+            if not 1 / _PERIODS < period / first < _PERIODS:
+                continue
+            try:
+                following = _Guess.of(self, guess.y + part * step[:-1], period)
+            except (NonFiniteStateError, ValueError):
+                continue
+            if following.size < guess.size * (1 - 0.25 * part):
+                return following
+            if guess.settled:
+                return None
+        return None
+
+    def orbit(self, guess: _Guess) -> PeriodicOrbit:
+        """Return the orbit of a guess that closes."""
+        M = guess.M if self.signs is None else _whole(guess.M, self.signs)
+        slope = self.slope(guess.y) if self.equations.autonomous else None
+        return PeriodicOrbit(
+            guess.y, float(guess.period), self.energy(guess.y), guess.size, M, floquet_multipliers(M, slope), self
+        )  # fmt: skip
+
+    def _newton_step(self, guess: _Guess, energy: float | None, across: Array | None) -> Array:
+        """Return the step of (y, T) by which what does not close would vanish to first order."""
+        rows, right = self.conditions(guess)
+        if energy is not None:
+            rows.append(np.append(self.slope(guess.y), 0.0))
+            right.append(energy - self.energy(guess.y))
+        if across is not None:
+            rows.append(across)
+            right.append(0.0)
+        return self.solved(np.array(rows), np.array(right))
+
+    def conditions(self, guess: _Guess) -> tuple[list[Array], list[float]]:
+        """Return linear equations for (δy, δT): that the orbit closes, and that the step is across it."""
+        size = len(guess.y)
+        half = 1.0 if self.signs is None else 0.5
+        derivative = guess.M - (np.eye(size) if self.signs is None else 0.0)
+        rows = np.concatenate([derivative, half * self.field(guess.end)[:, np.newaxis]], axis=1)
+        right = -guess.missed
+        if self.signs is not None:
+            rows, right = rows[self.signs < 0], right[self.signs < 0]
+        equations, values = list(rows), right.tolist()
+        if self.fixed_period:
+            equations.append(np.append(np.zeros(size), 1.0))
+            values.append(0.0)
+        elif self.signs is None:
+            equations.append(np.append(self.field(guess.y), 0.0))
+            values.append(0.0)
+        return equations, values
+
+    def kernel(self, y: Array, period: float) -> Array:
+        """Return the direction (δy, δT), of length 1, in which orbits go on closing to first order."""
+        rows, _ = self.conditions(_Guess.of(self, y, period))
+        free = self._free(len(y) + 1)
+        found = np.zeros(len(y) + 1)
+        found[free] = np.linalg.svd(np.array(rows)[:, free])[2][-1]
+        return found
+
+    def _free(self, size: int) -> npt.NDArray[np.bool_]:
+        """Return which of (y, T) vary: of starts on the fixed states of a symmetry those that are not zero there."""
+        free = np.ones(size, dtype=bool)
+        if self.signs is not None:
+            free[:-1] = self.signs > 0
+        return free
+
+    def solved(self, rows: Array, right: Array) -> Array:
+        """Return the shortest solution in what varies."""
+        free = self._free(rows.shape[1])
+        scale = np.abs(rows[:, free]).max(axis=1)
+        scale[scale == 0] = 1.0
+        found = np.zeros(rows.shape[1])
+        found[free] = np.linalg.lstsq(
+            rows[:, free] / scale[:, np.newaxis], right / scale, rcond=_SMALLEST_SINGULAR
+        )[0]
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Guess:
+    """A state and a period, where the motion arrives after it, or after half of it, and the derivative."""
+
+    y: Array
+    period: float
+    end: Array
+    M: Array
+    missed: Array
+
+    @classmethod
+    def of(cls, search: PeriodicSearch, y: Array, period: float) -> _Guess:
+        if search.signs is None:
+            end, M = search.flow(y, period)
+            return cls(y, period, end, M, end - y - search.shift)
+        end, half = search.flow(y, period / 2)
+        return cls(y, period, end, half, np.where(search.signs < 0, end, 0.0))
+
+    @property
+    def size(self) -> float:
+        return float(abs(self.missed).max())
+
+    @property
+    def settled(self) -> bool:
+        """Whether what does not close is no more than rounding leaves, times what the motion makes of it."""
+        return self.size <= 1e3 * _ROUNDING * max(1.0, abs(self.y).max()) * max(1.0, abs(self.M).max())
+
+
+def _whole(half: Array, signs: Array) -> Array:
+    """Return the monodromy matrix S M⁻¹ S M of half a period's derivative, M⁻¹ = −J Mᵀ J."""
+    n = len(half) // 2
+    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    inverse = -J @ half.T @ J
+    return signs[:, np.newaxis] * inverse * signs @ half
