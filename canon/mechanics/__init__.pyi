@@ -149,6 +149,8 @@ from .perturbation.quadratic_form import NoDiagonalFormError as NoDiagonalFormEr
 from .perturbation.remainder import OptimalOrder as OptimalOrder
 from .perturbation.remainder import optimal_order as optimal_order
 from .perturbation.remainder import remainder_norms as remainder_norms
+from .perturbation.secular.adiabatic_series import AdiabaticInvariant as AdiabaticInvariant
+from .perturbation.secular.adiabatic_series import adiabatic_invariants as adiabatic_invariants
 from .perturbation.secular.anomaly_average import AnomalyAverage as AnomalyAverage
 from .perturbation.secular.anomaly_average import average_over_anomaly as average_over_anomaly
 from .perturbation.taylor_parts import NotAnalyticError as NotAnalyticError

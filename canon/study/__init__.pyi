@@ -20,6 +20,7 @@ from .energy_drift.drift_rows import DriftRow as DriftRow
 from .energy_drift.drift_study import DriftStudy as DriftStudy
 from .energy_drift.drift_study import drift_study as drift_study
 from .energy_drift.integral_drift import IntegralDrift as IntegralDrift
+from .energy_drift.integral_drift import adiabatic_drift as adiabatic_drift
 from .energy_drift.integral_drift import integral_drift as integral_drift
 from .energy_drift.orbit_frequencies import OrbitFrequencies as OrbitFrequencies
 from .energy_drift.orbit_frequencies import orbit_frequencies as orbit_frequencies

@@ -93,7 +93,7 @@ PERTURBED: Mapping[str, Kind] = MappingProxyType(
         "adiabatic-invariant": Kind(
             "perturbed.lie_transforms.adiabatic_invariant",
             {**_SYSTEM, "small": _N, "I": _T},
-            {**_TO_AN_ORDER, "slow": _N},
+            {**_TO_AN_ORDER, "slow": _N, "slow_q": _N},
             answer=("I",),
             unknowns="one invariant to the order",
             varying=("I",),

@@ -14,5 +14,7 @@ from .near_identity import is_normal_form as is_normal_form
 from .near_identity import near_identity_map as near_identity_map
 from .remainder import optimal_order as optimal_order
 from .remainder import remainder_norms as remainder_norms
+from .secular.adiabatic_series import AdiabaticInvariant as AdiabaticInvariant
+from .secular.adiabatic_series import adiabatic_invariants as adiabatic_invariants
 from .secular.anomaly_average import AnomalyAverage as AnomalyAverage
 from .secular.anomaly_average import average_over_anomaly as average_over_anomaly

@@ -37,20 +37,22 @@ def fourier_series(f: Expr, angles: Sequence[Symbol]) -> Series:
     waves: Any = f.replace(
         lambda g: isinstance(g, sp.sin | sp.cos) and g.has(*angles), lambda g: g.rewrite(sp.exp)
     )
+    waves_of: dict[Any, Symbol] = {wave: sp.Dummy() for wave in waves.atoms(sp.exp) if wave.has(*angles)}
+    phases = {name: wave.args[0] for wave, name in waves_of.items()}
     series: Series = {}
-    for term in sp.Add.make_args(sp.expand(waves)):
+    for term in sp.Add.make_args(sp.expand(waves.xreplace(waves_of))):  # no exp(−iθ) moves into a denominator
         factors: tuple[Any, ...] = sp.Mul.make_args(term)
-        moving = [factor for factor in factors if factor.has(*angles)]
-        if not all(isinstance(factor, sp.exp) for factor in moving):
+        moving = [factor.as_base_exp() for factor in factors if factor.has(*angles, *phases)]
+        if not all(base in phases and power.is_Integer for base, power in moving):
             raise _refused(f, angles)
-        phase = sp.expand(sp.Add(*(factor.args[0] for factor in moving)))
+        phase = sp.expand(sp.Add(*(phases[base] * power for base, power in moving)))
         harmonic = [sp.expand(phase.coeff(angle, 1) / sp.I) for angle in angles]
         left = sp.expand(
             phase - sp.I * sp.Add(*(k * angle for k, angle in zip(harmonic, angles, strict=True)))
         )
         if left.has(*angles) or not all(k.is_Integer for k in harmonic):
             raise _refused(f, angles)
-        rest = sp.Mul(*(factor for factor in factors if not factor.has(*angles)), sp.exp(left))
+        rest = sp.Mul(*(factor for factor in factors if not factor.has(*phases)), sp.exp(left))
         key = tuple(int(k) for k in harmonic)
         series[key] = series.get(key, sp.S.Zero) + rest
     return _without_zeros(series)

@@ -297,7 +297,7 @@ def adiabatic_invariant(reading: Reading) -> Iterator[Question]:
         reading.fault("slow", "one slow time is wanted; without one, claim an order from 1")
     (I_0, *_), (H_0, *_) = (_coefficients(reading, f, small, 0) for f in (I, H))
     yield Tells((same_everywhere((I_0,), (*q, *p), reading.domain),), NOT_OF_THE_STATE)
-    rate = sp.Add(poisson_bracket(I, H, q, p), *(small * I.diff(tau) for tau in slow))
+    rate = _rate_of_two_scales(reading, I, H, small) + sp.Add(*(small * I.diff(tau) for tau in slow))
     coefficients = _coefficients(reading, rate, small, order)
     parts = tuple(
         Part(f"dI/dt to order {k} in {small}" if k else f"dI/dt at {small} = 0", c)
@@ -309,6 +309,16 @@ def adiabatic_invariant(reading: Reading) -> Iterator[Question]:
     yield from _one_function(reading, I, H, "I")
     if order == 0:
         yield from (found for tau in slow for found in slow_invariant(reading, I_0, tau, H_0))
+
+
+def _rate_of_two_scales(reading: Reading, I: Expr, H: Expr, small: Symbol) -> Expr:
+    """Return {I, H} of the fast pairs + ε {I, H} of the pairs whose coordinates are named under slow_q."""
+    q, p = reading.phase_space("q", "p")
+    slow = reading.subset("slow_q", "q") if reading.has("slow_q") else ()
+    rate = sp.S.Zero
+    for x, y in zip(q, p, strict=True):
+        rate += poisson_bracket(I, H, [x], [y]) * (small if x in slow else 1)
+    return rate
 
 
 def _autonomous(reading: Reading) -> Expr:
