@@ -11,6 +11,7 @@ import numpy as np
 from canon.flow.integrate import integrate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import Sampling, adaptive_plan, fixed_plan
+from canon.flow.tangent.taylor_stretches import TaylorStretches
 from canon.kernel.program.variational import variational
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ class VariationalDeviations:
     ) -> None:
         self.task, self.orthogonal = task, orthogonal
         self.larger = variational(task.system, frame.shape[1])
+        self.taylor = TaylorStretches.of(task, self.larger)
         chosen = np.arange(task.states[0].shape[1]) if orbits is None else orbits
         self.high, self.low = (part[:, chosen].copy() for part in task.states)
         self.frames = np.repeat(frame[:, :, np.newaxis], len(chosen), axis=2)
@@ -129,13 +131,17 @@ class VariationalDeviations:
         """Move one orbit along a plan, and return its deviations, not renormalised."""
         n, vectors = len(self.task.system.q), self.frames.shape[1]
         beside = self.frames[:, :, k].reshape(2, n, vectors).swapaxes(1, 2).reshape(2, vectors * n)
-        high = np.concatenate([self.high[:, k].reshape(2, n), beside], axis=1).reshape(-1, 1)
-        low = np.concatenate([self.low[:, k].reshape(2, n), 0 * beside], axis=1).reshape(-1, 1)
-        task = replace(self.task, system=self.larger, states=(high, low), plan=plan, single=True)
-        found = integrate(task)
-        halves = found.y[:, -1, 0].reshape(2, -1)
+        high = np.concatenate([self.high[:, k].reshape(2, n), beside], axis=1).ravel()
+        low = np.concatenate([self.low[:, k].reshape(2, n), 0 * beside], axis=1).ravel()
+        if self.taylor is not None:
+            y, carried = self.taylor.moved(high, low, plan)
+        else:
+            states = high[:, np.newaxis], low[:, np.newaxis]
+            found = integrate(replace(self.task, system=self.larger, states=states, plan=plan, single=True))
+            y, carried = found.y[:, -1, 0], found.carried[:, -1, 0]
+        halves = y.reshape(2, -1)
         self.high[:, k] = halves[:, :n].ravel()
-        self.low[:, k] = found.carried[:, -1, 0].reshape(2, -1)[:, :n].ravel()
+        self.low[:, k] = carried.reshape(2, -1)[:, :n].ravel()
         return halves[:, n:].reshape(2, vectors, n).swapaxes(1, 2).reshape(2 * n, vectors)
 
 
