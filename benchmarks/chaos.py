@@ -13,7 +13,9 @@ import functools
 import sys
 import time
 import warnings
+from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,10 +26,12 @@ from canon import Gauss, Hamiltonian, Splitting, coordinates, propagate
 from canon.flow import (
     Regularity,
     fast_lyapunov_indicator,
+    frequency_diffusion,
     gali,
     largest_lyapunov_exponent,
     lyapunov_spectrum,
     megno,
+    reversal_test,
     sali,
 )
 
@@ -352,51 +356,63 @@ def confirmed(orbits: list[tuple[Any, ...]]) -> int:
     return count
 
 
-def verdicts(spans: tuple[int, ...] = (100, 300, 1000)) -> None:
-    indicators: dict[str, Callable[..., Any]] = {
-        "megno": megno,
-        "fast_lyapunov_indicator": fast_lyapunov_indicator,
-        "lyapunov_spectrum": lyapunov_spectrum,
-        "sali": sali,
-        "gali, 3 vectors": lambda *a, **k: gali(*a, vectors=3, **k),
-    }
-    orbits, said_of = list(known_orbits()), (Regularity.REGULAR, Regularity.CHAOTIC)
-    counts = {
-        kind: sum(o[2].shape[1] for o in orbits if o[6] is kind)
-        for kind in (Regularity.REGULAR, Regularity.CHAOTIC)
-    }
-    regular, chaotic = counts[Regularity.REGULAR], counts[Regularity.CHAOTIC]
+def by_frequency(system: Hamiltonian, span: tuple[float, float], starts: np.ndarray, **how: Any) -> Any:
+    """Verdicts by the main frequency of the first momentum in the two halves of the run."""
+    samples = 2 * how["samples"]
+    each = max(1, round((span[1] - span[0]) / how["step"] / samples))
+    step = (span[1] - span[0]) / (samples * each)
+    motion = propagate(system, span, starts, method=how["method"], step=step, samples=samples)
+    momenta = motion.y[len(starts) // 2]
+    found = [frequency_diffusion(motion.t, p) for p in momenta.T]
+    return SimpleNamespace(verdict=[each.verdict for each in found], all=found)
+
+
+def by_reversal(system: Hamiltonian, span: tuple[float, float], starts: np.ndarray, **how: Any) -> Any:
+    return reversal_test(system, span, starts, method=how["method"], step=how["step"])
+
+
+INDICATORS: dict[str, tuple[Callable[..., Any], int]] = {
+    "megno, fast_lyapunov_indicator": (megno, 3),
+    "lyapunov_spectrum": (lyapunov_spectrum, 3),
+    "sali": (sali, 3),
+    "gali, 3 vectors": (functools.partial(gali, vectors=3), 3),
+    "frequency_diffusion": (by_frequency, 1),
+    "reversal_test": (by_reversal, 1),
+}
+"""The indicators, and how many directions of deviations each is tried with."""
+
+
+def called(
+    orbits: list[tuple[Any, ...]], indicator: Callable[..., Any], seeds: int, periods: int
+) -> Counter[tuple[Regularity, Regularity]]:
+    """How often orbits of each kind are called what."""
+    found: Counter[tuple[Regularity, Regularity]] = Counter()
+    for _, system, starts, method, step, period, truth in orbits:
+        if isinstance(indicator, functools.partial) and len(starts) < 4:
+            continue  # GALI of three vectors takes two degrees of freedom
+        how = {"method": method, "step": step, "samples": min(1000, 4 * periods)}
+        for seed in range(seeds):
+            judged = indicator(system, (0, periods * period), starts, seed=seed, **how)
+            found.update((truth, verdict) for verdict in judged.verdict)
+    return found
+
+
+def verdicts(spans: tuple[int, ...] = (100, 1000)) -> None:
+    orbits, kinds = list(known_orbits()), (Regularity.REGULAR, Regularity.CHAOTIC)
+    regular, chaotic = (sum(o[2].shape[1] for o in orbits if o[6] is kind) for kind in kinds)
+    parted = confirmed(orbits)
     print(
-        f"\nof {chaotic} orbits {confirmed(orbits)} part as e^100 or more in 2000 periods by another method"
+        f"\nverdicts on {regular} regular and {chaotic} chaotic orbits, each with up to 3 directions of deviations"
     )
-    print(
-        f"\nverdicts on {regular} regular and {chaotic} chaotic orbits, 3 directions of the deviations each"
-    )
-    print(f"{'':26}{'periods':>8}{'regular called':>32}{'chaotic called':>32}")
-    print(f"{'':34}{'regular   chaotic   not known':>32}{'regular   chaotic   not known':>32}")
-    for name, indicator in indicators.items():
+    print(f"(of the {chaotic}, {parted} part as e^100 or more in 2000 periods by another method)")
+    print(f"{'':32}{'':>8}{'regular ones called':>32}{'chaotic ones called':>32}")
+    print(f"{'':32}{'periods':>8}{'regular   chaotic   not known':>32}{'regular   chaotic   not known':>32}")
+    for name, (indicator, seeds) in INDICATORS.items():
         for periods in spans:
-            found: dict[tuple[Regularity, Regularity], int] = {}
-            for _, system, starts, method, step, period, truth in orbits:
-                if "gali" in name and len(starts) < 4:
-                    continue
-                for seed in range(3):
-                    judged = indicator(
-                        system,
-                        (0, periods * period),
-                        starts,
-                        method=method,
-                        step=step,
-                        seed=seed,
-                        samples=min(1000, 4 * periods),
-                    )
-                    for verdict in judged.verdict:
-                        found[truth, verdict] = found.get((truth, verdict), 0) + 1
-            row = [
-                found.get((truth, said), 0) for truth in said_of for said in (*said_of, Regularity.NOT_KNOWN)
-            ]
+            found = called(orbits, indicator, seeds, periods)
+            row = [found[truth, said] for truth in kinds for said in (*kinds, Regularity.NOT_KNOWN)]
             print(
-                f"{name:26}{periods:8}{row[0]:12}{row[1]:10}{row[2]:10}{row[3]:12}{row[4]:10}{row[5]:10}",
+                f"{name:32}{periods:8}{row[0]:12}{row[1]:10}{row[2]:10}{row[3]:12}{row[4]:10}{row[5]:10}",
                 flush=True,
             )
 

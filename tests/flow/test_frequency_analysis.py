@@ -75,7 +75,7 @@ def test_frequencies_stay_on_a_curve_and_move_in_the_sea():
     how = {"method": Splitting("kahan-li-8"), "step": 0.2, "samples": 5000}
     start = [0.0, 0.25, 0.3, 0.1]
     for y0, wanted in ((start, Regularity.REGULAR), (CHAOTIC, Regularity.CHAOTIC)):
-        motion = propagate(HENON_HEILES, (0, 2000), y0, **how)
+        motion = propagate(HENON_HEILES, (0, 4000), y0, **how)
         found = frequency_diffusion(motion.t, motion.y[1] - 1j * motion.y[3])
         assert found.verdict is wanted
         assert (found.rate > found.detection_limit) is (wanted is Regularity.CHAOTIC)
