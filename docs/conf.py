@@ -54,15 +54,36 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx-mathjax-offline",
     "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
 ]
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build", "_templates", "README.md", "paper"]
+exclude_patterns = ["_build", "_templates", "README.md", "paper", "gallery/**.ipynb"]
 
 nb_execution_mode = "force"  # a cached page would not know that canon has changed
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_merge_streams = True
+
+JOBS = ("derive", "transform", "reduce", "judge", "integrate", "measure", "explore", "bring_your_own")
+"""Folders of worked examples, in the order in which one would read them; the others hold sheets and graders."""
+sphinx_gallery_conf = {
+    "examples_dirs": ["../examples"],
+    "gallery_dirs": ["gallery"],
+    "filename_pattern": r"\.py$",
+    "ignore_pattern": r"examples/(grading|sheets)/",
+    "subsection_order": [f"../examples/{job}" for job in JOBS],
+    "within_subsection_order": "FileNameSortKey",
+    "default_thumb_file": str(HERE / "figures" / "verdict.png"),
+    "capture_repr": (),  # what a script prints is its result
+    "abort_on_example_error": True,
+    "run_stale_examples": True,  # as the notebooks: canon may have changed
+    "show_memory": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "download_all_examples": False,
+    "min_reported_time": 1e9,  # a time of this machine says nothing
+}
 
 autosummary_generate = True
 templates_path = ["_templates"]  # a page a name: how it is imported, all its members

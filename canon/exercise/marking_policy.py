@@ -28,6 +28,9 @@ class Outcome(enum.Enum):
     UNREADABLE = "unreadable"
     UNDECIDED = "undecided"
 
+    def __str__(self) -> str:
+        return self.value
+
 
 @dataclass(frozen=True)
 class Mark:

@@ -65,7 +65,7 @@ def plot_energy_error(
     axes.set_xlabel(found.time)
     axes.set_ylabel(found.error)
     if found.title:
-        axes.set_title(found.title, loc="left", fontsize="medium")
+        axes.set_title(found.title, loc="left", fontsize="medium", wrap=True)
     axes.margins(x=0.0)
     tidy(axes)
     if found.lines and guides:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.expression.symbols.user_input import given_kind
 from canon.plot.style import COLOURS, GREY, PlotError, new_axes
 
 if TYPE_CHECKING:
@@ -45,6 +46,8 @@ def plot_scene(motion: SceneMotion, ax: Axes | None = None, *, at: int = 0) -> A
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        Where it is no motion of a scene: a trajectory of ``propagate`` does not know how its system looks.
 
     Examples
     --------
@@ -125,6 +128,10 @@ class _Drawing:
     def __init__(self, motion: SceneMotion) -> None:
         from sympy import sympify
 
+        from canon.scene.scene_motion import SceneMotion
+
+        instead = "canon.scene.scene_motion.run(find('kepler'), periods=1) returns one"
+        given_kind(motion, SceneMotion, "the motion", instead)
         self.scene = motion.scene
         self.picture = _picture(motion)
         points = self.picture.points

@@ -87,7 +87,7 @@ def plot_work_precision(
     logarithmic(axes)
     axes.set_xlabel(label)
     axes.set_ylabel(_ERRORS[error])
-    axes.set_title(found.title, loc="left", fontsize="medium")
+    axes.set_title(found.title, loc="left", fontsize="medium", wrap=True)
     _legend(axes)
     tidy(axes)
     return axes

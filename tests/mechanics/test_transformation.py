@@ -163,6 +163,10 @@ def test_splitting_steps_are_canonical():
         splitting_step(general, h, [1], [1, 1])
     with pytest.raises(ValueError, match="row 2 of an explicit tableau"):
         runge_kutta_step(general, h, [[], []], [1])
+    with pytest.raises(ValueError, match=r"row 1 of an explicit tableau needs 0 coefficients.*it is \[1/2\]"):
+        runge_kutta_step(general, h, [[sp.Rational(1, 2)]], [1])
+    square = runge_kutta_step(general, h, [[0, 0], [1, 0]], [sp.Rational(1, 2)] * 2)
+    assert square == runge_kutta_step(general, h, [[], [1]], [sp.Rational(1, 2)] * 2)
 
 
 def test_midpoint_steps_are_canonical():
@@ -298,3 +302,17 @@ def test_a_constant_behind_an_arbitrary_function_is_found():
     hidden = (1 + slope) ** 2 - slope**2 - 2 * slope
     assert constant_value(hidden, [x], Domain(), t=t) == 1
     assert constant_value(hidden + slope, [x], Domain(), t=t) is None
+
+
+def test_the_momenta_of_a_turn_have_no_poles_that_the_turn_has_not():
+    """Elimination divides by cos(w t): a motion in the turning frame would end at a quarter of a turn."""
+    t, w = sp.symbols("t omega", real=True)
+    turned = [x * sp.cos(w * t) + y * sp.sin(w * t), y * sp.cos(w * t) - x * sp.sin(w * t)]
+    frame = point_transformation([x, y], [px, py], turned, t=t)
+    assert frame.new_p == (px * sp.cos(w * t) + py * sp.sin(w * t), -px * sp.sin(w * t) + py * sp.cos(w * t))
+    assert frame.is_canonical().holds
+    wrong = CanonicalTransformation([x, y], [px, py], turned, [frame.new_p[0], -frame.new_p[1]], t=t)
+    assert wrong.is_canonical().fails
+    polar = point_transformation([x, y], [px, py], [sp.sqrt(x**2 + y**2), sp.atan2(y, x)])
+    assert vanishes(polar.new_p[1] - (x * py - y * px)).holds
+    assert vanishes(polar.new_p[1] - (x * py + y * px)).fails

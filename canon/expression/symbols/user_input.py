@@ -55,7 +55,7 @@ def given_expression(f: Any, name: str = "") -> Expr:
         ...
     TypeError: I should be an expression, not the text 'q*p'; make its symbols with coordinates() and parameters() ...
     """
-    if isinstance(f, sp.Expr):
+    if isinstance(f, sp.Expr) and not isinstance(f, sp.MatrixBase):
         expression = f
     else:
         if isinstance(f, str | list | tuple | set | dict | sp.MatrixBase | bool):
@@ -151,8 +151,10 @@ def _not_an_expression(f: Any, name: str) -> str:
         remedy = "; make its symbols with coordinates() and parameters() and write it with them"
     elif isinstance(f, sp.Equality):
         remedy = "; write lhs - rhs"
-    elif isinstance(f, list | tuple) and len(f) == 1:
+    elif isinstance(f, list | tuple | sp.MatrixBase) and len(f) == 1:
         remedy = "; leave the brackets out"
+    elif isinstance(f, sp.MatrixBase):
+        remedy = "; give its entries one by one"
     else:
         held = [letter for letter in ("H", "L", "F") if isinstance(getattr(f, letter, None), sp.Expr)]
         remedy = f"; give its .{held[0]}" if held else ""

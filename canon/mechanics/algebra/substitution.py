@@ -61,8 +61,14 @@ def entry(matrix: sp.MatrixBase, i: int, j: int) -> Expr:
     return cast("Expr", matrix[i, j])
 
 
-def as_tuple(given: Sequence[Expr] | Expr) -> tuple[Expr, ...]:
-    """Return one expression, or several, as a tuple of expressions."""
+def as_tuple(given: Sequence[Expr] | sp.MatrixBase | Expr) -> tuple[Expr, ...]:
+    """Return one expression, or several, in a list or a matrix of one row or column, as a tuple of expressions."""
+    if isinstance(given, sp.MatrixBase):  # an immutable one is an Expr as well
+        return (
+            tuple(given_expression(f) for f in given.flat())
+            if 1 in given.shape
+            else (given_expression(given),)
+        )
     if isinstance(given, Expr):
         return (given,)
     if not hasattr(given, "__iter__") or isinstance(given, str):

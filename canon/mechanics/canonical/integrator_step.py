@@ -85,7 +85,12 @@ def runge_kutta_step(
     h
         The step size.
     A, b
-        The tableau: row i of A holds the i coefficients of the stages before.
+        The tableau: row i of A holds the i coefficients of the stages before, and as many zeros after them as you like.
+
+    Raises
+    ------
+    ValueError
+        Where a row is too short, or holds a coefficient of a stage that is not before it: the method is implicit then.
 
     Examples
     --------
@@ -100,12 +105,13 @@ def runge_kutta_step(
     z: tuple[Symbol, ...] = (*H.q, *H.p)
     stages: list[list[Expr]] = []
     for row in A:
-        if len(row) != len(stages):
+        before = len(stages)
+        if len(row) < before or any(row[before:]):
             raise ValueError(
-                f"row {len(stages) + 1} of an explicit tableau needs "
-                f"{counted(len(stages), 'coefficient')}, not {len(row)}"
+                f"row {before + 1} of an explicit tableau needs {counted(before, 'coefficient')}, "
+                f"and nothing but zeros after them; it is {list(row)}"
             )
-        moved = _moved(z, h, row, stages)
+        moved = _moved(z, h, row[:before], stages)
         stages.append([substitute(f, dict(zip(z, moved, strict=True))) for f in H.vector_field])
     new = _moved(z, h, b, stages)
     n = len(H.q)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -275,6 +275,11 @@ class CanonicalTransformation:
         return "$\\displaystyle \\begin{aligned}" + r" \\ ".join(rows) + "\\end{aligned}$"
 
 
+_BY_CRAMER = 3
+"""Coordinates up to which the momenta are written by Cramer's rule, whose one denominator is the determinant:
+elimination divides by pivots as well, such as the cosine of a turn, and a motion would end where one vanishes."""
+
+
 def point_transformation(
     q: Sequence[Symbol] | Symbol,
     p: Sequence[Symbol] | Symbol,
@@ -316,8 +321,12 @@ def point_transformation(
     if any(f.has(*momenta) for f in new):
         raise ValueError("the new coordinates of a point transformation depend on q and t only, not on p")
     transposed = sp.Matrix([[f.diff(x) for f in new] for x in old])
-    P = solve(transposed, sp.Matrix(momenta), domain, "the Jacobian of the new coordinates")
-    new_p = [entry(P, i, 0) for i in range(len(old))]
+    solved = solve(transposed, sp.Matrix(momenta), domain, "the Jacobian of the new coordinates")
+    if 1 < len(old) <= _BY_CRAMER:
+        found = cast("Expr", transposed.det(method="berkowitz"))
+        constant = constant_value(found, old, as_domain(domain), 1.0, t)  # cos² + sin² of a turn is 1
+        solved = transposed.adjugate() * sp.Matrix(momenta) / (found if constant is None else constant)
+    new_p = [entry(solved, i, 0) for i in range(len(old))]
     return CanonicalTransformation(old, momenta, new, new_p, domain, t)
 
 

@@ -48,7 +48,7 @@ class Particle:
     m: Expr
     r: tuple[Expr, ...]
 
-    def __init__(self, m: Expr, r: Sequence[Expr]) -> None:
+    def __init__(self, m: Expr, r: Sequence[Expr] | sp.MatrixBase) -> None:
         object.__setattr__(self, "m", given_expression(m, "m"))
         object.__setattr__(self, "r", as_tuple(r))
 
@@ -90,7 +90,7 @@ class PlanarBody:
     def __init__(
         self,
         m: Expr,
-        r: Sequence[Expr],
+        r: Sequence[Expr] | sp.MatrixBase,
         moment: Expr,
         angle: Expr | None = None,
         omega: Expr | None = None,
@@ -143,7 +143,7 @@ class RigidBody:
     def __init__(
         self,
         m: Expr,
-        r: Sequence[Expr],
+        r: Sequence[Expr] | sp.MatrixBase,
         inertia: Sequence[Expr] | sp.MatrixBase,
         rotation: sp.MatrixBase | None = None,
         omega: Sequence[Expr] | None = None,

@@ -23,6 +23,9 @@ class Status(enum.Enum):
     FAILS = "fails"
     UNDECIDED = "undecided"
 
+    def __str__(self) -> str:
+        return self.value
+
 
 class Undecided(Exception):
     """Raised when a verdict that was not decided is used as a truth value."""

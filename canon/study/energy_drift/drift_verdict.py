@@ -24,6 +24,9 @@ class Growth(enum.Enum):
     DIVERGED = "diverged"
     UNDECIDED = "undecided"
 
+    def __str__(self) -> str:
+        return self.value
+
 
 @dataclass(frozen=True)
 class Drift:

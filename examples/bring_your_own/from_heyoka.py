@@ -1,0 +1,34 @@
+r"""
+From heyoka: a list of pairs
+============================
+
+A system written for ``heyoka.taylor_adaptive`` goes to ``propagate`` as it is. In canon one would write its
+energy; then the error is measured as well.
+"""
+
+import heyoka as hy
+import numpy as np
+from sympy import Rational, cos
+
+from canon import Hamiltonian, coordinates, drift, propagate
+
+x, v = hy.make_vars("x", "v")
+system = [(x, v), (v, -9.8 * hy.sin(x))]
+by_hand = hy.taylor_adaptive(system, [2.5, 0.0])
+by_hand.propagate_until(50.0)
+
+# %%
+taken = propagate(system, (0, 50), [2.5, 0.0])
+print("difference:", np.abs(taken.y[:, -1] - by_hand.state).max())
+
+# %%
+q = coordinates("q")
+pendulum = Hamiltonian(q.momentum**2 / 2 - Rational("9.8") * cos(q), [q], [q.momentum])
+run = propagate(pendulum, (0, 20_000), [2.5, 0.0], samples=2000)
+print(drift(run))
+
+# %%
+# Another precision is a word:
+for precision in ("double", "quad"):
+    run = propagate(pendulum, (0, 50), [2.5, 0.0], precision=precision)
+    print(f"{precision:7} max |ΔE/E| = {float(abs(run.energy_error).max()):.0e}")
