@@ -26,6 +26,7 @@ from canon import (
     run_study,
 )
 from canon.cli import main
+from canon.flow import megno
 from canon.study import DamagedChunk, StudyError, mend
 from canon.study.cases import kept_of_case, store
 from canon.study.cases.case import Case, key_of
@@ -124,6 +125,23 @@ def test_the_exponent_of_an_unstable_fixed_point_is_known(tmp_path):
     run_study(study, tmp_path / "s.sqlite")
     found = results_of(tmp_path / "s.sqlite")[0].kept["exponent"]
     np.testing.assert_allclose(found["largest"], np.log(np.cosh(found["t"])) / found["t"], rtol=1e-12)
+
+
+def test_whether_a_case_is_chaotic_is_kept_with_its_limit(tmp_path):
+    study = Study.of(
+        system="henon-heiles", start=["regular", "chaotic"], method="kahan-li-8", step=0.2, span=3000.0, samples=256,
+        keep="chaos",
+    )  # fmt: skip
+    run_study(study, tmp_path / "s.sqlite")
+    for result, verdict in zip(results_of(tmp_path / "s.sqlite"), (-1.0, 1.0), strict=True):
+        kept, case = result.kept["chaos"], result.case
+        found = megno(
+            case.hamiltonian, (0, case.span), case.state, method=case.method, step=case.step, samples=64,
+            parameters=case.values,
+        )  # fmt: skip
+        assert (kept["verdict"] == verdict).all()
+        assert kept["megno"].tolist() == found.history[1:].tolist()
+        assert (kept["detection_limit"] == found.detection_limit).all()
 
 
 def test_a_functions_result_is_kept(whole):

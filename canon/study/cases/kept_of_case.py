@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from canon.flow.chaos.chaos_indicators import megno
+from canon.flow.chaos.regularity import Regularity
 from canon.flow.geometry.flow_jacobian import flow_jacobian
 from canon.flow.run.event import Event
 from canon.study.cases.case_observables import read_formula
-from canon.study.kept.keep_choice import DIRECTIONS, EXPONENT, MOTION, SECTION
+from canon.study.kept.keep_choice import CHAOS, DIRECTIONS, EXPONENT, MOTION, SECTION
 from canon.study.kept.kept_arrays import finite_arrays
 from canon.study.kept.kept_motion import KeptMotion, joined_rows, rows_as_text
 
@@ -105,6 +107,8 @@ def kept_arrays(
             found |= {f"{SECTION}.{each}": row for each, row in zip(("t", *variables), rows, strict=True)}
         elif name == EXPONENT:
             found |= {f"{EXPONENT}.{each}": row for each, row in _exponent(case).items()}
+        elif name == CHAOS:
+            found |= {f"{CHAOS}.{each}": row for each, row in _chaos(case).items()}
         else:
             y = joined_rows(kept[MOTION], len(variables))
             motion = KeptMotion(case.system_name, case.values, variables, t, y, energy_change)
@@ -153,6 +157,29 @@ def _exponent(case: Case) -> dict[str, Array]:
     later = found.t > 0.0
     t = found.t[later]
     return {"t": t, "largest": found.log_size[later] / t}
+
+
+OF_VERDICTS = {Regularity.REGULAR: -1.0, Regularity.NOT_KNOWN: 0.0, Regularity.CHAOTIC: 1.0}
+"""Verdicts as numbers, which arrays of many cases hold."""
+
+
+def _chaos(case: Case) -> dict[str, Array]:
+    """Return MEGNO at some times, and at each the verdict on the whole run with the rate that would have been found."""
+    found = megno(
+        case.hamiltonian,
+        (0.0, case.span),
+        case.state,
+        method=case.method,
+        step=case.step,
+        tolerance=case.tolerance,
+        precision=case.precision,
+        parameters={**case.values},
+        samples=TIMES_OF_EXPONENT,
+    )
+    later = found.t > 0.0
+    verdict = np.full(int(later.sum()), OF_VERDICTS[cast("Regularity", found.verdict)])
+    limit = np.full(len(verdict), found.detection_limit)
+    return {"t": found.t[later], "megno": found.history[later], "verdict": verdict, "detection_limit": limit}
 
 
 def _in_own_variables(y: Array, timed: Driven | None) -> Array:

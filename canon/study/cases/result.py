@@ -174,8 +174,8 @@ class Results(Sequence[Result]):
         Parameters
         ----------
         name
-            ``"motion"`` (along ``sample``), ``"section"`` (along ``passage``), ``"exponent"`` (along ``time``), or the
-            name of a function.
+            ``"motion"`` (along ``sample``), ``"section"`` (along ``passage``), ``"exponent"`` and ``"chaos"`` (along
+            ``time``), or the name of a function.
 
         Raises
         ------

@@ -93,7 +93,8 @@ class Study:
             the others); ``parameters``: a value or a list of values each; ``periods`` or ``span``,
             ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
             ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these; ``keep`` says
-            what is kept beside the numbers: ``"motion"``, ``"exponent"``, ``{"section": formula}``, or a list of these;
+            what is kept beside the numbers: ``"motion"``, ``"exponent"``, ``"chaos"``, ``{"section": formula}``, or a
+            list of these;
             ``tags`` are words that results are found by. Where forces do work, the energy less that is judged; of
             systems without a known energy, such as vector fields, the first observable takes its place.
 

@@ -1,4 +1,4 @@
-"""Choice of what is kept of a case: the motion, a section through it, its exponent, results of functions."""
+"""Choice of what is kept of a case: motion, section, exponent, whether it is chaotic, results of functions."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
     Function = Callable[..., Any]
 
-__all__ = ["DIRECTIONS", "EXPONENT", "MOTION", "SECTION", "chosen_functions", "keep_from"]
+__all__ = ["CHAOS", "DIRECTIONS", "EXPONENT", "MOTION", "SECTION", "chosen_functions", "keep_from"]
 
-MOTION, EXPONENT, SECTION = "motion", "exponent", "section"
+MOTION, EXPONENT, CHAOS, SECTION = "motion", "exponent", "chaos", "section"
 
 DIRECTIONS = {"both": 0, "rising": 1, "falling": -1}
 """Ways in which the function of a section may pass through zero."""
@@ -29,7 +29,8 @@ def keep_from(written: Any) -> Choice:
     Parameters
     ----------
     written
-        ``"motion"``, ``"exponent"``, a table ``{ section = "formula", direction = "rising" }``, or a list of these.
+        ``"motion"``, ``"exponent"``, ``"chaos"``, a table
+        ``{ section = "formula", direction = "rising" }``, or a list of these.
 
     Raises
     ------
@@ -44,7 +45,7 @@ def keep_from(written: Any) -> Choice:
     found: dict[str, str] = {}
     for each in written if isinstance(written, list | tuple) else [written]:
         name, text = (SECTION, _section(each)) if isinstance(each, dict) else (each, "")
-        if name not in (MOTION, EXPONENT) and not text:
+        if name not in (MOTION, EXPONENT, CHAOS) and not text:
             raise ValueError(f"keep = {reprlib.repr(each)}: {_KNOWN}")
         if name == SECTION and SECTION in found:
             raise ValueError("one section is kept of a case: give the others studies of their own")
@@ -52,9 +53,7 @@ def keep_from(written: Any) -> Choice:
     return tuple(found.items())
 
 
-_KNOWN = (
-    'give "motion", "exponent", a table { section = "formula", direction = "rising" }, or a list of these'
-)
+_KNOWN = 'give "motion", "exponent", "chaos", a table { section = "formula", direction = "rising" }, or a list of these'
 
 
 def _section(table: dict[str, Any]) -> str:
@@ -96,7 +95,7 @@ def chosen_functions(functions: Mapping[str, Function]) -> Choice:
             raise TypeError(
                 f"keep = {{{name!r}: {reprlib.repr(function)}}}: give a function of a kept motion"
             )
-        if not name.isidentifier() or name in (MOTION, EXPONENT, SECTION, *_OF_NUMPY):
+        if not name.isidentifier() or name in (MOTION, EXPONENT, CHAOS, SECTION, *_OF_NUMPY):
             raise ValueError(
                 f"what is kept can't be called {name!r}: give letters and digits, and none of canon's names"
             )

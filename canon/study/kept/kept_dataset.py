@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.study.kept.keep_choice import EXPONENT, MOTION, SECTION
+from canon.study.kept.keep_choice import CHAOS, EXPONENT, MOTION, SECTION
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SideBySide", "dataset_of_kept"]
 
-ALONG = {MOTION: "sample", SECTION: "passage", EXPONENT: "time"}
+ALONG = {MOTION: "sample", SECTION: "passage", EXPONENT: "time", CHAOS: "time"}
 """What the arrays of a kept name lie along; those of functions along NAME_0, NAME_1, …"""
 
 
@@ -93,7 +93,7 @@ def dataset_of_kept(kept: Sequence[Kept], name: str, inputs: Mapping[str, Sequen
     kept
         What was kept of each case.
     name
-        ``"motion"``, ``"section"``, ``"exponent"``, or the name of a function.
+        ``"motion"``, ``"section"``, ``"exponent"``, ``"chaos"``, or the name of a function.
     inputs
         Coordinates along ``case``.
 
