@@ -1,5 +1,6 @@
 """The processes that judge and prove run canon and what it rests on, and nothing else, wherever they start."""
 
+import io
 import os
 import shutil
 import signal
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from canon.process import Child, Ended, Late, _limit_memory
+from canon.process import Child, Ended, Late, _limit_memory, _read, _write
 from canon.trusted_folders import RESTS_ON, trusted_folders
 
 ROOT = Path(__file__).parents[1]
@@ -330,3 +331,13 @@ def test_a_limit_that_is_refused_elsewhere_is_not_passed_over(monkeypatch):
     with pytest.raises(ValueError, match="current limit"):
         _limit_memory(2**31)
     assert limits.asked == [("address space", (2**31, 2**40))]
+
+
+def test_a_message_that_was_cut_off_is_none():
+    whole = io.BytesIO()
+    _write(whole, b"nine bytes")
+    sent = whole.getvalue()
+    assert _read(io.BytesIO(sent)) == b"nine bytes"
+    for length in range(len(sent)):
+        with pytest.raises(EOFError):
+            _read(io.BytesIO(sent[:length]))
