@@ -105,10 +105,8 @@ def kept_arrays(
         if name == SECTION:
             rows = joined_rows(kept[SECTION], 1 + len(variables))
             found |= {f"{SECTION}.{each}": row for each, row in zip(("t", *variables), rows, strict=True)}
-        elif name == EXPONENT:
-            found |= {f"{EXPONENT}.{each}": row for each, row in _exponent(case).items()}
-        elif name == CHAOS:
-            found |= {f"{CHAOS}.{each}": row for each, row in _chaos(case).items()}
+        elif name in COMPUTED_ANEW:
+            found |= {f"{name}.{each}": row for each, row in COMPUTED_ANEW[name](case).items()}
         else:
             y = joined_rows(kept[MOTION], len(variables))
             motion = KeptMotion(case.system_name, case.values, variables, t, y, energy_change)
@@ -180,6 +178,10 @@ def _chaos(case: Case) -> dict[str, Array]:
     verdict = np.full(int(later.sum()), OF_VERDICTS[cast("Regularity", found.verdict)])
     limit = np.full(len(verdict), found.detection_limit)
     return {"t": found.t[later], "megno": found.history[later], "verdict": verdict, "detection_limit": limit}
+
+
+COMPUTED_ANEW = {EXPONENT: _exponent, CHAOS: _chaos}
+"""What is computed after the run, from the start in one piece."""
 
 
 def _in_own_variables(y: Array, timed: Driven | None) -> Array:
