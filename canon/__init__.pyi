@@ -23,7 +23,9 @@ from .flow.run.observables_along import AccuracyWarning as AccuracyWarning
 from .mechanics.canonical.find_generating_function import generating_function as generating_function
 from .mechanics.canonical.from_generating_function import generated_transformation as generated_transformation
 from .mechanics.canonical.generating_function import GeneratingFunction as GeneratingFunction
-from .mechanics.canonical.inverse_transformation import inverse_transformation as inverse_transformation
+from .mechanics.canonical.inverse.inverse_transformation import (
+    inverse_transformation as inverse_transformation,
+)
 from .mechanics.canonical.new_hamiltonian import new_hamiltonian as new_hamiltonian
 from .mechanics.canonical.transformation import CanonicalTransformation as CanonicalTransformation
 from .mechanics.canonical.transformation import point_transformation as point_transformation

@@ -129,7 +129,7 @@ RETURNED = {
         "mechanics.lagrange.dependence.DependentConstraintsError",
         "mechanics.canonical.generating_function.NoGeneratingFunctionError",
         "mechanics.canonical.generating_function.Rule",
-        "mechanics.canonical.inverse_transformation.NoClosedInverseError",
+        "mechanics.canonical.inverse.inverse_transformation.NoClosedInverseError",
         "mechanics.hamilton.legendre.LegendreError",
         "mechanics.algebra.linear.SingularMatrixError",
         "mechanics.canonical.parametric_generating_function.ParametricGeneratingFunction",

@@ -28,8 +28,8 @@ from .canonical.implicit_transformation import ImplicitTransformation as Implici
 from .canonical.integrator_step import midpoint_step as midpoint_step
 from .canonical.integrator_step import runge_kutta_step as runge_kutta_step
 from .canonical.integrator_step import splitting_step as splitting_step
-from .canonical.inverse_transformation import NoClosedInverseError as NoClosedInverseError
-from .canonical.inverse_transformation import inverse_transformation as inverse_transformation
+from .canonical.inverse.inverse_transformation import NoClosedInverseError as NoClosedInverseError
+from .canonical.inverse.inverse_transformation import inverse_transformation as inverse_transformation
 from .canonical.new_hamiltonian import is_new_hamiltonian as is_new_hamiltonian
 from .canonical.new_hamiltonian import new_hamiltonian as new_hamiltonian
 from .canonical.parametric_generating_function import (

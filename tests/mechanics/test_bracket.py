@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from canon.expression.symbols.symbol import time
 from canon.mechanics.canonical import bracket_law as law
-from canon.mechanics.canonical.inverse_transformation import inverse_transformation
+from canon.mechanics.canonical.inverse.inverse_transformation import inverse_transformation
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.bracket import (
     lagrange_bracket,

@@ -41,7 +41,7 @@ from canon.mechanics.canonical.generating_function import (
     GeneratingFunction,
     NoGeneratingFunctionError,
 )
-from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError
+from canon.mechanics.canonical.inverse.inverse_transformation import NoClosedInverseError
 from canon.mechanics.canonical.parametric_generating_function import ParametricGeneratingFunction
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.proof.domain.domain import Domain

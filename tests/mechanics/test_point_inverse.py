@@ -114,25 +114,41 @@ def test_what_is_not_canonical_is_not_inverted_by_its_coordinates():
     assert back.images == (sqrt(x), y - sqrt(x), p_x, p_y / 5)
 
 
-ELLIPTIC = point_map(
-    (u, theta), (cosh(u) * cos(theta), sinh(u) * sin(theta)), Domain((theta > -pi, theta < pi))
+ACROSS, ALONG = cosh(u) * cos(theta), sinh(u) * sin(theta)
+TURNED = CanonicalTransformation(
+    (u, theta),
+    (p1, p2),
+    (ACROSS + ALONG, ACROSS - ALONG),
+    (p1 / ACROSS, p2),
+    Domain((theta > -pi, theta < pi)),
 )
 
 
+def test_a_turn_without_bounds_is_told_at_once(monkeypatch):
+    monkeypatch.setattr("canon.mechanics.canonical.inverse.inverse_transformation.point_branch", None)
+    T = point_map((r, phi), (r * cos(phi), r * sin(phi)))
+    with pytest.raises(
+        NoClosedInverseError, match=r"phi and phi \+ 2\*pi have the same image; .* -pi < phi < pi"
+    ):
+        inverse_transformation(T, [x, y], [p_x, p_y])
+
+
 def test_a_budget_that_ends_is_told(monkeypatch):
-    """Elliptic coordinates lead to an equation of degree four in cosh u, whose roots are not tried for long."""
+    """Turned elliptic coordinates lead to an equation of degree four in cosh u, whose roots are not tried for long."""
     now = iter(range(0, 10**6, 5))
-    monkeypatch.setattr("canon.mechanics.canonical.inverse_transformation.clock.monotonic", lambda: next(now))
+    monkeypatch.setattr(
+        "canon.mechanics.canonical.inverse.inverse_transformation.clock.monotonic", lambda: next(now)
+    )
     with pytest.raises(
         NoClosedInverseError, match=r"within 7 s; give inverse_transformation a larger budget"
     ):
-        inverse_transformation(ELLIPTIC, [x, y], [p_x, p_y], budget=7)
+        inverse_transformation(TURNED, [x, y], [p_x, p_y], budget=7)
 
 
 @pytest.mark.parametrize("bad", ["long", float("nan"), None])
 def test_a_budget_is_a_number_of_seconds(bad):
     with pytest.raises((ValueError, TypeError), match="budget should be a number of seconds, not"):
-        inverse_transformation(ELLIPTIC, [x, y], [p_x, p_y], budget=bad)
+        inverse_transformation(TURNED, [x, y], [p_x, p_y], budget=bad)
 
 
 @pytest.mark.parametrize("n", [1, 4, 12, 40])

@@ -13,8 +13,8 @@ from canon.mechanics import (
     new_hamiltonian,
     transformed_hamiltonian,
 )
+from canon.mechanics.canonical.inverse.inverse_branch import plain_arcs, plain_sign, united_squares
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian
-from canon.mechanics.canonical.polar_inverse import plain_arcs, plain_sign, united_squares
 from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 

@@ -10,7 +10,10 @@ from canon.mechanics.canonical.find_generating_function import generating_functi
 from canon.mechanics.canonical.generating_function import NoGeneratingFunctionError
 from canon.mechanics.canonical.implicit_transformation import ImplicitTransformation
 from canon.mechanics.canonical.integrator_step import midpoint_step, runge_kutta_step, splitting_step
-from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError, inverse_transformation
+from canon.mechanics.canonical.inverse.inverse_transformation import (
+    NoClosedInverseError,
+    inverse_transformation,
+)
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
 from canon.mechanics.canonical.repair_hint import constant_value, repair_hint
 from canon.mechanics.canonical.transformation import CanonicalTransformation, point_transformation

@@ -52,6 +52,22 @@ CASES = {
     "Lagrange's top": (TOP, {theta: 1.0, phi: 0.0, psi: 0.0, p_theta: 0.25, p_phi: 2.0, p_psi: 3.0}, {}),
     "spherical pendulum": (SPHERE, {theta: 2.0, phi: 0.0, p_theta: 0.5, p_phi: 0.5}, {}),
     "Liouville": (LIOUVILLE, {x: 0.25, y: 0.5, px: 0.5, py: 0.75}, {}),
+    "Morse": (Hamiltonian(p**2 / (2 * m) + 3 * (1 - sp.exp(-q / 2)) ** 2, q, p), {q: 0.25, p: 1.5}, {m: 2}),
+    "Pöschl–Teller": (Hamiltonian(p**2 / 2 - 2 / sp.cosh(q) ** 2, q, p), {q: 0.25, p: 1.0}, {}),
+    "quartic": (Hamiltonian(p**2 / 2 + q**4, q, p), {q: 0.25, p: 1.5}, {}),
+    "cubic wall": (Hamiltonian(p**2 / 2 + sp.Abs(q) ** 3, q, p), {q: 0.25, p: 1.5}, {}),
+    "double well, within one": (Hamiltonian(p**2 / 2 - q**2 + q**4, q, p), {q: 0.75, p: 0.25}, {}),
+    "double well, over both": (Hamiltonian(p**2 / 2 - q**2 + q**4, q, p), {q: 0.75, p: 1.25}, {}),
+    "central cube": (
+        Hamiltonian(p_r**2 / 2 + p_phi**2 / (2 * r**2) + r**3, [r, phi], [p_r, p_phi]),
+        {r: 1.0, phi: 0.0, p_r: 0.5, p_phi: 1.0},
+        {},
+    ),
+    "isochrone": (
+        Hamiltonian(p_r**2 / 2 + p_phi**2 / (2 * r**2) - k / (1 + sp.sqrt(1 + r**2)), [r, phi], [p_r, p_phi]),
+        {r: 1.0, phi: 0.0, p_r: 0.25, p_phi: 0.5},
+        {k: 1},
+    ),
 }
 
 

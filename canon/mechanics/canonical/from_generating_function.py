@@ -17,7 +17,7 @@ from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import shortened, substitute
 from canon.mechanics.canonical.generating_function import GeneratingFunction, kinds_of
 from canon.mechanics.canonical.implicit_transformation import ImplicitTransformation
-from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError
+from canon.mechanics.canonical.inverse.inverse_transformation import NoClosedInverseError
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.proof.domain.domain import Domain, as_domain

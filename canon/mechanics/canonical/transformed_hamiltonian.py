@@ -12,10 +12,11 @@ from canon.expression.symbols.user_input import given_kind, given_symbols
 from canon.mechanics.algebra.branch_point import branch_points, far_from_principal
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import shortened, substitute
-from canon.mechanics.canonical.inverse_transformation import NoClosedInverseError, meaning_of
+from canon.mechanics.canonical.inverse.inverse_branch import united_squares
+from canon.mechanics.canonical.inverse.inverse_transformation import NoClosedInverseError, meaning_of
+from canon.mechanics.canonical.inverse.point_inverse import point_branch
+from canon.mechanics.canonical.inverse.polar_inverse import polar_branch
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
-from canon.mechanics.canonical.point_inverse import point_branch
-from canon.mechanics.canonical.polar_inverse import polar_branch, united_squares
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 

@@ -142,7 +142,7 @@ def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] |
         return ratio * momentum.shift, "a constant momentum"
     if square is None or momentum.shift != 0:
         return None
-    terms = _terms(square, q)
+    terms = _terms(_about_its_kink(square, q), q)
     A = terms.pop(sp.S.One, sp.S.Zero)
     if cycle.kind is CycleKind.ROTATION:
         return _pendulum(A, terms, q, cycle)
@@ -151,6 +151,15 @@ def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] |
         if found is not None:
             return found
     return _pendulum(A, terms, q, cycle)
+
+
+def _about_its_kink(f: Expr, q: Symbol) -> Expr:
+    """Return f(q + a) where f holds |q − a| and no other modulus: the loop integral is the same."""
+    inside = {part.args[0] for part in f.atoms(sp.Abs) if part.has(q)}
+    if len(inside) != 1:
+        return f
+    (u,) = inside
+    return substitute(f, {q: q + sp.expand(q - u / u.diff(q))}) if u.diff(q) in (1, -1) else f
 
 
 def _terms(f: Expr, q: Symbol) -> dict[Expr, Expr]:
@@ -167,9 +176,8 @@ def _powers(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] 
     if q**2 in names and names <= {q, q**2}:
         B, C = terms.get(q, sp.S.Zero), terms[q**2]
         return (A - B**2 / (4 * C)) / (2 * sqrt(-C)), "oscillator"
-    if len(terms) == 1 and _is_even_power(next(iter(names)), q):
-        (power,) = names
-        n, wall = power.as_base_exp()[1], -terms[power]
+    if len(terms) == 1 and (even := _even_power(next(iter(names)), q)) is not None:
+        n, wall = even, -next(iter(terms.values()))
         gammas = sp.gamma(1 / n) / sp.gamma(1 / n + Rational(3, 2))
         return A ** (Rational(1, 2) + 1 / n) * wall ** (-1 / n) * gammas / (n * sqrt(sp.pi)), "even power"
     if names == {1 / q, q**-2}:
@@ -182,10 +190,21 @@ def _powers(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] 
     return None
 
 
-def _is_even_power(f: Expr, q: Symbol) -> bool:
-    """Whether f is q⁴, q⁶, …: with the substitution q = a x^(1/n) its action is a beta function."""
-    base, exponent = f.as_base_exp()
-    return base == q and exponent.is_Integer is True and exponent.is_even is True and bool(exponent > 2)
+def _even_power(f: Expr, q: Symbol) -> Expr | None:
+    """Return n where f is q⁴, q⁶, … or |q − a|ⁿ: with |q − a| = b x^(1/n) its action is a beta function."""
+    powers = [factor.as_base_exp() for factor in sp.Mul.make_args(f)]
+    if len(powers) == 1 and powers[0][0] == q:
+        n = powers[0][1]
+        return n if n.is_Integer and n.is_even and bool(n > 2) else None
+    sides = [(sp.Abs(base), n) for base, n in powers]
+    (modulus, _), slope = (
+        sides[0],
+        cast("Expr", sides[0][0].args[0]).diff(q) if sides[0][0].args else sp.S.Zero,
+    )
+    if not isinstance(modulus, sp.Abs) or slope not in (1, -1) or any(side != modulus for side, _ in sides):
+        return None
+    total = sp.Add(*(n for _, n in sides))
+    return total if total.is_positive else None
 
 
 def _trigonometric(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, str] | None:

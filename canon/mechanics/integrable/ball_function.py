@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
-from flint import acb
+from flint import acb, arb
 from sympy import Expr, Symbol
 
 from canon.proof.domain.balls import value
@@ -132,11 +132,15 @@ def _operation(node: sp.Basic) -> Callable[[list[acb], bool], acb]:
         return _sum
     if isinstance(node, sp.Mul):
         return _product
+    if isinstance(node, sp.Pow) and isinstance(node.exp, sp.Rational):
+        return _rational_power(node.exp, modulus=isinstance(node.base, sp.Abs))
     if isinstance(node, sp.Pow):
-        return _rational_power(node.exp) if isinstance(node.exp, sp.Rational) else _power
+        return _power
     function = ENTIRE.get(node.func)
     if function is not None:
         return _entire(function)
+    if isinstance(node, sp.Abs | sp.sign):
+        return _of_sides(modulus=isinstance(node, sp.Abs))
     if isinstance(node, sp.log) and len(node.args) == 1:
         return lambda arguments, analytic: arguments[0].log(analytic=analytic)
     raise NotHolomorphicError(
@@ -148,6 +152,21 @@ def _operation(node: sp.Basic) -> Callable[[list[acb], bool], acb]:
 def _entire(function: Callable[[acb], acb]) -> Callable[[list[acb], bool], acb]:
     def applied(arguments: list[acb], _analytic: bool) -> acb:
         return function(arguments[0])
+
+    return applied
+
+
+def _of_sides(*, modulus: bool) -> Callable[[list[acb], bool], acb]:
+    """Return |z| or sign z of a real z, continued from each side of zero: ±z and ±1."""
+
+    def applied(arguments: list[acb], analytic: bool) -> acb:
+        z = arguments[0]
+        if z.real > 0 or z.real < 0:
+            side = 1 if z.real > 0 else -1
+            return side * z if modulus else acb(side)
+        if analytic or not z.imag.is_zero():
+            return NOWHERE
+        return acb(abs(z.real) if modulus else arb(0, 1))
 
     return applied
 
@@ -171,11 +190,19 @@ def _power(arguments: list[acb], analytic: bool) -> acb:
     return (exponent * base.log(analytic=analytic)).exp()
 
 
-def _rational_power(exponent: sp.Rational) -> Callable[[list[acb], bool], acb]:
+def _of_nothing_less(x: arb, exponent: arb) -> acb:
+    """Return the power of a modulus of which a ball tells that it may be zero."""
+    top = x.upper()
+    return acb(arb(0).union(top**exponent)) if top > 0 else acb(0)
+
+
+def _rational_power(exponent: sp.Rational, *, modulus: bool) -> Callable[[list[acb], bool], acb]:
     n, d = int(exponent.p), int(exponent.q)
 
     def power(arguments: list[acb], analytic: bool) -> acb:
         base = arguments[0]
+        if modulus and d > 1 and n > 0 and not analytic and base.real.contains(0):
+            return _of_nothing_less(base.real, arb(n) / d)
         if n < 0 and base.contains(0):
             return NOWHERE
         if d == 1:

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -14,6 +14,7 @@ from sympy import Expr, Symbol, cos, cosh, sin, sinh
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.canonical.transformation import CanonicalTransformation, point_transformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.proof.domain.domain import EVERYWHERE, Domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -35,6 +36,8 @@ class Chart:
         The Cartesian coordinates as functions of them.
     squared_scales
         The squares h_i² of their scale factors, Σ dx² = Σ h_i² dq_i².
+    domain
+        Where they are one to one: lengths positive, angles within a turn or, from a pole, half a turn.
     """
 
     name: str
@@ -42,10 +45,20 @@ class Chart:
     p: tuple[Symbol, ...]
     position: tuple[Expr, ...]
     squared_scales: tuple[Expr, ...]
+    domain: Domain = EVERYWHERE
 
     def lift(self) -> CanonicalTransformation:
-        """Return the point transformation from these coordinates and momenta to the Cartesian ones."""
-        return point_transformation(self.q, self.p, self.position)
+        """Return the point transformation from these coordinates and momenta to the Cartesian ones, where one to one.
+
+        Examples
+        --------
+        >>> from canon.mechanics import inverse_transformation
+        >>> x, y, px, py = sp.symbols("x y p_x p_y", real=True)
+        >>> (polar,) = charts_for(Hamiltonian(px**2 + py**2, [x, y], [px, py]), "polar", None)
+        >>> inverse_transformation(polar.lift(), [x, y], [px, py]).new_q
+        (sqrt(x**2 + y**2), atan2(y, x))
+        """
+        return replace(point_transformation(self.q, self.p, self.position), domain=self.domain)
 
     def hamiltonian(self, H: Hamiltonian) -> Hamiltonian:
         """Return H = κ Σ p² + V(x) in these coordinates: κ Σ P_i²/h_i² + V."""
@@ -154,7 +167,8 @@ def _chart(name: str, c: Expr, H: Hamiltonian) -> Chart:
     )
     p = tuple(Symbol(_free(f"p_{s.name}", taken), real=True) for s in q)
     position, scales = build(q, c)
-    return Chart(name, q, p, position, scales)
+    between = (sp.Gt(q[k], low) & sp.Lt(q[k], high) for k, (low, high) in _BETWEEN.get(name, {}).items())
+    return Chart(name, q, p, position, scales, Domain(tuple(between)))
 
 
 def _free(name: str, taken: set[str]) -> str:
@@ -216,6 +230,17 @@ _CHARTS: dict[str, tuple[Callable[[Sequence[Symbol], Expr], Built], tuple[str, .
     "paraboloidal": (_paraboloidal, ("u", "v", "phi"), (0, 1)),
     "prolate": (_prolate, ("u", "v", "phi"), (0,)),
 }
+
+_TURN, _HALF_TURN = (-sp.pi, sp.pi), (sp.S.Zero, sp.pi)
+_BETWEEN: dict[str, dict[int, tuple[Expr, Expr]]] = {
+    "polar": {1: _TURN},
+    "elliptic": {1: _TURN},
+    "spherical": {1: _HALF_TURN, 2: _TURN},
+    "cylindrical": {1: _TURN},
+    "paraboloidal": {2: _TURN},
+    "prolate": {1: _HALF_TURN, 2: _TURN},
+}
+"""Between what the angles are one to one."""
 
 _DIMENSION = {name: len(spelled) for name, (_, spelled, _) in _CHARTS.items()}
 _FOCAL = ("elliptic", "prolate")

@@ -3,8 +3,9 @@
 Between turning points a < b the root is written √(p²) = √(q − a) √(b − q) √R, where R is holomorphic and not zero about
 [a, b]. The integral of f(q) (p²)^(±1/2) from a to b is then the real part of the integral along a path in the upper
 half plane, from a − d over a − d + i d and b + d + i d to b + d: outside [a, b] the root is imaginary. The square-root
-ends are never touched. That p² is holomorphic in the rectangle and has no zeros there but a and b is proved by balls
-and by the argument principle; integrals are Arb's (doi:10.1007/978-3-319-96418-8_30), with rigorous bounds.
+ends are never touched. Where a is a wall, at which p² > 0, the path begins at a itself. That p² is holomorphic in the
+rectangle and has no zeros there but a and b is proved by balls and by the argument principle; integrals are Arb's
+ (doi:10.1007/978-3-319-96418-8_30), with rigorous bounds.
 """
 
 from __future__ import annotations
@@ -56,6 +57,8 @@ class Libration:
         The turning points.
     name
         The coordinate, for messages.
+    wall
+        Whether the lower end is no turning point: p² is positive there, and the path begins at it.
     proved
         The widths of rectangles that were looked at, and whether they will do.
     """
@@ -65,6 +68,7 @@ class Libration:
     low: arb
     high: arb
     name: str
+    wall: bool = False
     proved: dict[float, bool] = field(default_factory=dict[float, bool], compare=False, repr=False)
 
     def root(self, q: acb, analytic: bool = False) -> acb:
@@ -76,13 +80,15 @@ class Libration:
         left, right = q - self.low, self.high - q
         rest = self._rest(q, analytic).sqrt(analytic=True)
         i = acb(0, 1)
-        return (-i * left).sqrt(analytic=analytic) * (i * right).sqrt(analytic=analytic) * rest
+        low = (-i).sqrt() if self.wall else (-i * left).sqrt(analytic=analytic)
+        return low * (i * right).sqrt(analytic=analytic) * rest
 
     def _rest(self, q: acb, analytic: bool = False) -> acb:
-        """Return R = p²/((q − a)(b − q))."""
-        return self.square(q, analytic) / ((q - self.low) * (self.high - q))
+        """Return R = p²/((q − a)(b − q)), or p²/(b − q) at a wall."""
+        ends = self.high - q if self.wall else (q - self.low) * (self.high - q)
+        return self.square(q, analytic) / ends
 
-    def integral(self, f: BallFunction | None, power: int, end: arb | None = None) -> arb:
+    def integral(self, f: Callable[[acb, bool], acb], power: int, end: arb | None = None) -> arb:
         """Return the integral of f·(p²)^(power/2) from the lower turning point to the upper one, or to ``end``.
 
         Raises
@@ -92,8 +98,7 @@ class Libration:
         """
 
         def integrand(q: acb, analytic: bool) -> acb:
-            factor = acb(1) if f is None else f(q, analytic)
-            return factor * self.root(q, analytic) ** power
+            return f(q, analytic) * self.root(q, analytic) ** power
 
         for path in self._paths(end):
             total = integral_along(integrand, path)
@@ -127,7 +132,7 @@ class Libration:
 
     def _is_proved(self, d: arb) -> bool:
         with precision(COARSE_BITS):
-            low, high = (self.low - d).mid(), (self.high + d).mid()
+            low, high = self._left(d), (self.high + d).mid()
             if not _holomorphic(self.square, low.union(high), arb(0).union(d), DEEPEST):
                 return False
             turns = integral_along(
@@ -139,11 +144,14 @@ class Libration:
             if not turns.is_finite():
                 return False
             count = (turns.imag / arb.pi()).unique_fmpz()
-            return count is not None and int(count) == 2
+            return count is not None and int(count) == (1 if self.wall else 2)
 
     def _path(self, d: arb, end: arb | None) -> list[acb]:
-        left, right = (self.low - d).mid(), (self.high + d).mid() if end is None else end
+        left, right = self._left(d), (self.high + d).mid() if end is None else end
         return [acb(left), acb(left, d), acb(right, d), acb(right)]
+
+    def _left(self, d: arb) -> arb:
+        return self.low if self.wall else (self.low - d).mid()
 
     @property
     def _too_near(self) -> NoCycleError:

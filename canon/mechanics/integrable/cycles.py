@@ -14,6 +14,7 @@ from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.integrable.ball_function import BallFunction
 from canon.mechanics.integrable.cycle_quadrature import Libration, integral_along
+from canon.mechanics.integrable.kinked_libration import KinkedLibration, kinked_libration
 from canon.mechanics.integrable.turning_points import (
     NoCycleError,
     real_value,
@@ -88,12 +89,11 @@ class CycleIntegrals:
     balls: Mapping[Symbol, acb] = field(repr=False)
 
     @cached_property
-    def libration(self) -> Libration:
+    def libration(self) -> Libration | KinkedLibration:
         """The cycle between both turning points."""
-        low, high = cast("tuple[arb, arb]", self.cycle.turning_points)
-        return Libration(
-            *_functions(self._square, self.momentum.q, self.balls), low, high, str(self.momentum.q)
-        )
+        q, (low, high) = self.momentum.q, cast("tuple[arb, arb]", self.cycle.turning_points)
+        kinked = kinked_libration(self._square, q, self.balls, (low, high))
+        return kinked or Libration(*_functions(self._square, q, self.balls), low, high, str(q))
 
     @property
     def _square(self) -> Expr:
@@ -154,12 +154,12 @@ class CycleIntegrals:
 
     def _of_root(self, constant: Symbol | None, end: arb | None) -> arb:
         """Return the integral of √(p²), or of its derivative, from the lower turning point."""
-        if constant is None:
-            return self.libration.integral(None, 1, end)
-        slope = self._square.diff(constant) / 2
-        if slope == 0:
+        power, f = (1, sp.S.One) if constant is None else (-1, self._square.diff(constant) / 2)
+        if f == 0:
             return arb(0)
-        return self.libration.integral(BallFunction(slope, self.momentum.q, self.balls), -1, end)
+        if isinstance(self.libration, KinkedLibration):
+            return self.libration.integral(f, power, end)
+        return self.libration.integral(BallFunction(f, self.momentum.q, self.balls), power, end)
 
     def _of_rotation(self, constant: Symbol | None, end: arb) -> arb:
         """Return the integral of p, or of its derivative by a constant, where it has no zero, from q = 0."""

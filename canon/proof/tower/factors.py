@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = ["apart", "factors_of", "modulus_of_polynomial", "primes", "split_signs"]
 
+LONGEST_REWRITTEN = 40
+"""Terms of a polynomial that is written otherwise in a sine and a cosine to be factored."""
 LARGEST_FACTORED_INTEGER = 10**15
 """Integers up to this are split into primes under roots and logarithms."""
 
@@ -57,18 +59,33 @@ def split_signs(n: Forms, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]]
 
 
 def factors_of(n: Forms, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
-    """Factor p, also as a form in the cosine and sine of an angle: 1 − c² = s², 1 − 2sc = (c − s)²."""
+    """Factor p, also as a form in cosine and sine, 1 − 2sc = (c − s)², or in the sine, 2 + 2s − c² = (1 + s)²."""
     t = n.tower
     for k in t.used(p):
         kernel = t.generators[k]
         if kernel[0] != "cos":
             continue
-        homogeneous = _homogeneous(n, p, k, t.generator(("sin", kernel[1])))
-        if homogeneous is not None:
-            unit, factors = t.factors(homogeneous)
-            if len(factors) > 1 or factors[0][1] > 1:
-                return unit, factors
+        sine = t.generator(("sin", kernel[1]))
+        for other in (_homogeneous(n, p, k, sine), _in_the_sine(n, p, k, sine)):
+            if other is not None:
+                unit, factors = t.factors(other)
+                if len(factors) > 1 or factors[0][1] > 1:
+                    return unit, factors
     return t.factors(p)
+
+
+def _in_the_sine(n: Forms, p: fmpq_mpoly, c: int, s: int) -> fmpq_mpoly | None:
+    """Return p with 1 − s² for c², where it holds odd powers of the sine and even ones of the cosine alone."""
+    t = n.tower
+    if s not in t.used(p) or len(p) > LONGEST_REWRITTEN:
+        return None
+    coefficients = t.coefficients(p, c)
+    if len(coefficients) > 9 or any(not a.is_zero() for a in coefficients[1::2]):
+        return None
+    total = t.constant(0)
+    for j, coefficient in enumerate(coefficients[::2]):
+        total = total + coefficient * (1 - t.monomial(s, 2)) ** j
+    return total
 
 
 def _homogeneous(n: Forms, p: fmpq_mpoly, c: int, s: int) -> fmpq_mpoly | None:
@@ -82,7 +99,7 @@ def _homogeneous(n: Forms, p: fmpq_mpoly, c: int, s: int) -> fmpq_mpoly | None:
             term = term * t.monomial(k, e)
         by_degree[degree] = by_degree.get(degree, t.constant(0)) + term
     highest = max(by_degree)
-    if highest > 8 or len({degree % 2 for degree in by_degree}) > 1 or len(p) > 40:
+    if highest > 8 or len({degree % 2 for degree in by_degree}) > 1 or len(p) > LONGEST_REWRITTEN:
         return None
     one = t.monomial(c, 2) + t.monomial(s, 2)
     total = t.constant(0)

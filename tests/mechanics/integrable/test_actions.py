@@ -252,8 +252,10 @@ def test_bad_input_is_told():
         frequencies(OSCILLATOR, {q: 1, p: sp.I}, {m: 1, w: 1})
     with pytest.raises(ValueError, match="declared positive"):
         action_variables(KEPLER, {r: -1, phi: 0, p_r: 0, p_phi: 1}, {m: 1, k: 1})
-    with pytest.raises(NotHolomorphicError, match="Abs"):
-        action_variables(hamilton_jacobi(Hamiltonian(p**2 / 2 + sp.Abs(q), q, p)), {q: 1, p: 1})
+    with pytest.raises(NotHolomorphicError, match="Max"):
+        action_variables(hamilton_jacobi(Hamiltonian(p**2 / 2 + sp.Max(q, -q), q, p)), {q: 1, p: 1})
+    with pytest.raises(NotHolomorphicError, match=r"Abs\(q\*\*2 - 1\) may have a kink .* not linear in q"):
+        action_variables(hamilton_jacobi(Hamiltonian(p**2 / 2 + sp.Abs(q**2 - 1), q, p)), {q: 0, p: 2})
 
 
 def test_the_working_precision_is_as_it_was():

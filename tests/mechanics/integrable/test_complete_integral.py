@@ -7,6 +7,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from canon.mechanics.canonical.inverse.inverse_transformation import inverse_transformation
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.bracket import poisson_bracket
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
@@ -149,6 +150,21 @@ def test_charts_are_canonical_and_carry_the_hamiltonian_over(name):
     due = chart.hamiltonian(H).H.subs(dict.fromkeys(chart.p, 0))
     start = {s: sp.Rational(5 + i, 7) for i, s in enumerate(sorted(there.free_symbols, key=str))}
     assert abs((there - due).subs(start).evalf(30)) < 1e-25
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in ("elliptic", "polar") else pytest.param(n, marks=pytest.mark.slow) for n in NAMES]
+)
+def test_charts_have_inverses_where_they_are_one_to_one(name):
+    H, focal = CLASSICAL[name]
+    (chart,) = charts_for(H, name, focal)
+    lift = chart.lift()
+    back = inverse_transformation(lift, H.q, H.p)
+    start = {z: sp.Rational(3 + k, 5) for k, z in enumerate(lift.variables)} | {c: sp.Rational(3, 2)}
+    there = dict(zip((*H.q, *H.p), (f.subs(start).n(30) for f in lift.images), strict=True))
+    for z, f in zip(lift.variables, back.images, strict=True):
+        assert abs(f.subs({**there, c: start[c]}).n(30) - start[z]) < 1e-25
+        assert abs(f.subs({**there, c: start[c]}).n(30) + start[z]) > 1
 
 
 @pytest.mark.parametrize(

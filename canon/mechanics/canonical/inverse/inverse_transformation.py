@@ -14,8 +14,9 @@ from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.branch_point import branch_points, far_from_principal
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import substitute
-from canon.mechanics.canonical.point_inverse import point_branch
-from canon.mechanics.canonical.polar_inverse import free_angles, plain_sign, polar_branch, positive_radicands
+from canon.mechanics.canonical.inverse.inverse_branch import plain_sign, positive_radicands
+from canon.mechanics.canonical.inverse.point_inverse import point_branch
+from canon.mechanics.canonical.inverse.polar_inverse import free_angles, polar_branch
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.proof.domain.domain import Domain
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from sympy.logic.boolalg import Boolean
 
     from canon.mechanics.algebra.branch_point import BranchPoint
-    from canon.mechanics.canonical.polar_inverse import BranchOfInverse
+    from canon.mechanics.canonical.inverse.inverse_branch import BranchOfInverse
 
 __all__ = ["NoClosedInverseError", "inverse_transformation", "meaning_of"]
 
@@ -77,6 +78,7 @@ def inverse_transformation(
     T = given_kind(transformation, CanonicalTransformation, "the map")
     new_q, new_p = given_symbols(new_q, "new_q"), given_symbols(new_p, "new_p")
     meaning = meaning_of(T, new_q, new_p)
+    _refuse_turns(T)
     symbols = set(T.variables).union(*(f.atoms(Symbol) for f in T.images))
     deadline = clock.monotonic() + given_seconds(budget)
     search = _Search(T, meaning, new_q, new_p, deadline)
@@ -136,8 +138,10 @@ class _Search:
         ):
             return None
         inverse = self._inverse(branch.values, branch.ranges)
-        there = branch.undoes(self.meaning)
-        return inverse if self._all_vanish(there, "the map undoes its inverse", inverse.domain) else None
+        there, question = branch.undoes(self.meaning), "the map undoes its inverse"
+        # The ranges are simple, and what is proved on them alone holds on the domain inside them.
+        domains = (Domain(branch.ranges), inverse.domain)
+        return inverse if any(self._all_vanish(there, question, domain) for domain in domains) else None
 
     def _peeled(self, witness: BranchPoint) -> CanonicalTransformation | None:
         """Return the inverse by one operation undone after the other, proved on the domain."""
@@ -167,11 +171,18 @@ class _Search:
         )
 
 
-def _same_images(T: CanonicalTransformation) -> str:
-    """Tell why there is no inverse at all, where points far apart certainly have the same image."""
+def _refuse_turns(T: CanonicalTransformation) -> None:
+    """Refuse a map in which the old variable is an angle without bounds: a turn on it has the same image."""
     for z in free_angles(T.variables, T.images):
         if not any(c.has(z) for c in T.domain.conditions):
-            return f", as {z} and {z} + 2*pi have the same image (give the domain one turn: -pi < {z} < pi)"
+            raise NoClosedInverseError(
+                f"the map has no inverse on its whole domain, as {z} and {z} + 2*pi have the same image; narrow the "
+                f"domain to one turn: -pi < {z} < pi"
+            )
+
+
+def _same_images(T: CanonicalTransformation) -> str:
+    """Tell why there is no inverse at all, where points opposite each other certainly have the same image."""
     mirrored = {z: -z for z in T.variables}
     if any(c.xreplace(mirrored) not in T.domain.conditions for c in T.domain.conditions):
         return ""

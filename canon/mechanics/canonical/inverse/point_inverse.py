@@ -16,7 +16,9 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import shortened
-from canon.mechanics.canonical.polar_inverse import BranchOfInverse, polar_branch, positive_radicands
+from canon.mechanics.canonical.inverse.confocal_inverse import confocal_branch
+from canon.mechanics.canonical.inverse.inverse_branch import BranchOfInverse, positive_radicands
+from canon.mechanics.canonical.inverse.polar_inverse import polar_branch
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,7 +67,7 @@ def point_branch(
     places = {Q: meaning[Q] for Q in new_q}
     if any(place.has(*p) for place in places.values()):
         return None
-    branch = polar_branch(q, places, witness, deadline)
+    branch = confocal_branch(q, places, witness) or polar_branch(q, places, witness, deadline)
     if branch is None:
         inversion = Inversion(witness, deadline=deadline)
         solved = solve_system([(place, Q) for Q, place in places.items()], q, inversion)
