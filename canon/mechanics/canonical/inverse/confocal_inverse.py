@@ -50,7 +50,7 @@ def confocal_branch(
     >>> branch.values[u]
     acosh(sqrt(y**2 + (x - 1)**2)/2 + sqrt(y**2 + (x + 1)**2)/2)
     """
-    for u, v, *others in permutations(q):
+    for u, v, *others in permutations(q) if len(q) > 1 else ():
         for axes in _axes(places, others, witness):
             branch = _by_distances(u, v, axes, witness)
             if branch is not None:
