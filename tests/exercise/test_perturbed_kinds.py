@@ -166,6 +166,16 @@ def test_the_action_of_morses_potential_is_known_up_to_its_rim():
         assert (verdict.holds, verdict.fails) == (holds, not holds)
 
 
+def test_a_slow_coordinate_that_is_not_named_as_an_angle_may_stand_in_a_generator():
+    keys = {"q": ["u", "x"], "p": ["I", "y"], "small": ["e"], "parameters": {"w": "positive", "e": "real"}}
+    keys |= {"H": "w*I + e*y*I*cos(u)**2", "W": "y*I*sin(2*u)/(4*w) + x*y"}
+    for other, holds in (({"angles": ["u"]}, True), ({}, False), ({"angles": ["u", "x"]}, False)):
+        assert examine(Claim("a", "generating-first-order", {**keys, **other})).verdict.holds == holds
+    moving = {**keys, "H": "w*I + v*y + e*y*I*cos(u)**2", "W": "y*I*sin(2*u)/(4*w) + x*y*I/(2*v)"}
+    moving["parameters"] = {**keys["parameters"], "v": "positive"}
+    assert examine(Claim("a", "generating-first-order", {**moving, "angles": ["u"]})).verdict.fails
+
+
 def test_a_saddle_has_no_normal_form_in_the_actions_of_oscillators():
     keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 - q**2/2 + q**4", "actions": ["J"], "degree": 4}
     for K in ("J + 3*J**2/2", "-J + 3*J**2/2", "J"):

@@ -152,9 +152,16 @@ def _arcs(f: Expr, variables: Sequence[Symbol]) -> list[Cut]:
 
 
 def _angles(reading: Reading, H: Expr, q: Sequence[Symbol]) -> tuple[Symbol, ...]:
-    """Return the coordinates that are named as angles, and those in which H has the period 2π."""
+    """Return the coordinates that are named as angles, and those in which H has the period 2π.
+
+    Where angles are named, one that H does not hold and that rests without the perturbation is a slow coordinate: what
+    grows with it removes no mean.
+    """
     named = reading.subset("angles", "q") if reading.has("angles") else ()
-    return tuple(x for x in q if x in named or _has_period(H, x, reading))
+    momentum = dict(zip(*reading.phase_space("q", "p"), strict=True))
+    moves = substitute(H, {_small(reading): sp.S.Zero}) if named else sp.S.Zero
+    slow = {x for x in q if named and not H.has(x) and not moves.has(momentum[x])}
+    return tuple(x for x in q if x in named or (x not in slow and _has_period(H, x, reading)))
 
 
 def _has_period(H: Expr, x: Symbol, reading: Reading) -> bool:
