@@ -40,6 +40,10 @@ class PhaseField:
         raised = [(f, common / f.den) for f in components]
         return cls(tuple((f.re * factor, f.im * factor) for f, factor in raised), common)
 
+    def change_of(self, f: PhasePolynomial, divisor: int = 1) -> PhasePolynomial:
+        """Return the derivative of f along the field, divided by a whole number."""
+        return f.along(self.components, self.den * divisor)
+
 
 @dataclass(frozen=True)
 class Brackets:
@@ -49,7 +53,7 @@ class Brackets:
 
     def __call__(self, f: PhasePolynomial, g: PhasePolynomial) -> PhasePolynomial:
         """Return {f, g} = Σ cⱼ (∂f/∂aⱼ ∂g/∂bⱼ − ∂f/∂bⱼ ∂g/∂aⱼ)."""
-        return f.along(self.field(g))
+        return self.field(g).change_of(f)
 
     def field(self, g: PhasePolynomial) -> PhaseField:
         """Return the Hamiltonian vector field ({a₁, g}, … {b₁, g}, …)."""
@@ -71,7 +75,7 @@ def transformed(
     for start, part in parts.items():
         term, at, k = part, start, 1
         while at + degree - 2 <= order and term:
-            term = term.along(field, k)
+            term = field.change_of(term, k)
             at, k = at + degree - 2, k + 1
             if term:
                 found[at] = found[at] + term if at in found else term
@@ -109,7 +113,7 @@ def bracket_parts(
         field = bracket.field(b)
         for d, a in f.items():
             if d + e - 2 <= order:
-                total = added(total, {d + e - 2: a.along(field)})
+                total = added(total, {d + e - 2: field.change_of(a)})
     return {d: part for d, part in sorted(total.items()) if part}
 
 

@@ -22,7 +22,6 @@ from canon.cached_property import cached_property
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Sequence
 
-    from canon.mechanics.perturbation.lie_transform import PhaseField
 
 __all__ = ["PhasePolynomial", "PolynomialRing", "Sides"]
 
@@ -268,15 +267,15 @@ class PhasePolynomial:
         re, im = self.re.derivative(j), self.im.derivative(j)
         return PhasePolynomial(self.ring, re, im, self.den).in_lowest_terms()
 
-    def along(self, field: PhaseField, divisor: int = 1) -> PhasePolynomial:
-        """Return Σ Xⱼ ∂f/∂xⱼ for a vector field X, divided by a whole number."""
+    def along(self, components: Sequence[Sides], den: fmpz_mpoly) -> PhasePolynomial:
+        """Return Σ Xⱼ ∂f/∂xⱼ for a vector field X whose components have one denominator."""
         re, im = self.ring.nothing, self.ring.nothing
-        for j, component in enumerate(field.components):
+        for j, component in enumerate(components):
             slope = self.re.derivative(j), self.im.derivative(j)
             if any(slope) and any(component):
                 more = self.ring.product(slope, component)
                 re, im = _sum(re, more[0]), _sum(im, more[1])
-        return PhasePolynomial(self.ring, re, im, self.den * field.den * divisor).in_lowest_terms()
+        return PhasePolynomial(self.ring, re, im, self.den * den).in_lowest_terms()
 
     def in_lowest_terms(self) -> PhasePolynomial:
         """Return the same polynomial with the common factors of its numerator and denominator divided out."""
