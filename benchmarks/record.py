@@ -29,6 +29,7 @@ BENCHMARKS = {
     "growth": "How the time grows: sites, bodies, links, claims, cases, samples, orbits",
     "sections": "Poincaré sections of ensembles",
     "kernels": "Compiled loops, beside a C program",
+    "constraints": "Constraints kept by RATTLE, beside a C program",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",
     "peers": "Work at a wanted accuracy, beside other libraries",

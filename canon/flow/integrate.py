@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from canon.flow.adaptive.dop853 import dop853_motion
 from canon.flow.adaptive.taylor_motion import taylor_motion
 from canon.flow.fixed_step.compiled_loop import compiled_loop
+from canon.flow.fixed_step.constraint_trouble import told_of_constraints
 from canon.flow.fixed_step.fixed_steps import fixed_steps
 from canon.flow.fixed_step.statistics import loop_observables
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY, Engine
@@ -93,7 +94,12 @@ def _in_fixed_steps(
     watch = None
     if task.cadence is not None:
         watch = loop_observables(task.system, task.nodes, loop, task.states, task.plan.start, task.cadence)
-    made = fixed_steps(task.system, loop, method, states, task.plan, progress, watch, so_far, events)
+    try:
+        made = fixed_steps(task.system, loop, method, states, task.plan, progress, watch, so_far, events)
+    except NonFiniteStateError as lost:
+        if task.system.holonomic is None or task.plan.h is None:
+            raise
+        raise told_of_constraints(task.system, lost, float(task.plan.h)) from None
     return joined(so_far, made)
 
 

@@ -79,8 +79,8 @@ def propagate(
         ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
         not given. By exactly solvable parts: ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that
         vary: ``TimeTransformed(...)``; explicit where H does not split: ``canon.flow.SemiexplicitSplitting(...)`` and
-        ``canon.flow.ExtendedPhaseSpace(...)``. Or a method by its name, such as ``"verlet"``, ``"kahan-li-8"``,
-        ``"RK4"``, ``"gauss-6"``, ``"taylor"``, ``"saba-4"``.
+        ``canon.flow.ExtendedPhaseSpace(...)``; for holonomic constraints ``canon.flow.Rattle(...)``. Or a
+        method by its name, such as ``"verlet"``, ``"kahan-li-8"``, ``"RK4"``, ``"gauss-6"``, ``"taylor"``.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
         span; ``Trajectory.step`` has it. Of a time-transformed method: the size in t of the first step.

@@ -17,6 +17,7 @@ from sympy.core.function import AppliedUndef
 from canon.flow.checked_request import functions_by_name, parted_by_orbit, task_of, task_with, two_ends
 from canon.flow.equations.bounce import with_bounces
 from canon.flow.equations.first_order_motion import moving_system
+from canon.flow.equations.holonomic_motion import with_constraints_kept
 from canon.flow.equations.lagrangian_motion import SPAN
 from canon.flow.method.method_text import method_of
 from canon.flow.run.event import Event
@@ -213,6 +214,9 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying], unit)
     chosen = method_of(request.method)
     _check_method(chosen, moving)
+    if chosen.family == "rattle":
+        orbits_of = [by_name[name] for name in varying]
+        moving = with_constraints_kept(request.system, motion, moving, exact_numbers(fixed), first, orbits_of)
     full = _full_states(moving, states, varying, orbits)
     checked = replace(request, method=chosen, observables=observed, events=met)
     return task_with(checked, moving.equations, full, ends, single=single), moving
@@ -325,7 +329,7 @@ def _words(motion: FirstOrderMotion) -> list[str]:
     return said
 
 
-_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss")
+_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", "rattle")
 """Families of methods that need no Hamiltonian."""
 
 

@@ -18,6 +18,7 @@ from canon import (
     propagate,
     work_precision,
 )
+from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.method_text import method_from, method_named, method_of
@@ -37,6 +38,8 @@ NAMED = {
     **{f"saba-{stages}": SABA(stages) for stages in range(1, 9)},
     **{f"sbab-{stages}": SBAB(stages) for stages in range(1, 9)},
     **{f"semiexplicit-{order}": SemiexplicitSplitting(order) for order in COMPOSITIONS},
+    **{f"rattle-{order}": Rattle(order) for order in COMPOSITIONS},
+    "rattle": Rattle(),
     "gauss": Gauss(),
     "rk4": RK4(),
     "taylor": Taylor(),
@@ -51,6 +54,7 @@ KINDS = [
     Splitting(a=["1/3", "2/3"], b=["1/2", "1/2"]),
     Splitting("verlet", parts=(x.momentum**2, x**4)),
     Gauss(3),
+    Rattle(6),
     SemiexplicitSplitting(6),
     ExtendedPhaseSpace(4, omega=2.5),
     RK4(),
@@ -139,7 +143,7 @@ def test_methods_by_solvable_parts_are_classes():
 
 def test_methods_answer_for_themselves():
     symplectic = {type(method).__name__ for method in KINDS if method.is_symplectic}
-    copies = {"ExtendedPhaseSpace", "SemiexplicitSplitting"}
+    copies = {"Rattle", "ExtendedPhaseSpace", "SemiexplicitSplitting"}
     assert symplectic == {"Splitting", "Gauss", "WisdomHolman", "SABA", "SBAB", "TimeTransformed"} | copies
     engines = {type(method).__name__: method.engine for method in KINDS}
     assert engines.pop("TimeTransformed") is FICTITIOUS_TIME

@@ -18,6 +18,7 @@ from canon.kernel.loops.doubled_phase_space import (
     projecting_loop,
 )
 from canon.kernel.loops.gauss import gauss_loop
+from canon.kernel.loops.rattle import rattle_loop
 from canon.kernel.loops.splitting import splitting_loop
 from canon.kernel.schemes.gauss_tableau import gauss_coefficients
 from canon.kernel.schemes.perturbed_schemes import corrector
@@ -28,6 +29,7 @@ from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableErr
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from canon.flow.method.constrained_method import Rattle
     from canon.flow.method.method import RK4, Gauss, Method, Splitting
     from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
     from canon.flow.method.number_formats import Precision
@@ -95,6 +97,16 @@ def _semiexplicit(
     )
 
 
+def _rattle(system: HamiltonEquations, method: Rattle, precision: Precision, _orbits: int) -> Loop:
+    if system.holonomic is None:
+        raise ValueError(
+            "Rattle keeps the constraints of a ConstrainedLagrangian, and this is none; Splitting, Gauss and Taylor "
+            "apply"
+        )
+    weights = len(weights_of_order(method.order))
+    return _kept_rattle(system, weights, precision.number, compensated=precision.compensated)
+
+
 def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, orbits: int) -> Loop:
     number = _with_lanes(precision.number, system, orbits, 0)
     return _kept_runge_kutta(system, number, compensated=precision.compensated)
@@ -150,6 +162,7 @@ _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
     "rk4": _runge_kutta,
     "extended_phase_space": _extended,
     "semiexplicit": _semiexplicit,
+    "rattle": _rattle,
 }
 """What compiles the methods of each family."""
 
@@ -194,6 +207,12 @@ def _kept_projecting(
     system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
 ) -> Loop:
     return projecting_loop(system, weights, number=number, compensated=compensated)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_rattle(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
+    assert system.holonomic is not None
+    return rattle_loop(system, system.holonomic, weights, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=64)
@@ -253,6 +272,10 @@ def _of_extended(method: ExtendedPhaseSpace, _number: MachineType, h: Fraction) 
     return mixing_coefficients(weights_of_order(method.order), Fraction(method.omega), h)
 
 
+def _of_rattle(method: Rattle, _number: MachineType, h: Fraction) -> list[Fraction]:
+    return [h * weight for weight in weights_of_order(method.order)]
+
+
 def _of_semiexplicit(method: SemiexplicitSplitting, _number: MachineType, h: Fraction) -> list[Fraction]:
     return projecting_coefficients(weights_of_order(method.order), h)
 
@@ -263,5 +286,6 @@ _COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]]
     "rk4": _of_runge_kutta,
     "extended_phase_space": _of_extended,
     "semiexplicit": _of_semiexplicit,
+    "rattle": _of_rattle,
 }
 """What a step of each family reads, where the loop does not say it."""

@@ -1,5 +1,6 @@
 from .adaptive_methods import DOP853 as DOP853
 from .adaptive_methods import Taylor as Taylor
+from .constrained_method import Rattle as Rattle
 from .method import RK4 as RK4
 from .method import Gauss as Gauss
 from .method import Method as Method

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import counted
 from canon.flow.method.adaptive_methods import DOP853, Taylor
+from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SolvableSplitting
@@ -383,7 +384,7 @@ class TimeTransformed:
         )
 
 
-FixedStep = Splitting | Gauss | RK4 | SolvableSplitting | ExtendedPhaseSpace | SemiexplicitSplitting
+FixedStep = Splitting | Gauss | RK4 | SolvableSplitting | ExtendedPhaseSpace | SemiexplicitSplitting | Rattle
 """Methods that take steps of one size."""
 
 Stepped = FixedStep | TimeTransformed

@@ -12,6 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.method.adaptive_methods import DOP853, Taylor
+from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.method import RK4, Gauss, Method, Splitting, TimeTransformed
 from canon.flow.method.nonseparable_splitting import COMPOSITIONS, ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
@@ -56,6 +57,8 @@ def _named() -> dict[str, Callable[[], Method]]:
         "dop853": DOP853,
         "gauss": Gauss,
         **{f"gauss-{stages}": partial(Gauss, stages) for stages in range(1, HIGHEST_STAGES + 1)},
+        "rattle": Rattle,
+        **{f"rattle-{each}": partial(Rattle, each) for each in COMPOSITIONS},
         **{f"semiexplicit-{each}": partial(SemiexplicitSplitting, each) for each in COMPOSITIONS},
         "wisdom-holman": WisdomHolman,
         **{f"saba-{stages}": partial(SABA, stages) for stages in _EIGHT},
@@ -131,8 +134,9 @@ def method_named(name: str) -> Method:
 
 
 def _those_there_are() -> str:
-    numbered = (
-        f"gauss-1 … gauss-{HIGHEST_STAGES}, semiexplicit-2 … semiexplicit-8, saba-1 … saba-8, sbab-1 … sbab-8"
+    ranges = (("gauss", 1, HIGHEST_STAGES), *((name, 2, 8) for name in ("semiexplicit", "rattle")))
+    numbered = ", ".join(
+        f"{name}-{a} … {name}-{b}" for name, a, b in (*ranges, ("saba", 1, 8), ("sbab", 1, 8))
     )
     return f"{', '.join((*SCHEMES, 'rk4', 'taylor', 'dop853', 'wisdom-holman', *_blanes()))}, {numbered}"
 
@@ -206,6 +210,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return Gauss(stages)
         case {"gauss": int() as stages, "iteration": str() as iteration, **rest} if not rest:
             return Gauss(stages, iteration=iteration)
+        case {"rattle": int() as order, **rest} if not rest:
+            return Rattle(order)
         case {"semiexplicit": int() as order, **rest} if not rest:
             return SemiexplicitSplitting(order)
         case {"extended_phase_space": int() as order, "omega": int() | float() as omega, **rest} if not rest:
@@ -226,7 +232,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
                 f"no method is written {known}; there are names, {_those_there_are()}, and tables, "
                 "{ gauss = stages, iteration = name }, "
                 "{ taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
-                "{ splitting = { a, b } }, { semiexplicit = order }, { extended_phase_space = order, omega = number }, "
+                "{ splitting = { a, b } }, { semiexplicit = order }, { rattle = order }, "
+                "{ extended_phase_space = order, omega = number }, "
                 "{ solvable = name, corrector = order, commutator = true, coordinates = name }"
             )
 

@@ -15,11 +15,11 @@ import numpy as np
 from canon.kernel.llvm.number_types import SINGLE
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Generator, Sequence
 
     from canon.kernel.llvm.writer import Writer
 
-__all__ = ["LinearSolver", "large_array", "magnitude"]
+__all__ = ["LinearSolver", "eliminated", "large_array", "magnitude"]
 
 
 @contextlib.contextmanager
@@ -128,3 +128,22 @@ class LinearSolver:
                     w.multiply_add(w.negative(w.load(row, j)), w.load(right, j), w.load(right, i)), right, i
                 )
             w.store(w.algebra("div", w.load(right, i), w.load(row, i)), right, i)
+
+
+def eliminated(w: Writer, matrix: list[list[str]], right: Sequence[str]) -> list[str]:
+    """Write the solution of equations whose matrix is nearly definite, without exchanging rows."""
+    k, rows = len(right), [[*row, x] for row, x in zip(matrix, right, strict=True)]
+    inverse: list[str] = []
+    for a in range(k):
+        inverse.append(w.algebra("div", w.constant(Fraction(1)), rows[a][a]))
+        for b in range(a + 1, k):
+            share = w.negative(w.algebra("mul", rows[b][a], inverse[a]))
+            for c in range(a + 1, k + 1):
+                rows[b][c] = w.multiply_add(share, rows[a][c], rows[b][c])
+    found = [""] * k
+    for a in reversed(range(k)):
+        total = rows[a][k]
+        for c in range(a + 1, k):
+            total = w.multiply_add(w.negative(rows[a][c]), found[c], total)
+        found[a] = w.algebra("mul", total, inverse[a])
+    return found

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
+    from canon.kernel.program.holonomic_system import HolonomicSystem
+
 __all__ = ["HamiltonEquations", "equations", "exact_number", "exact_numbers"]
 
 
@@ -59,6 +61,8 @@ class HamiltonEquations:
         Whether they are those of a map: T + V of which a step is a kick and a drift, and nothing between.
     named
         The nodes of further symbols that functions along the motion may hold, such as multipliers.
+    holonomic
+        The constraints that a method itself keeps, and what it needs for that.
     """
 
     graph: Graph
@@ -77,6 +81,7 @@ class HamiltonEquations:
     spare: int = 0
     kicked: bool = False
     named: Mapping[Symbol, int] = field(default_factory=lambda: FrozenMapping({}))
+    holonomic: HolonomicSystem | None = None
 
     @property
     def rows(self) -> list[int]:

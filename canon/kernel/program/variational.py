@@ -29,7 +29,17 @@ def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations
         Hamilton's equations, without parameters that vary.
     variations
         How many variations.
+
+    Raises
+    ------
+    ValueError
+        The method keeps constraints itself.
     """
+    if system.holonomic is not None:
+        raise ValueError(
+            "the derivative of steps that keep constraints themselves is not known here: use Taylor() or Gauss(6), "
+            "whose variations hold where they keep the constraints"
+        )
     graph, x = system.graph, (*system.q, *system.p)
     slopes = [graph.gradient(rate, x) for rate in (*system.velocity, *system.force)]
     n = len(system.q)
