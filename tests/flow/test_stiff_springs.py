@@ -80,7 +80,7 @@ def test_energy_stays_bounded_however_stiff_the_springs(k):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("k", [10**4, 10**12])
+@pytest.mark.parametrize("k", [10**8, 10**12])
 def test_energy_stays_bounded_over_a_million_steps(k):
     system, start = alternating_springs(k)
     motion = propagate(system, (0, 100_000), start, method=newton(2), step=0.1, samples=1000)
