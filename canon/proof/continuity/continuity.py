@@ -26,7 +26,7 @@ from canon.proof.continuity.one_sided import (
     without_complex_logarithms,
 )
 from canon.proof.continuity.smooth import PIECED
-from canon.proof.continuity.winding_centre import common_zero
+from canon.proof.continuity.winding_centre import centre_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import EVERYWHERE, Domain, conditions_hold
 from canon.proof.domain.reality import certainly_real
@@ -96,7 +96,7 @@ def continuity(
     --------
     >>> q, p = sp.symbols("q p", real=True)
     >>> continuity(q - sp.atan(sp.tan(sp.pi * q)) / sp.pi, [q]).feedback
-    'q - atan(tan(pi*q))/pi jumps at q = 1/2 from -0.5 to 0.5, which its derivatives do not show'
+    'q - atan(tan(pi*q))/pi jumps at q = 1/2 from 0 to 1, which its derivatives do not show'
     >>> continuity(sp.atan(q / p), [q, p]).assumed
     ('atan(q/p) is an angle that winds around p = 0, q = 0; where it jumps is a matter of choice',)
     """
@@ -107,7 +107,8 @@ def continuity(
     rough = [term for term in terms if _is_rough(term, moving, domain)]
     excused = _excused(rough, given, moving, domain)
     rough = [term for term in rough if term not in excused]
-    found = _of_cuts(sp.Add(*rough), moving, domain, deadline, name, angles=angles)
+    beside = sp.Add(f, *(-term for term in rough))
+    found = _of_cuts(sp.Add(*rough), beside, moving, domain, deadline, name, angles=angles)
     found = replace(found, assumed=(*found.assumed, *(text.format(name) for text in excused.values())))
     if found.fails:
         return found
@@ -331,10 +332,18 @@ def _excused(
 
 
 def _of_cuts(
-    f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float, name: str, *, angles: bool
+    f: Expr,
+    beside: Expr,
+    moving: Sequence[Symbol],
+    domain: Domain,
+    deadline: float,
+    name: str,
+    *,
+    angles: bool,
 ) -> Verdict:
+    """Tell whether a function jumps at its cuts; values are told with the terms ``beside`` it that do not."""
     cuts = _open_cuts(f, moving, domain)
-    centres = {cut.part: _centre(cut, moving, domain) for cut in cuts}
+    centres = {cut.part: centre_of(cut, moving, domain) for cut in cuts}
     winding = {angle: centre for angle, centre in centres.items() if centre and angles}
     assumed = tuple(
         f"{angle} is an angle that winds around {centre}; where it jumps is a matter of choice"
@@ -348,7 +357,8 @@ def _of_cuts(
         if jump is None and _meets(f, cut, moving, domain, deadline):
             continue
         if jump is not None and centres[cut.part] is not None and not _is_at_one_of(at_angles, cut):
-            return _failed(name, _fault_of(jump))
+            in_full = find_jump(f + beside, cut, moving, domain, deadline) if beside != 0 else None
+            return _failed(name, _fault_of(in_full or jump))
         open_.append(cut.part)
     if not open_:
         return Verdict(Status.HOLDS, f"{name} {CONTINUOUS}", "structure", assumed=assumed)
@@ -379,21 +389,3 @@ def _meets(f: Expr, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline
     on_gap = (*kept, cast("Boolean", sp.Eq(cut.gap, 0, evaluate=False)))
     there = Domain(tuple(cast("Boolean", c.xreplace(plain)) for c in on_gap))
     return vanishes_where_defined(cast("Expr", change.xreplace(plain)), there, left).holds
-
-
-def _centre(cut: Cut, moving: Sequence[Symbol], domain: Domain) -> str | None:
-    """Return a place around which an angle winds, in words; "" where there is none, None where none was found.
-
-    Numerator and denominator vanish together there, as q and p do for atan(q/p), and their differentials are
-    independent. That the sum of their squares is positive excludes it, as for tan u = sin u/cos u.
-    """
-    if cut.around is None:
-        return ""
-    kinds = (sp.StrictLessThan, sp.LessThan, sp.StrictGreaterThan, sp.GreaterThan)
-    hull = Domain(tuple(c for c in parts_of(domain.conditions) if isinstance(c, kinds) and linear(c)))
-    present = [s for s in moving if any(side.has(s) for side in cut.around)]
-    squares = sp.Add(*(side**2 for side in cut.around))
-    apart = any(proved_sign(side, hull) in ("+", "-") for side in (*cut.around, squares))
-    if len(present) < 2 or apart:
-        return ""
-    return common_zero(cut.around, present, hull) or None

@@ -5,22 +5,44 @@ from __future__ import annotations
 from itertools import combinations, permutations, product
 from typing import TYPE_CHECKING
 
+import sympy as sp
+
+from canon.proof.analytic import proved_sign
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.relations import linear, parts_of
 from canon.proof.trees.sympy_types import free_symbols, short
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    import sympy as sp
     from sympy import Expr, Symbol
 
-    from canon.proof.domain.domain import Domain
+    from canon.proof.continuity.one_sided import Cut
 
-__all__ = ["common_zero"]
+__all__ = ["centre_of", "common_zero"]
 
 STARTS = 12
 STEPS = 24
 SMALL = 1e-9
+
+
+def centre_of(cut: Cut, moving: Sequence[Symbol], domain: Domain) -> str | None:
+    """Return a place around which an angle winds, in words; "" where there is none, None where none was found.
+
+    Numerator and denominator vanish together there, as q and p do for atan(q/p), and their differentials are
+    independent. That the sum of their squares is positive excludes it, as for tan u = sin u/cos u.
+    """
+    if cut.around is None:
+        return ""
+    kinds = (sp.StrictLessThan, sp.LessThan, sp.StrictGreaterThan, sp.GreaterThan)
+    hull = Domain(tuple(c for c in parts_of(domain.conditions) if isinstance(c, kinds) and linear(c)))
+    present = [s for s in moving if any(side.has(s) for side in cut.around)]
+    squares = sp.Add(*(side**2 for side in cut.around))
+    apart = any(proved_sign(side, hull) in ("+", "-") for side in (*cut.around, squares))
+    if len(present) < 2 or apart:
+        return ""
+    return common_zero(cut.around, present, hull) or None
 
 
 def common_zero(pair: tuple[Expr, Expr], variables: Sequence[Symbol], domain: Domain) -> str:
