@@ -16,7 +16,8 @@ study = drift_study("henon-heiles", methods=methods, periods=5000)
 print(study)
 
 # %%
-# |ΔE/E| of all four. What grows like t rises along a line of slope 1, a random walk along one of slope 1/2.
+# The relative energy error of all four. What grows like t rises along a line of slope 1, a random walk along one
+# of slope 1/2.
 figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
 plot_energy_error(study, axes)
 
