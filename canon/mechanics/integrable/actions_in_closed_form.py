@@ -1,8 +1,9 @@
 """Actions in closed form: integrals that are known, recognised term by term and certified against quadrature.
 
 The loop integrals of roots of A + B f(q) + C g(q) that are sums of residues (A. Sommerfeld, Atombau und Spektrallinien,
-supplement 6; M. Born, Vorlesungen über Atommechanik, appendix), and the pendulum's complete elliptic integrals. None is
-returned on recognition alone: see :func:`closed_actions`.
+supplement 6; M. Born, Vorlesungen über Atommechanik, appendix), and complete elliptic integrals of the pendulum and of
+quartic wells (P. F. Byrd, M. D. Friedman, Handbook of Elliptic Integrals, 213, 218, 219). None is returned on
+recognition alone: see :func:`closed_actions`.
 """
 
 from __future__ import annotations
@@ -150,7 +151,7 @@ def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] |
         found = known(A, terms, q)
         if found is not None:
             return found
-    return _pendulum(A, terms, q, cycle)
+    return _quartic_well(A, terms, q, cycle) or _pendulum(A, terms, q, cycle)
 
 
 def _about_its_kink(f: Expr, q: Symbol) -> Expr:
@@ -246,6 +247,28 @@ def _isochrone(A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> tuple[Expr, st
         return None
     B, L = terms[f], sqrt(-C)
     return B / (2 * sqrt(-A)) - (L + sqrt(L**2 + 2 * B * b)) / 2, "isochrone"
+
+
+def _quartic_well(A: Expr, terms: Mapping[Expr, Expr], q: Symbol, cycle: Cycle) -> tuple[Expr, str] | None:
+    """Return the loop integrals of √(A + B q² + C q⁴): hard and soft springs, double wells on one side or over both.
+
+    With R = √(B² − 4AC), the zeros of p² are q² = (−B ± R)/(2C).
+    """
+    if set(terms) != {q**2, q**4}:
+        return None
+    B, C = terms[q**2], terms[q**4]
+    low, high = cast("tuple[arb, arb]", cycle.turning_points)
+    R, K, E = sqrt(B**2 - 4 * A * C), sp.elliptic_k, sp.elliptic_e
+    if low > 0 or high < 0:
+        m = 2 * R / (B + R)
+        return sqrt((B + R) / 2) / (-3 * sp.pi * C) * (B * E(m) - (B - R) * K(m)), "double well, on one side"
+    if C.is_negative:
+        m = (R + B) / (2 * R)
+        return sqrt(R) / (-3 * sp.pi * C) * ((R - B) * K(m) + 2 * B * E(m)), "quartic well"
+    if C.is_positive:
+        m = (B + R) / (B - R)
+        return -sqrt(2 * (R - B)) / (3 * sp.pi * C) * (B * E(m) + R * K(m)), "soft quartic well"
+    return None
 
 
 def _pendulum(A: Expr, terms: Mapping[Expr, Expr], q: Symbol, cycle: Cycle) -> tuple[Expr, str] | None:

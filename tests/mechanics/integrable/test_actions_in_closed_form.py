@@ -1,8 +1,11 @@
 """Closed actions: published formulas come out, each is compared with quadrature, and a changed one is not returned."""
 
+import mpmath as mp
 import pytest
 import sympy as sp
 
+from canon.exercise.claim_verdict import examine
+from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable import actions_in_closed_form as module
 from canon.mechanics.integrable.actions import action_variables
@@ -79,7 +82,7 @@ def test_even_powers_have_gamma_functions(n):
     assert vanishes(found.J - 2 * formula / (n * sp.sqrt(sp.pi)), Domain((E > 0,))).fails
 
 
-@pytest.mark.parametrize("potential", [q**4 / 4 + q**2 / 2, q**4 + q**6])
+@pytest.mark.parametrize("potential", [q**4 + q**6])
 def test_sums_of_even_powers_have_no_such_formula(potential):
     H = Hamiltonian(p**2 / 2 + potential, q, p)
     assert closed_actions(action_variables(hamilton_jacobi(H), LINE, digits=20)) == (None,)
@@ -114,8 +117,60 @@ def test_a_wrong_formula_is_not_returned(monkeypatch, name, factor):
     assert closed_actions(action_variables(hamilton_jacobi(H), start, values, digits=20))[0] is None
 
 
+WELLS = {
+    "quartic well": (q**2 / 2 + k * q**4 / 4, 0, 1),
+    "over both wells": (-(q**2) / 2 + k * q**4 / 4, 1, 2),
+    "double well, on one side": (-(q**2) / 2 + k * q**4 / 4, -1, sp.Rational(1, 4)),
+    "soft quartic well": (q**2 / 2 - k * q**4 / 4, 0, half),
+}
+
+
+@pytest.mark.parametrize(
+    "name", [n if n == "quartic well" else pytest.param(n, marks=pytest.mark.slow) for n in WELLS]
+)
+def test_quartic_wells_have_complete_elliptic_integrals(name):
+    """The area of the oval, and the period of Duffing's oscillator: both by mpmath's quadrature of another integral."""
+    V, place, momentum = WELLS[name]
+    torus = action_variables(
+        hamilton_jacobi(Hamiltonian(p**2 / 2 + V, q, p)), {q: place, p: momentum}, {k: 1}, 20
+    )
+    (found,) = closed_actions(torus)
+    assert found.name == {"over both wells": "quartic well"}.get(name, name)
+    energy = sp.Rational(momentum) ** 2 / 2 + V.subs({q: place, k: 1})
+    with mp.workdps(30):
+        low, high = (mp.mpf(end.str(30, radius=False)) for end in torus.cycles[0].turning_points)
+        square = sp.lambdify(q, 2 * (energy - V.subs(k, 1)), "mpmath")
+
+        def along(x):
+            return (
+                mp.sqrt(abs(square((low + high) / 2 - (high - low) / 2 * mp.cos(x))))
+                * (high - low)
+                / 2
+                * mp.sin(x)
+            )
+
+        area = mp.quad(along, mp.linspace(0, mp.pi, 5)) / mp.pi
+        assert abs(mp.mpf(found.J.subs({E: energy, k: 1}).n(25)) / area - 1) < 1e-12
+
+
+@pytest.mark.slow
+def test_the_action_of_duffings_oscillator_is_judged():
+    keys = {
+        "q": ["q"],
+        "p": ["p"],
+        "H": "p**2/2 + q**2/2 + b*q**4/4",
+        "parameters": {"b": "positive", "E": "positive"},
+    }
+    R = "sqrt(1 + 4*b*E)"
+    right = (
+        f"2*sqrt({R})/(3*pi*b)*(({R} + 1)*elliptic_k(({R} - 1)/(2*{R})) - 2*elliptic_e(({R} - 1)/(2*{R})))"
+    )
+    assert examine(Claim("a", "action-angle", {**keys, "J": [right]})).verdict.holds
+    assert examine(Claim("a", "action-angle", {**keys, "J": [right.replace("+ 1", "- 1")]})).verdict.fails
+
+
 def test_what_has_no_known_integral_is_left_open():
-    quartic = hamilton_jacobi(Hamiltonian(p**2 / 2 + q**2 + q**4, q, p))
-    assert closed_actions(action_variables(quartic, {q: 0, p: 1}, digits=20)) == (None,)
+    sextic = hamilton_jacobi(Hamiltonian(p**2 / 2 + q**2 + q**6, q, p))
+    assert closed_actions(action_variables(sextic, {q: 0, p: 1}, digits=20)) == (None,)
     shifted = hamilton_jacobi(Hamiltonian(p**2 / 2 + sp.exp(-3 * q) - 2 * sp.exp(-q), q, p))
     assert closed_actions(action_variables(shifted, {q: 0, p: half}, digits=20))[0] is None
