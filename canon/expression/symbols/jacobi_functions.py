@@ -58,7 +58,8 @@ class _Jacobi(sp.Function):
     def _eval_evalf(self, prec: int) -> Expr | None:
         bits = prec + GUARD_BITS
         try:
-            u, m = (a._to_mpmath(bits) for a in cast("Any", self.args))  # noqa: SLF001 (SymPy's own protocol)
+            # Whole numbers too as mpmath's, for Python divides its own in doubles.
+            u, m = (a._to_mpmath(bits, allow_ints=False) for a in cast("Any", self.args))  # noqa: SLF001 (SymPy's own)
         except ValueError:  # a symbol has no number
             return None
         with mp.workprec(bits):
