@@ -68,7 +68,7 @@ def moved(system, y0, method, step, span=2.0, frame=None, orthogonal=False, samp
     task = task_of(system, y0, method, step, span, samples)
     unit = np.eye(len(y0)) if frame is None else frame
     going = CompiledDeviations(task, unit, orthogonal=orthogonal)
-    log = sum(going.advance() for _ in range(samples))
+    log = sum(going.advance() for _ in task.plan.stops[1:])
     return going, going.vectors()[:, :, 0] * np.exp(log[:, 0])
 
 
@@ -158,17 +158,15 @@ def test_every_gauss_method_does(system, y0, method):
 
 def test_steps_too_long_are_told_for_the_orbit_and_for_its_deviations():
     with pytest.raises(NonFiniteStateError, match="the state stops being finite"):
-        moved(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(2), 4.0, span=40.0, samples=2)
+        moved(DOUBLE_PENDULUM, DOUBLE_PENDULUM_START, Gauss(2), 4.0, span=40.0)
     with pytest.raises(NonFiniteStateError, match="the deviations stop being finite"):
-        moved(
-            PENDULUM, [0.0, 0.0], Gauss(2), 4.0, span=40.0, samples=2
-        )  # at rest, so that the orbit converges
+        moved(PENDULUM, [0.0, 0.0], Gauss(2), 4.0, span=40.0)  # at rest, so that the orbit converges
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["verlet", "blanes-moan-6"])
 def test_differences_in_double_double_agree_with_the_map_and_not_with_another(name):
-    _, M = moved(HENON_HEILES, HENON_HEILES_START, Splitting(name), 0.2, span=4.0, samples=5)
+    _, M = moved(HENON_HEILES, HENON_HEILES_START, Splitting(name), 0.2, span=4.0)
     slopes = np.empty((4, 4))
     small = 2.0**-30
     for k in range(4):
@@ -189,7 +187,7 @@ def test_differences_in_double_double_agree_with_the_map_and_not_with_another(na
         (a, b), (c, d) = ends
         slopes[:, k] = ((a - c) + (b - d)) / (2 * small)
     np.testing.assert_allclose(M, slopes, atol=3e-15 * abs(slopes).max())
-    _, coarser = moved(HENON_HEILES, HENON_HEILES_START, Splitting(name), 0.4, span=4.0, samples=5)
+    _, coarser = moved(HENON_HEILES, HENON_HEILES_START, Splitting(name), 0.4, span=4.0)
     assert abs(coarser - slopes).max() > 1e-9
 
 
@@ -221,7 +219,7 @@ def test_more_vectors_than_stand_side_by_side_are_orthonormal():
     system, y0 = chain(9), start_of(8)
     task = task_of(system, y0, Splitting("verlet"), 0.1, span=40.0)
     going = CompiledDeviations(task, random_frame(16, 13, 3), orthogonal=True)
-    for _ in range(40):
+    for _ in task.plan.stops[1:]:
         going.advance()
     frame = going.vectors()[:, :, 0]
     assert frame.shape == (16, 13)
@@ -239,10 +237,9 @@ ENGINES = {
 @pytest.mark.slow
 @pytest.mark.parametrize(("system", "y0", "method", "step"), ENGINES.values(), ids=ENGINES)
 def test_other_engines_carry_deviations_too(system, y0, method, step):
-    going = VariationalDeviations(
-        task_of(system, y0, method, step, samples=2), np.eye(len(y0)), orthogonal=False
-    )
-    log = sum(going.advance() for _ in range(2))
+    task = task_of(system, y0, method, step)
+    going = VariationalDeviations(task, np.eye(len(y0)), orthogonal=False)
+    log = sum(going.advance() for _ in task.plan.instants[1:])
     M = going.vectors()[:, :, 0] * np.exp(log[:, 0])
     known = flow_jacobian(system, (0, 2), y0, method=method, step=step)
     np.testing.assert_allclose(M, known.final, atol=1e-11 * abs(known.final).max())

@@ -126,7 +126,7 @@ def megno(
     >>> from canon import Splitting
     >>> how = dict(method=Splitting("kahan-li-8"), step=0.2)
     >>> megno("henon-heiles", (0, 3000), "regular", **how)
-    <MEGNO 2.057: regular>
+    <MEGNO 2.065: regular>
     >>> megno("henon-heiles", (0, 3000), "chaotic", **how).verdict
     <Regularity.CHAOTIC: 'chaotic'>
     """

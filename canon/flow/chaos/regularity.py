@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.tangent.deviation_growth import LEAST_SAMPLES
+
 if TYPE_CHECKING:
     import numpy.typing as npt
 
@@ -59,8 +61,6 @@ growth gives λT/2."""
 CHAOTIC_GROWTH, REGULAR_GROWTH = 4.0, 2.0
 """ln of the growth from the second quarter of the run to the last: 0.86 b of a power, λT/2 of an exponential."""
 
-_LEAST_SAMPLES = 32
-
 
 def judged_growth(t: Array, log: Array) -> Judged:
     """Judge orbits by how a deviation has grown.
@@ -80,11 +80,11 @@ def judged_growth(t: Array, log: Array) -> Judged:
     Raises
     ------
     ValueError
-        There are fewer than 32 samples.
+        There are too few times.
     """
-    if len(t) <= _LEAST_SAMPLES:
+    if len(t) <= LEAST_SAMPLES // 2:
         raise ValueError(
-            f"samples={len(t) - 1}: a verdict takes at least {_LEAST_SAMPLES}, better 100 or more"
+            f"{len(t) - 1} steps: a verdict takes at least {LEAST_SAMPLES}; give a longer span or a shorter step"
         )
     span = t[-1]
     megno = mean_megno(t, log)[-1]

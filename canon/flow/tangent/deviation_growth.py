@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.checked_request import two_ends
+from canon.flow.fixed_step.advance import Interruption
 from canon.flow.request import Request
 from canon.flow.system_request import any_task, refuse_contacts
 from canon.flow.tangent.compiled_deviations import CompiledDeviations
@@ -18,6 +21,7 @@ from canon.progress import reporting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from fractions import Fraction
 
     import numpy.typing as npt
     from sympy import Symbol
@@ -26,7 +30,7 @@ if TYPE_CHECKING:
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.task import Task
 
-__all__ = ["DeviationGrowth", "DeviationRun", "deviation_growth", "deviation_task"]
+__all__ = ["LEAST_SAMPLES", "DeviationGrowth", "DeviationRun", "deviation_growth", "deviation_task"]
 
 
 @dataclass(frozen=True)
@@ -79,8 +83,14 @@ class DeviationRun:
     progress: Callable[[float], None] | bool | None
 
 
+LEAST_SAMPLES = 32
+"""Samples below which there is no verdict."""
+
 _CARRIED = ("splitting", "gauss", "rk4", "taylor", "dop853")
 """Families of methods that carry deviations: their steps commute with differentiation."""
+
+_SPREAD, _GOLDEN = 0.8, 0.6180339887498949
+"""How far times are moved from even ones, in parts of their distance, by multiples of the golden ratio."""
 
 _SAMPLES, _OF_MANY = 1000, 100
 """Samples of one orbit, and of each of many."""
@@ -95,24 +105,43 @@ def deviation_task(run: DeviationRun) -> Task:
         As :func:`canon.propagate` documents them; or the system has contacts, or the method has no tangent map here.
     """
     many = np.ndim(run.y0) == 2 or any(np.ndim(value) for value in (run.parameters or {}).values())
-    samples = run.samples or (_OF_MANY if many else _SAMPLES)
+    samples = (_OF_MANY if many else _SAMPLES) if run.samples is None else run.samples
     request = Request(
         run.system, run.t_span, run.y0, method=run.method, step=run.step, tolerance=run.tolerance,
-        precision=run.precision, parameters=run.parameters, samples=samples,
+        precision=run.precision, parameters=run.parameters,
+        times=_uneven(two_ends(run.t_span, run.y0), samples),
     )  # fmt: skip
     task, moving = any_task(request)
     refuse_contacts(moving, "a tangent map")
-    if moving is not None and (moving.work is not None or task.system.varying or task.system.spare):
+    if moving is not None and (moving.residuals or moving.work is not None or task.system.varying):
         raise ValueError(
-            "deviations here are those of a Hamiltonian or of a vector field on all of its variables; make a "
-            "Hamiltonian of the system, hamiltonian(L), or write its equations as a VectorField"
+            "deviations here are those of a Hamiltonian, or of a vector field whose variables are free: make a "
+            "Hamiltonian of the system, hamiltonian(L), in coordinates that keep its constraints"
         )
+    if task.system.spare:
+        raise ValueError("an odd number of variables: deviations here are those of an even one, as of (q, p)")
     if task.method.family not in _CARRIED:
         raise ValueError(
             f"{task.method} carries no deviations here: take a splitting of T + V, Splitting('kahan-li-8'), Gauss(6) "
             "or Taylor()"
         )
     return task
+
+
+def _uneven(ends: tuple[Fraction, Fraction], samples: int) -> Array:
+    """Return times at which to keep the growth, unevenly spaced: a period near their distance would beat with it.
+
+    Raises
+    ------
+    ValueError
+        There are fewer than a verdict takes.
+    """
+    if not LEAST_SAMPLES <= samples < np.inf or samples != int(samples):
+        raise ValueError(f"samples={samples}: a verdict takes at least {LEAST_SAMPLES}, better 100 or more")
+    k = np.arange(1, int(samples))
+    shifts = _SPREAD * ((k * _GOLDEN) % 1.0 - 0.5)
+    first, last = map(float, ends)
+    return first + (last - first) * np.append(k + shifts, samples) / samples
 
 
 def deviation_growth(
@@ -145,11 +174,13 @@ def deviation_growth(
     """
     count = task.states[0].shape[1]
     parts = np.array_split(np.arange(count), min(os.cpu_count() or 1, -(-count // _LEAST)))
-    done = [0.0] * len(parts)
+    done, stopped = [0.0] * len(parts), threading.Event()
     with reporting(progress) as report:
 
         def part(k: int) -> tuple[Array, Array | None, Array]:
             def told(fraction: float) -> None:
+                if stopped.is_set():
+                    raise Interruption
                 done[k] = fraction
                 report(min(done))
 
@@ -159,7 +190,10 @@ def deviation_growth(
             found = [part(0)]
         else:
             with ThreadPoolExecutor(len(parts)) as pool:
-                found = list(pool.map(part, range(len(parts))))
+                try:
+                    found = list(pool.map(part, range(len(parts))))
+                finally:
+                    stopped.set()
     log = np.concatenate([each[0] for each in found], axis=2)
     noted = (
         None if note is None else np.concatenate([each[1] for each in found if each[1] is not None], axis=1)
