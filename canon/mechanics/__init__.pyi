@@ -149,6 +149,9 @@ from .perturbation.quadratic_form import NoDiagonalFormError as NoDiagonalFormEr
 from .perturbation.remainder import OptimalOrder as OptimalOrder
 from .perturbation.remainder import optimal_order as optimal_order
 from .perturbation.remainder import remainder_norms as remainder_norms
+from .perturbation.resonant.resonant_orbits import NotIsolatedError as NotIsolatedError
+from .perturbation.resonant.resonant_orbits import ResonantOrbit as ResonantOrbit
+from .perturbation.resonant.resonant_orbits import resonant_orbits as resonant_orbits
 from .perturbation.secular.adiabatic_series import AdiabaticInvariant as AdiabaticInvariant
 from .perturbation.secular.adiabatic_series import adiabatic_invariants as adiabatic_invariants
 from .perturbation.secular.anomaly_average import AnomalyAverage as AnomalyAverage

@@ -14,6 +14,9 @@ from .near_identity import is_normal_form as is_normal_form
 from .near_identity import near_identity_map as near_identity_map
 from .remainder import optimal_order as optimal_order
 from .remainder import remainder_norms as remainder_norms
+from .resonant.resonant_orbits import NotIsolatedError as NotIsolatedError
+from .resonant.resonant_orbits import ResonantOrbit as ResonantOrbit
+from .resonant.resonant_orbits import resonant_orbits as resonant_orbits
 from .secular.adiabatic_series import AdiabaticInvariant as AdiabaticInvariant
 from .secular.adiabatic_series import adiabatic_invariants as adiabatic_invariants
 from .secular.anomaly_average import AnomalyAverage as AnomalyAverage

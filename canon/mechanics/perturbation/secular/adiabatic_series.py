@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -193,7 +193,7 @@ def _generator(part: Series, frequencies: Sequence[Expr], divisors: dict[Harmoni
     for k, c in part.items():
         if not any(k):
             continue
-        divisor = sp.factor(sp.Add(*(j * omega for j, omega in zip(k, frequencies, strict=True))))
+        divisor: Any = sp.factor(sp.Add(*(j * omega for j, omega in zip(k, frequencies, strict=True))))
         if divisor == 0:
             raise AveragingError(
                 f"at order {n} the term of k = {k} has the divisor k·ω = 0, so the actions of its angles are no "

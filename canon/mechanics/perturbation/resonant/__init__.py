@@ -1,0 +1,1 @@
+"""Resonances of normal forms: their periodic orbits, and the islands about them."""
