@@ -55,6 +55,14 @@ def test_any_line_is_found_within_its_error(frequency, size, other, phase, part)
     assert abs(abs(found.amplitudes[0]) - size) < 1e-6 * size
 
 
+def test_a_line_is_not_found_twice():
+    t = np.linspace(0, 100, 801)
+    for frequency in (3.4e-15, 0.0, 1.25):
+        found = frequency_analysis(t, 3.0 * np.exp(1j * (frequency * t + 2)), terms=3)
+        assert len(found.frequencies) == 1
+        assert abs(abs(found.amplitudes[0]) - 3) < 1e-12
+
+
 def test_a_higher_window_leaks_less():
     t = np.linspace(0, 300, 3001)
     missed = [abs(frequency_analysis(t, signal(t), window=p).frequencies[0] - 1) for p in (1, 2, 3, 4)]

@@ -250,9 +250,13 @@ class _Signal:
         for _ in range(terms):
             if float(np.abs(left).max()) <= floor:
                 break
-            found = np.append(found, self._nearest(left, power))
-            for _ in range(_ROUNDS if len(found) > 1 else 1):
-                found = self.found_anew(found, power)
+            more = np.append(found, self._nearest(left, power))
+            for _ in range(_ROUNDS if len(more) > 1 else 1):
+                more = self.found_anew(more, power)
+            # What is left beside a line may be its own rounding, or a line that cannot be told from it.
+            if len(more) > 1 and np.diff(np.sort(more)).min() < math.pi / (self.t[-1] - self.t[0]):
+                break
+            found = more
             left = self.values - self.sum_of(found, self.amplitudes(found, power))
         return found if len(found) else np.zeros(1)
 
