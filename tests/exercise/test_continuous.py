@@ -271,3 +271,27 @@ def test_what_a_proof_assumed_is_among_the_warnings():
     (told,) = check(sheet).judgements
     assert told.status == "holds"
     assert "is an angle that winds around p = 0, q = 0" in told.warnings[0]
+
+
+WEDGE = {"q": "q", "p": "p", "H": "p**2/2 + Piecewise((q, q > 0), (-q, True))"}
+TURNED = {"q": ["x", "y"], "p": ["a", "b"], "H": "(a**2 + b**2)/2 + cos(2*atan2(y, x))/(x**2 + y**2)"}
+L_SQUARED = "(x*b - y*a)**2/2 + cos(2*atan2(y, x))"
+STEP = {"q": "q", "p": "p", "H": "p**2/2 + Piecewise((1, q > 0), (0, True))"}
+
+
+@pytest.mark.parametrize(
+    ("system", "wrong", "status", "right"),
+    [
+        (WEDGE, "(p**2/2 + Abs(q))*(2 + sign(q))", "fails", "p**2/2 + Abs(q)"),
+        (WEDGE, "p**2 + 2*Abs(q) + sign(q)", "fails", WEDGE["H"]),
+        (TURNED, f"{L_SQUARED} + sign(y)", "undecided", L_SQUARED),
+        (TURNED, f"({L_SQUARED})*(2 + sign(y))", "undecided", TURNED["H"]),
+    ],
+)
+def test_what_is_given_in_pieces_that_meet_excuses_no_jump(system, wrong, status, right):
+    assert said("constant-of-motion", **system, I=wrong).status.value == status
+    assert said("constant-of-motion", **system, I=right).holds
+
+
+def test_what_is_given_with_a_jump_excuses_its_own():
+    assert said("constant-of-motion", **STEP, I=STEP["H"]).holds

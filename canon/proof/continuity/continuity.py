@@ -105,7 +105,7 @@ def continuity(
     f = sp.expand_mul(f) if anatomy([f]).tree <= LARGE else f
     terms = [t for t in sp.Add.make_args(f) if t.has(*moving)]
     rough = [term for term in terms if _is_rough(term, moving, domain)]
-    excused = _excused(rough, given, moving, domain)
+    excused = _excused(rough, given, moving, domain, deadline)
     rough = [term for term in rough if term not in excused]
     beside = sp.Add(f, *(-term for term in rough))
     found = _of_cuts(sp.Add(*rough), beside, moving, domain, deadline, name, angles=angles)
@@ -317,11 +317,15 @@ def _between(
 
 
 def _excused(
-    terms: Sequence[Expr], given: Iterable[Expr], moving: Sequence[Symbol], domain: Domain
+    terms: Sequence[Expr], given: Iterable[Expr], moving: Sequence[Symbol], domain: Domain, deadline: float
 ) -> dict[Expr, str]:
-    """Return the terms that may jump only where something jumps that is given, and what is assumed of them."""
-    plain = [without_complex_logarithms(g) for g in given]
-    gaps = [cut.gap for g in plain for cut in _open_cuts(g, moving, domain) if not cut.bends]
+    """Return the terms that may jump only where something jumps that is given, and what is assumed of them.
+
+    What is given in pieces that meet, as |q| may be, or by an angle, as cos 2θ, does not jump.
+    """
+    plain = [without_complex_logarithms(g) for g in given] if terms else []
+    cuts = [(g, cut) for g in plain for cut in _open_cuts(g, moving, domain) if not cut.bends]
+    gaps = [cut.gap for g, cut in cuts if not _meets(g, cut, moving, domain, deadline)]
     found: dict[Expr, str] = {}
     for term in terms if gaps else ():
         own = {cut.gap for cut in _open_cuts(term, moving, domain) if not cut.bends}
