@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from fractions import Fraction
 
-    import numpy.typing as npt
     from sympy import Symbol
 
     from canon.array import Array
@@ -174,6 +173,9 @@ def deviation_growth(
     """
     count = task.states[0].shape[1]
     parts = np.array_split(np.arange(count), min(os.cpu_count() or 1, -(-count // _LEAST)))
+    made = CompiledDeviations if has_tangent_loop(task.method) else VariationalDeviations
+    # One after the other, so that a loop is compiled once.
+    going = [made(task, frame, orthogonal=orthogonal, orbits=orbits) for orbits in parts]
     done, stopped = [0.0] * len(parts), threading.Event()
     with reporting(progress) as report:
 
@@ -184,7 +186,7 @@ def deviation_growth(
                 done[k] = fraction
                 report(min(done))
 
-            return _followed(task, frame, parts[k], note, told, orthogonal=orthogonal)
+            return _followed(going[k], len(task.plan.instants), note, told)
 
         if len(parts) == 1:
             found = [part(0)]
@@ -210,20 +212,15 @@ _LEAST = 64
 
 
 def _followed(
-    task: Task,
-    frame: Array,
-    orbits: npt.NDArray[np.int64],
+    going: CompiledDeviations | VariationalDeviations,
+    samples: int,
     note: Callable[[Array], Array] | None,
     progress: Callable[[float], None],
-    *,
-    orthogonal: bool,
 ) -> tuple[Array, Array | None, Array]:
     """Return logarithms, what was noted, and the last states of some orbits."""
-    made = CompiledDeviations if has_tangent_loop(task.method) else VariationalDeviations
-    going = made(task, frame, orthogonal=orthogonal, orbits=orbits)
-    samples = len(task.plan.instants)
-    log, lack = np.zeros((frame.shape[1], samples, len(orbits))), np.zeros((frame.shape[1], len(orbits)))
-    noted = None if note is None else np.empty((samples, len(orbits)))
+    _, vectors, orbits = going.vectors().shape
+    log, lack = np.zeros((vectors, samples, orbits)), np.zeros((vectors, orbits))
+    noted = None if note is None else np.empty((samples, orbits))
     if noted is not None and note is not None:
         noted[0] = note(going.vectors())
     for k in range(1, samples):
