@@ -22,6 +22,8 @@ from canon.flow import reversal_error
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.method import RK4
 from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.study.method_choice.candidate import candidate_methods
+from canon.study.method_choice.choice_question import Question
 
 U = 2.0**-53
 x, y, u, w, r, theta, alpha = coordinates("x y u w r theta alpha")
@@ -150,17 +152,17 @@ def momenta(system, state):
     return [p(*state) for p in momentum_functions(system)]
 
 
-def symplectic_defect(system, chart, at, method, precision, delta):
-    """The largest ω(Mu, Mv) − ω(u, v) of one step over tangent vectors u, v, by differences in a chart."""
+def symplectic_defect(system, chart, at, method, precision, delta, step=0.25, span=0.25):
+    """The largest ω(Mu, Mv) − ω(u, v) of some steps over tangent vectors u, v, by differences in a chart."""
     n, weights = len(system.lagrangian.q), {1: 45, 2: -9, 3: 1}
     places = [(i, sign * k) for i in range(len(at)) for k in weights for sign in (1, -1)]
     states = [chart([mpmath.mpf(a) + k * delta * (i == j) for j, a in enumerate(at)]) for i, k in places]
     found = propagate(
         system,
-        (0, 0.25),
+        (0, span),
         np.array(states, dtype=object).T,
         method=method,
-        step=0.25,
+        step=step,
         samples=1,
         precision=precision,
     )
@@ -214,8 +216,9 @@ def test_a_step_is_symplectic_on_the_constraints():
 def test_a_step_is_symplectic_to_twenty_digits(system, chart, order):
     with mpmath.workdps(40):
         delta = mpmath.mpf(2) ** -14
-        assert symplectic_defect(system, chart, AT, Rattle(order), "double-double", delta) < 1e-20
-        assert symplectic_defect(system, chart, AT, RK4(), "double-double", delta) > 1e-5
+        arguments = {"precision": "double-double", "delta": delta, "step": 0.0625, "span": 1.0}
+        assert symplectic_defect(system, chart, AT, Rattle(order), **arguments) < 1e-20
+        assert symplectic_defect(system, chart, AT, RK4(), **arguments) > 1e-12
 
 
 def test_constraints_hold_to_rounding_and_energy_stays_bounded_over_a_hundred_thousand_steps():
@@ -399,3 +402,10 @@ def test_without_constraints_other_methods_are_named():
         Rattle(3)
     with pytest.raises(ValueError, match="derivative of steps that keep constraints"):
         flow_jacobian(CARTESIAN, (0, 1), START, method=Rattle(), step=0.1)
+
+
+def test_a_choice_considers_it_where_it_applies():
+    rubbing = ConstrainedLagrangian(Lagrangian(FREE.L, [x, y], forces=[-x.dot, 0]), [x**2 + y**2 - 1])
+    pendulum, start = ConstrainedLagrangian(FREE, [x**2 + y**2 - 1]), np.array([1.0, 0.0, 0.0, 0.0])
+    assert Rattle(4) in candidate_methods(Question(pendulum, start, {}, 10.0))
+    assert not any(isinstance(m, Rattle) for m in candidate_methods(Question(rubbing, start, {}, 10.0)))

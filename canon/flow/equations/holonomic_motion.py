@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
     from canon.flow.equations.first_order_motion import FirstOrderMotion, MovingSystem
 
-__all__ = ["with_constraints_kept"]
+__all__ = ["NotForRattleError", "with_constraints_kept"]
+
+
+class NotForRattleError(ValueError):
+    """The constrained system is not one that RATTLE is for; the message says why."""
 
 
 def with_constraints_kept(
@@ -47,8 +51,8 @@ def with_constraints_kept(
     ------
     TypeError
         It is no Lagrangian with constraints.
-    ValueError
-        It is not one that RATTLE is for; the message says why.
+    NotForRattleError
+        It is not one that RATTLE is for.
     """
     if not isinstance(given, ConstrainedLagrangian):
         raise TypeError(
@@ -67,15 +71,15 @@ def _check(given: ConstrainedLagrangian, moving: MovingSystem) -> None:
     others = "Taylor, DOP853, RK4 and Gauss do"
     if given.nonholonomic:
         number = counted(len(given.nonholonomic), "constraint")
-        raise ValueError(f"Rattle keeps holonomic constraints, not {number} on velocities; {others}")
+        raise NotForRattleError(f"Rattle keeps holonomic constraints, not {number} on velocities; {others}")
     if not given.holonomic:
-        raise ValueError(
+        raise NotForRattleError(
             "Rattle keeps constraints, and there are none: hamiltonian(L) takes Splitting and Gauss"
         )
     if given.lagrangian.forces and any(force != 0 for force in given.lagrangian.forces):
-        raise ValueError(f"Rattle is for forces that L holds, and others are given; {others}")
+        raise NotForRattleError(f"Rattle is for forces that L holds, and others are given; {others}")
     if moving.work is not None or not moving.equations.autonomous:
-        raise ValueError(f"Rattle is for L and constraints that do not hold the time; {others}")
+        raise NotForRattleError(f"Rattle is for L and constraints that do not hold the time; {others}")
 
 
 def _holonomic(
@@ -86,7 +90,7 @@ def _holonomic(
     slopes = tuple(tuple(row[:n]) for row in motion.matrix[n:])
     flat = [node for row in M for node in row]
     if graph.all_symbols(flat) & set(v):
-        raise ValueError(
+        raise NotForRattleError(
             "Rattle is for masses that do not depend on velocities; Taylor, DOP853, RK4 and Gauss do"
         )
     values = values_at_start(graph, flat, start, "the mass matrix").reshape(n, n)
@@ -108,7 +112,7 @@ def _holonomic(
         velocity = solved(excess)
     except SingularAtStartError as singular:
         massless = [s.name for s, x in zip(q, singular.direction, strict=True) if abs(x) > 1e-6]
-        raise ValueError(
+        raise NotForRattleError(
             f"Rattle divides by the masses, and the mass matrix is singular along {', '.join(massless)}: give every "
             "coordinate a mass, or use Taylor, DOP853, RK4 or Gauss"
         ) from None

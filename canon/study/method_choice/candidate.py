@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from sympy import Pow
 
 from canon.flow.checked_request import hamilton_equations_of
+from canon.flow.equations.holonomic_motion import NotForRattleError
+from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import SABA, WisdomHolman
 from canon.flow.propagation import is_separable
+from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.flow.system_request import is_hamiltonian
+from canon.flow.system_request import any_task, is_hamiltonian
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.study.method_choice.error_law import expected_error, order_of
 from canon.study.method_choice.pilot_run import Pilot, pilot, seconds_per_time
 
@@ -115,15 +119,32 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
     Splittings where H = T(p) + V(q), in a fictitious time too where V has a singularity, else Gauss's methods and
     splittings of two copies of the phase space;
     Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
-    for comparison. Where there is no H, the last three alone.
+    for comparison. Where there is no H, the last three alone, and RATTLE for holonomic
+    constraints.
     """
     if not is_hamiltonian(question.hamiltonian):
-        return Taylor(), DOP853(), RK4()
+        return Taylor(), *_of_constraints(question), DOP853(), RK4()
     others = *_of_disturbed(question), RK4(), DOP853()
     if not is_separable(question.hamiltonian, question.values):
         return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *_of_two_copies(question), *others
     names = sorted(SCHEMES, key=lambda name: -SCHEMES[name].order)
     return Taylor(), *(Splitting(name) for name in names), *_of_close_encounters(question), *others
+
+
+def _of_constraints(question: Question) -> tuple[Method, ...]:
+    """Return methods that keep holonomic constraints themselves, where they apply."""
+    system: Any = question.hamiltonian
+    if not isinstance(system, ConstrainedLagrangian):
+        return ()
+    span = (question.since, question.since + question.span)
+    request = Request(
+        system, span, question.y0, method=Rattle(), step=question.span, parameters=question.values
+    )
+    try:
+        any_task(request)
+    except NotForRattleError:
+        return ()
+    return Rattle(4), Rattle(6)
 
 
 def _of_two_copies(question: Question) -> tuple[Method, ...]:
