@@ -79,7 +79,7 @@ class NormalForm:
     parts
         Those of the normal form.
     generators
-        Degree and generator χ of each step; exp(L_χ) of all of them, one after another, takes H to K.
+        Lowest degree and generator χ of each step; exp(L_χ) of all of them, one after another, takes H to K.
     small_divisors
         The divisors k·λ that were divided by, smallest first.
     """
@@ -175,6 +175,8 @@ def birkhoff_normal_form(
     order: int,
     resonances: Sequence[Sequence[int]] | None = None,
     at: Mapping[Symbol, Expr] | None = None,
+    *,
+    superconvergent: bool = False,
 ) -> NormalForm:
     """Return the normal form of a Hamiltonian at an equilibrium to a degree in (q, p), exactly.
 
@@ -193,6 +195,10 @@ def birkhoff_normal_form(
         k·λ = 0 exactly is kept, and no other.
     at
         The equilibrium, by variable; 0 for those not named.
+    superconvergent
+        Take Kolmogorov's steps: from degree N one exp(L_χ) with χ = χ_{N+1} + … + χ_{2N−1}, {χ, K} = the rest of H to
+        first order, leads to degree 2N − 1, so that three steps reach 5 and six 33. The normal form is the same up to
+        what is free, and where nothing resonates the same (A. N. Kolmogorov, Dokl. Akad. Nauk SSSR 98, 527 (1954)).
 
     Raises
     ------
@@ -235,7 +241,7 @@ def birkhoff_normal_form(
     series = homogeneous_parts(moved, variables, ring, order)
     original = {d: part.composed(diagonal.columns) for d, part in series.items() if d != 1}
     module = None if resonances is None else Module(_vectors(resonances, len(H.q)))
-    return _normalised(H, place, order, module, diagonal, original)
+    return _normalised(H, place, order, module, diagonal, original, superconvergent)
 
 
 def _hessian(H: Expr, variables: Sequence[Symbol]) -> sp.Matrix:
@@ -274,6 +280,7 @@ def _normalised(
     module: Module | None,
     diagonal: DiagonalForm,
     original: dict[int, PhasePolynomial],
+    superconvergent: bool,
 ) -> NormalForm:
     size = 2 * len(H.q)
     values = [complex(e.subs(dict.fromkeys(e.free_symbols, 1)).evalf()) for e in diagonal.exponents]
@@ -289,25 +296,47 @@ def _normalised(
         small = tuple(sorted(divided_by.values(), key=lambda s: s.value))
         return NormalForm(H, place, reached, named, diagonal, original, kept, steps, small)
 
-    for degree in range(3, order + 1):
-        terms = comb(degree + size - 1, size - 1)
-        if terms > MOST_TERMS:
-            raise _ended(
-                f"degree {degree} may have {terms} terms, more than memory holds", result(degree - 1)
-            )
-        if degree not in parts:
-            continue
-        try:
-            _, chi, met = homological_solution(parts[degree], divisors)
-        except ZeroDivisorError as zero:
-            raise _ended(f"at degree {degree} {zero}", result(degree - 1)) from zero
-        for k, value in met.items():
-            either_sign = _either_sign(k)
-            divided_by.setdefault(either_sign, SmallDivisor(either_sign, value, degree))
+    reached = 2
+    while reached < order:
+        top = min(2 * reached - 1, order) if superconvergent else reached + 1
+        chi: dict[int, PhasePolynomial] = {}
+        for degree in range(reached + 1, top + 1):
+            terms = comb(degree + size - 1, size - 1)
+            if terms > MOST_TERMS:
+                raise _ended(
+                    f"degree {degree} may have {terms} terms, more than memory holds", result(reached)
+                )
+            rest = _to_first_order(parts, chi, degree, reached, diagonal)
+            try:
+                _, solution, met = homological_solution(rest, divisors)
+            except ZeroDivisorError as zero:
+                raise _ended(f"at degree {degree} {zero}", result(reached)) from zero
+            for k, value in met.items():
+                either_sign = _either_sign(k)
+                divided_by.setdefault(either_sign, SmallDivisor(either_sign, value, degree))
+            chi |= {degree: solution} if solution else {}
         if chi:
-            generators.append((degree, chi))
-            parts = transformed(parts, chi, degree, order, diagonal.brackets)
+            whole = diagonal.eigenvalues[0].ring.total(chi.values())
+            generators.append((min(chi), whole))
+            parts = transformed(parts, whole, min(chi), order, diagonal.brackets)
+        reached = top
     return result(order)
+
+
+def _to_first_order(
+    parts: Mapping[int, PhasePolynomial],
+    chi: Mapping[int, PhasePolynomial],
+    degree: int,
+    reached: int,
+    diagonal: DiagonalForm,
+) -> PhasePolynomial:
+    """Return the part of this degree of H + {K, χ}, without {H₂, χ}, for the χ of one step that are known."""
+    rest = parts.get(degree, diagonal.eigenvalues[0].ring.zero)
+    for s, f in chi.items():
+        known = parts.get(degree - s + 2)
+        if known is not None and degree - s + 2 <= reached:
+            rest = rest + diagonal.brackets(known, f)
+    return rest
 
 
 def _ended(why: str, reached: NormalForm) -> NormalFormError:

@@ -66,20 +66,35 @@ class Brackets:
 def transformed(
     parts: Mapping[int, PhasePolynomial], chi: PhasePolynomial, degree: int, order: int, bracket: Brackets
 ) -> dict[int, PhasePolynomial]:
-    """Return exp(L_χ) f to an order, for f given by its homogeneous parts and χ homogeneous of one degree.
+    """Return exp(L_χ) f to an order, for f given by its homogeneous parts and χ of a lowest degree.
 
-    Each bracket with χ of degree s raises the degree by s − 2, which is at least 1.
+    Each bracket with a part of χ of degree s raises the degree by s − 2, which is at least 1.
     """
     found = dict(parts)
-    field = bracket.field(chi)
+    fields = {s: bracket.field(part) for s, part in chi.split(_degree).items()}
     for start, part in parts.items():
-        term, at, k = part, start, 1
-        while at + degree - 2 <= order and term:
-            term = field.change_of(term, k)
-            at, k = at + degree - 2, k + 1
-            if term:
-                found[at] = found[at] + term if at in found else term
+        term, k = {start: part}, 1
+        while term and min(term) + degree - 2 <= order:
+            term = _along(term, fields, k, order)
+            found = added(found, term)
+            k += 1
     return {d: f for d, f in sorted(found.items()) if f}
+
+
+def _along(
+    f: Mapping[int, PhasePolynomial], fields: Mapping[int, PhaseField], divisor: int, order: int
+) -> dict[int, PhasePolynomial]:
+    """Return {f, χ}/divisor to an order, from the fields of the homogeneous parts of χ."""
+    total: dict[int, PhasePolynomial] = {}
+    for d, part in f.items():
+        for s, field in fields.items():
+            if d + s - 2 <= order:
+                total = added(total, {d + s - 2: field.change_of(part, divisor)})
+    return {d: part for d, part in total.items() if part}
+
+
+def _degree(exponents: tuple[int, ...]) -> int:
+    return int(sum(exponents))
 
 
 def added(

@@ -82,9 +82,10 @@ def remainder_norms(form: NormalForm, radii: Sequence[float] | float) -> dict[in
     if len(rho) != n or not all(isfinite(r) and r > 0 for r in rho):
         raise ValueError(f"radii should be a positive number, or {n} of them, not {radii!r}")
     norms = dict.fromkeys(range(2, form.order), 0.0)
-    for degree, chi in form.generators:
-        removed = form.diagonal.brackets(chi, form.original[2])
-        norms[degree - 1] = norm_on_polydisc(removed, form.diagonal, rho)
+    for _, chi in form.generators:
+        for degree, part in chi.split(lambda exponents: int(sum(exponents))).items():
+            removed = form.diagonal.brackets(part, form.original[2])
+            norms[degree - 1] = norm_on_polydisc(removed, form.diagonal, rho)
     return norms
 
 

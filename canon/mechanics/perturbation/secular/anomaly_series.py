@@ -141,7 +141,8 @@ class Ellipse:
 
     def _lowest(self, c: Expr) -> Expr:
         above, below = (sp.Poly(part, self.e) for part in sp.fraction(sp.together(c)))
-        return sp.factor(sp.cancel(self._without_squares(above) / self._without_squares(below)))
+        lowest: Any = sp.cancel(self._without_squares(above) / self._without_squares(below))
+        return sp.factor(lowest)
 
     def _without_squares(self, poly: Any) -> Expr:
         return sp.Add(*(k * self.e ** (n % 2) * (1 - self.eta**2) ** (n // 2) for (n,), k in poly.terms()))
