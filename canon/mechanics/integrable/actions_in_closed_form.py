@@ -58,7 +58,9 @@ class ClosedAction:
     digits: int
 
 
-def closed_actions(torus: ActionVariables) -> tuple[ClosedAction | None, ...]:
+def closed_actions(
+    torus: ActionVariables, most_operations: int | None = None
+) -> tuple[ClosedAction | None, ...]:
     """Return the actions in closed form where the integral is a known one; None for the others.
 
     A formula is returned where p² has exactly the terms of the known integral, and where on three tori, that of the
@@ -69,6 +71,9 @@ def closed_actions(torus: ActionVariables) -> tuple[ClosedAction | None, ...]:
     ----------
     torus
         What :func:`action_variables` returned.
+    most_operations
+        How long a formula may be; those of spherical pendulum and top, whose cubic has its roots by Viète's cosines,
+        have more than a thousand operations and take seconds to certify.
 
     Examples
     --------
@@ -82,6 +87,8 @@ def closed_actions(torus: ActionVariables) -> tuple[ClosedAction | None, ...]:
     """
     given_kind(torus, ActionVariables, "what closed_actions() takes", "action_variables() returns it")
     recognised = [_recognised(m, c) for m, c in zip(torus.integral.momenta, torus.cycles, strict=True)]
+    if most_operations is not None:
+        recognised = [f if f is None or sp.count_ops(f[0]) <= most_operations else None for f in recognised]
     if not any(found is not None for found in recognised):
         return tuple(None for _ in recognised)
     tori = _neighbours(torus)
@@ -151,7 +158,7 @@ def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] |
         found = known(A, terms, q)
         if found is not None:
             return found
-    return _quartic_well(A, terms, q, cycle) or _pendulum(A, terms, q, cycle)
+    return _quartic_well(A, terms, q, cycle) or _pendulum(A, terms, q, cycle) or _on_the_sphere(square, q)
 
 
 def _about_its_kink(f: Expr, q: Symbol) -> Expr:
@@ -269,6 +276,41 @@ def _quartic_well(A: Expr, terms: Mapping[Expr, Expr], q: Symbol, cycle: Cycle) 
         m = (B + R) / (B - R)
         return -sqrt(2 * (R - B)) / (3 * sp.pi * C) * (B * E(m) + R * K(m)), "soft quartic well"
     return None
+
+
+def _on_the_sphere(square: Expr, q: Symbol) -> tuple[Expr, str] | None:
+    """Return the loop integral of √P(z)/(1 − z²), z = cos q, with a cubic P: spherical pendulum and Lagrange's top.
+
+    P/(1 − z²) is linear in z but for P(1)/2 over 1 − z and P(−1)/2 over 1 + z, and z = z₁ + (z₂ − z₁) sn²
+    (E. T. Whittaker, Analytical Dynamics, section 71).
+    """
+    z = sp.Dummy("z", real=True)
+    whole = sp.cancel(sp.expand(square).subs(sp.sin(q), sqrt(1 - z**2)).subs(sp.cos(q), z) * (1 - z**2))
+    if whole.has(q) or not whole.is_polynomial(z):
+        return None
+    cubic = sp.Poly(whole, z)
+    if cubic.degree() != 3:
+        return None
+    P = sp.Poly(whole.subs(z, -z), z) if cubic.LC().is_negative else cubic
+    if not P.LC().is_positive:
+        return None
+    alpha, beta, _, _ = P.all_coeffs()
+    z1, z2, z3 = _three_roots(P)
+    m, g = (z2 - z1) / (z3 - z1), 2 / sqrt(alpha * (z3 - z1))
+    above = P.eval(1) * sp.elliptic_pi((z2 - z1) / (1 - z1), m) / (1 - z1)
+    below = P.eval(-1) * sp.elliptic_pi((z1 - z2) / (1 + z1), m) / (1 + z1)
+    first, second = sp.elliptic_k(m), sp.elliptic_e(m)
+    linear = -alpha * (z3 * first - (z3 - z1) * second) - beta * first
+    return g / sp.pi * (linear + (above + below) / 2), "motion on a sphere"
+
+
+def _three_roots(P: sp.Poly) -> tuple[Expr, Expr, Expr]:
+    """Return the roots of a cubic that has three real ones, in their order, by Viète's cosines."""
+    _, b, c, d = P.monic().all_coeffs()
+    p, r = c - b**2 / 3, 2 * b**3 / 27 - b * c / 3 + d
+    third = sp.acos(3 * r / (2 * p) * sqrt(-3 / p)) / 3
+    large, middle, small = (2 * sqrt(-p / 3) * sp.cos(third - 2 * sp.pi * k / 3) - b / 3 for k in range(3))
+    return small, middle, large
 
 
 def _pendulum(A: Expr, terms: Mapping[Expr, Expr], q: Symbol, cycle: Cycle) -> tuple[Expr, str] | None:

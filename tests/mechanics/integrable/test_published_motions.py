@@ -7,10 +7,13 @@ import pytest
 import sympy as sp
 from flint import arb
 
+from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.bracket import poisson_bracket
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import action_variables
+from canon.mechanics.integrable.actions_in_closed_form import closed_actions
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
+from canon.proof.domain.balls import precision, value
 from canon.proof.vanish import vanishes
 from canon.study import orbit_frequencies
 
@@ -18,6 +21,7 @@ r, theta, k, u, v, Delta, c, M = sp.symbols("r theta k u v Delta c M", positive=
 phi, psi, p_r, p_theta, p_phi, p_psi, p_u, p_v = sp.symbols(
     "phi psi p_r p_theta p_phi p_psi p_u p_v", real=True
 )
+half, third = sp.Rational(1, 2), sp.Rational(3, 5)
 SPIN, SPHERE = p_phi - p_psi * sp.cos(theta), (p_theta**2 + p_phi**2 / sp.sin(theta) ** 2) / 2
 PENDULUM = Hamiltonian(SPHERE + sp.cos(theta), [theta, phi], [p_theta, p_phi])
 TOP = Hamiltonian(
@@ -70,6 +74,34 @@ def test_lagranges_top_precesses_and_spins_by_pi():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("H", [PENDULUM, TOP], ids=["pendulum", "top"])
+def test_the_action_on_the_sphere_is_known_in_integrals_of_all_three_kinds(H):
+    """J = (1/π) ∫ √P dz/(1 − z²) by K, E and Π of the roots by Viète's cosines, beside mpmath's quadrature of it."""
+    start = dict(
+        zip(
+            (*H.q, *H.p), (1, 0, 0, sp.Rational(1, 4), 2, 3) if H is TOP else (2, 0, half, third), strict=True
+        )
+    )
+    torus = action_variables(hamilton_jacobi(H), start, digits=20)
+    found = closed_actions(torus)[0]
+    assert found.name == "motion on a sphere"
+    assert all(found.J.has(f) for f in (sp.elliptic_k, sp.elliptic_e, sp.elliptic_pi))
+    assert closed_actions(torus, 400)[0] is None
+    low, high = (mp.mpf(end.str(20, radius=False)) for end in torus.cycles[0].turning_points)
+    constants = {s: number for s, number in torus.values.items() if s != theta}
+    square = sp.lambdify(theta, torus.integral.momenta[0].square.subs(constants), "mpmath")
+
+    def along(x):
+        place = (low + high) / 2 - (high - low) / 2 * mp.cos(x)
+        return mp.sqrt(abs(square(place))) * (high - low) / 2 * mp.sin(x)
+
+    due = mp.quad(along, mp.linspace(0, mp.pi, 5)) / mp.pi
+    with precision(120):
+        known = float(value(substitute(found.J, torus.values), {}).real.mid())
+    assert abs(known / float(due) - 1) < 1e-10
+
+
+@pytest.mark.slow
 def test_kepler_in_space_has_one_frequency():
     H = Hamiltonian(p_r**2 / 2 + SPHERE / r**2 - k / r, [r, theta, phi], [p_r, p_theta, p_phi])
     start = {
@@ -110,14 +142,14 @@ def test_a_stackel_galaxy_separates_with_its_third_integral():
     assert found.separable.holds
     assert found.is_complete_integral().holds
     E, L = GALAXY.H, p_phi
-    third = p_v**2 / (2 * Delta**2) - E * CIRCULAR + M * INNER / Delta**2 + L**2 / (2 * Delta**2 * CIRCULAR)
-    due = E * HYPERBOLIC - third + M * OUTER / Delta**2 - L**2 / (2 * Delta**2 * HYPERBOLIC)
+    I3 = p_v**2 / (2 * Delta**2) - E * CIRCULAR + M * INNER / Delta**2 + L**2 / (2 * Delta**2 * CIRCULAR)
+    due = E * HYPERBOLIC - I3 + M * OUTER / Delta**2 - L**2 / (2 * Delta**2 * HYPERBOLIC)
     assert vanishes(p_u**2 / (2 * Delta**2) - due).holds
-    assert vanishes(p_u**2 / (2 * Delta**2) - due - third).fails
+    assert vanishes(p_u**2 / (2 * Delta**2) - due - I3).fails
     for momentum, p in zip(found.momenta, (p_u, p_v), strict=False):
         assert vanishes(momentum.square.subs(found.defined_as) - p**2).holds
-    assert vanishes(poisson_bracket(third, E, GALAXY.q, GALAXY.p), budget=30.0).holds
-    assert vanishes(poisson_bracket(third, L, GALAXY.q, GALAXY.p)).holds
+    assert vanishes(poisson_bracket(I3, E, GALAXY.q, GALAXY.p), budget=30.0).holds
+    assert vanishes(poisson_bracket(I3, L, GALAXY.q, GALAXY.p)).holds
 
 
 def galactic_torus(spread):

@@ -56,6 +56,8 @@ COMPARED = 9
 POINTS = 24
 """Points of the domain that are tried for these tori; through some of them no bounded motion goes."""
 BITS = 128
+LONGEST = 400
+"""Operations of a formula of an action that is compared; claims about others are refuted by quadrature alone."""
 KEPT = 8
 """Systems whose tori are kept."""
 
@@ -326,7 +328,7 @@ def _kept_tori(
         raise Undecided(
             "the domain has motions of several kinds, librations and rotations; narrow it to those that are meant"
         )
-    known = tuple(None if action is None else action.J for action in closed_actions(found[0]))
+    known = tuple(None if action is None else action.J for action in closed_actions(found[0], LONGEST))
     if any(
         not _lies_in(J, torus, i)
         for torus in (*found, *compared)
