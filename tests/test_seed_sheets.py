@@ -120,6 +120,11 @@ FAILS = frozenset(
         "nonholonomic-examples-003.c2",
         "nonholonomic-examples-003.c1-read-as",
         "nonholonomic-examples-003.c2-read-as",
+        "first-kind-constraint-force",
+        "hollow-cylinder-Lstar",
+        "simple-pendulum-small-box",
+        "axis-translation-label",
+        "pr-theorem-residue",
     }
 )
 
@@ -427,6 +432,8 @@ def wedge(form, z, values):
 def freedom(s):
     q, v = s.symbols("q"), s.symbols("q", "_dot")
     given, values = s.all("constraints"), s.point()
+    if not given:
+        return int(s.claim["dof"]) == len(q)
     places = [f for f in given if not f.has(*v)]
     values = projected(places, q, values, 60) if places else values
     rows = [[f.diff(x) for x in (q if f in places else v)] for f in given]
@@ -481,11 +488,13 @@ def invariance(s):
     if s.claim["of"] == "lagrange-equations":
         flat = numbers([f.diff(x) for f in s.all("Q") for x in q], values)
         return not zero([mp.det(mp.matrix([flat[n * i : n * i + n] for i in range(n)]))])
-    F, P = s.read(s.claim["F"]), s.symbols("new_p")
-    old, new = [*q, *(F.diff(x) for x in q)], [*(F.diff(y) for y in P), *P]
+    F, kind, p, Q, P = s.read(s.claim["F"]), s.claim["type"], *map(s.symbols, ("p", "new_q", "new_p"))
+    old = [*q, *(F.diff(x) for x in q)] if kind < 3 else [*(-F.diff(x) for x in p), *p]
+    new = [*Q, *(-F.diff(x) for x in Q)] if kind % 2 else [*(F.diff(y) for y in P), *P]
     jacobians = []
     for functions in (old, new):
-        flat = numbers([f.diff(z) for f in functions for z in (*q, *P)], values)
+        z = (*(q if kind < 3 else p), *(Q if kind % 2 else P))
+        flat = numbers([f.diff(x) for f in functions for x in z], values)
         jacobians.append(mp.matrix([flat[2 * n * i : 2 * n * (i + 1)] for i in range(2 * n)]))
     M = jacobians[1] * mp.inverse(jacobians[0])
     J = mp.matrix(2 * n, 2 * n)
@@ -511,7 +520,16 @@ def positive_real(s):
     for _ in range(200):
         at = mp.mpc(s.random.expovariate(1), s.random.gauss(0, 3))
         least = min(least, mp.re(numbers([H], {**values, sp.Symbol("s"): at})[0]))
-    return least >= 0
+    return (least >= 0) != any(word.startswith("not ") for word in s.claim["is"])
+
+
+def lie(s):
+    x, X, Y, claimed = s.symbols("x"), s.all("X"), s.all("Y"), s.all("claim")
+    found = [
+        sum(a * g.diff(z) - b * f.diff(z) for a, b, z in zip(X, Y, x, strict=True))
+        for f, g in zip(X, Y, strict=True)
+    ]
+    return zero(numbers([f - c for f, c in zip(found, claimed, strict=True)], s.point()))
 
 
 def kinetic(s):
@@ -541,6 +559,7 @@ ROUTES = {
     "hamilton-equations": hamilton,
     "poisson-bracket": brackets,
     "lagrange-bracket": brackets,
+    "lie-bracket": lie,
     "canonicity": canonical,
     "bilinear-covariant": canonical,
     **{f"generating-F{i}": generating for i in (1, 2, 3, 4)},

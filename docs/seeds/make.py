@@ -43,10 +43,6 @@ equations of the others, which follow it in the claim.
 """
 
 
-LEISURE = 3.0
-"""Seconds for a diagnosis that was not found in the second that a sheet allows for it."""
-
-
 def entry_of(claim_id: str) -> str:
     """Return the entry a claim belongs to."""
     return claim_id.removesuffix("-read-as").split(".")[0]
@@ -133,7 +129,7 @@ def at_leisure(claim: Any, judgement: Any) -> Any:
     if judgement.status != "fails" or (judgement.feedback and judgement.corrected):
         return judgement
     finding = examine(claim)
-    said = judgement.feedback or feedback(finding, LEISURE)
+    said = judgement.feedback or feedback(finding)
     return replace(judgement, feedback=said, corrected=judgement.corrected or corrected(finding))
 
 
