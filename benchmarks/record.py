@@ -2,6 +2,7 @@
 
 python benchmarks/record.py              # every benchmark below
 python benchmarks/record.py zero_test    # this one anew, the others as they stand
+python benchmarks/record.py --page       # nothing is run: what was recorded is laid out anew
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ import sys
 from datetime import date
 from importlib.metadata import version
 from pathlib import Path
+
+from measured_page import section_of
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent / "docs" / "measured.md"
@@ -44,9 +47,13 @@ ARGUMENTS = {"kernels": ["--large"], "normal_forms": ["--large"], "drift_calibra
 HEAD = """\
 # What was measured
 
-Written by `benchmarks/record.py`, which runs the scripts named below. Times on shared machines wander; ratios within
-one run are what counts.
+Written by `benchmarks/record.py`, which runs the scripts named below and reads tables and plots from what they print.
+Times on shared machines wander; ratios within one run are what counts.
 """
+RECORDED = re.compile(
+    r"^(`python benchmarks/[^\n]*(?:\n[^\n`#|<]+)?)\n\n.*?```text\n(.*?)\n```", re.MULTILINE | re.DOTALL
+)
+"""What ran and what it printed, in a section of the page."""
 
 
 def section(name: str) -> str:
@@ -63,20 +70,37 @@ def section(name: str) -> str:
     tools = ", ".join(f"{name} {version(name)}" for name in ("sympy", "python-flint", "llvmlite", "heyoka"))
     command = " ".join([f"{name}.py", *ARGUMENTS.get(name, [])])
     where = f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
-    return f"## {BENCHMARKS[name]}\n\n`python benchmarks/{command}` ({where})\n\n```text\n{printed}\n```\n"
+    ran = f"`python benchmarks/{command}` ({where})"
+    return section_of(name).page(BENCHMARKS[name], ran, printed, name)
+
+
+def laid_out_anew(found: dict[str, str]) -> None:
+    for name, title in BENCHMARKS.items():
+        block = found.get(f"## {title}")
+        recorded = RECORDED.search(block) if block else None
+        if recorded:
+            found[f"## {title}"] = section_of(name).page(title, recorded[1], recorded[2], name)
 
 
 def main(names: list[str]) -> None:
-    unknown = set(names) - set(BENCHMARKS)
+    unknown = set(names) - set(BENCHMARKS) - {"--page"}
     if unknown:
         sys.exit(f"no benchmark is called {', '.join(sorted(unknown))}; there are {', '.join(BENCHMARKS)}")
     page = PAGE.read_text(encoding="utf-8") if PAGE.exists() else HEAD
     found = {block.splitlines()[0]: block for block in re.split(r"^(?=## )", page, flags=re.MULTILINE)[1:]}
+    if "--page" in names:
+        laid_out_anew(found)
+        write(found)
+        return
     for name in names or BENCHMARKS:
         block = section(name)
         found[block.splitlines()[0]] = block
-        kept = [found[title] for title in (f"## {t}" for t in BENCHMARKS.values()) if title in found]
-        PAGE.write_text("\n".join([HEAD, *(block.rstrip() + "\n" for block in kept)]), encoding="utf-8")
+        write(found)
+
+
+def write(found: dict[str, str]) -> None:
+    kept = [found[title] for title in (f"## {t}" for t in BENCHMARKS.values()) if title in found]
+    PAGE.write_text("\n".join([HEAD, *(block.rstrip() + "\n" for block in kept)]), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -83,7 +83,7 @@ SHOWN = {
         code(f"Q_{x} = {Q}") for x, Q in zip(claim["q"], claim["Q"], strict=True)
     ),
     "constraint-class": lambda claim: f"{listed(claim['constraints'])}: {', '.join(claim['class'])}",
-    "degrees-of-freedom": lambda claim: f"{listed(claim['constraints'])}: {claim['dof']}",
+    "degrees-of-freedom": lambda claim: f"{listed(claim.get('constraints', 'free'))}: {claim['dof']}",
     "reaction": lambda claim: "forces of constraint " + listed(claim["force"]),
     "first-order": lambda claim: listed(claim["claim"]),
     "invariance": lambda claim: listed(claim["Q"] if "Q" in claim else f"F{claim['type']} = {claim['F']}"),

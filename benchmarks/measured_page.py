@@ -1,0 +1,366 @@
+"""The sections of docs/measured.md: what follows from a benchmark, its numbers as tables and a plot, its output folded.
+
+Tables are read from what a script printed, row by row, so that nothing stands in one that was not measured.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+FIGURES = Path(__file__).parents[1] / "docs" / "figures"
+FOLDED = "<details>\n<summary>{summary}</summary>\n\n```text\n{printed}\n```\n\n</details>\n"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: its columns, and the pattern of the lines that are its rows, one group a column.
+
+    Lines that match ``under`` give a first cell to the rows below them.
+    """
+
+    columns: tuple[str, ...]
+    row: str
+    under: str = ""
+
+    def rows(self, printed: str) -> list[tuple[str, ...]]:
+        """Return the cells of all rows in what was printed."""
+        found: list[tuple[str, ...]] = []
+        head: tuple[str, ...] = ()
+        for line in printed.splitlines():
+            above = re.search(self.under, line) if self.under else None
+            head = above.groups() if above else head
+            cells = re.search(self.row, line)
+            if cells and (head or not self.under):
+                found.append((*head, *((cell or "").strip() for cell in cells.groups())))
+        return found
+
+    def markdown(self, printed: str) -> str:
+        """Return the table as Markdown; nothing where no line is a row."""
+        rows = self.rows(printed)
+        if not rows:
+            return ""
+        lines = [self.columns, ("---",) * len(self.columns), *rows]
+        return (
+            "".join(f"| {' | '.join(cell.replace('|', '¦') for cell in line)} |\n" for line in lines) + "\n"
+        )
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A figure from one table: two of its columns, as a line over logarithmic axes or as bars with "
+    "their names."""
+
+    table: int
+    x: int
+    y: int
+    caption: str
+    bars: bool = False
+
+    def draw(self, table: Table, printed: str, name: str) -> str:
+        """Draw into docs/figures, and return the line of Markdown that shows it."""
+        import matplotlib as mpl
+
+        mpl.use("Agg")
+        import matplotlib.pyplot as plt
+
+        rows = table.rows(printed)
+        values = [float(re.sub(r"[^\d.e+-]", "", row[self.y])) for row in rows]
+        height = 0.6 + 0.24 * len(rows) if self.bars else 3.2
+        figure, axes = plt.subplots(figsize=(7.0, height), layout="constrained")
+        if self.bars:
+            names = [", ".join(row[: self.y]) if self.x < 0 else row[self.x] for row in rows]
+            axes.barh(range(len(rows)), values, color="#0072b2")
+            axes.set_yticks(range(len(rows)), names, fontsize="small")
+            axes.invert_yaxis()
+        else:
+            axes.loglog([float(row[self.x]) for row in rows], values, "o-", color="#0072b2")
+            axes.set_ylabel(table.columns[self.y])
+        axes.set_xlabel(table.columns[self.y if self.bars else self.x])
+        axes.spines[["top", "right"]].set_visible(False)
+        figure.savefig(FIGURES / f"measured_{name}.png", dpi=120, metadata={"Software": None})
+        plt.close(figure)
+        return f"![{self.caption}](figures/measured_{name}.png)\n\n"
+
+
+@dataclass(frozen=True)
+class Section:
+    """What a section says: a sentence on what follows, which may take numbers that ``told`` finds, "
+    "tables, a plot."""
+
+    follows: str
+    tables: tuple[Table, ...] = ()
+    plot: Plot | None = None
+    told: str = ""
+
+    def page(self, title: str, command: str, printed: str, name: str) -> str:
+        """Return the section as Markdown; an empty line that is not of the output would end a "
+        "pattern, so none is."""
+        found = re.search(self.told, printed, re.MULTILINE | re.DOTALL) if self.told else None
+        if self.told and not found:
+            raise ValueError(f"{name}: the output does not say what is told of it, {self.told!r}")
+        sentence = self.follows.format(*found.groups()) if found else self.follows
+        tables = "".join(table.markdown(printed) for table in self.tables)
+        lines = [line for line in printed.splitlines() if line.startswith("|")]
+        tables += re.sub(r"\n(?=\|[^\n]*\n\|---)", "\n\n", "\n".join(lines)) + "\n\n" if lines else ""
+        drawn = self.plot.draw(self.tables[self.plot.table], printed, name) if self.plot else ""
+        folded = FOLDED.format(summary="What the script printed", printed=printed)
+        return f"## {title}\n\n{sentence}\n\n{tables}{drawn}{command}\n\n{folded}"
+
+
+_N = r"([\d.,]+)"
+_SHARE = r"(\d+) \(\s*([\d.]+) %\)\s+(\d+) \(\s*[\d.]+ %\)\s+(\d+) \(\s*[\d.]+ %\)\s+(\d+) \(\s*[\d.]+ %\)"
+SECTIONS = {
+    "import_cost": Section(
+        "`import canon` takes {0} ms; what a question needs is loaded with the question.",
+        (Table(("statement", "ms", "× import sympy"), r"^(\S.*?)\s{2,}(\d+) ms\s+([\d.]+) ×"),),
+        told=r"^import canon +(\d+) ms",
+    ),
+    "zero_test": Section(
+        "Of {0} identities none was decided wrongly; {1} of the true ones were proved, every false "
+        "one refuted.",
+        (
+            Table(
+                (
+                    "by",
+                    "proved",
+                    "refuted",
+                    "wrong",
+                    "undecided",
+                    "too long",
+                    "median ms",
+                    "95 % ms",
+                    "total s",
+                ),
+                rf"^(\w+) +(\d+/\d+) +(\d+/\d+) +(\d+) +(\d+) +(\d+) +{_N} +{_N} +{_N}$",
+            ),
+            Table(("large case", "s", "verdict"), r"^  (\S.*): ([\d.]+) s, ([a-z ]+)$"),
+        ),
+        told=r"^(\d+) identities.*?^canon +(\d+/\d+)",
+    ),
+    "canonical": Section(
+        "Every map of the notes is proved canonical and every wrong twin of it refused; of the "
+        "generating functions that exist, {0} % come in "
+        "closed form.",
+        (
+            Table(
+                ("map", "proved in, s", "wrong twins", "refused in, s"),
+                r"^  (\S.*?)\s+HOLDS in ([\d.]+) s; (\d+) twin\(s\) refused in ([\d.]+) s",
+            ),
+        ),
+        told=r"in closed form: .*?\(([\d.]+) %\)",
+    ),
+    "normal_forms": Section(
+        "Exact normal forms to high orders, and a centre manifold with its error, take seconds."
+    ),
+    "derivation": Section(
+        "Deriving takes {0} ms for one link and {1} ms for forty; how many times as long SymPy's "
+        "methods take, the second table says.",
+        (
+            Table(
+                (
+                    "links",
+                    "derive, ms",
+                    "callable, ms",
+                    "as SymPy, ms",
+                    "H nodes, ms",
+                    "H callable, ms",
+                    "operations",
+                ),
+                r"^\s+(\d+) +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+) +(\d+)$",
+            ),
+            Table(
+                ("links", "method", "derive", "call", "objects", "operations"),
+                r"^ +(\w+Method) / canon: +derive ([\d.]+), call ([\d.]+), objects ([\d.]+), ops ([\d.]+)",
+                under=r"^\s+(\d+) +[\d.]+ +[\d.]+ +[\d.]+ +[\d.]+ +[\d.]+ +\d+$",
+            ),
+            Table(
+                ("other system", "ms to the first acceleration"), r"^  (\d* ?[a-zA-Z][\w ,]*?) {2,}([\d.]+)$"
+            ),
+        ),
+        Plot(
+            0, 0, 1, "Processor time to derive the equations of a pendulum of n links, both axes logarithmic"
+        ),
+        told=r"^ +1 +([\d.]+) .*?^ +40 +([\d.]+) ",
+    ),
+    "operations": Section(
+        "Terms grouped before they are differentiated leave the fewest operations.",
+        (
+            Table(
+                ("design", "5 links", "10 links", "20 links"),
+                r"^(?!operations)(\D.*?\D) {2,}(\d+) +(\d+)(?: +(\d+))?$",
+            ),
+        ),
+    ),
+    "minimal": Section(
+        "A question loads what it needs: a scene without SymPy, a proof without an integrator.",
+        (
+            Table(("question", "process, ms", "loaded"), r"^(\S.*?) {2,}(\d+) ms(?:  (.*))?$"),
+            Table(
+                (
+                    "reduced or constrained scene",
+                    "variables",
+                    "operations",
+                    "processor time",
+                    "drift of energy",
+                ),
+                r"^([\w-]+) +(\d+ → \d+) +(\d+ → \d+) +([\d.]+ ×) +(\S+ → \S+)$",
+            ),
+        ),
+    ),
+    "classroom": Section(
+        "Two hundred students with {0} claims are judged in {1} s on two processes, and {2} verdicts "
+        "differ from the truth.",
+        told=r"(\d+) claims.*?^(\d+) s in all.*?found by evaluation: (\d+)",
+    ),
+    "feedback": Section(
+        "Of {0} wrong answers most are told by name what was wrong with them, and a few only where; "
+        "the last column counts false remarks.",
+        (
+            Table(
+                ("slip or kind of claim", "answers", "named", "% named", "placed", "silent", "false"),
+                rf"^(\S.*?) +(\d+) +{_SHARE}$",
+            ),
+        ),
+        Plot(
+            0, 0, 3, "Share of wrong answers whose mistake was named, by slip and by kind of claim", bars=True
+        ),
+        told=r"^(\d+) wrong answers",
+    ),
+    "growth": Section("The time grows as the tables say."),
+    "kernels": Section(
+        "Compiled loops take about as long as a C program of the same method, less for many bodies "
+        "and more for long chains; of many orbits "
+        "side by side each costs a fraction of that.",
+        (
+            Table(
+                ("system", "method", "C, ns a step", "double, × C", "compensated, × C"),
+                r"^(\S.*?) {2,}([\w-]+) +derived.* C +([\d.]+) ns a step; double +([\d.]+) × C "
+                r"compensated +([\d.]+) × C",
+            ),
+            Table(
+                (
+                    "side by side",
+                    "method",
+                    "C, ns a step",
+                    "double, × C",
+                    "compensated, × C",
+                    "double-double, × C",
+                ),
+                r"^(\S.*?) {2,}([\w-]+) +C +([\d.]+) \(.*?double +([\d.]+) \(.*?compensated +([\d.]+) "
+                r"\(.*?double-double +([\d.]+) \(",
+            ),
+        ),
+    ),
+    "brouwer": Section(
+        "Over the whole run the energy error grows as the root of the number of steps: Brouwer's "
+        "law, the least that rounding allows.",
+        (
+            Table(
+                (
+                    "method",
+                    "steps a period",
+                    "steps",
+                    "orbits",
+                    "walk / u√n",
+                    "end / u√n",
+                    "exponent",
+                    "max |ΔE/E|",
+                ),
+                r"^(\S+) +([\d.]+) +(\S+) +(\d+) +([\d.]+) +([\d.]+) +([\d.]+ ± [\d.]+) +\S+ +(\S+) +\d+$",
+            ),
+        ),
+    ),
+    "headline": Section(
+        "Methods that know Kepler's motion are the cheapest by far, and RK4 ends with the largest "
+        "error of all.",
+        (
+            Table(
+                ("problem", "method", "run", "max |ΔE/E|", "CPU s", "whole span: error", "CPU s"),
+                r"^    (\S.*?) {2,}(\S+) +(\S+) +([\d.]+) +(\S+) +([\d.]+)",
+                under=r"^(Kepler’s ellipse|Outer solar system)",
+            ),
+        ),
+    ),
+    "peers": Section(
+        "Where the last column is below 1, canon's cheapest method takes less time than that of any "
+        "other library that reaches the accuracy.",
+        (
+            Table(
+                ("problem", "max |ΔE/E|", "canon / the cheapest other"),
+                r"^    canon ([\d.]+) × the cheapest other",
+                under=r"^(\S.*), max \|ΔE/E\| ≤ (\S+)$",
+            ),
+        ),
+        Plot(
+            0,
+            -1,
+            2,
+            "Time of canon's cheapest method over that of the cheapest other library, by problem and "
+            "accuracy",
+            bars=True,
+        ),
+    ),
+    "planets": Section(
+        "Wisdom and Holman's method is the cheapest at each accuracy, with a corrector where more "
+        "than four digits are wanted.",
+        (
+            Table(
+                ("method", "accuracy", "steps a period", "max |ΔE/E|", "µs a period"),
+                r"^(\S.*?) {2,}(1e-\d+) +(\d+) +(\S+) +([\d.]+)$",
+            ),
+        ),
+    ),
+    "constraints": Section(
+        "RATTLE takes {0} times as long as a C program of the same method, and constraints and rates stay "
+        "kept to round-off.",
+        (Table(("program", "ns a step", "× C"), r"^  (\S.*?) {2,}([\d.]+) ns a step(?: +([\d.]+) × C)?$"),),
+        told=r"canon, double +\S+ ns a step +([\d.]+) × C",
+    ),
+    "chaos": Section(
+        "With one deviation an orbit costs one to two and a half times as much as alone; the last table counts "
+        "verdicts on orbits that are known.",
+        (
+            Table(
+                ("system and method", "1 vector", "2n vectors", "wanted"),
+                r"^(\S.*?) {2,}([\d.]+) +([\d.]+) +([\d.]+, [\d.]+)$",
+            ),
+            Table(
+                (
+                    "indicator",
+                    "periods",
+                    "regular told regular",
+                    "chaotic",
+                    "not known",
+                    "chaotic told regular",
+                    "chaotic",
+                    "not known",
+                ),
+                r"^(\S.*?) {2,}(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+)$",
+            ),
+        ),
+    ),
+    "scale_out": Section(
+        "Two processes do the work of a study in about half the time, as far as the machine lets them."
+    ),
+    "drift_calibration": Section(
+        "False alarms and misses of the drift statistics stay near the rates that they promise."
+    ),
+    "robustness": Section(
+        "Every attack of these ended in one of the ways that are meant, where the last column is 0.",
+        (Table(("attack", "how many", "bad"), r"^(\S.*?): (\d+): .*; (\d+) bad"),),
+    ),
+    "choose": Section(
+        "The accuracy was kept in {0} cases, and the cost was within a factor of 2 of what was "
+        "foretold in {1}.",
+        (),
+        told=r"accuracy kept .*?: (\d+ of \d+).*?predicted: (\d+ of \d+)",
+    ),
+}
+PLAIN = Section("What was measured stands in what the script printed.")
+
+
+def section_of(name: str) -> Section:
+    """Return what is said of a benchmark; its output alone where nothing was written for it yet."""
+    return SECTIONS.get(name, PLAIN)
