@@ -50,7 +50,7 @@ def sali(
     seed: int = 0,
     progress: Callable[[float], None] | bool | None = None,
 ) -> ChaosIndicator:
-    """Return the smaller alignment index of an orbit, min(|a + b|, |a − b|) of two deviations of length 1.
+    """Return the smaller alignment index of an orbit, min(‖a + b‖, ‖a − b‖) of two deviations of length 1.
 
     In chaos it vanishes as exp(−(λ₁ − λ₂) t), beside regular motion in two and more degrees of freedom it stays away
     from 0, and in one it falls as 1/t². The detection limit is one of λ₁ − λ₂.

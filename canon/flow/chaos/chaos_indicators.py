@@ -53,7 +53,7 @@ class ChaosIndicator:
     value: Any
     t: Array
     history: Array
-    verdict: Regularity | npt.NDArray[np.object_]
+    verdict: Regularity | npt.NDArray[Any]
     detection_limit: float
     reason: str | tuple[str, ...]
     method: str

@@ -136,7 +136,7 @@ class FrequencyDiffusion:
     error
         How exactly each is known, the larger of the two.
     rate
-        |second − first| per unit of time.
+        The size of second − first per unit of time.
     verdict
         ``CHAOTIC`` where it moves by more than its error and twice the distance that half of the run
         resolves, ``REGULAR`` where by less than a thousandth of that distance.

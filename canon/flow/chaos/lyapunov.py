@@ -66,7 +66,7 @@ class LyapunovSpectrum:
     errors: Array
     t: Array
     history: Array
-    verdict: Regularity | npt.NDArray[np.object_]
+    verdict: Regularity | npt.NDArray[Any]
     detection_limit: float
     reason: str | tuple[str, ...]
     dimension: int

@@ -27,7 +27,7 @@ class ExtendedPhaseSpace:
     order
         2, 4, 6 or 8.
     omega
-        The strength ω of ω(|q − x|² + |p − y|²)/2, which rotates the difference of the copies (q, p) and (x, y) by 2ω
+        The strength ω of ω(‖q − x‖² + ‖p − y‖²)/2, which rotates the difference of the copies (q, p) and (x, y) by 2ω
         in a unit of time. A few times the fastest rate of the motion: with less the copies part, with more the steps
         must be smaller.
 
