@@ -32,7 +32,7 @@ from canon.mechanics.perturbation.taylor_parts import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial
 
@@ -299,28 +299,45 @@ def _normalised(
     reached = 2
     while reached < order:
         top = min(2 * reached - 1, order) if superconvergent else reached + 1
-        chi: dict[int, PhasePolynomial] = {}
-        for degree in range(reached + 1, top + 1):
-            terms = comb(degree + size - 1, size - 1)
-            if terms > MOST_TERMS:
-                raise _ended(
-                    f"degree {degree} may have {terms} terms, more than memory holds", result(reached)
-                )
-            rest = _to_first_order(parts, chi, degree, reached, diagonal)
-            try:
-                _, solution, met = homological_solution(rest, divisors)
-            except ZeroDivisorError as zero:
-                raise _ended(f"at degree {degree} {zero}", result(reached)) from zero
-            for k, value in met.items():
-                either_sign = _either_sign(k)
-                divided_by.setdefault(either_sign, SmallDivisor(either_sign, value, degree))
-            chi |= {degree: solution} if solution else {}
+        _check_size(range(reached + 1, top + 1), size, result, reached)
+        try:
+            chi, met = _step(parts, reached, top, diagonal, divisors)
+        except ZeroDivisorError as zero:
+            raise _ended(str(zero), result(reached)) from zero
+        for small in met:
+            divided_by.setdefault(small.weight, small)
         if chi:
             whole = diagonal.eigenvalues[0].ring.total(chi.values())
             generators.append((min(chi), whole))
             parts = transformed(parts, whole, min(chi), order, diagonal.brackets)
         reached = top
     return result(order)
+
+
+def _step(
+    parts: Mapping[int, PhasePolynomial], reached: int, top: int, diagonal: DiagonalForm, divisors: Divisors
+) -> tuple[dict[int, PhasePolynomial], list[SmallDivisor]]:
+    """Return the parts of χ that take H, normal to a degree, to first order to a higher one, and what divided them."""
+    chi: dict[int, PhasePolynomial] = {}
+    divided_by: list[SmallDivisor] = []
+    for degree in range(reached + 1, top + 1):
+        rest = _to_first_order(parts, chi, degree, reached, diagonal)
+        try:
+            _, solution, met = homological_solution(rest, divisors)
+        except ZeroDivisorError as zero:
+            raise ZeroDivisorError(f"at degree {degree} {zero}") from zero
+        divided_by += [SmallDivisor(_either_sign(k), value, degree) for k, value in met.items()]
+        if solution:
+            chi[degree] = solution
+    return chi, divided_by
+
+
+def _check_size(degrees: range, size: int, result: Callable[[int], NormalForm], reached: int) -> None:
+    """Refuse a step to degrees that have more terms than memory holds."""
+    for degree in degrees:
+        terms = comb(degree + size - 1, size - 1)
+        if terms > MOST_TERMS:
+            raise _ended(f"degree {degree} may have {terms} terms, more than memory holds", result(reached))
 
 
 def _to_first_order(

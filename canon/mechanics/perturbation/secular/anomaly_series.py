@@ -141,8 +141,9 @@ class Ellipse:
 
     def _lowest(self, c: Expr) -> Expr:
         above, below = (sp.Poly(part, self.e) for part in sp.fraction(sp.together(c)))
-        lowest: Any = sp.cancel(self._without_squares(above) / self._without_squares(below))
-        return sp.factor(lowest)
+        lowest = sp.cancel(self._without_squares(above) / self._without_squares(below))
+        factored: Any = sp.factor(lowest)
+        return factored
 
     def _without_squares(self, poly: Any) -> Expr:
         return sp.Add(*(k * self.e ** (n % 2) * (1 - self.eta**2) ** (n // 2) for (n,), k in poly.terms()))
