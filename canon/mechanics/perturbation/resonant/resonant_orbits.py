@@ -51,7 +51,7 @@ class ResonantOrbit:
         The integral Σ wⱼ Iⱼ of the normal form, and its value. Through an unstable orbit the level is the border of
         islands: ``formal_integral(form, weights)`` has it on their separatrix.
     exponent
-        ν of its neighbours, which go as exp(±ν t): imaginary about a stable orbit, where the modulus of ν is their frequency.
+        ν of its neighbours, which go as exp(±ν t): imaginary about a stable orbit, where its size is their frequency.
     """
 
     state: tuple[float, ...]
