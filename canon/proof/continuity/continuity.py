@@ -354,20 +354,33 @@ def _of_cuts(
         for angle, centre in winding.items()
     )
     at_angles = [cut for cut in cuts if cut.part in winding]
-    divided = [term for term in sp.Add.make_args(f) if _is_divided(term, moving, domain)]
-    open_ = [root for term in divided for root in _touching_roots(term, moving, domain)]
+    open_ = _open_roots(f, moving, domain)
     for cut in (cut for cut in cuts if cut.part not in winding):
         jump = find_jump(f, cut, moving, domain, deadline)
         if jump is None and _meets(f, cut, moving, domain, deadline):
             continue
-        if jump is not None and centres[cut.part] is not None and not _is_at_one_of(at_angles, cut):
-            in_full = find_jump(f + beside, cut, moving, domain, deadline) if beside != 0 else None
-            return _failed(name, _fault_of(in_full or jump))
+        told = centres[cut.part] is not None and not _is_at_one_of(at_angles, cut)
+        if jump is not None and told:
+            return _failed(name, _fault_of(_in_full(f, beside, jump, cut, moving, domain, deadline)))
         open_.append(cut.part)
     if not open_:
         return Verdict(Status.HOLDS, f"{name} {CONTINUOUS}", "structure", assumed=assumed)
     why = f"{name} may jump, which its derivatives do not show; narrow the domain to where it does not"
     return Verdict(Status.UNDECIDED, f"{name} {CONTINUOUS}", evidence=(Evidence("open", why),), feedback=why)
+
+
+def _open_roots(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Expr]:
+    """Return the roots that touch zero in terms with a denominator."""
+    divided = [term for term in sp.Add.make_args(f) if _is_divided(term, moving, domain)]
+    return [root for term in divided for root in _touching_roots(term, moving, domain)]
+
+
+def _in_full(
+    f: Expr, beside: Expr, jump: Jump, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline: float
+) -> Jump:
+    """Return a jump of part of a function as one of the whole, where that is found too."""
+    whole = find_jump(f + beside, cut, moving, domain, deadline) if beside != 0 else None
+    return whole or jump
 
 
 def _fault_of(jump: Jump) -> _Fault:
