@@ -362,12 +362,7 @@ class _Rattle:
         slopes = [[w.load(self.slopes, a * self.n + i) for i in range(self.n)] for a in range(self.k)]
         matrix = self._metric(half, slopes)
         for _ in range(_REFINED):
-            P, lost = self._after(half)
-            V = self._evaluated(h.velocity, self._here(), P) if h.momenta else P
-            rates = [self._dot(row, self.slopes, a, V) for a, row in enumerate(h.slopes)]
-            if self.e and not h.momenta:
-                rest = [self._dot(row, self.slopes, a, lost) for a, row in enumerate(h.slopes)]
-                rates = [w.algebra("add", x, y) for x, y in zip(rates, rest, strict=True)]
+            rates = self._rates_of_constraints(*self._after(half))
             for a, change in enumerate(self._solved(matrix, rates)):
                 w.store(w.algebra("sub", w.load(self.multipliers, a), change), self.multipliers, a)
         arrived, lost = self._after(half)
@@ -375,6 +370,16 @@ class _Rattle:
             w.store(arrived[i], *self._momentum(i))
             if self.e and not h.momenta:
                 w.store(lost[i], self.e, self.second + i)
+
+    def _rates_of_constraints(self, P: list[str], lost: list[str]) -> list[str]:
+        """Write G V(q₁, P₁), with what rounding took from P₁ where that is carried along."""
+        w, h = self.w, self.holonomic
+        V = self._evaluated(h.velocity, self._here(), P) if h.momenta else P
+        rates = [self._dot(row, self.slopes, a, V) for a, row in enumerate(h.slopes)]
+        if not self.e or h.momenta:
+            return rates
+        rest = [self._dot(row, self.slopes, a, lost) for a, row in enumerate(h.slopes)]
+        return [w.algebra("add", x, y) for x, y in zip(rates, rest, strict=True)]
 
     def _after(self, half: str) -> tuple[list[str], list[str]]:
         """Write P₁ with the multipliers so far, and what rounding takes from it."""
