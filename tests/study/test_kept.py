@@ -361,7 +361,7 @@ def test_an_error_of_canon_itself_ends_the_study(tmp_path, monkeypatch):
     def broken(case):
         raise TypeError("a fault of canon")
 
-    monkeypatch.setattr(kept_of_case, "_exponent", broken)
+    monkeypatch.setitem(kept_of_case.COMPUTED_ANEW, "exponent", broken)
     with pytest.raises(TypeError, match="a fault of canon"):
         run_study(study, tmp_path / "s.sqlite")
     assert status_of(Store(tmp_path / "s.sqlite")).pending == 1
