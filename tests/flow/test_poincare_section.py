@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon import Event, Hamiltonian, Splitting, coordinates, propagate
+from canon import Event, Hamiltonian, Splitting, coordinates, parameters, propagate
 from canon.flow import NonFiniteStateError, SectionNotMetError, poincare_section, starts_of_energy
 
 KAHAN_LI = {"method": Splitting("kahan-li-8"), "step": 0.2}
@@ -128,6 +128,19 @@ def test_other_systems_than_hamiltonians_have_sections() -> None:
     exact = poincare_section("driven-duffing", (0, 60), None, "x")
     assert found.y == pytest.approx(exact.y, abs=1e-7)
     assert abs(exact["x"]).max() < 1e-14
+
+
+@pytest.mark.parametrize("method", ["kahan-li-8", "taylor"])
+def test_parameters_by_orbit_are_those_of_each_orbits_points(method: str) -> None:
+    x, (k,) = coordinates("x"), parameters("k,", positive=True)
+    wells = Hamiltonian(x.momentum**2 / 2 + k * x**2 / 2, [x], [x.momentum])
+    how = {"method": method} | ({} if method == "taylor" else {"step": 0.05})
+    stiffness = np.array([1.0, 4.0])
+    found = poincare_section(
+        wells, (0, 30), np.array([[0.5, 0.5], [0.0, 0.0]]), "x", parameters={k: stiffness}, **how
+    )
+    assert abs(found.energy_change).max() < 1e-10
+    assert found[k * x.momentum**2] == pytest.approx(stiffness[found.orbit] ** 2 / 4, abs=1e-9)
 
 
 def test_what_is_not_met_or_not_there_is_told() -> None:

@@ -73,6 +73,7 @@ class PoincareSection:
     turned: int
     steps: int
     _task: Task = field(repr=False)
+    _high: Array = field(repr=False)
     _carried: Array = field(repr=False)
 
     def __repr__(self) -> str:
@@ -104,23 +105,21 @@ class PoincareSection:
     def energy_change(self) -> Array:
         """H at the points less H at the orbit's start, shape (points,), evaluated in wider numbers.
 
-        Of systems of other kinds, the same of what their motion conserves.
+        Raises
+        ------
+        ValueError
+            The system is no Hamiltonian: the work done up to the points is not kept.
         """
         task = self._task
+        if not task.system.canonical:
+            raise ValueError("the energy at points of a section is told of Hamiltonians only")
         there = self._values(task.system.hamiltonian, LONGDOUBLE)
         start = _evaluated(task, task.system.hamiltonian, *task.states, float(task.plan.start), LONGDOUBLE)
         return (there - np.broadcast_to(start, (self.orbits,))[self.orbit]).astype(np.float64)
 
     def _values(self, node: int, numbers: Any = FLOAT64) -> Any:
-        found = _evaluated(self._task, node, self._full, self._carried, self.t, numbers)
+        found = _evaluated(self._task, node, self._high, self._carried, self.t, numbers)
         return np.broadcast_to(found, self.t.shape)
-
-    @property
-    def _full(self) -> Array:
-        """The states with what is integrated along unseen, which none of the functions asked for reads."""
-        full = np.zeros((len(self._task.states[0]), len(self.t)))
-        full[self._task.system.rows] = self.y
-        return full
 
 
 def poincare_section(
@@ -205,7 +204,7 @@ def poincare_section(
         )
     return PoincareSection(
         event.function, direction, found.orbit, found.t, found.high[rows], orbits, found.turned, found.steps,
-        task, found.low,
+        task, found.high, found.low,
     )  # fmt: skip
 
 
@@ -245,11 +244,13 @@ def _by_events(task: Task, points: int | None, report: Callable[[float], None]) 
     met = [list(one.crossings)[:points] for one in each]
     orbit = np.repeat(np.arange(len(each)), [len(one) for one in met])
     crossings = [crossing for one in met for crossing in one]
-    high = np.zeros((len(task.states[0]), len(crossings)))
+    # Parameters that differ by orbit are as at the start; only work that is integrated along is not known there.
+    high, low = (part[:, orbit] for part in task.states)
+    low[task.system.rows] = 0.0
     if crossings:
         high[task.system.rows] = np.array([crossing.y for crossing in crossings]).T
     t = np.array([crossing.t for crossing in crossings])
-    return SectionPlaces(orbit, t, high, np.zeros_like(high), 0, made.steps)
+    return SectionPlaces(orbit, t, high, low, 0, made.steps)
 
 
 def _evaluated(task: Task, node: int, high: Array, low: Array, t: Any, numbers: Any) -> Any:
