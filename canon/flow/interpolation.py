@@ -32,6 +32,8 @@ def states_at(task: Task, samples: Samples, times: Array) -> Array:
     first, last = sorted((samples.t[0], samples.t[-1]))
     if not ((first <= times) & (times <= last)).all():
         raise ValueError(f"the motion is known from t = {samples.t[0]:g} to {samples.t[-1]:g} only")
+    if task.system.kicked and (times != times.round()).any():
+        raise ValueError("a map has no states between its iterations: give whole times")
     if task.method.engine.keeps_polynomials:
         if not samples.dense:
             raise ValueError("the motion was not kept as a function of time: propagate(…, dense=True)")

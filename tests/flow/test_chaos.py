@@ -108,6 +108,17 @@ def test_the_volume_of_regular_motion_falls_as_a_power_beyond_the_torus():
         assert fitted == pytest.approx(power, abs=0.35)
 
 
+def test_many_deviations_beside_a_torus_are_not_called_chaotic():
+    """GALI_10 of five oscillators falls as t⁻¹⁰, by which it looked exponential down to its floor."""
+    q = coordinates("q1 q2 q3 q4 q5")
+    uncoupled = Hamiltonian(sum(a.momentum**2 / 2 + a**4 / 4 for a in q), list(q), [a.momentum for a in q])
+    start = [0.6, 0.8, 1.0, 1.2, 1.4, 0, 0, 0, 0, 0]
+    for vectors in (8, 10):
+        found = gali(uncoupled, (0, 200), start, vectors=vectors, method=Splitting("kahan-li-8"), step=0.1)
+        assert found.value < 1e-11
+        assert found.verdict is Regularity.NOT_KNOWN
+
+
 def test_orbits_that_leave_are_told():
     beyond = on_the_section(0.3, 0.2)
     with pytest.raises(NonFiniteStateError, match="stops being finite"):

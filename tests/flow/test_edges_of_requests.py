@@ -33,6 +33,15 @@ def rotating(mu: sp.Rational) -> Hamiltonian:
     )
 
 
+def test_times_that_doubles_hardly_tell_apart_are_kept_once():
+    late = propagate(OSCILLATOR, (10**15, 10**15 + 1), [1, 0])
+    np.testing.assert_array_equal(late.t, 10**15 + np.arange(9) / 8)
+    np.testing.assert_allclose(late.final, [np.cos(1), -np.sin(1)], atol=1e-15)
+    for how in ({}, {"method": "verlet", "step": 0.1}):
+        with pytest.raises(ValueError, match="as far as doubles tell"):
+            propagate(OSCILLATOR, (10**20, 10**20 + 1), [1, 0], **how)
+
+
 @pytest.mark.parametrize("halves", [1, 2])
 @pytest.mark.parametrize("number", [Fraction, mpmath.mpf])
 def test_the_end_is_reached_exactly_in_quadruple_precision(number, halves):

@@ -122,3 +122,14 @@ def test_methods_that_do_not_return_are_refused():
             reversal_test(HENON_HEILES, (0, 10), REGULAR, method=method, step=step)
     with pytest.raises(ValueError, match="rounding alone may have turned the whole orbit"):
         reversal_test(HENON_HEILES, (0, 10**9), REGULAR, method=Gauss(2), step=0.1)
+
+
+def test_a_signal_of_a_motion_back_in_time_has_the_same_lines():
+    t = np.linspace(0, 400, 2001)
+    for values in (signal(t), np.cos(1.25 * t) + 0.1 * np.cos(3 * t)):
+        forward, back = (frequency_analysis(t[::way], values[::way], terms=2) for way in (1, -1))
+        np.testing.assert_array_equal(back.frequencies, forward.frequencies)
+        np.testing.assert_array_equal(back.amplitudes, forward.amplitudes)
+    found = frequency_diffusion(-t, np.cos(1.25 * t))
+    assert found.verdict is Regularity.REGULAR
+    assert found.rate >= 0

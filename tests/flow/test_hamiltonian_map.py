@@ -106,3 +106,10 @@ def test_what_a_map_has_not_is_told() -> None:
         HamiltonianMap(q * q.momentum, sp.cos(q), [q], [q.momentum])
     with pytest.raises(KeyError, match="K"):
         propagate(STANDARD, (0, 10), start)
+
+
+def test_a_map_has_no_states_between_its_iterations():
+    motion = propagate(STANDARD, (0, 10), [0.1, 0.2], parameters={K: 0.9}, samples=5)
+    np.testing.assert_array_equal(motion(4), motion.y[:, 2])
+    with pytest.raises(ValueError, match="no states between its iterations"):
+        motion([4, 4.5])

@@ -95,6 +95,18 @@ def test_kinds_of_multipliers(values: np.ndarray, kinds: tuple[str, ...], stable
     assert found.stable is stable
 
 
+@pytest.mark.parametrize("strength", [10, 10**4, 10**9])
+def test_large_multipliers_and_their_indices_are_known_to_their_digits(strength: int) -> None:
+    """The small eigenvalue is rounding: an index made of it had half its digits at 10⁴, and was a crash at 10⁹."""
+    kick = sp.Matrix([[1 + strength, 1], [strength, 1]]) ** 2
+    found = floquet_multipliers(np.array(kick.tolist(), dtype=float), None)
+    trace = float(kick.trace())
+    assert found.indices.real == pytest.approx([trace], rel=1e-15)
+    assert found.values[1].real == pytest.approx(
+        2 / (trace + float(sp.sqrt(kick.trace() ** 2 - 4))), rel=1e-14
+    )
+
+
 def test_pairs_that_left_the_circle_are_complex() -> None:
     # The real form of λ = 2 e^{i} with its partners 1/λ and conjugates, in q and p = A⁻ᵀ.
     A = 2 * np.array([[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]])
@@ -179,6 +191,20 @@ def test_orbit_of_arenstorf() -> None:
     assert orbit.y[0] == pytest.approx(0.994, abs=1e-11)
     whole = periodic_orbit("restricted-three-body", "Arenstorf", 17.0652166)
     assert whole.multipliers.indices.real == pytest.approx(orbit.multipliers.indices.real, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_what_falls_into_a_very_unstable_orbit_does_so_from_every_place() -> None:
+    orbit = periodic_orbit("restricted-three-body", "Arenstorf", 17.07, reversal=("y", "p_x"))
+    starts = {b: manifold_starts(orbit, b, count=16, distance=1e-7) for b in ("stable", "unstable")}
+    for k in (12, 15):  # carried forward what is stable came with parts of what is not
+        place = propagate("restricted-three-body", (0, orbit.period * k / 16), orbit.y, samples=1).final
+        left = [
+            np.linalg.norm(propagate("restricted-three-body", (0, time), y[:, k], samples=1).final - place)
+            for time, y in ((orbit.period, starts["stable"]), (-orbit.period, starts["unstable"]))
+        ]
+        # The two are mirror images.
+        assert left[0] == pytest.approx(left[1], rel=1e-2)
 
 
 @pytest.mark.slow

@@ -175,3 +175,18 @@ def test_starts_have_the_energy_that_is_asked() -> None:
     quartic = Hamiltonian(x.momentum**4 + x**2, [x], [x.momentum])
     with pytest.raises(ValueError, match="H is no square in p_x"):
         starts_of_energy(quartic, 1.0, [0.0, 1.0], "p_x")
+
+
+def test_a_momentum_whose_square_vanishes_at_a_place_has_one_value_there_or_none():
+    x = coordinates("x")
+    p = x.momentum
+    both = Hamiltonian(x * p**2 / 2 + p + x, [x], [p])
+    starts = starts_of_energy(both, 1.0, np.array([[0.0, 0.5, 1e-14], [0.0, 0.0, 0.0]]), p)
+    np.testing.assert_allclose(starts[1], [1, np.sqrt(6) - 2, 1], rtol=1e-13)
+    square = Hamiltonian(x * p**2 / 2 + x, [x], [p])
+    with pytest.raises(ValueError, match="no p_x gives the energy 1"):
+        starts_of_energy(square, 1.0, [0.0, 0.0], p)
+    grid = np.array([[0.0, 0.5], [0.0, 0.0]])
+    np.testing.assert_allclose(
+        starts_of_energy(square, 1.0, grid, p, inside_only=True), [[0.5], [np.sqrt(2)]]
+    )

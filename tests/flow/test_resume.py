@@ -1,8 +1,12 @@
 """Interrupted and resumed runs give the bits of those that never stopped; motion between samples."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
+import sympy as sp
 
+from canon import Hamiltonian
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting
 from canon.flow.method.number_formats import unit_round_off
 from canon.flow.propagation import Interrupted, propagate
@@ -215,3 +219,29 @@ def test_motion_that_was_not_kept_is_refused(arguments, message):
         motion(3.0)
     with pytest.raises(ValueError, match="from t = 0 to 10 only"):
         motion(10.5)
+
+
+@pytest.mark.parametrize("force", [0.5, 0.5 * sp.sign(1 + x)])
+def test_a_motion_that_began_at_rest_in_the_origin_goes_on_over_a_much_longer_span(force):
+    """Its numbers are measured by a unit that follows from the span: the state was taken over in the old one."""
+    falling = Hamiltonian(x.momentum**2 / 2 - force * (1 + x), [x], [x.momentum])
+    motion = propagate(falling, (0, 1), [0, 0], samples=2).resume(1000)
+    np.testing.assert_allclose(motion.final, [250_000, 500], rtol=1e-14)
+
+
+def test_a_motion_kept_as_a_function_of_time_is_so_after_it_went_on():
+    spring = Hamiltonian(x.momentum**2 / 2 + x**2 / 2, [x], [x.momentum])
+    starts = np.array([[1.0, 2.0], [0.0, 0.0]])
+    for end in (20, -20):
+        motion = propagate(spring, (0, end / 2), starts, dense=True).resume(end).resume(2 * end)
+        times = end * np.array([0, 0.3, 0.5, 0.7, 1, 1.9, 2])
+        found = np.array([np.cos(times), -np.sin(times)])
+        np.testing.assert_allclose(motion(times), np.stack([found, 2 * found], axis=2), atol=1e-14)
+
+
+@pytest.mark.parametrize("precision", ["extended", "quad"])
+def test_a_motion_is_known_at_ends_that_doubles_round_outwards(precision):
+    spring = Hamiltonian(x.momentum**2 / 2 + x**2 / 2, [x], [x.momentum])
+    motion = propagate(spring, (Fraction(1, 3), Fraction(13, 3)), [1, 0], dense=True, precision=precision)
+    np.testing.assert_allclose(motion(motion.t[0]), [1, 0], atol=1e-15)
+    np.testing.assert_allclose(motion(motion.t[-1]), [np.cos(4), -np.sin(4)], atol=2e-15)

@@ -68,12 +68,15 @@ class KinkedOrbit:
 
     @property
     def beyond(self) -> tuple[Any, Any]:
-        """The state, and the clock with the regime: what the motion goes on from with the same bits."""
-        return self.state.copy(), (self.dtime, self.signs, self.on_zero)
+        """The state in its own size, and the clock with the regime: what the motion goes on from with the same bits."""
+        return self.state * self.regimes.taylor_events.size, (self.dtime, self.signs, self.on_zero)
 
     def go_on_from(self, beyond: tuple[Any, Any]) -> None:
         """Go on from where another orbit has ended."""
-        self.state[:], (self.dtime, self.signs, self.on_zero) = beyond[0], beyond[1]
+        self.state[:], (self.dtime, self.signs, self.on_zero) = (
+            beyond[0] / self.regimes.taylor_events.size,
+            beyond[1],
+        )
 
     def advance(self, grid: Any, *, dense: bool) -> Slice:
         """Go from the first time of a grid to its last and return the states at all but the first."""

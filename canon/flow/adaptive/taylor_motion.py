@@ -158,7 +158,7 @@ class _TaylorRun:
             try:
                 for begin, end in plan.slices(first):
                     part = grid[begin - first : end - first + 1]
-                    state = self.orbits[0].beyond[0]
+                    state = self.orbits[0].beyond[0] / self.taylor_events.size
                     made = list(
                         each_in_turn(lambda orbit, part=part: orbit.advance(part, dense=dense), self.orbits)
                     )
@@ -219,10 +219,11 @@ class Polynomials:
     unit: Fraction = Fraction(1)
 
     def __call__(self, t: Array) -> Array:
-        """Return the states (2n, times) at times inside the span."""
+        """Return the states (2n, times) at times inside the span, whose ends doubles may have rounded outwards."""
         found = np.empty((len(self.pieces[0](self.pieces[0].bounds[0])), len(t)))
+        first, *_, last = sorted([*self.pieces[0].bounds, *self.pieces[-1].bounds])
         for k, instant in enumerate(t.tolist()):
-            at = self.number(Fraction(instant))
+            at = min(max(self.number(Fraction(instant)), first), last)
             piece = next(p for p in self.pieces if min(p.bounds) <= at <= max(p.bounds))
             found[:, k] = np.asarray(piece(at)).astype(np.float64) * float(self.unit)
         return found

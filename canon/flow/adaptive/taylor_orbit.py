@@ -69,12 +69,13 @@ class TaylorOrbit:
 
     @property
     def beyond(self) -> tuple[Any, Any]:
-        """The state and the clock: what the motion goes on from with the same bits."""
-        return self.integrator.state.copy(), self.integrator.dtime
+        """The state in its own size and the clock: what the motion goes on from with the same bits."""
+        return self.integrator.state * self.taylor_events.size, self.integrator.dtime
 
     def go_on_from(self, beyond: tuple[Any, Any]) -> None:
         """Go on from where another orbit has ended."""
-        self.integrator.state[:], self.integrator.dtime = beyond
+        state, self.integrator.dtime = beyond
+        self.integrator.state[:] = state / self.taylor_events.size  # a longer span may have another unit
         self.new = False
 
     def advance(self, grid: Any, *, dense: bool) -> Slice:

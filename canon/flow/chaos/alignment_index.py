@@ -32,6 +32,9 @@ _CHAOTIC = 8.0
 """ln of the fall from the second quarter of the time down to the floor to the last. A power t⁻ᵖ falls by 0.86 p, an
 exponential that reaches the floor by 13.8."""
 
+_OF_A_POWER, _BEYOND = 0.87, 2.0
+"""ln of that fall for each unit of a power, and what is beyond it: k deviations beside a torus fall as t⁻ᵏ at most."""
+
 _NOTHING = -745.0
 """ln of the least positive double, in place of that of 0."""
 
@@ -100,7 +103,8 @@ def gali(
     """Return the generalised alignment index of an orbit, the volume that k deviations of length 1 span.
 
     In chaos it vanishes as exp(−[(λ₁ − λ₂) + … + (λ₁ − λ_k)] t). Beside motion on a torus of dimension s it stays away
-    from 0 for k ≤ s and falls as a power of time for more: s is the largest k for which it does not fall.
+    from 0 for k ≤ s and falls as a power of time for more: s is the largest k for which it does not fall. The power may
+    be as large as k, so that from k = 14 on chaos is not told from it.
 
     Parameters
     ----------
@@ -140,7 +144,7 @@ def _index(
     frame = random_vectors(size, vectors, seed)
     growth = deviation_growth(task, frame, orthogonal=False, note=note, progress=run.progress)
     assert growth.noted is not None
-    return indicator_of(name, growth, np.exp(growth.noted), _judged(growth.t, growth.noted))
+    return indicator_of(name, growth, np.exp(growth.noted), _judged(growth.t, growth.noted, vectors))
 
 
 def _smaller_alignment(frames: Array) -> Array:
@@ -164,26 +168,27 @@ def _log(values: Array) -> Array:
         return np.maximum(np.log(values), _NOTHING)
 
 
-def _judged(t: Array, log: Array) -> Judged:
-    """Judge orbits by ln of a volume, shape (times, orbits)."""
+def _judged(t: Array, log: Array, vectors: int) -> Judged:
+    """Judge orbits by ln of the volume of so many vectors, shape (times, orbits)."""
     limit = -_FLOOR / t[-1]
-    judge = functools.partial(_verdict, t)
+    judge = functools.partial(_verdict, t, max(_CHAOTIC, _OF_A_POWER * vectors + _BEYOND))
     found = [judge(column) for column in log.T]
     verdicts = np.array([verdict for verdict, _ in found], dtype=object)
     return Judged(verdicts, limit, tuple(reason for _, reason in found))
 
 
-def _verdict(t: Array, log: Array) -> tuple[Regularity, str]:
+def _verdict(t: Array, chaotic: float, log: Array) -> tuple[Regularity, str]:
     if not np.isfinite(log).all():
         return Regularity.LEFT, "the orbit left the finite numbers, by escape or collision"
     below = np.flatnonzero(log < _FLOOR)
     end = int(below[0]) + 1 if below.size else len(t)
     second, last = quarters(t[:end])
     known = log[:end][second].size and log[:end][last].size
-    fall = float(log[:end][second].mean() - log[:end][last].mean()) if known else float("inf")
+    unknown = float("inf") if chaotic == _CHAOTIC else 0.0  # of few samples
+    fall = float(log[:end][second].mean() - log[:end][last].mean()) if known else unknown
     seen = f"the volume fell to {np.exp(log[end - 1]):.2g} by t = {t[end - 1]:.4g}"
     if below.size:
-        if fall > _CHAOTIC:
+        if fall > chaotic:
             return Regularity.CHAOTIC, f"{seen}, faster than a power of time"
         return (
             Regularity.NOT_KNOWN,

@@ -37,7 +37,7 @@ def starts_of_energy(
 ) -> Array:
     """Return states whose energy is given, one momentum of each being replaced.
 
-    With H = a p² + b p + c in that momentum, p = (−b ± √(b² − 4a(c − E)))/(2a).
+    With H = a p² + b p + c in that momentum, p = (−b ± √(b² − 4a(c − E)))/(2a); (E − c)/b where a vanishes.
 
     Parameters
     ----------
@@ -130,9 +130,15 @@ def _solved(
         np.broadcast_to(np.asarray(v, dtype=wide), given.shape[1:])
         for v in equations.graph.evaluate([equations.hamiltonian, *derivatives], values, numbers)
     )
-    square = b * b - 2 * twice_a * (c - wide(energy))
-    inside = square >= 0
-    root = np.sqrt(np.where(inside, square, 0))
+    excess = c - wide(energy)
+    square = b * b - 2 * twice_a * excess
+    root = np.sqrt(np.where(square >= 0, square, 0))
+    # Where the square has no coefficient one momentum is left; where the terms cancel, its other form does not.
+    side = np.where(twice_a == 0, np.sign(b), np.sign(twice_a) * sign)
+    above, below = -b + side * root, -b - side * root
+    direct = (side * b <= 0) & (twice_a != 0)
+    over = np.where(direct, twice_a, below)
+    inside = (square >= 0) & (over != 0)
     found = given.copy()
-    found[row] = (-b + np.sign(twice_a) * sign * root) / twice_a
+    found[row] = np.where(direct, above, 2 * excess) / np.where(over == 0, 1, over)
     return found, inside

@@ -20,10 +20,13 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from canon.array import Array
 
-__all__ = ["FloquetMultipliers", "floquet_multipliers"]
+__all__ = ["FloquetMultipliers", "floquet_multipliers", "symplectic_inverse"]
 
 _ROUNDING = 1e-14
 """Of the square of the largest entry of M, nearly: what its entries are known to."""
+
+_LARGE = 2.0
+"""Multipliers above this size are known better than their reciprocals."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +86,7 @@ def floquet_multipliers(M: Array, slope: Array | None) -> FloquetMultipliers:
     ([(0.6-0.8j), (0.6+0.8j)], [-1, 1], ('elliptic',))
     """
     n = len(M) // 2
-    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
-    basis = np.eye(2 * n)
+    J, basis = _form(n), np.eye(2 * n)
     if slope is not None:
         both = np.stack([slope, J @ slope], axis=1)
         basis = np.linalg.svd(both)[0][:, 2:]
@@ -92,9 +94,40 @@ def floquet_multipliers(M: Array, slope: Array | None) -> FloquetMultipliers:
     accuracy = _ROUNDING * float(np.abs(M).max(initial=1.0)) ** 1.5 * n
     values, vectors = (part.astype(np.complex128) for part in np.linalg.eig(reduced))
     order = np.lexsort((values.imag, -np.abs(values).round(6)))
-    values, vectors = values[order], vectors[:, order]
+    values, vectors = _with_reciprocals(values[order]), vectors[:, order]
     signs = [_krein(complex(value), vectors[:, k], form, accuracy) for k, value in enumerate(values)]
     return FloquetMultipliers(values, np.array(signs, dtype=np.int64), accuracy)
+
+
+def _with_reciprocals(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    """Return the multipliers, small ones as reciprocals of large ones: rounding leaves nothing of theirs below its own.
+
+    An eigenvalue is known to the rounding of the largest entry of M, which is more than all of 1/λ where λ > 10⁸.
+    """
+    found, left = values.copy(), list(range(len(values)))
+    while left and abs(values[left[0]]) > _LARGE:
+        inverse = 1 / values[left.pop(0)]
+        partner = min(left, key=lambda k: abs(values[k] - inverse))
+        found[partner] = inverse
+        left.remove(partner)
+    return found
+
+
+def symplectic_inverse(M: Array) -> Array:
+    """Return M⁻¹ = −J Mᵀ J of a symplectic matrix, exactly.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> symplectic_inverse(np.array([[1.0, 2.0], [0.0, 1.0]])).tolist()
+    [[1.0, -2.0], [0.0, 1.0]]
+    """
+    J = _form(len(M) // 2)
+    return -J @ M.T @ J + 0.0
+
+
+def _form(n: int) -> Array:
+    return np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
 
 
 def _krein(value: complex, vector: npt.NDArray[np.complex128], form: Array, accuracy: float) -> int:

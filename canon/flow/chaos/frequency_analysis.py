@@ -74,7 +74,7 @@ def frequency_analysis(
     Parameters
     ----------
     t
-        Times, evenly spaced, shape (times,).
+        Times, evenly spaced, shape (times,); of a motion back in time they fall.
     values
         The signal, complex such as q − i p, in which a motion q = cos ωt has the one line ω, or real, shape (times,).
         Lines above π over the distance of two times are taken for lower ones.
@@ -221,6 +221,8 @@ def _checked(t: npt.ArrayLike, values: npt.ArrayLike) -> tuple[Array, npt.NDArra
     signal = signal.astype(np.complex128 if np.iscomplexobj(signal) else np.float64)
     if not (np.isfinite(times).all() and np.isfinite(signal).all()):
         raise ValueError("a time or a value is not finite")
+    if times[-1] < times[0]:  # a motion back in time
+        times, signal = times[::-1], signal[::-1]
     even = np.linspace(times[0], times[-1], len(times))
     if not np.abs(times - even).max() <= _EVEN * abs(even[1] - even[0]):
         raise ValueError(

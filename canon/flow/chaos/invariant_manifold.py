@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from canon.flow.chaos.floquet import symplectic_inverse
 from canon.flow.geometry.flow_jacobian import flow_jacobian
 
 if TYPE_CHECKING:
@@ -48,9 +49,9 @@ def manifold_starts(
 
     Notes
     -----
-    The vector at a place is the eigenvector of the monodromy matrix M for the multiplier of the largest or smallest
-    size, carried there by the derivative of the flow; for a negative multiplier the two sides change places from turn
-    to turn.
+    The vector at a place is the eigenvector of the monodromy matrix M, or of its inverse, for the multiplier of the
+    largest size, carried there by the derivative of the flow, forward or back in time; for a negative multiplier the
+    two sides change places from turn to turn.
 
     Examples
     --------
@@ -65,15 +66,18 @@ def manifold_starts(
         raise ValueError(f"side={side}: 1 or -1")
     if not {"hyperbolic", "inverse hyperbolic"} & set(orbit.multipliers.kinds):
         raise ValueError(f"{orbit} has no real multiplier but ±1: nothing leaves it along a direction")
-    values, vectors = (part.astype(np.complex128) for part in np.linalg.eig(orbit.M))
+    # What is stable grows back in time, where rounding leaves it alone.
+    forward = branch == "unstable"
+    M, way = (orbit.M, orbit.period) if forward else (symplectic_inverse(orbit.M), -orbit.period)
+    values, vectors = (part.astype(np.complex128) for part in np.linalg.eig(M))
     real = np.flatnonzero(abs(values.imag) <= 1e-9 * abs(values))
-    sizes = abs(values[real])
-    chosen = real[np.argmax(sizes) if branch == "unstable" else np.argmin(sizes)]
-    vector = vectors[:, chosen].real
+    vector = vectors[:, real[np.argmax(abs(values[real]))]].real
     request = orbit.search.request
     found = flow_jacobian(
-        request.system, (0.0, orbit.period), orbit.y, method=request.method, step=request.step,
+        request.system, (0.0, way), orbit.y, method=request.method, step=request.step,
         tolerance=request.tolerance, parameters=request.parameters, samples=count,
     )  # fmt: skip
-    carried = np.einsum("ijk,j->ik", found.M[:, :, :-1], vector)
-    return found.y[:, :-1] + side * distance * carried / np.linalg.norm(carried, axis=0)
+    parts = len(found.t) - 1
+    places = np.arange(parts) * (1 if forward else -1) % parts  # in the order of time
+    carried = np.einsum("ijk,j->ik", found.M[:, :, places], vector)
+    return found.y[:, places] + side * distance * carried / np.linalg.norm(carried, axis=0)

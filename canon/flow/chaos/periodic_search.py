@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.chaos.floquet import FloquetMultipliers, floquet_multipliers
+from canon.flow.chaos.floquet import FloquetMultipliers, floquet_multipliers, symplectic_inverse
 from canon.flow.geometry.flow_jacobian import flow_jacobian
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system.named_values import variables_of
@@ -291,8 +291,5 @@ class _Guess:
 
 
 def _whole(half: Array, signs: Array) -> Array:
-    """Return the monodromy matrix S M⁻¹ S M of half a period's derivative, M⁻¹ = −J Mᵀ J."""
-    n = len(half) // 2
-    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
-    inverse = -J @ half.T @ J
-    return signs[:, np.newaxis] * inverse * signs @ half
+    """Return the monodromy matrix S M⁻¹ S M of half a period's derivative."""
+    return signs[:, np.newaxis] * symplectic_inverse(half) * signs @ half

@@ -20,6 +20,24 @@ Dense = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
+class _InTurn:
+    """A motion as a function of time, and its continuation from a time on."""
+
+    before: Dense
+    after: Dense
+    joint: float
+    forward: int
+
+    def __call__(self, t: Array) -> Array:
+        earlier = self.forward * (t - self.joint) <= 0
+        found = np.empty((len(self.before(np.array([self.joint]))), len(t)))
+        for part, chosen in ((self.before, earlier), (self.after, ~earlier)):
+            if chosen.any():
+                found[:, chosen] = part(t[chosen])
+        return found
+
+
+@dataclass(frozen=True)
 class Samples:
     """What an integrator hands back: sampled states and what they cost.
 
@@ -101,7 +119,10 @@ def joined(before: Samples | None, after: Samples) -> Samples:
         cpu_seconds=before.cpu_seconds + after.cpu_seconds,
         watched=watched,
         crossings=before.crossings + after.crossings,
-        dense=before.dense + after.dense,
+        dense=tuple(
+            _InTurn(earlier, later, float(after.t[0]), 1 if after.t[-1] > after.t[0] else -1)
+            for earlier, later in zip(before.dense, after.dense, strict=True)
+        ),
     )
 
 

@@ -49,9 +49,13 @@ class Sampling:
     times: tuple[float, ...] | None = None
 
     def instants(self) -> Array:
-        """Return the sample times as they are, for methods that evaluate the motion anywhere."""
+        """Return the sample times as they are, for methods that evaluate the motion anywhere.
+
+        Of even ones those that doubles do not tell from the one before are left out.
+        """
         if self.times is None:
-            return np.linspace(float(self.start), float(self.end), self.samples + 1)
+            even = np.linspace(float(self.start), float(self.end), self.samples + 1)
+            return even[np.append(True, np.diff(even) != 0)]
         return np.array([float(self.start), *self.times, float(self.end)])
 
     def stops(self, steps: int) -> list[int]:
@@ -87,12 +91,7 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
     ((1.0, 2.5), [0, 4, 10, 40])
     """
     start, end = t_span
-    if max(abs(start), abs(end)) > _LATEST:
-        raise ValueError("t_span reaches beyond 1e300: measure time in other units")
-    if start == end:
-        raise ValueError(
-            f"t_span = ({float(start)}, {float(end)}) has no length: give a start and another end"
-        )
+    _check_length(start, end)
     if times is None:
         if samples is not None and not (1 <= samples <= _MOST_STEPS and samples == int(samples)):
             raise ValueError(f"samples={samples}: keep at least one state after the first, a whole number")
@@ -118,6 +117,19 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
         raise ValueError(f"times hold {outside[0]:g}, outside t_span = ({float(start):g}, {float(end):g})")
     inner = [float(t) for t in given if float(t) not in (float(start), float(end))]
     return Sampling(start, end, len(inner) + 1, tuple(inner))
+
+
+def _check_length(start: Fraction, end: Fraction) -> None:
+    if max(abs(start), abs(end)) > _LATEST:
+        raise ValueError("t_span reaches beyond 1e300: measure time in other units")
+    if start == end:
+        raise ValueError(
+            f"t_span = ({float(start)}, {float(end)}) has no length: give a start and another end"
+        )
+    if float(start) == float(end):
+        raise ValueError(
+            f"t_span begins and ends at t = {float(start):g} as far as doubles tell: measure time from nearer by"
+        )
 
 
 def steps_over(start: Fraction, end: Fraction, step: float | None, method: object) -> int:
