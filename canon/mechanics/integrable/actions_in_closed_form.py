@@ -150,7 +150,7 @@ def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] |
         return ratio * momentum.shift, "a constant momentum"
     if square is None or momentum.shift != 0:
         return None
-    terms = _terms(_about_its_kink(square, q), q)
+    terms = _terms(_in_reciprocals(_about_its_kink(square, q)), q)
     A = terms.pop(sp.S.One, sp.S.Zero)
     if cycle.kind is CycleKind.ROTATION:
         return _pendulum(A, terms, q, cycle)
@@ -168,6 +168,16 @@ def _about_its_kink(f: Expr, q: Symbol) -> Expr:
         return f
     (u,) = inside
     return substitute(f, {q: q + sp.expand(q - u / u.diff(q))}) if u.diff(q) in (1, -1) else f
+
+
+def _in_reciprocals(f: Expr) -> Expr:
+    """Return f with tan² as 1/cos² − 1, cot² and tanh² likewise, and with sec, csc, sech as reciprocals."""
+    known = {g**2: sp.cos(g.args[0]) ** -2 - 1 for g in f.atoms(sp.tan)}
+    known |= {g**2: sp.sin(g.args[0]) ** -2 - 1 for g in f.atoms(sp.cot)}
+    known |= {g**2: 1 - sp.cosh(g.args[0]) ** -2 for g in f.atoms(sp.tanh)}
+    for kind, inverse in ((sp.sec, sp.cos), (sp.csc, sp.sin), (sp.sech, sp.cosh)):
+        known |= {g: 1 / inverse(g.args[0]) for g in f.atoms(kind)}
+    return cast("Expr", f.xreplace(known))
 
 
 def _terms(f: Expr, q: Symbol) -> dict[Expr, Expr]:

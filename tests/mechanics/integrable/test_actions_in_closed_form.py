@@ -103,6 +103,35 @@ def test_the_polar_angle_has_the_whole_less_the_component():
     assert vanishes(found[0].J - sp.sqrt(2 * E) + L, Domain((E > 0, L > 0))).holds
 
 
+@pytest.mark.parametrize(
+    "f", [sp.tan(a * q) ** 2, sp.cot(q) ** 2, sp.tanh(q) ** 2, sp.sec(q) ** 2, sp.sech(q)]
+)
+def test_tangents_and_secants_are_told_by_sines_and_cosines(f):
+    reciprocals = module._in_reciprocals(3 * f)
+    assert not reciprocals.has(sp.tan, sp.cot, sp.tanh, sp.sec, sp.sech)
+    assert vanishes(reciprocals - 3 * f).holds
+    assert vanishes(reciprocals - 4 * f).fails
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("potential", "formula"),
+    [
+        (D * sp.tan(a * q) ** 2, (sp.sqrt(2 * m * (E + D)) - sp.sqrt(2 * m * D)) / a),
+        (D * sp.sec(a * q) ** 2, sp.sqrt(2 * m) * (sp.sqrt(E) - sp.sqrt(D)) / a),
+        (D * sp.tanh(a * q) ** 2, sp.sqrt(2 * m) * (sp.sqrt(D) - sp.sqrt(D - E)) / a),
+    ],
+)
+def test_squares_of_tangents_are_those_of_reciprocals(potential, formula):
+    """Landau & Lifshitz, § 11, problem 2: periods in −U₀/cosh² αx and U₀ tan² αx."""
+    H = Hamiltonian(p**2 / (2 * m) + potential, q, p)
+    start = {q: half, p: 3 if potential.has(sp.sec) else 1}
+    (found,) = closed_actions(action_variables(hamilton_jacobi(H), start, {m: 1, D: 3, a: half}, 20))
+    inside = Domain((E > D,) if potential.has(sp.sec) else (E > 0, E < D))
+    assert vanishes(found.J - formula, inside).holds
+    assert vanishes(found.J - 2 * formula, inside).fails
+
+
 @pytest.mark.parametrize(("name", "factor"), [("oscillator", 1 + sp.Rational(1, 10**15)), ("Kepler", -1)])
 def test_a_wrong_formula_is_not_returned(monkeypatch, name, factor):
     H, start, _, _ = CASES[name]
