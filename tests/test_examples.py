@@ -29,6 +29,7 @@ RESULTS = {
     "judge/a_class": r"12 of 22 points, 1 asked again",
     "judge/one_answer": r"ben: 1.0 points, wrong",
     "judge/where_a_formula_fails": r"fails  √\(x²\) = x .*\n.*\n.*\nfails  \(eˣ\)² = e\^\(x²\)",
+    "integrate/a_body_turns_over": r"every 54.0652 s, by Jacobi's functions 54.0652 s\n.*\n.*off by at most \de-1[567]",
     "integrate/bead_leaves_the_hoop": r"leaves at y = 0.666680258240, by hand 0.666680258240",
     "integrate/kepler_three_ways": r"TimeTransformed +\d.\de-1[4-6] +\d.\de-1[3-5]",
     "integrate/outer_planets": r"energy error at most [2-5].\de-09: (wandering|bounded)",

@@ -64,6 +64,7 @@ def propagate(
         - ``GibbsAppell``, SymPy's ``KanesMethod``: (q, u) with the quasi-velocities u;
         - ``NewtonEuler``: (q, q̇), the reactions being known along the motion by their names;
         - a ``Routhian``: (q, s, q̇, p) with the ignored coordinates s, which are reconstructed, and their momenta;
+        - a ``PoissonSystem``, such as a rotating body: its variables;
         - a ``VectorField``, or heyoka's list of pairs (variable, right-hand side): their variables;
         - a function f(t, y) as SciPy's ``solve_ivp`` takes it: y. It is read as formulas, see
           :func:`canon.mechanics.field_of_function`;
@@ -79,8 +80,9 @@ def propagate(
         ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
         not given. By exactly solvable parts: ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that
         vary: ``TimeTransformed(...)``; explicit where H does not split: ``canon.flow.SemiexplicitSplitting(...)`` and
-        ``canon.flow.ExtendedPhaseSpace(...)``; for holonomic constraints ``canon.flow.Rattle(...)``. Or a
-        method by its name, such as ``"verlet"``, ``"kahan-li-8"``, ``"RK4"``, ``"gauss-6"``, ``"taylor"``.
+        ``canon.flow.ExtendedPhaseSpace(...)``; for holonomic constraints ``canon.flow.Rattle(...)``; for rotating
+        bodies ``canon.flow.LiePoissonSplitting(...)``. Or a method by its name, such as ``"verlet"``,
+        ``"kahan-li-8"``, ``"RK4"``, ``"gauss-6"``, ``"taylor"``, ``"saba-4"``.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
         span; ``Trajectory.step`` has it. Of a time-transformed method: the size in t of the first step.

@@ -26,6 +26,7 @@ from canon.flow.equations.first_order_motion import Contact, Contacts, MovingSys
 from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.method import RK4, Gauss, Splitting, TimeTransformed
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
@@ -41,6 +42,7 @@ from canon.frozen_mapping import FrozenMapping
 from canon.kernel.heyoka_bridge import fraction_of, heyoka_number, is_heyoka_number
 from canon.kernel.program.hamilton_equations import HamiltonEquations
 from canon.kernel.program.holonomic_system import HolonomicSystem
+from canon.kernel.program.lie_poisson_parts import CommonTurn, LiePoissonParts, PlaneTurns, TurningBlock
 from canon.kernel.schemes.splitting_schemes import Scheme
 
 if TYPE_CHECKING:
@@ -56,7 +58,8 @@ _CLASSES: dict[str, Any] = {
         RunRecord, Task, Samples, Plan, HamiltonEquations, MovingSystem, Residual, Contact, Contacts, ExtendedSystem,
         RunState, StepEnd, LoopState, Event, Crossing, Splitting, Gauss, RK4, Taylor, DOP853, TimeTransformed,
         SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme, ExtendedPhaseSpace, SemiexplicitSplitting, Rattle,
-        HolonomicSystem,
+        HolonomicSystem, LiePoissonSplitting, LiePoissonParts, PlaneTurns,
+        CommonTurn, TurningBlock,
     )
 }  # fmt: skip
 

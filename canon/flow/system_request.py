@@ -19,6 +19,7 @@ from canon.flow.equations.bounce import with_bounces
 from canon.flow.equations.first_order_motion import moving_system
 from canon.flow.equations.holonomic_motion import with_constraints_kept
 from canon.flow.equations.lagrangian_motion import SPAN
+from canon.flow.equations.poisson_motion import with_lie_poisson_parts
 from canon.flow.method.method_text import method_of
 from canon.flow.run.event import Event
 from canon.flow.system.hamiltonian_map import (
@@ -214,9 +215,11 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying], unit)
     chosen = method_of(request.method)
     _check_method(chosen, moving)
+    orbits_of = [by_name[name] for name in varying]
     if chosen.family == "rattle":
-        orbits_of = [by_name[name] for name in varying]
         moving = with_constraints_kept(request.system, motion, moving, exact_numbers(fixed), first, orbits_of)
+    if chosen.family == "lie_poisson":
+        moving = with_lie_poisson_parts(request.system, moving, exact_numbers(fixed), orbits_of)
     full = _full_states(moving, states, varying, orbits)
     checked = replace(request, method=chosen, observables=observed, events=met)
     return task_with(checked, moving.equations, full, ends, single=single), moving
@@ -329,7 +332,7 @@ def _words(motion: FirstOrderMotion) -> list[str]:
     return said
 
 
-_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", "rattle")
+_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", "rattle", "lie_poisson")
 """Families of methods that need no Hamiltonian."""
 
 

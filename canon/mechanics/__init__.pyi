@@ -54,6 +54,14 @@ from .hamilton.pfaffian_form import bilinear_covariant as bilinear_covariant
 from .hamilton.pfaffian_form import canonical_covariant as canonical_covariant
 from .hamilton.pfaffian_form import displacements as displacements
 from .hamilton.pfaffian_form import is_exact as is_exact
+from .hamilton.poisson_system import PoissonSystem as PoissonSystem
+from .hamilton.rotating_body import ANGULAR_MOMENTUM as ANGULAR_MOMENTUM
+from .hamilton.rotating_body import EULER_PARAMETERS as EULER_PARAMETERS
+from .hamilton.rotating_body import VERTICAL as VERTICAL
+from .hamilton.rotating_body import attitude_matrix as attitude_matrix
+from .hamilton.rotating_body import free_body as free_body
+from .hamilton.rotating_body import heavy_top as heavy_top
+from .hamilton.rotating_body import rotating_body as rotating_body
 from .hamilton.symmetry import gauge_function as gauge_function
 from .hamilton.symmetry import have_same_equations as have_same_equations
 from .hamilton.symmetry import is_constant_of_motion as is_constant_of_motion

@@ -18,6 +18,7 @@ from canon.kernel.loops.doubled_phase_space import (
     projecting_loop,
 )
 from canon.kernel.loops.gauss import gauss_loop
+from canon.kernel.loops.lie_poisson import lie_poisson_loop
 from canon.kernel.loops.rattle import rattle_loop
 from canon.kernel.loops.splitting import splitting_loop
 from canon.kernel.schemes.gauss_tableau import gauss_coefficients
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.flow.method.constrained_method import Rattle
+    from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
     from canon.flow.method.method import RK4, Gauss, Method, Splitting
     from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
     from canon.flow.method.number_formats import Precision
@@ -107,6 +109,18 @@ def _rattle(system: HamiltonEquations, method: Rattle, precision: Precision, _or
     return _kept_rattle(system, weights, precision.number, compensated=precision.compensated)
 
 
+def _lie_poisson(
+    system: HamiltonEquations, method: LiePoissonSplitting, precision: Precision, orbits: int
+) -> Loop:
+    if system.lie_poisson is None:
+        raise ValueError(
+            "LiePoissonSplitting moves a PoissonSystem, such as canon.mechanics.rotating_body(…), and this is none; "
+            "Splitting, Gauss and Taylor apply"
+        )
+    number, weights = _with_lanes(precision.number, system, orbits, 0), len(weights_of_order(method.order))
+    return _kept_lie_poisson(system, weights, number, compensated=precision.compensated)
+
+
 def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, orbits: int) -> Loop:
     number = _with_lanes(precision.number, system, orbits, 0)
     return _kept_runge_kutta(system, number, compensated=precision.compensated)
@@ -163,6 +177,7 @@ _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
     "extended_phase_space": _extended,
     "semiexplicit": _semiexplicit,
     "rattle": _rattle,
+    "lie_poisson": _lie_poisson,
 }
 """What compiles the methods of each family."""
 
@@ -213,6 +228,14 @@ def _kept_projecting(
 def _kept_rattle(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
     assert system.holonomic is not None
     return rattle_loop(system, system.holonomic, weights, number=number, compensated=compensated)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_lie_poisson(
+    system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
+) -> Loop:
+    assert system.lie_poisson is not None
+    return lie_poisson_loop(system, system.lie_poisson, weights, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=64)
@@ -272,7 +295,9 @@ def _of_extended(method: ExtendedPhaseSpace, _number: MachineType, h: Fraction) 
     return mixing_coefficients(weights_of_order(method.order), Fraction(method.omega), h)
 
 
-def _of_rattle(method: Rattle, _number: MachineType, h: Fraction) -> list[Fraction]:
+def _of_composition(
+    method: Rattle | LiePoissonSplitting, _number: MachineType, h: Fraction
+) -> list[Fraction]:
     return [h * weight for weight in weights_of_order(method.order)]
 
 
@@ -286,6 +311,7 @@ _COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]]
     "rk4": _of_runge_kutta,
     "extended_phase_space": _of_extended,
     "semiexplicit": _of_semiexplicit,
-    "rattle": _of_rattle,
+    "rattle": _of_composition,
+    "lie_poisson": _of_composition,
 }
 """What a step of each family reads, where the loop does not say it."""

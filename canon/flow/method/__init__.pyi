@@ -1,6 +1,7 @@
 from .adaptive_methods import DOP853 as DOP853
 from .adaptive_methods import Taylor as Taylor
 from .constrained_method import Rattle as Rattle
+from .lie_poisson_splitting import LiePoissonSplitting as LiePoissonSplitting
 from .method import RK4 as RK4
 from .method import Gauss as Gauss
 from .method import Method as Method

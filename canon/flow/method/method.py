@@ -18,6 +18,7 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
+from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
@@ -384,7 +385,16 @@ class TimeTransformed:
         )
 
 
-FixedStep = Splitting | Gauss | RK4 | SolvableSplitting | ExtendedPhaseSpace | SemiexplicitSplitting | Rattle
+FixedStep = (
+    Splitting
+    | Gauss
+    | RK4
+    | SolvableSplitting
+    | ExtendedPhaseSpace
+    | SemiexplicitSplitting
+    | Rattle
+    | LiePoissonSplitting
+)
 """Methods that take steps of one size."""
 
 Stepped = FixedStep | TimeTransformed

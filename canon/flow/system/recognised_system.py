@@ -9,9 +9,11 @@ from canon.expression.symbols.symbol import velocity
 from canon.flow.equations.contact_motion import contact_motion
 from canon.flow.equations.lagrangian_motion import constraints_of, lagrangian_motion
 from canon.flow.equations.listed_equations import field_motion, heyoka_field, is_heyoka_system
+from canon.flow.equations.poisson_motion import poisson_motion
 from canon.flow.equations.quasi_velocity_motion import appell_motion, newton_euler_motion, quasi_motion
 from canon.flow.equations.routhian_motion import routhian_motion, routhian_state
 from canon.flow.system.written_with_signs import written_with_signs
+from canon.mechanics.hamilton.poisson_system import PoissonSystem
 from canon.mechanics.hamilton.traced_function import is_rates_function
 from canon.mechanics.hamilton.vector_field import VectorField
 from canon.mechanics.lagrange.appell import GibbsAppell
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
         | QuasiMotion
         | NewtonEuler
         | VectorField
+        | PoissonSystem
         | LagrangesMethod
         | KanesMethod
         | Sequence[tuple[Any, Any]]
@@ -132,6 +135,9 @@ def recognised(system: Any) -> RecognisedSystem:
     if isinstance(system, VectorField):
         motion = field_motion(system)
         return RecognisedSystem(motion.state, motion.t, motion.parameters, lambda _: motion)
+    if isinstance(system, PoissonSystem):
+        said = (system.H, *system.brackets)
+        return _with(system.x, system.t, said, lambda _: poisson_motion(system))
     if is_rates_function(system):
         raise TypeError(
             f"{system!r} does not say how many variables it has: give canon.mechanics.field_of_function(f, n), which "
@@ -139,8 +145,8 @@ def recognised(system: Any) -> RecognisedSystem:
         )
     raise TypeError(
         f"{system!r} is no system that can be propagated: give a Hamiltonian, a Lagrangian with its forces and "
-        "constraints, Gibbs–Appell or Newton–Euler equations, a Routhian, a vector field, a scene or its name, SymPy's "
-        "LagrangesMethod or KanesMethod, or heyoka's list of (variable, right-hand side)"
+        "constraints, Gibbs–Appell or Newton–Euler equations, a Routhian, a vector field, a Poisson system, a scene or "
+        "its name, SymPy's LagrangesMethod or KanesMethod, or heyoka's list of (variable, right-hand side)"
     )
 
 

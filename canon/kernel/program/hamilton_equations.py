@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.kernel.program.holonomic_system import HolonomicSystem
+    from canon.kernel.program.lie_poisson_parts import LiePoissonParts
 
 __all__ = ["HamiltonEquations", "equations", "exact_number", "exact_numbers"]
 
@@ -63,6 +64,8 @@ class HamiltonEquations:
         The nodes of further symbols that functions along the motion may hold, such as multipliers.
     holonomic
         The constraints that a method itself keeps, and what it needs for that.
+    lie_poisson
+        The exactly solvable parts of a Lie–Poisson system, where a method moves it by them.
     """
 
     graph: Graph
@@ -82,6 +85,7 @@ class HamiltonEquations:
     kicked: bool = False
     named: Mapping[Symbol, int] = field(default_factory=lambda: FrozenMapping({}))
     holonomic: HolonomicSystem | None = None
+    lie_poisson: LiePoissonParts | None = None
 
     @property
     def rows(self) -> list[int]:

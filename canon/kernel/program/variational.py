@@ -33,12 +33,16 @@ def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations
     Raises
     ------
     ValueError
-        The method keeps constraints itself.
+        The method keeps constraints itself, or moves by the flows of parts of H.
     """
     if system.holonomic is not None:
         raise ValueError(
             "the derivative of steps that keep constraints themselves is not known here: use Taylor() or Gauss(6), "
             "whose variations hold where they keep the constraints"
+        )
+    if system.lie_poisson is not None:
+        raise ValueError(
+            "the derivative of Lie–Poisson splittings is not known here: use Taylor(), DOP853() or Gauss(6)"
         )
     graph, x = system.graph, (*system.q, *system.p)
     slopes = [graph.gradient(rate, x) for rate in (*system.velocity, *system.force)]

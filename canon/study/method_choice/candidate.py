@@ -11,7 +11,9 @@ from sympy import Pow
 
 from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.equations.holonomic_motion import NotForRattleError
+from canon.flow.equations.lie_poisson_search import NoLiePoissonPartsError
 from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.setting import Setting
@@ -22,6 +24,7 @@ from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system_request import any_task, is_hamiltonian
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
+from canon.mechanics.hamilton.poisson_system import PoissonSystem
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.study.method_choice.error_law import expected_error, order_of
 from canon.study.method_choice.pilot_run import Pilot, pilot, seconds_per_time
@@ -119,11 +122,11 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
     Splittings where H = T(p) + V(q), in a fictitious time too where V has a singularity, else Gauss's methods and
     splittings of two copies of the phase space;
     Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
-    for comparison. Where there is no H, the last three alone, and RATTLE for holonomic
-    constraints.
+    for comparison. Where there are no canonical variables, the last three alone, with RATTLE for holonomic
+    constraints and Lie–Poisson splittings for rotating bodies.
     """
     if not is_hamiltonian(question.hamiltonian):
-        return Taylor(), *_of_constraints(question), DOP853(), RK4()
+        return Taylor(), *_of_constraints(question), *_of_rotations(question), DOP853(), RK4()
     others = *_of_disturbed(question), RK4(), DOP853()
     if not is_separable(question.hamiltonian, question.values):
         return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *_of_two_copies(question), *others
@@ -136,15 +139,31 @@ def _of_constraints(question: Question) -> tuple[Method, ...]:
     system: Any = question.hamiltonian
     if not isinstance(system, ConstrainedLagrangian):
         return ()
+    return (Rattle(4), Rattle(6)) if _applies(question, Rattle(), NotForRattleError) else ()
+
+
+def _of_rotations(question: Question) -> tuple[Method, ...]:
+    """Return splittings on Poisson manifolds, where the parts of H have flows that are known."""
+    system: Any = question.hamiltonian
+    if not isinstance(system, PoissonSystem):
+        return ()
+    if not _applies(question, LiePoissonSplitting(), NoLiePoissonPartsError):
+        return ()
+    return tuple(LiePoissonSplitting(order) for order in (4, 6, 2, 8))
+
+
+def _applies(question: Question, method: Method, refusal: type[ValueError]) -> bool:
+    """Tell whether a method takes the system of a question."""
+    system: Any = question.hamiltonian
     span = (question.since, question.since + question.span)
     request = Request(
-        system, span, question.y0, method=Rattle(), step=question.span, parameters=question.values
+        system, span, question.y0, method=method, step=question.span, parameters=question.values
     )
     try:
         any_task(request)
-    except NotForRattleError:
-        return ()
-    return Rattle(4), Rattle(6)
+    except refusal:
+        return False
+    return True
 
 
 def _of_two_copies(question: Question) -> tuple[Method, ...]:
