@@ -24,6 +24,7 @@ from canon.flow.run.event import prepared_events
 from canon.flow.run.observables_along import AccuracyWarning
 from canon.flow.run.range_check import check_magnitudes, is_narrow
 from canon.flow.run.sampling_plan import adaptive_plan, fictitious_plan, sampling
+from canon.flow.system.hamiltonian_map import DRIFT_AND_KICK, KICK_AND_DRIFT
 from canon.flow.task import Task
 from canon.flow.transformed.extended_hamiltonian import extended, extended_system
 from canon.kernel.llvm.number_types import double_pair
@@ -136,7 +137,7 @@ def task_with(
         max_step=_longest(request.max_step, method),
     )
     _check_events(task)
-    if method.engine.takes_step:
+    if method.engine.takes_step and method not in (KICK_AND_DRIFT, DRIFT_AND_KICK):
         _warn_of_kinks(system, method)
     return task
 

@@ -19,7 +19,7 @@ from canon import (
     propagate,
     time,
 )
-from canon.flow import NonFiniteStateError
+from canon.flow import AccuracyWarning, NonFiniteStateError
 
 x, y = coordinates("x y")
 KEPLER = Hamiltonian(
@@ -190,6 +190,18 @@ def test_the_time_of_an_event_that_ends_the_motion(how):
     assert estimate.events[0] < 1e-13
     assert abs(motion.events[0].t - exact.events[0].t) <= estimate.events[0]
     assert (abs(motion.final - exact.final) <= estimate.error[:, -1]).all()
+
+
+@pytest.mark.parametrize("method", ["verlet", "kahan-li-8", "semiexplicit-4"])
+def test_steps_over_kinks_err_as_much_with_half_their_size(method):
+    stop = sp.Rational(1, 3)
+    spring = Hamiltonian(
+        x.momentum**2 / 2 + x**2 / 2 + sp.Piecewise((0, x < stop), (x - stop, True)), [x], [x.momentum]
+    )
+    with pytest.warns(AccuracyWarning, match="steps over the kinks"):
+        motion = propagate(spring, (0, -15), [1.0, 0.0], samples=40, method=method, step=0.05)
+    true = propagate(spring, (0, -15), [1.0, 0.0], times=motion.t[1:-1], precision="quad")
+    assert (abs(motion.y - true.y) <= motion.error_estimate().error).all()
 
 
 def test_chosen_orbits_of_an_ensemble():

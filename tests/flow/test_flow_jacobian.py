@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import Hamiltonian, Lagrangian
+from canon import Hamiltonian, Lagrangian, coordinates
 from canon.flow.geometry.flow_jacobian import flow_jacobian, reversal_error, symplecticity_defect
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagation import propagate
@@ -190,3 +190,43 @@ def test_a_motion_that_ends_itself_is_still_an_error():
     falling = Hamiltonian(x.momentum**2 / 2 - 1 / x, [x], [x.momentum])
     with pytest.raises(NonFiniteStateError, match=r"t = 1\.11"):
         flow_jacobian(falling, (0, 2), [1.0, 0.0])
+
+
+y = coordinates("y")
+KINKED = Hamiltonian(
+    (x.momentum**2 + y.momentum**2) / 2 + sp.Abs(x - y / 3) + y**2 / 2 + sp.Abs(y + sp.Rational(1, 5)) / 2,
+    [x, y],
+    [x.momentum, y.momentum],
+)
+
+
+@pytest.mark.parametrize("how", [{}, {"method": DOP853()}])
+@pytest.mark.parametrize("end", [9, -9])
+def test_variations_jump_where_the_force_does(how, end):
+    """The dispersion of |x| is all in its kink, which the variational equations on both sides do not hold."""
+    start = np.array([1.0, 0.3, 0.2, 0.1])
+    found = flow_jacobian(KINKED, (0, end), start, **how)
+    beside = start[:, np.newaxis] + 1e-6 * np.concatenate([np.eye(4), -np.eye(4)], axis=1)
+    ends = propagate(KINKED, (0, end), beside, samples=1, **how).final
+    np.testing.assert_allclose(found.final, (ends[:, :4] - ends[:, 4:]) / 2e-6, rtol=1e-7, atol=1e-7)
+    assert found.symplecticity_defect[-1] < 1e-10
+
+
+def test_variations_over_one_kink_are_known_in_closed_form():
+    """From (½, −1) the ball comes to 0 after √2 − 1 with the speed √2, and δp jumps by −2 δx/√2."""
+    ball = Hamiltonian(x.momentum**2 / 2 + sp.Abs(x), [x], [x.momentum])
+    before, after = np.sqrt(2) - 1, 1 - np.sqrt(0.5)
+    kick = np.array([[1, 0], [-np.sqrt(2), 1]])
+    true = np.array([[1, after], [0, 1]]) @ kick @ np.array([[1, before], [0, 1]])
+    for precision, digits in ((None, 1e-15), ("quad", 1e-15)):
+        found = flow_jacobian(ball, (0, before + after), [0.5, -1.0], precision=precision)
+        np.testing.assert_allclose(found.final, true, atol=4 * digits)
+
+
+def test_the_derivative_of_a_motion_that_sticks_is_not_given():
+    friction = Lagrangian(x.dot**2 / 2 - x**2 / 2, [x], forces=[-sp.sign(x.dot) / 10])
+    with pytest.raises(ValueError, match="the motion stays on x_dot = 0"):
+        flow_jacobian(friction, (0, 50), [1.0, 0.3])
+    step = Hamiltonian(x.momentum**2 / 2 + x**2 / 2 + sp.Heaviside(x) / 10, [x], [x.momentum])
+    with pytest.raises(ValueError, match="refracted or reflected"):
+        flow_jacobian(step, (0, 5), [1.0, 0.3])

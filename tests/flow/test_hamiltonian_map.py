@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -113,3 +115,10 @@ def test_a_map_has_no_states_between_its_iterations():
     np.testing.assert_array_equal(motion(4), motion.y[:, 2])
     with pytest.raises(ValueError, match="no states between its iterations"):
         motion([4, 4.5])
+
+
+def test_a_map_steps_over_no_kinks():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = propagate(HamiltonianMap(q.momentum**2 / 2, sp.Abs(q), [q], [q.momentum]), (0, 3), [0.3, 0.1])
+    np.testing.assert_allclose(found.y, [[0.3, -0.6, -0.5, 0.6], [0.1, -0.9, 0.1, 1.1]], atol=1e-15)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from canon import Event, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon import DOP853, Event, Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon.flow import NonFiniteStateError
 
 x, y = coordinates("x y")
 FREE = Hamiltonian((x.momentum**2 + y.momentum**2) / 2, [x, y], [x.momentum, y.momentum])
@@ -36,3 +37,16 @@ def test_a_bounce_where_another_event_is_noted(how):
     motion = propagate(FREE, (0, 5), [1.0, 1.0, -1.0, -1.0], events=events, samples=3, **how)
     assert sorted(str(met.event) for met in motion.events) == ["x = 0", "y = 0"]
     assert np.allclose(motion.final, [4, -4, 1, -1], atol=1e-14)
+
+
+@pytest.mark.parametrize("end", [10, -10])
+def test_an_event_that_vanishes_with_its_rate_is_found_or_missed_aloud(end):
+    """heyoka's search for roots gives up at some triple ones; the event was then passed without a word."""
+    spring = Hamiltonian((x.momentum**2 + x**2) / 2, [x], [x.momentum])
+    events = [Event(x), Event(2 * x), Event(x**3)]
+    with pytest.raises(NonFiniteStateError, match=r"x\*\*3 = 0 was passed unseen between t = -?1.5"):
+        propagate(spring, (0, end), [1, 0], events=events)
+    found = propagate(spring, (0, end), [1, 0], events=events, method=DOP853())
+    for event in events:
+        times = [met.t for met in found.events if met.event is event]
+        assert np.allclose(times, np.sign(end) * np.pi * np.array([0.5, 1.5, 2.5]), atol=1e-4)

@@ -17,6 +17,7 @@ from canon.flow.adaptive.taylor_orbit import Slice
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
 from canon.flow.kinked.regimes import HELD
+from canon.flow.kinked.saltation import saltation
 from canon.flow.run.event import Crossing, Event
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 
@@ -215,6 +216,9 @@ class KinkedOrbit:
             self._put_on_zero(kinks.regime(self.signs).functions[k])
         at = self._place()
         following = passage(kinks, self.signs, k, at, forward)
+        if kinks.system.variations:
+            change = saltation(kinks, self.signs, following, k, at).tolist()
+            self.state[:] = self.state + np.array([own.number(Fraction(x) / own.unit) for x in change])
         self.signs = following.signs
         after = None
         if following.y is not None:

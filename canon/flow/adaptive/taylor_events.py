@@ -28,6 +28,9 @@ _ONE = Fraction(1)
 _ROUNDING = 2.0**-9
 """What part of the motion on leaving a zero rounding may make up."""
 
+_SEEN = 2.0**-20
+"""In parts of its largest value, where a function's sign at a sample is known for certain."""
+
 _SAME_TIME = 2.0**-44
 """Times this near to one another, as a part of the time and a slice's length, are those of one zero."""
 
@@ -105,14 +108,14 @@ class TaylorEvents:
         return any(self._value(event, t, high[:, 0], low[:, 0]) == 0 for event in self.events)
 
     def check_domain(self, t: Array, y: Array) -> None:
-        """Make sure that every event's function is finite along samples y of shape (2n, times).
+        """Make sure that every event's function is finite along samples y of shape (2n, times), and was seen to vanish.
 
         heyoka looks for no zeros in a step in which a function is not finite.
 
         Raises
         ------
         NonFiniteStateError
-            One is not: the motion has left its domain, and zeros may have been missed.
+            One is not: the motion has left its domain, and zeros may have been missed; or one was.
         """
         values = dict(zip(self.system.inputs, (*y, t), strict=True))
         with np.errstate(all="ignore"):
@@ -126,6 +129,35 @@ class TaylorEvents:
                     f"the function of {event.event} is not finite at {time_and_state(float(t[first]), state)}: it left "
                     "its own domain there, and its zeros may have been missed",
                     float(t[first]),
+                    state,
+                )
+            self._check_seen(event, t, y, np.broadcast_to(value, t.shape))
+
+    def _check_seen(self, event: PreparedEvent, t: Array, y: Array, value: Array) -> None:
+        """Make sure that an event was told between samples at which its function has other signs.
+
+        heyoka's search for the roots of a step's polynomial gives up at multiple ones, as those of x³.
+
+        Raises
+        ------
+        NonFiniteStateError
+            It was not.
+        """
+        known = np.flatnonzero(abs(value) > _SEEN * abs(value).max())
+        rising = value[known] > 0
+        for at in np.flatnonzero(rising[1:] != rising[:-1]):
+            before, after = known[at], known[at + 1]
+            near = abs(t[after] - t[before]) * _SEEN
+            begin, end = sorted((t[before], t[after]))
+            there = [met for met in self.crossings if begin - near <= met.t <= end + near]
+            told = any(met.event is event.event or met.after is not None for met in there)
+            if event.event.counts(bool(rising[at + 1])) and not told:
+                state = y[self.system.rows, before]
+                raise NonFiniteStateError(
+                    f"{event.event} was passed unseen between {time_and_state(float(t[before]), state)} and t = "
+                    f"{t[after]:.9g}: its function vanishes there with its rate. Give one that has a rate there, such "
+                    "as x in place of x**3, or take DOP853() or a method of fixed steps",
+                    float(t[before]),
                     state,
                 )
 

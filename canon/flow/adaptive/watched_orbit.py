@@ -13,6 +13,7 @@ from canon.flow.adaptive.zeros_in_step import Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
 from canon.flow.kinked.regimes import HELD, Regime
+from canon.flow.kinked.saltation import saltation
 from canon.flow.run.compiled_nodes import CompiledNodes, compiled_nodes
 from canon.flow.run.event import Crossing, Event
 from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, time_and_state
@@ -221,6 +222,7 @@ class WatchedOrbit:
                 self.y = self.y - value / rate * np.nan_to_num(watch.rate.call(self.t, self.y))
         at = self._place()
         following = passage(self.kinks, self.signs, k, at, self.forward)
+        self.y = self.y + saltation(self.kinks, self.signs, following, k, at)
         self.signs, after = following.signs, None
         if following.y is not None:
             self.y, after = following.y, following.y[self.system.rows]

@@ -18,6 +18,9 @@ __all__ = ["Zero", "zeros_in_step"]
 _PLACES = 9
 """At so many places of a step, its end included, functions are looked at, and at the extrema between them."""
 
+_MOST = 10_000
+"""Steps of Brent's method at most."""
+
 
 class Zero(NamedTuple):
     """When a function vanishes, which one, and whether it rises as the motion passes."""
@@ -67,7 +70,8 @@ def _root(value: Callable[[float], float], a: float, b: float, at_b: float) -> f
         if side * value(float(turn.x)) >= 0:
             return a
         a = float(turn.x)
-    root: Any = brentq(value, a, b, xtol=2.0**-51 * max(abs(a), abs(b), 2.0**-900))
+    # At a multiple root, as of x³, Brent's method takes some hundred steps.
+    root: Any = brentq(value, a, b, xtol=2.0**-51 * max(abs(a), abs(b), 2.0**-900), maxiter=_MOST)
     return float(root)
 
 

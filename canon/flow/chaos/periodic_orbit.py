@@ -10,6 +10,7 @@ from canon.flow.chaos.periodic_search import PeriodicOrbit, PeriodicSearch
 from canon.flow.request import Request
 from canon.flow.system.named_values import variables_of
 from canon.flow.system_request import any_task
+from canon.flow.tangent.deviation_growth import check_jumps
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -115,6 +116,7 @@ def _search(
         raise ValueError("one start at a time: y0 of shape (2n,)")
     if task.fictitious is not None:
         raise ValueError(f"{task.method} has steps that vary: take Taylor(), or a method of fixed steps")
+    check_jumps(task)
     system = task.system
     variables = [symbol.name for symbol in variables_of(system)]
     shift = np.zeros(len(variables))

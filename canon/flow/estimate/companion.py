@@ -62,7 +62,9 @@ class CompanionTask:
 def companion_tasks(task: Task, samples: Samples) -> Iterator[CompanionTask]:
     """Yield companions, each more exact than the one before."""
     plan = task.plan
-    if plan.h is None or may_have_passed(task.system, samples, float(plan.h)):
+    # Over kinks steps lose their order, and half as long ones may err as much.
+    kinked = kinks_of(task.system) is not None
+    if plan.h is None or kinked or may_have_passed(task.system, samples, float(plan.h)):
         # An event that has ended the motion may end the companion a little later.
         t = plan.instants if samples.crossings and len(samples.t) < len(plan.instants) else samples.t
         ends = sorted({round(k * (len(t) - 1) / _SLICES) for k in range(1, _SLICES + 1)} - {0})

@@ -1,11 +1,11 @@
 """Error estimate of a computed motion: its distance from a more exact companion run, and how errors grow.
 
 A method of fixed steps is repeated with half the step in wider numbers; every other one, and one that may have passed
-over a pulse or a bump, is compared with Taylor's method in wider numbers. The difference is the motion's error, but
-for what the companion itself errs: a third of it for a method of order 2, less for higher ones. A second companion
-starts a little beside the first; how their distance grows says what becomes of every error, of the start's as of each
-step's. In a chaotic motion it grows like exp(t/τ) until the two have nothing to do with each other; from there on no
-single trajectory means anything, however it is computed, and only averages may.
+over a pulse or a bump or has passed kinks, is compared with Taylor's method in wider numbers. The difference is the
+motion's error, but for what the companion itself errs: a third of it for a method of order 2, less for higher ones. A
+second companion starts a little beside the first; how their distance grows says what becomes of every error, of the
+start's as of each step's. In a chaotic motion it grows like exp(t/τ) until the two have nothing to do with each other;
+from there on no single trajectory means anything, however it is computed, and only averages may.
 """
 
 from __future__ import annotations

@@ -127,7 +127,8 @@ def flow_jacobian(
     Where neighbours part by more than doubles can hold, the variations begin anew on the way and are multiplied.
     For methods of fixed steps it is the exact derivative of the discrete map that the compiled steps make, up to
     round-off, so that a symplectic method's is symplectic to round-off at any step. For Taylor and DOP853 it is
-    the flow's, to their tolerance.
+    the flow's, to their tolerance, with the jumps of variations where rates jump at kinks, which steps of one size pass
+    unseen.
 
     Parameters
     ----------
@@ -142,7 +143,7 @@ def flow_jacobian(
     ------
     ValueError
         As ``propagate``; or the planets' coordinates are democratic heliocentric ones, or several states or parameters
-        by orbit are given.
+        by orbit are given; or the motion stays on a kink or is refracted there.
 
     Examples
     --------

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from canon.flow.kinked.place import Place
     from canon.flow.kinked.regimes import Kinks, Regime
 
-__all__ = ["Passage", "passage", "signs_at_start", "vanishing"]
+__all__ = ["Passage", "passage", "settled", "signs_at_start", "vanishing"]
 
 _ROUNDING = 2.0**-44
 """What part of the sizes of its terms rounding may leave of a zero."""
@@ -75,7 +75,7 @@ def signs_at_start(kinks: Kinks, at: Place, forward: int) -> Signs:
         The motion is not determined by its start.
     """
     count = len(kinks.functions)
-    signs = _settled(kinks, (1,) * count, set(), at)
+    signs = settled(kinks, (1,) * count, set(), at)
     zero = vanishing(kinks, signs, at)
     if not zero:
         return signs
@@ -95,7 +95,7 @@ def _is_wall(kinks: Kinks, signs: Signs, k: int, at: Place) -> bool:
     """Tell whether H jumps in space, not in time, where a switching function vanishes."""
     system = kinks.regime(signs).system
     slopes = system.graph.gradient(kinks.folded(signs, [kinks.functions[k]])[0], system.q)
-    beyond = _settled(kinks, flipped(signs, k), {*kinks.mattering(signs)} - {*kinks.nested} | {k}, at)
+    beyond = settled(kinks, flipped(signs, k), {*kinks.mattering(signs)} - {*kinks.nested} | {k}, at)
     return any(at.values(system, slopes)) and bool(_jump(kinks, signs, beyond, at))
 
 
@@ -114,7 +114,7 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
             return Passage(_goes_on(kinks, flipped(back[1], k), [k, held], at, forward), words="slips")
         return Passage(_goes_on(kinks, back[1], [k], at, forward), words="slips")
     fresh = {j for j in kinks.mattering(signs) if j not in kinks.nested}
-    beyond = _settled(kinks, flipped(signs, k), fresh | {k}, at)
+    beyond = settled(kinks, flipped(signs, k), fresh | {k}, at)
     jump = _jump(kinks, signs, beyond, at)
     if jump:
         return _refracted(kinks, signs, beyond, k, jump, at)
@@ -123,7 +123,7 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
     return Passage(following, words="sticks" if HELD in following else "")
 
 
-def _settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:
+def settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:
     """Return the signs of all functions that matter, given those of some; the others count as positive."""
     known = set(known)
     while unknown := [k for k in kinks.mattering(signs) if k not in known]:
@@ -162,7 +162,7 @@ def _candidates(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place) -> I
     for sides in itertools.product((1, -1), repeat=len(zero)):
         put = dict(zip(zero, sides, strict=True))
         each = tuple(put.get(k, sign) for k, sign in enumerate(signs))
-        yield _settled(kinks, each, before | {*zero}, at)
+        yield settled(kinks, each, before | {*zero}, at)
 
 
 def _consistent(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward: int) -> bool:

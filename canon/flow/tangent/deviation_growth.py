@@ -12,11 +12,15 @@ import numpy as np
 
 from canon.flow.checked_request import two_ends
 from canon.flow.fixed_step.advance import Interruption
+from canon.flow.kinked.place import Place
+from canon.flow.kinked.regimes import kinks_of
+from canon.flow.kinked.saltation import jumps_near
 from canon.flow.request import Request
 from canon.flow.system_request import any_task, refuse_contacts
 from canon.flow.tangent.compiled_deviations import CompiledDeviations
 from canon.flow.tangent.tangent_loop import has_tangent_loop
 from canon.flow.tangent.variational_deviations import VariationalDeviations
+from canon.kernel.llvm.number_types import DOUBLE
 from canon.progress import reporting
 
 if TYPE_CHECKING:
@@ -29,7 +33,14 @@ if TYPE_CHECKING:
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.task import Task
 
-__all__ = ["LEAST_SAMPLES", "DeviationGrowth", "DeviationRun", "deviation_growth", "deviation_task"]
+__all__ = [
+    "LEAST_SAMPLES",
+    "DeviationGrowth",
+    "DeviationRun",
+    "check_jumps",
+    "deviation_growth",
+    "deviation_task",
+]
 
 
 @dataclass(frozen=True)
@@ -124,7 +135,29 @@ def deviation_task(run: DeviationRun) -> Task:
             f"{task.method} carries no deviations here: take a splitting of T + V, Splitting('kahan-li-8'), Gauss(6) "
             "or Taylor()"
         )
+    check_jumps(task)
     return task
+
+
+def check_jumps(task: Task) -> None:
+    """Refuse steps of one size over jumps of the force: deviations jump there too, by which motion may be chaotic.
+
+    Raises
+    ------
+    ValueError
+        Where there are such.
+    """
+    kinks = kinks_of(task.system)
+    if kinks is None or task.system.kicked or not task.method.engine.takes_step:
+        return
+    high, low = (part[:, 0] for part in task.states)
+    jumps = jumps_near(kinks, Place(DOUBLE, float(task.plan.start), high, low))
+    if jumps:
+        where = ", ".join(f"{task.system.graph.to_sympy(kinks.functions[k])} = 0" for k in jumps[:4])
+        raise ValueError(
+            f"{task.method} does not see how deviations jump with the force at {where}, by which alone motion may be "
+            "chaotic: take Taylor() or DOP853()"
+        )
 
 
 def _uneven(ends: tuple[Fraction, Fraction], samples: int) -> Array:

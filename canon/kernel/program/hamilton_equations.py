@@ -66,6 +66,8 @@ class HamiltonEquations:
         The constraints that a method itself keeps, and what it needs for that.
     lie_poisson
         The exactly solvable parts of a Lie–Poisson system, where a method moves it by them.
+    variations
+        How many variations of the motion are part of the state, behind it in q and in p.
     """
 
     graph: Graph
@@ -86,6 +88,7 @@ class HamiltonEquations:
     named: Mapping[Symbol, int] = field(default_factory=lambda: FrozenMapping({}))
     holonomic: HolonomicSystem | None = None
     lie_poisson: LiePoissonParts | None = None
+    variations: int = 0
 
     @property
     def rows(self) -> list[int]:

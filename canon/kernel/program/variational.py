@@ -56,4 +56,11 @@ def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations
         p += varied[n:]
         velocity += rates[:n]
         force += rates[n:]
-    return replace(system, q=tuple(q), p=tuple(p), velocity=tuple(velocity), force=tuple(force))
+    return replace(
+        system,
+        q=tuple(q),
+        p=tuple(p),
+        velocity=tuple(velocity),
+        force=tuple(force),
+        variations=system.variations + variations,
+    )
