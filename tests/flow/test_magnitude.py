@@ -88,3 +88,9 @@ def test_rest_where_series_are_beyond_doubles_is_told():
     stiff = Hamiltonian(x.momentum**2 / 2 + x**2 * 10**40, [x], [x.momentum])
     with pytest.raises(ArithmeticError, match="can't be continued after t = 0"):
         propagate(stiff, (0, 1), [0.0, 0.0])
+
+
+def test_a_rate_of_the_size_of_the_least_double_is_only_rounded():
+    spring = Hamiltonian(x.momentum**2 / 2 + sp.Rational(3, 2) * x**2 / 2, [x], [x.momentum])
+    motion = propagate(spring, (0, 1), [5e-324, 0.0], method=Splitting("verlet"), step=0.5)
+    assert abs(motion.y).max() < 1e-322

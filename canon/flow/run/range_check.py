@@ -25,6 +25,9 @@ _FAR = 1e100
 _LOST = 1e-6
 """A force that doubles get wrong by this part has overflowed or underflowed on the way."""
 
+_LEAST = 2.0**-1074
+"""The least positive double: a rate of its size is rounded, however well it was computed."""
+
 _NOTHING_HAPPENS = 1e-3
 """A motion that changes by less than this part of itself in all of the time is no matter of its units."""
 
@@ -71,7 +74,7 @@ def check_magnitudes(
     exact = {s: digits.number(x) for s, x in zip(system.inputs, map(Fraction, point), strict=True)}
     for name, found, node in zip((*system.q, *system.p), rates, nodes, strict=True):
         true: Any = system.graph.evaluate([node], exact, digits)[0]
-        if abs(float(found) - true) > _LOST * abs(true) and abs(true) > 0:
+        if abs(float(found) - true) > max(_LOST * abs(true), _LEAST):
             raise ValueError(
                 f"the rate of {name} at the start is {float(true):.3g}, but {float(found):.3g} in doubles: numbers on "
                 "the way are beyond 1e±308. Choose units in which lengths, times and masses are nearer to 1, or "
