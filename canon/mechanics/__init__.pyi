@@ -165,6 +165,7 @@ from .perturbation.secular.adiabatic_series import adiabatic_invariants as adiab
 from .perturbation.secular.anomaly_average import AnomalyAverage as AnomalyAverage
 from .perturbation.secular.anomaly_average import average_over_anomaly as average_over_anomaly
 from .perturbation.taylor_parts import NotAnalyticError as NotAnalyticError
+from .perturbation.von_zeipel import von_zeipel_function as von_zeipel_function
 from .reduction.constrained_motion import MotionOnManifold as MotionOnManifold
 from .reduction.constrained_motion import constrained_motions as constrained_motions
 from .reduction.contact import multiplier_along as multiplier_along

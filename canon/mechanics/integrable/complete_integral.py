@@ -13,7 +13,8 @@ from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-from canon.mechanics.integrable.classical_coordinates import Chart, charts_for
+from canon.mechanics.integrable.classical_coordinates import Chart, charts_for, isotropic_coefficient
+from canon.mechanics.integrable.function_splitting import common_factor
 from canon.mechanics.integrable.separability import is_separable
 from canon.mechanics.integrable.separated_momenta import (
     NotSeparatedError,
@@ -111,7 +112,7 @@ class CompleteIntegral:
         )
         if not solved.holds:
             return solved
-        determinant = cast("Expr", self.mixed_derivatives.det(method="berkowitz"))
+        determinant = self._determinant()
         if determinant == 0:
             why = "det ∂²W/∂q∂α = 0: the constants are not independent"
             return Verdict(Status.FAILS, question, "exact", determinant, feedback=why)
@@ -121,6 +122,13 @@ class CompleteIntegral:
         why = "det ∂²W/∂q∂α vanishes" if independent.holds else "whether det ∂²W/∂q∂α ≠ 0 was not decided"
         status = Status.FAILS if independent.holds else Status.UNDECIDED
         return Verdict(status, question, independent.certificate, determinant, feedback=why)
+
+    def _determinant(self) -> Expr:
+        """Return det ∂²W/∂q∂α, multiplied out but for what each row has in common, such as 1/√(p_i²)."""
+        rows = [self.mixed_derivatives.row(i).tolist()[0] for i in range(len(self.momenta))]
+        common = [common_factor(row) for row in rows]
+        plain = sp.Matrix([[f / g for f in row] for row, g in zip(rows, common, strict=True)])
+        return sp.Mul(*common, cast("Expr", plain.det(method="berkowitz")))
 
     def _equations(self) -> list[tuple[str, Expr]]:
         """Return H(q, ∂W/∂q) − E for the signs of the roots: all positive, then each of them negative alone.
@@ -166,7 +174,7 @@ def hamilton_jacobi(
     energy
         The symbol of the energy; E unless given.
     budget
-        Seconds for the conditions of each kind of coordinates.
+        Seconds for the conditions of each kind of coordinates, and again for the proof of what was found.
 
     Raises
     ------
@@ -200,12 +208,14 @@ def hamilton_jacobi(
     if coordinates in ("given", "any"):
         verdict = is_separable(H, domain, budget)
         if verdict.holds:
-            return _integral(H, E, domain, verdict, None)
+            return _integral(H, E, domain, verdict, None, budget)
         refused.append(_refusal(verdict, ", ".join(map(str, H.q))))
     if coordinates != "given":
         found = _in_charts(H, E, charts_for(H, coordinates, focal), budget, refused)
         if found is not None:
             return found
+    elif isotropic_coefficient(H) is not None and len(H.q) > 1:
+        refused.append('coordinates="any" tries the classical ones, such as polar')
     raise NotSeparatedError("; ".join(refused))
 
 
@@ -220,20 +230,20 @@ def _in_charts(
             refused.append(_refusal(verdict, f"{chart.name} coordinates"))
             continue
         try:
-            return _integral(lifted, E, EVERYWHERE, verdict, chart)
+            return _integral(lifted, E, EVERYWHERE, verdict, chart, budget)
         except NotSeparatedError as error:
             refused.append(f"in {chart.name} coordinates {error}")
     return None
 
 
 def _integral(
-    H: Hamiltonian, E: Symbol, domain: Domain, separable: Verdict, chart: Chart | None
+    H: Hamiltonian, E: Symbol, domain: Domain, separable: Verdict, chart: Chart | None, budget: float
 ) -> CompleteIntegral:
     momenta, constants = separated_momenta(H, E, domain)
     found = CompleteIntegral(
         H, momenta, tuple(c for c, _ in constants), dict(constants), separable, chart, domain
     )
-    proved = found.is_complete_integral()
+    proved = found.is_complete_integral(budget)
     if not proved.holds:
         raise NotSeparatedError(
             f"H separates, but the integral that was found is not proved: {proved.feedback or proved.status.value}; "

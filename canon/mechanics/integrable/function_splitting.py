@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["product_parts", "sum_parts"]
+__all__ = ["common_factor", "factored", "have_values", "product_parts", "reference_places", "sum_parts"]
 
 SECONDS = 2.0
 """Time for the proof of one split."""
@@ -47,11 +47,11 @@ def sum_parts(f: Expr, groups: Sequence[Collection[Symbol]], domain: Domain) -> 
         rest = sp.Add(*mixed)
         if rest == 0:
             return sums
-    for place in _places(groups):
+    for place in reference_places(groups):
         at_place = substitute(rest, place)
         pieces = [substitute(rest, _elsewhere(place, group)) - at_place for group in groups]
         pieces[-1] += at_place
-        if _have_values(pieces) and vanishes(rest - sp.Add(*pieces), domain, SECONDS).holds:
+        if have_values(pieces) and vanishes(rest - sp.Add(*pieces), domain, SECONDS).holds:
             return [known + piece for known, piece in zip(sums, pieces, strict=True)]
     return None
 
@@ -68,22 +68,22 @@ def product_parts(f: Expr, groups: Sequence[Collection[Symbol]], domain: Domain)
     >>> product_parts(x + y, [[x], [y]], EVERYWHERE) is None
     True
     """
-    factored = sp.factor_terms(f)
-    parts, mixed = _sorted_by_group(sp.Mul.make_args(factored), groups)
+    product = sp.factor_terms(f)
+    parts, mixed = _sorted_by_group(sp.Mul.make_args(product), groups)
     if mixed:
-        factored = _factored(f)
-        parts, mixed = _sorted_by_group(sp.Mul.make_args(factored), groups)
+        product = factored(f)
+        parts, mixed = _sorted_by_group(sp.Mul.make_args(product), groups)
     products = [sp.Mul(*part) for part in parts]
     rest = sp.Mul(*mixed)
     if rest == 1:
         return products
-    for place in _places(groups):
+    for place in reference_places(groups):
         at_place = substitute(rest, place)
-        if not _have_values([at_place]) or at_place == 0:
+        if not have_values([at_place]) or at_place == 0:
             continue
         pieces = [substitute(rest, _elsewhere(place, group)) for group in groups]
         pieces[-1] /= at_place ** (len(groups) - 1)
-        if _have_values(pieces) and vanishes(rest - sp.Mul(*pieces), domain, SECONDS).holds:
+        if have_values(pieces) and vanishes(rest - sp.Mul(*pieces), domain, SECONDS).holds:
             return [known * piece for known, piece in zip(products, pieces, strict=True)]
     return None
 
@@ -117,14 +117,23 @@ def _by_sines(f: Expr) -> Expr:
     return cast("Expr", sp.expand(exchanged(f, squares)))
 
 
-def _factored(f: Expr) -> Expr:
+def factored(f: Expr) -> Expr:
+    """Return f in factors where SymPy can, else f as it stands."""
     try:
         return cast("Expr", sp.factor(f))
     except sp.PolynomialError:
         return f
 
 
-def _places(groups: Sequence[Collection[Symbol]]) -> Iterator[dict[Symbol, Expr]]:
+def common_factor(entries: Sequence[Expr]) -> Expr:
+    """Return the powers that stand in each of the entries that are not zero, which are products."""
+    powers = [f.as_powers_dict() for f in entries if f != 0]
+    shared = set.intersection(*(set(each) for each in powers)) if powers else set()
+    least = {base: min((each[base] for each in powers), key=sp.default_sort_key) for base in shared}
+    return sp.Mul(*(base**e for base, e in least.items() if all(each[base] == e for each in powers)))
+
+
+def reference_places(groups: Sequence[Collection[Symbol]]) -> Iterator[dict[Symbol, Expr]]:
     """Return reference places: the same plain value for each variable that may have it."""
     variables = sorted({s for group in groups for s in group}, key=str)
     plain: list[Expr] = [sp.S.Zero, sp.pi / 2, sp.S.One, sp.Integer(2), sp.S.Half, sp.Rational(1, 3)]
@@ -150,5 +159,6 @@ def _elsewhere(place: dict[Symbol, Expr], group: Collection[Symbol]) -> dict[Sym
     return {s: value for s, value in place.items() if s not in group}
 
 
-def _have_values(pieces: Sequence[Expr]) -> bool:
+def have_values(pieces: Sequence[Expr]) -> bool:
+    """Whether none of the pieces is infinite or undefined."""
     return not any(piece.has(sp.nan, sp.zoo, sp.oo, -sp.oo) for piece in pieces)

@@ -1,8 +1,8 @@
 """Separated Hamilton–Jacobi equations: each momentum as a function of its own coordinate and the constants.
 
 Constants come off one after another: the momentum of an ignorable coordinate; a function f_i(q_i, p_i) through which
-alone q_i and p_i stand in H; and at the end, with a multiplier D, the sum D (H − E) = Σ f_i(q_i, p_i, E) of Liouville
-and Stäckel (L. D. Landau and E. M. Lifshitz, Mechanics, section 48; H. Goldstein, Classical Mechanics, section 10.7).
+alone q_i and p_i stand in H; and at the end, with a multiplier D, Liouville's sum D (H − E) = Σ f_i(q_i, p_i, E), or
+Stäckel's matrix (L. D. Landau and E. M. Lifshitz, Mechanics, section 48; H. Goldstein, Classical Mechanics, 10.7).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.integrable.function_splitting import product_parts, sum_parts
+from canon.mechanics.integrable.staeckel_matrix import staeckel_matrix
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
@@ -97,12 +98,12 @@ def separated_momenta(
     symbols = {s for s in H.H.free_symbols if isinstance(s, Symbol)} | {energy}
     work = _Separation(domain, energy, H.H, list(zip(H.q, H.p, strict=True)), symbols)
     while work.left:
-        if not (_ignorable(work) or _last(work) or _inner(work) or _together(work)):
+        if not (_ignorable(work) or _last(work) or _inner(work) or _together(work) or _by_staeckel(work)):
             names = ", ".join(str(q) for q, _ in work.left)
             raise NotSeparatedError(
                 f"no separated equations were found for {names}; they are looked for where H is at most "
-                "quadratic in each momentum, without products of momenta, and as D (H − E) = sum of "
-                "f_i(q_i, p_i). Give H so, or eliminate ignorable coordinates first"
+                "quadratic in each momentum, without products of momenta, with a Stäckel matrix whose entries "
+                "have values at simple places. Give H so, or eliminate ignorable coordinates first"
             )
     constants = (*work.constants, (energy, H.H))
     by_q = {found.q: found for found in work.found}
@@ -198,6 +199,38 @@ def _together(work: _Separation) -> bool:
         for i, (_, p) in enumerate(work.left)
     ]
     return _share_out(work, functions)
+
+
+def _by_staeckel(work: _Separation) -> bool:
+    """Separate all that is left by Stäckel's matrix."""
+    resting = {p: sp.S.Zero for _, p in work.left}
+    leading: dict[Symbol, Expr] = {}
+    shifts: list[Expr] = []
+    for q, p in work.left:
+        coefficients = _quadratic(work.rest, p)
+        if coefficients is None or coefficients[0] == 0 or any(f.has(*resting) for f in coefficients[:2]):
+            return False
+        a, b, _ = coefficients
+        shift = _own_part(b / (2 * a), [q], [s for s, _ in work.left if s != q], work.domain)
+        if shift is None:
+            return False
+        leading[q] = a
+        shifts.append(shift)
+    completed = sp.Add(*(a * shift**2 for a, shift in zip(leading.values(), shifts, strict=True)))
+    matrix = staeckel_matrix(leading, substitute(work.rest, resting) - completed, work.domain)
+    if matrix is None:
+        return False
+    squares = [(p + shift) ** 2 for (_, p), shift in zip(work.left, shifts, strict=True)]
+    defined = matrix.constants(squares, next(iter(leading.values())))
+    names = [work.new_constant(q, f) for (q, _), f in zip(work.left[1:], defined, strict=True)]
+    own = [None, *zip(names, defined, strict=True)]
+    for i, (q, p) in enumerate(work.left):
+        terms = zip(matrix.rows[i], (*names, work.energy), strict=True)
+        square = sp.Add(*(u * alpha for u, alpha in terms), -matrix.potential[i])
+        constant, meaning = own[i] or (None, None)
+        work.found.append(SeparatedMomentum(q, p, -shifts[i], square, constant, meaning))
+    work.left.clear()
+    return True
 
 
 def _share_out(work: _Separation, functions: Sequence[Expr]) -> bool:

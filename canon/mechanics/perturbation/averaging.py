@@ -11,7 +11,6 @@ from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_kind, given_symbols
-from canon.mechanics.canonical.generating_function import GeneratingFunction
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.perturbation.fourier_series import (
     fourier_bracket,
@@ -20,12 +19,14 @@ from canon.mechanics.perturbation.fourier_series import (
 )
 from canon.mechanics.perturbation.lie_series import lie_deprit, powers_of
 from canon.mechanics.perturbation.normal_form_step import Module
+from canon.mechanics.perturbation.von_zeipel import von_zeipel_function
 from canon.proof.domain.verdict import Status, Verdict, all_hold
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from canon.mechanics.canonical.generating_function import GeneratingFunction
     from canon.mechanics.perturbation.fourier_series import Harmonic, Series
 
 __all__ = ["Averaged", "AveragingError", "adiabatic_invariant", "average"]
@@ -94,15 +95,14 @@ class Averaged:
         """Deprit's generator Σ Wₙ₊₁ εⁿ/n!."""
         return sp.Add(*(w * self.small**n / factorial(n) for n, w in enumerate(self.generators)))
 
-    @property
+    @cached_property
     def F2(self) -> GeneratingFunction:
-        """Von Zeipel's generating function Σ q P + ε S₁(q, P) of the map from old to new variables, to first order."""
-        q, p = self.source.q, self.source.p
-        new_q, new_p = (tuple(Symbol(f"{s}_new", real=True) for s in side) for side in (q, p))
-        first = -self.generators[0] if self.generators else sp.S.Zero
-        bare = sp.Add(*(x * y for x, y in zip(q, new_p, strict=True)))
-        S = bare + self.small * first.subs(list(zip(p, new_p, strict=True)))
-        return GeneratingFunction(2, S, q, p, new_q, new_p)
+        """Von Zeipel's generating function Σ q P + ε S₁(q, P) + … of the map from old to new variables."""
+
+        def harmonics(f: Expr) -> Expr:
+            return fourier_expression(fourier_series(f, self.angles), self.angles)
+
+        return von_zeipel_function(self.W, self.source.q, self.source.p, self.order, self.small, harmonics)
 
     def to_new(self, f: Expr) -> Expr:
         """Return a function of the old variables in terms of the new ones, to the order."""
@@ -151,7 +151,7 @@ def average(
 
     H = H₀(I) + ε H₁ + …, where H₀ depends on the momenta of the fast angles alone, and Hₙ are trigonometric polynomials
     in these angles with any dependence on all else. Slow variables may stand in Hₙ. A Hamiltonian with the time in it
-    is averaged over τ = Ω t as an angle, with Ω T added to H. To first order the map is von Zeipel's (``F2``). Any
+    is averaged over τ = Ω t as an angle, with Ω T added to H. The same map by von Zeipel's function is ``F2``. Any
     consistent units (H. von Zeipel, Ark. Mat. Astr. Fys. 11 (1916); A. Deprit, doi:10.1007/BF01230629).
 
     Parameters
