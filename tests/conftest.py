@@ -24,6 +24,18 @@ PATIENCE = 4
 """A test may have so many times as long while more wants to run than there are processors."""
 
 
+LONG = frozenset(Path(__file__).with_name("long_tests.txt").read_text(encoding="utf-8").splitlines())
+"""Tests that `.ci/weigh` found to take long: they are run with the slow ones."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Mark the tests that take long as slow, before the marks are looked at."""
+    for item in items:
+        if item.nodeid in LONG:
+            item.add_marker(pytest.mark.slow)
+
+
 def pytest_collection_finish():
     """Leave what was imported out of every search for garbage, which would look through millions of objects."""
     gc.collect()
