@@ -148,7 +148,9 @@ def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] |
     if cycle.kind is CycleKind.IGNORABLE:
         ratio = cast("Expr", cycle.period) / (2 * sp.pi)
         return ratio * momentum.shift, "a constant momentum"
-    if square is None or momentum.shift != 0:
+    if square is None:
+        return _linear(momentum.shift, q)
+    if momentum.shift != 0:
         return None
     terms = _terms(_in_reciprocals(_about_its_kink(square, q)), q)
     A = terms.pop(sp.S.One, sp.S.Zero)
@@ -321,6 +323,18 @@ def _three_roots(P: sp.Poly) -> tuple[Expr, Expr, Expr]:
     third = sp.acos(3 * r / (2 * p) * sqrt(-3 / p)) / 3
     large, middle, small = (2 * sqrt(-p / 3) * sp.cos(third - 2 * sp.pi * k / 3) - b / 3 for k in range(3))
     return small, middle, large
+
+
+def _linear(p: Expr, q: Symbol) -> tuple[Expr, str] | None:
+    """Return the mean over a turn of A + B cos q, or of N/(A + B cos q), where H is linear in p."""
+    name, waves = "rotation linear in p", ({sp.cos(q)}, {sp.sin(q)})
+    above, below = sp.fraction(sp.together(p))
+    terms = _terms(below if below.has(q) else p, q)
+    A = terms.pop(sp.S.One, sp.S.Zero)
+    if set(terms) not in waves or (below.has(q) and above.has(q)):
+        return None
+    (B,) = terms.values()
+    return (above * sp.sign(A) / sqrt(A**2 - B**2) if below.has(q) else A), name
 
 
 def _pendulum(A: Expr, terms: Mapping[Expr, Expr], q: Symbol, cycle: Cycle) -> tuple[Expr, str] | None:

@@ -182,11 +182,16 @@ def cycle_of(
     """Return the cycle of one coordinate: follow p² from the start to where it vanishes, or through a period."""
     q = momentum.q
     if momentum.square is None:
-        if momentum.shift.has(q):
+        if not momentum.shift.has(q):
+            return Cycle(q, CycleKind.IGNORABLE, period=periods.get(q, 2 * sp.pi))
+        turn = periods.get(q) or _period(momentum)
+        if turn is None:
             raise NoCycleError(
                 f"{momentum.p} is no constant and has one value only: {q} runs through no cycle"
             )
-        return Cycle(q, CycleKind.IGNORABLE, period=periods.get(q, 2 * sp.pi))
+        return Cycle(
+            q, CycleKind.ROTATION, period=turn, sign=1 if ball_of(values[momentum.p]).real > 0 else -1
+        )
     square, slope = _functions(momentum.square, q, balls)
     place, outward = ball_of(values[q]).real, values[momentum.p] - substitute(momentum.shift, values)
     if outward == 0 or outward.is_zero:
@@ -223,9 +228,9 @@ def _functions(square: Expr, q: Symbol, balls: Mapping[Symbol, acb]) -> tuple[Ba
 
 def _period(momentum: SeparatedMomentum) -> Expr | None:
     """Return 2π where p² and the shift are proved to have that period in an angle."""
-    q, square = momentum.q, cast("Expr", momentum.square)
-    if not square.has(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
+    q, parts = momentum.q, [f for f in (momentum.square, momentum.shift) if f is not None]
+    if not any(f.has(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc) for f in parts):
         return None
     turned = {q: q + 2 * sp.pi}
-    both = sp.Matrix([substitute(f, turned) - f for f in (square, momentum.shift)])
+    both = sp.Matrix([substitute(f, turned) - f for f in parts])
     return 2 * sp.pi if vanishes(both, budget=2.0).holds else None

@@ -11,6 +11,7 @@ from canon.mechanics.integrable import actions_in_closed_form as module
 from canon.mechanics.integrable.actions import action_variables
 from canon.mechanics.integrable.actions_in_closed_form import closed_actions
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
+from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
@@ -94,6 +95,30 @@ def test_the_pendulum_has_complete_elliptic_integrals(momentum, name):
     (found,) = closed_actions(action_variables(hamilton_jacobi(H), {q: 0, p: momentum}, {m: 1, k: 1}, 20))
     assert found.name == name
     assert found.J.has(sp.elliptic_e)
+
+
+@pytest.mark.parametrize(
+    ("H", "formula"),
+    [
+        (p * (w + a * sp.cos(q)), E / sp.sqrt(w**2 - a**2)),
+        pytest.param(w * p + a * sp.sin(q), E / w, marks=pytest.mark.slow),
+        pytest.param(p * (a * sp.sin(q) - w), -E / sp.sqrt(w**2 - a**2), marks=pytest.mark.slow),
+    ],
+)
+def test_a_hamiltonian_linear_in_the_momentum_turns(H, formula):
+    """ωJ + εJ cos θ, the example of many pages on averaging: it turns with √(ω² − ε²)."""
+    integral = hamilton_jacobi(Hamiltonian(H, q, p))
+    (found,) = closed_actions(action_variables(integral, {q: 1, p: half}, {w: 2, a: half}, digits=20))
+    inside = Domain((w > a,))
+    assert (found.name, found.tori) == ("rotation linear in p", 3)
+    assert vanishes(found.J - formula, inside).holds
+    assert vanishes(found.J - formula.subs(w, 2 * w), inside).fails
+
+
+def test_a_rate_that_vanishes_is_no_rotation():
+    integral = hamilton_jacobi(Hamiltonian(p * (1 + 2 * sp.cos(q)), q, p))
+    with pytest.raises(NoCycleError, match="rotation of q"):
+        action_variables(integral, {q: 1, p: 1})
 
 
 def test_the_polar_angle_has_the_whole_less_the_component():
