@@ -40,6 +40,8 @@ from .method.adaptive_methods import DOP853 as DOP853
 from .method.adaptive_methods import Taylor as Taylor
 from .method.constrained_method import Rattle as Rattle
 from .method.lie_poisson_splitting import LiePoissonSplitting as LiePoissonSplitting
+from .method.magnetic_methods import Boris as Boris
+from .method.magnetic_methods import MagneticSplitting as MagneticSplitting
 from .method.method import RK4 as RK4
 from .method.method import Gauss as Gauss
 from .method.method import Method as Method

@@ -27,6 +27,7 @@ from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
+from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import RK4, Gauss, Splitting, TimeTransformed
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
@@ -59,7 +60,7 @@ _CLASSES: dict[str, Any] = {
         RunState, StepEnd, LoopState, Event, Crossing, Splitting, Gauss, RK4, Taylor, DOP853, TimeTransformed,
         SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme, ExtendedPhaseSpace, SemiexplicitSplitting, Rattle,
         HolonomicSystem, LiePoissonSplitting, LiePoissonParts, PlaneTurns,
-        CommonTurn, TurningBlock,
+        CommonTurn, TurningBlock, Boris, MagneticSplitting,
     )
 }  # fmt: skip
 

@@ -21,6 +21,7 @@ from canon import (
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
+from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.method_text import method_from, method_named, method_of
 from canon.flow.method.nonseparable_splitting import COMPOSITIONS, ExtendedPhaseSpace, SemiexplicitSplitting
@@ -42,6 +43,9 @@ NAMED = {
     **{f"rattle-{order}": Rattle(order) for order in COMPOSITIONS},
     **{f"lie-poisson-{order}": LiePoissonSplitting(order) for order in COMPOSITIONS},
     "lie-poisson": LiePoissonSplitting(),
+    **{f"boris-{order}": Boris(order) for order in COMPOSITIONS},
+    **{f"magnetic-{order}": MagneticSplitting(order) for order in COMPOSITIONS},
+    "boris": Boris(),
     "rattle": Rattle(),
     "gauss": Gauss(),
     "rk4": RK4(),
@@ -59,6 +63,8 @@ KINDS = [
     Gauss(3),
     Rattle(6),
     LiePoissonSplitting(6),
+    Boris(4),
+    MagneticSplitting(6),
     SemiexplicitSplitting(6),
     ExtendedPhaseSpace(4, omega=2.5),
     RK4(),
@@ -147,7 +153,13 @@ def test_methods_by_solvable_parts_are_classes():
 
 def test_methods_answer_for_themselves():
     symplectic = {type(method).__name__ for method in KINDS if method.is_symplectic}
-    copies = {"LiePoissonSplitting", "Rattle", "ExtendedPhaseSpace", "SemiexplicitSplitting"}
+    copies = {
+        "MagneticSplitting",
+        "LiePoissonSplitting",
+        "Rattle",
+        "ExtendedPhaseSpace",
+        "SemiexplicitSplitting",
+    }
     assert symplectic == {"Splitting", "Gauss", "WisdomHolman", "SABA", "SBAB", "TimeTransformed"} | copies
     engines = {type(method).__name__: method.engine for method in KINDS}
     assert engines.pop("TimeTransformed") is FICTITIOUS_TIME

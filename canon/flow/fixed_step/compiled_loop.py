@@ -7,6 +7,7 @@ import functools
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from canon.flow.fixed_step.gauge_integrals import gauge_shifts
 from canon.flow.fixed_step.partial_step import PartialSteps
 from canon.flow.method.nonseparable_splitting import weights_of_order
 from canon.kernel.llvm.loop import Loop, runge_kutta_loop
@@ -21,6 +22,9 @@ from canon.kernel.loops.gauss import gauss_loop
 from canon.kernel.loops.lie_poisson import lie_poisson_loop
 from canon.kernel.loops.rattle import rattle_loop
 from canon.kernel.loops.splitting import splitting_loop
+from canon.kernel.magnetic.boris import boris_loop
+from canon.kernel.magnetic.gauge_shifts import gauge_shift_loop
+from canon.kernel.magnetic.magnetic_form import magnetic_form
 from canon.kernel.schemes.gauss_tableau import gauss_coefficients
 from canon.kernel.schemes.perturbed_schemes import corrector
 from canon.kernel.schemes.splitting_schemes import SCHEMES
@@ -32,6 +36,7 @@ if TYPE_CHECKING:
 
     from canon.flow.method.constrained_method import Rattle
     from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
+    from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
     from canon.flow.method.method import RK4, Gauss, Method, Splitting
     from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
     from canon.flow.method.number_formats import Precision
@@ -121,6 +126,18 @@ def _lie_poisson(
     return _kept_lie_poisson(system, weights, number, compensated=precision.compensated)
 
 
+def _boris(system: HamiltonEquations, method: Boris, precision: Precision, orbits: int) -> Loop:
+    number, weights = _with_lanes(precision.number, system, orbits, 0), len(weights_of_order(method.order))
+    return _kept_boris(system, weights, number, compensated=precision.compensated)
+
+
+def _magnetic(
+    system: HamiltonEquations, method: MagneticSplitting, precision: Precision, orbits: int
+) -> Loop:
+    number, weights = _with_lanes(precision.number, system, orbits, 0), len(weights_of_order(method.order))
+    return _kept_magnetic(system, weights, number, compensated=precision.compensated)
+
+
 def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, orbits: int) -> Loop:
     number = _with_lanes(precision.number, system, orbits, 0)
     return _kept_runge_kutta(system, number, compensated=precision.compensated)
@@ -178,6 +195,8 @@ _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
     "semiexplicit": _semiexplicit,
     "rattle": _rattle,
     "lie_poisson": _lie_poisson,
+    "boris": _boris,
+    "magnetic": _magnetic,
 }
 """What compiles the methods of each family."""
 
@@ -238,6 +257,18 @@ def _kept_lie_poisson(
     return lie_poisson_loop(system, system.lie_poisson, weights, number=number, compensated=compensated)
 
 
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_boris(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
+    return boris_loop(system, magnetic_form(system), weights, number=number, compensated=compensated)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_magnetic(
+    system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
+) -> Loop:
+    return gauge_shift_loop(system, gauge_shifts(system), weights, number=number, compensated=compensated)
+
+
 @functools.lru_cache(maxsize=64)
 def _kept_solvable(system: HamiltonEquations, method: SolvableSplitting, precision: Precision) -> Loop:
     part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
@@ -296,7 +327,7 @@ def _of_extended(method: ExtendedPhaseSpace, _number: MachineType, h: Fraction) 
 
 
 def _of_composition(
-    method: Rattle | LiePoissonSplitting, _number: MachineType, h: Fraction
+    method: Rattle | LiePoissonSplitting | Boris | MagneticSplitting, _number: MachineType, h: Fraction
 ) -> list[Fraction]:
     return [h * weight for weight in weights_of_order(method.order)]
 
@@ -313,5 +344,7 @@ _COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]]
     "semiexplicit": _of_semiexplicit,
     "rattle": _of_composition,
     "lie_poisson": _of_composition,
+    "boris": _of_composition,
+    "magnetic": _of_composition,
 }
 """What a step of each family reads, where the loop does not say it."""

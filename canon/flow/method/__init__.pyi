@@ -2,6 +2,8 @@ from .adaptive_methods import DOP853 as DOP853
 from .adaptive_methods import Taylor as Taylor
 from .constrained_method import Rattle as Rattle
 from .lie_poisson_splitting import LiePoissonSplitting as LiePoissonSplitting
+from .magnetic_methods import Boris as Boris
+from .magnetic_methods import MagneticSplitting as MagneticSplitting
 from .method import RK4 as RK4
 from .method import Gauss as Gauss
 from .method import Method as Method

@@ -19,6 +19,7 @@ from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
+from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
@@ -394,6 +395,8 @@ FixedStep = (
     | SemiexplicitSplitting
     | Rattle
     | LiePoissonSplitting
+    | Boris
+    | MagneticSplitting
 )
 """Methods that take steps of one size."""
 

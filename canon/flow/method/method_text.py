@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
+from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import RK4, Gauss, Method, Splitting, TimeTransformed
 from canon.flow.method.nonseparable_splitting import COMPOSITIONS, ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
@@ -62,6 +63,9 @@ def _named() -> dict[str, Callable[[], Method]]:
         **{f"rattle-{each}": partial(Rattle, each) for each in COMPOSITIONS},
         "lie-poisson": LiePoissonSplitting,
         **{f"lie-poisson-{each}": partial(LiePoissonSplitting, each) for each in COMPOSITIONS},
+        "boris": Boris,
+        **{f"boris-{each}": partial(Boris, each) for each in COMPOSITIONS},
+        **{f"magnetic-{each}": partial(MagneticSplitting, each) for each in COMPOSITIONS},
         **{f"semiexplicit-{each}": partial(SemiexplicitSplitting, each) for each in COMPOSITIONS},
         "wisdom-holman": WisdomHolman,
         **{f"saba-{stages}": partial(SABA, stages) for stages in _EIGHT},
@@ -137,10 +141,8 @@ def method_named(name: str) -> Method:
 
 
 def _those_there_are() -> str:
-    ranges = (
-        ("gauss", 1, HIGHEST_STAGES),
-        *((name, 2, 8) for name in ("semiexplicit", "rattle", "lie-poisson")),
-    )
+    composed = ("semiexplicit", "rattle", "lie-poisson", "boris", "magnetic")
+    ranges = (("gauss", 1, HIGHEST_STAGES), *((name, 2, 8) for name in composed))
     numbered = ", ".join(
         f"{name}-{a} … {name}-{b}" for name, a, b in (*ranges, ("saba", 1, 8), ("sbab", 1, 8))
     )
@@ -220,6 +222,10 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return Rattle(order)
         case {"lie_poisson": int() as order, **rest} if not rest:
             return LiePoissonSplitting(order)
+        case {"boris": int() as order, **rest} if not rest:
+            return Boris(order)
+        case {"magnetic": int() as order, **rest} if not rest:
+            return MagneticSplitting(order)
         case {"semiexplicit": int() as order, **rest} if not rest:
             return SemiexplicitSplitting(order)
         case {"extended_phase_space": int() as order, "omega": int() | float() as omega, **rest} if not rest:
@@ -241,6 +247,7 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
                 "{ gauss = stages, iteration = name }, "
                 "{ taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
                 "{ splitting = { a, b } }, { semiexplicit = order }, { rattle = order }, { lie_poisson = order }, "
+                "{ boris = order }, { magnetic = order }, "
                 "{ extended_phase_space = order, omega = number }, "
                 "{ solvable = name, corrector = order, commutator = true, coordinates = name }"
             )

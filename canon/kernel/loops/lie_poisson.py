@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from canon.kernel.llvm.cayley_turn import turn_factor, write_turn
 from canon.kernel.llvm.formulas import LaneFormulas
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
@@ -146,11 +147,7 @@ class _Flows:
                 w.store(w.algebra("mul", sign, w.load(array, place)), array, place)
 
     def _turn_block(self, block: TurningBlock, time: str) -> None:
-        """Write exp(time S) y as two turns by half the angle, y ← y + s U (y + U y), U = t S, s = 2/(1 + |t c M|²).
-
-        Each is a turn for any t. What rounding takes from s would make every turn by the same angle a little too
-        long or too short: it is carried along.
-        """
+        """Write exp(time S) y as two turns by half the angle, Cayley's with K = t S for some t."""
         w, f = self.w, LaneFormulas(self.w)
         M = [f.mul(w.load(self.y, i), w.constant(block.speed)) for i in block.axis]
         speed = f.sqrt(f.dot(M, M))
@@ -162,59 +159,6 @@ class _Flows:
         rests = f.equal(speed, f.zero)
         t = f.select(rests, f.zero, f.div(tangent, f.select(rests, f.one, speed)))
         axis = [f.mul(t, m) for m in M]
-        z, rest = self._square(axis)
-        length, two = f.add(f.one, z), w.constant(Fraction(2))
-        s, rest = f.div(two, length), f.add(f.sub(z, f.sub(length, f.one)), rest)
-        lost = f.div(f.sub(f.fma(f.neg(s), length, two), f.mul(s, rest)), length)
+        factor = turn_factor(w, axis)
         for _ in range(2):
-            self._move_block(block, axis, s, lost)
-
-    def _square(self, x: Sequence[str]) -> tuple[str, str]:
-        """Write Σ xᵢ² as a sum of two numbers."""
-        f = LaneFormulas(self.w)
-        total, rest = f.zero, f.zero
-        for each in x:
-            square = f.mul(each, each)
-            total, lost = f.two_sum(total, square)
-            rest = f.add(rest, f.add(lost, f.fma(each, each, f.neg(square))))
-        return total, rest
-
-    def _move_block(self, block: TurningBlock, axis: Sequence[str], s: str, lost: str) -> None:
-        """Write y ← y + s U (y + U y), with what s lacks; U y in two numbers where round-off is carried along."""
-        w, f = self.w, LaneFormulas(self.w)
-        y = {i: w.load(self.y, i) for entry in block.entries for i in entry[:2]}
-        if not self.e:
-            halfway = {i: w.algebra("add", y[i], moved) for i, moved in self._across(block, axis, y).items()}
-            for i, moved in self._across(block, axis, halfway).items():
-                increase(w, self.y, "", str(i), s, moved)
-                increase(w, self.y, "", str(i), lost, moved)
-            return
-        first, rest = self._across_exactly(block, axis, y)
-        twice = self._across(block, axis, first)
-        for i, moved in first.items():
-            total, slip = f.two_sum(moved, twice[i])
-            small = f.fma(s, f.add(slip, rest[i]), f.mul(lost, total))
-            w.store(f.add(w.load(self.e, i), small), self.e, i)
-            increase(w, self.y, self.e, str(i), s, total)
-
-    def _across(self, block: TurningBlock, axis: Sequence[str], y: dict[int, str]) -> dict[int, str]:
-        """Write U y."""
-        w, total = self.w, dict.fromkeys(y, self.w.constant(Fraction(0)))
-        for i, j, k in block.entries:
-            total[i] = w.multiply_add(w.negative(axis[k]), y[j], total[i])
-            total[j] = w.multiply_add(axis[k], y[i], total[j])
-        return total
-
-    def _across_exactly(
-        self, block: TurningBlock, axis: Sequence[str], y: dict[int, str]
-    ) -> tuple[dict[int, str], dict[int, str]]:
-        """Write U (y + e) as sums of two numbers."""
-        f, e = LaneFormulas(self.w), {i: self.w.load(self.e, i) for i in y}
-        total, rest = dict.fromkeys(y, f.zero), dict.fromkeys(y, f.zero)
-        for i, j, k in block.entries:
-            for moved, by, factor in ((i, j, f.neg(axis[k])), (j, i, axis[k])):
-                product = f.mul(factor, y[by])
-                total[moved], slip = f.two_sum(total[moved], product)
-                small = f.add(slip, f.fma(factor, y[by], f.neg(product)))
-                rest[moved] = f.add(rest[moved], f.fma(factor, e[by], small))
-        return total, rest
+            write_turn(w, self.y, self.e, [(i, j, axis[k]) for i, j, k in block.entries], factor)

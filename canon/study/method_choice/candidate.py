@@ -12,8 +12,10 @@ from sympy import Pow
 from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.equations.holonomic_motion import NotForRattleError
 from canon.flow.equations.lie_poisson_search import NoLiePoissonPartsError
+from canon.flow.fixed_step.gauge_integrals import gauge_shifts
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
+from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.setting import Setting
@@ -22,6 +24,7 @@ from canon.flow.propagation import is_separable
 from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system_request import any_task, is_hamiltonian
+from canon.kernel.magnetic.magnetic_form import NotMagneticError, magnetic_form
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
 from canon.mechanics.hamilton.poisson_system import PoissonSystem
@@ -120,7 +123,7 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
     """Return the methods that apply, those first that are usually the cheapest.
 
     Splittings where H = T(p) + V(q), in a fictitious time too where V has a singularity, else Gauss's methods and
-    splittings of two copies of the phase space;
+    splittings of two copies of the phase space, with Boris's push and magnetic splittings where H = (p − A)²/2m + φ;
     Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
     for comparison. Where there are no canonical variables, the last three alone, with RATTLE for holonomic
     constraints and Lie–Poisson splittings for rotating bodies.
@@ -129,9 +132,25 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
         return Taylor(), *_of_constraints(question), *_of_rotations(question), DOP853(), RK4()
     others = *_of_disturbed(question), RK4(), DOP853()
     if not is_separable(question.hamiltonian, question.values):
-        return Taylor(), *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *_of_two_copies(question), *others
+        charges = _of_charges(question)
+        return Taylor(), *charges, *(Gauss(s) for s in (4, 3, 2, 6, 8, 1)), *_of_two_copies(question), *others
     names = sorted(SCHEMES, key=lambda name: -SCHEMES[name].order)
     return Taylor(), *(Splitting(name) for name in names), *_of_close_encounters(question), *others
+
+
+def _of_charges(question: Question) -> tuple[Method, ...]:
+    """Return methods for H = Σ (p − A)²/2m + φ, charges and rotating frames, where H is that."""
+    system = hamilton_equations_of(question.hamiltonian, question.values)
+    try:
+        magnetic_form(system)
+    except NotMagneticError:
+        return ()
+    pushes = tuple(Boris(order) for order in (4, 2, 6))
+    try:
+        gauge_shifts(system)
+    except NotMagneticError:
+        return pushes
+    return *(MagneticSplitting(order) for order in (6, 4, 8, 2)), *pushes
 
 
 def _of_constraints(question: Question) -> tuple[Method, ...]:
