@@ -10,14 +10,18 @@ import sympy as sp
 
 from canon import (
     Hamiltonian,
+    Study,
     VectorField,
     choose,
     coordinates,
     drift,
+    drift_study,
     flow_jacobian,
     load_motion,
     parameters,
     propagate,
+    results_of,
+    run_study,
 )
 from canon.expression.symbols.symbol import time
 from canon.flow import LiePoissonSplitting, reversal_error
@@ -472,3 +476,18 @@ def test_a_choice_considers_it_where_it_applies():
 def test_its_drift_is_judged():
     motion = propagate(TOP, (0, 20_000), TOP_START, method=LiePoissonSplitting(4), step=0.2)
     assert drift(motion).verdict is Growth.BOUNDED
+    casimir = {"M Γ": sum(a * b for a, b in zip(M, Gamma, strict=True))}
+    methods = [LiePoissonSplitting(4), RK4()]
+    kept, lost = drift_study(TOP, TOP_START, methods=methods, span=20_000, step=0.2, observables=casimir).rows
+    assert abs(kept.error).max() < 1e-13
+    assert abs(lost.error).max() > 1e-3
+
+
+@pytest.mark.slow
+def test_studies_take_rotating_bodies(tmp_path):
+    study = Study.of(
+        system=BODY, start=[BODY_START], method="lie-poisson-4", step=[0.2, 0.1], span=200.0, samples=500
+    )
+    assert run_study(study, tmp_path / "bodies.sqlite").failed == 0
+    coarse, fine = (result.numbers["bound"] for result in results_of(tmp_path / "bodies.sqlite"))
+    assert 2.0**3 < coarse / fine < 2.0**5

@@ -31,7 +31,8 @@ from canon import (
     time,
     work_precision,
 )
-from canon.mechanics.lagrange.body import Particle
+from canon.mechanics import VERTICAL, heavy_top
+from canon.mechanics.lagrange.body import Particle, RigidBody, euler_rotation
 from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler, weights
 from canon.study.cases.case import key_of, part_count
 from canon.study.cases.checkpointed_run import Checkpoint, advance
@@ -132,6 +133,12 @@ def _systems():
             {"m": 1.0, "k": 1.0},
             "",
         ),
+        "a top": (
+            heavy_top([1, 1, k], g * VERTICAL[2]),
+            [0.1, 0.0, 2.0, 0.6, 0.0, 0.8],
+            {"k": 1.5, "g": 1.0},
+            "",
+        ),
         "a field": (VectorField([b, -sp.sin(a)], [a, b]), [0.5, 0.0], {}, "b**2/2 - cos(a)"),
         "heyoka's list": ([(u, v), (v, -hy.sin(u))], [0.5, 0.0], {}, "v**2/2 - cos(u)"),
         "SymPy's Lagrange": (
@@ -218,6 +225,10 @@ def test_what_a_study_cannot_take_is_told():
 def test_files_hold_data_and_no_code():
     text = system_text(damped_and_driven(), "damped")
     assert system_in(text) == damped_and_driven()
+    theta, phi, psi = coordinates("theta phi psi")
+    body = RigidBody(1, (0, 0, 0), (1, 1, 2), euler_rotation(phi, theta, psi))
+    turning = GibbsAppell([body], [theta, phi, psi], sp.cos(theta))
+    assert system_in(system_text(turning)) == turning
     forged = replace(text, written=text.written.replace('"Lagrangian"', '"Popen"'))
     with pytest.raises(StudyError, match="damped: its equations are not such as canon writes"):
         system_in(forged)

@@ -21,6 +21,7 @@ from canon.expression.symbols.expression_data import (
 )
 from canon.flow.equations.listed_equations import heyoka_field, is_heyoka_system
 from canon.flow.system.recognised_system import recognised
+from canon.mechanics.hamilton.poisson_system import PoissonSystem
 from canon.mechanics.hamilton.vector_field import VectorField
 from canon.mechanics.lagrange.appell import GibbsAppell
 from canon.mechanics.lagrange.body import Particle, PlanarBody, RigidBody
@@ -42,7 +43,7 @@ _CLASSES: dict[str, Any] = {
     each.__name__: each
     for each in (
         Lagrangian, ConstrainedLagrangian, Routhian, GibbsAppell, Kinematics, Particle, PlanarBody, RigidBody,
-        NewtonEuler, Load, VectorField, QuasiMotion,
+        NewtonEuler, Load, VectorField, QuasiMotion, PoissonSystem,
     )
 }  # fmt: skip
 
@@ -207,10 +208,10 @@ class _Writer:
             return value
         if isinstance(value, Symbol):
             return {"symbol": self._number(value)}
+        if isinstance(value, ImmutableDenseMatrix):  # which is an Expr too
+            return {"matrix": [[self.of(each) for each in row] for row in cast("Any", value).tolist()]}
         if isinstance(value, Expr):
             return {"expression": expression_data(value, self._number)}
-        if isinstance(value, ImmutableDenseMatrix):
-            return {"matrix": [[self.of(each) for each in row] for row in cast("Any", value).tolist()]}
         if isinstance(value, tuple):
             return {"tuple": [self.of(each) for each in cast("tuple[Any, ...]", value)]}
         name = type(value).__name__
