@@ -13,7 +13,7 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.equations.contact_regimes import check_contacts, impacts_pile_up, regimes_of
 from canon.flow.equations.left_out import check_left_out
 from canon.flow.integrate import integrate, silently
-from canon.flow.run.non_finite_state import PiledUpError
+from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, named
 from canon.flow.run.observables_along import measured, size_of_terms, warn_of_jumps
 from canon.flow.run.samples import Samples, Statistics
 from canon.flow.system.named_values import node_along, variables_of
@@ -300,6 +300,17 @@ def recorded(
     AccuracyWarning
         The energy shows that the motion is not the system's.
     """
+    if moving is None:
+        return _carried_out(task, progress, so_far, moving)
+    try:
+        return _carried_out(task, progress, so_far, moving)
+    except NonFiniteStateError as lost:
+        raise named(lost, [s.name for s in variables_of(task.system)]) from None
+
+
+def _carried_out(
+    task: Task, progress: Callable[[float], None], so_far: Samples | None, moving: MovingSystem | None
+) -> RunRecord:
     try:
         found = integrate(task, progress, so_far)
     except PiledUpError as lost:

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import Event, Hamiltonian, Lagrangian, coordinates, propagate
+from canon import Event, Hamiltonian, Lagrangian, coordinates, propagate, time
+from canon.flow.run.non_finite_state import PiledUpError
 
 x = coordinates("x")
 p = x.momentum
@@ -67,3 +68,22 @@ def test_exponent_that_sympy_took_apart(precision):
     H = Hamiltonian(p**2 / 2 + x * sp.exp(-(pendulum.t - 50) / 0.001), [x], [p])
     with pytest.raises(ValueError, match="exponents with floats, which SymPy takes apart"):
         propagate(H, (0, 100), [1, 0], precision=precision)
+
+
+def test_a_passing_where_one_run_ends_and_the_next_begins_is_counted_once():
+    """The next run took its start for a zero, and the one before had not come to it."""
+    surface = Event(sp.sin(time / 2))
+    for method in ("taylor", "DOP853"):
+        state, met = [0.5, 0.0], []
+        for turn in range(1, 9):
+            span = 2 * np.pi * (turn - 1), 2 * np.pi * turn
+            run = propagate(pendulum, span, state, method=method, events=[surface], samples=2)
+            state, met = run.final, [*met, *(each.t for each in run.events)]
+        assert met[:7] == pytest.approx(2 * np.pi * np.arange(1, 8), rel=1e-14)
+        assert len(met) <= 8
+
+
+def test_a_ball_that_bounces_ever_lower_does_not_fall_through_the_floor():
+    ball = Lagrangian(x.dot**2 / 2 - x, [x])
+    with pytest.raises(PiledUpError, match=r"met again at once at t = 4\.24264.* where \(x, x_dot\) = "):
+        propagate(ball, (0, 10), [1, 0], method="DOP853", events=[Event(x, -1, {x.dot: -x.dot / 2})])

@@ -255,3 +255,13 @@ def test_a_projection_costs_little_more_than_one_repetition_where_steps_are_smal
         DOUBLE_PENDULUM, (0, 20), DOUBLE_PENDULUM_START, method=SemiexplicitSplitting(8), step=0.02
     )
     assert motion.evaluations < 1.5 * motion.steps * motion.method.stages
+
+
+def test_the_way_back_begins_with_both_copies():
+    """From their mean alone it missed the start by what the copies are apart."""
+    for method in (ExtendedPhaseSpace(4, omega=20), SemiexplicitSplitting(4)):
+        starts = np.array(
+            [[1.0, 0.5], [0.3, 0.2], [0.0, 0.0], [0.0, 0.0]]
+        )  # at rest, where momenta are round-off
+        missed = reversal_error(DOUBLE_PENDULUM, (0, 5), starts, method=method, step=0.02)
+        assert abs(missed).max() < 1e-14

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbols.symbol import time
-from canon.flow.method.method import RK4, Gauss, Splitting, Taylor
+from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagation import propagate
 from canon.flow.run.event import Event
 from canon.flow.run.non_finite_state import NonFiniteStateError
@@ -291,3 +291,21 @@ def test_a_zero_where_a_motion_is_resumed_is_met_once():
     met = [round(crossing.t / np.pi) for crossing in motion.events]
     assert met[:10] == list(range(1, 11))
     assert met[10:] in ([], [11])
+
+
+@pytest.mark.parametrize(("method", "how"), [*EVERY, (DOP853(), {})], ids=[*IDS, "dop853"])
+@pytest.mark.parametrize("way", [1, -1])
+def test_an_angle_is_taken_back_by_whole_turns(method, how, way):
+    """A change that leads away from the zero is no piling up, and the function's side is where it leads to."""
+    over = Event(theta - way * sp.pi, way, {theta: theta - 2 * way * sp.pi})
+    motion = propagate(PENDULUM, (0, way * 10), [0, 3], method=method, events=[over], samples=50, **how)
+    free = propagate(PENDULUM, (0, way * 10), [0, 3], method=method, samples=50, **how)
+    assert len(motion.events) == round(abs(free.final[0]) / (2 * np.pi))
+    assert abs(motion.y[0]).max() < np.pi + 1e-12
+    turns = (motion.y[0] - free.y[0]) / (2 * np.pi)
+    assert turns == pytest.approx(turns.round(), abs=1e-5)
+    # Both directions: going over and being put back is met once a turn.
+    saw = Event(theta - way, 0, {theta: 0})
+    rotor = System(theta.momentum**2 / 2, (theta,), (theta.momentum,))
+    teeth = propagate(rotor, (0, way * 9.5), [0, 1], method=method, events=[saw], **how)
+    assert times(teeth) == pytest.approx(way * np.arange(1, 10), abs=1e-13)

@@ -118,3 +118,12 @@ def test_a_satellite_that_nearly_meets_its_centre_has_113_bits(start):
     seen = orbit_frequencies(action_variables(integral, start, digits=17), 30)
     assert seen.energy_error < 1e-12
     assert seen.difference < 1e-12
+
+
+@pytest.mark.slow
+def test_progress_is_told_up_to_the_end():
+    integral = hamilton_jacobi(PENDULUM)
+    told: list[float] = []
+    orbit_frequencies(action_variables(integral, {q: 0, p: 1}, digits=17), 1, progress=told.append)
+    assert told == sorted(told)
+    assert told[-1] == 1

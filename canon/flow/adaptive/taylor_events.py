@@ -189,6 +189,8 @@ class TaylorEvents:
     def check_left(self, event: PreparedEvent, changed: Any, t: Any, after: Any, later: Any) -> None:
         """Make sure that a motion, changed at t, has left an event's zero later to the side to which it was sent.
 
+        A change that takes the function itself away from zero leaves nothing to look for.
+
         Raises
         ------
         NonFiniteStateError
@@ -197,6 +199,9 @@ class TaylorEvents:
         if event.switches:
             return
         now = self._value(event, float(later), *self._parts(after))
+        begun = self._value(event, float(t), *self._parts(changed)) if event.resets else 0.0
+        if abs(begun) > abs(now - begun):
+            return
         sent = self._value(event, float(t), *self._parts(changed), rate=True) * self.forward
         if now * sent <= 0:
             y = (changed * self.size).astype(np.float64)[self.system.rows]
@@ -236,6 +241,42 @@ class TaylorEvents:
             if not known and event.event.counts(rising):
                 self._record(event, begun, state, 1 if rate > 0 else -1, None)
                 self.crossings[met:] = [self.crossings[-1], *self.crossings[met:-1]]
+
+    def settle_ends(self, begin: tuple[Any, Any] | None, end: tuple[Any, Any] | None, span: float) -> None:
+        """Count zeros at the ends of a motion as passed where the function's sign says so.
+
+        So has one the run that goes on from another's last state, or that other, and not both.
+
+        Parameters
+        ----------
+        begin, end
+            Times and states, where the motion begins at one of its own and ends at its last time.
+        span
+            Its length.
+        """
+        for place, at_end in ((begin, False), (end, True)):
+            if place is None:
+                continue
+            t, state = float(place[0]), place[1]
+            near, parts = (abs(t) + abs(span)) * _SAME_TIME, self._parts(state)
+            for event in self.recorded:
+                value, rate = (self._value(event, t, *parts, rate=rate) for rate in (False, True))
+                if not abs(value) < abs(rate) * near:
+                    continue
+                rising = rate * self.forward > 0
+                here = [
+                    c
+                    for c in self.crossings
+                    if c.event is event.event and c.rising == rising and abs(c.t - t) <= 2 * near
+                ]
+                # At the end it has been passed where the sign has changed, at the beginning it is still to be passed.
+                passed = value * rate * self.forward > 0 if at_end else value * rate * self.forward < 0
+                if not passed:
+                    self.crossings = [c for c in self.crossings if not any(c is each for each in here)]
+                elif not here and event.event.counts(rising):
+                    self._record(event, t, state, 1 if rate > 0 else -1, None)
+                    if not at_end:
+                        self.crossings.insert(0, self.crossings.pop())
 
     def _value(self, event: PreparedEvent, t: float, high: Array, low: Array, *, rate: bool = False) -> float:
         node = event.rate if rate else event.value

@@ -103,6 +103,10 @@ def taylor_motion(
     found = np.concatenate(run.rows).transpose(1, 0, 2)
     y = found.astype(np.float64)
     t = plan.instants[first : first + y.shape[1]]
+    if events and kinks is None:
+        begin = None if so_far is not None else (plan.instants[0], run.rows[0][0, :, 0] / taylor_events.size)
+        end = None if run.stopped else (t[-1], run.beyond[0][0] / taylor_events.size)
+        taylor_events.settle_ends(begin, end, float(t[-1] - t[0]))
     if run.stopped:
         t = np.append(t[: y.shape[1] - 1], taylor_events.crossings[-1].t)
     if events:

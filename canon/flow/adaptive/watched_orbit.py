@@ -95,7 +95,7 @@ class WatchedOrbit:
         self.signs: Signs = ()
         if self.kinks is not None:
             self.signs = signs_at_start(self.kinks, self._place(), self.forward)
-        self._sides = self._sides_now()
+        self._sides = self._sides_now(rounding=0.0)  # as the other engines take a start
 
     @property
     def compile_seconds(self) -> float:
@@ -235,6 +235,7 @@ class WatchedOrbit:
     def _meet(self, event: PreparedEvent, *, rising: bool) -> None:
         y, after = self.y[self.system.rows], None
         if event.jump is not None:
+            self._check_again(event)
             self.y = np.array(self._place().values(self.system, event.jump))
             if not np.isfinite(self.y).all():
                 raise self._error("the new state of an event is not finite")
@@ -244,12 +245,30 @@ class WatchedOrbit:
         self.crossings.append(Crossing(event.event, self.t, y, rising, after))
         self.stopped = event.event.action == "stop"
 
+    def _check_again(self, event: PreparedEvent) -> None:
+        """Make sure that an event that changed the state is not met again at the same instant.
+
+        Raises
+        ------
+        PiledUpError
+            It is.
+        """
+        latest = [met for met in self.crossings[-9:] if met.event is event.event and met.t == self.t]
+        if latest and not event.switches:
+            at_once = (
+                f"{event.event} is met again at once at {time_and_state(self.t, self.y[self.system.rows])}"
+            )
+            raise PiledUpError(
+                f"{at_once}: events pile up there; stop the motion before", self.t, self.y[self.system.rows]
+            )
+
     def _meet_too(self, event: PreparedEvent) -> None:
         """Meet another event if its function vanishes at the same place."""
         at = self._place()
         value, rate = at.values(self.system, [event.value, event.rate])
         rising = rate * self.forward > 0
-        near = abs(value) <= _AT_ONCE * at.size(self.system, event.value)
+        late = 2 * np.spacing(abs(self.t)) * abs(rate)
+        near = abs(value) <= _AT_ONCE * at.size(self.system, event.value) + late
         told = any(
             met.event is event.event and abs(met.t - self.t) <= _AT_ONCE * (abs(met.t) + 1.0)
             for met in self.crossings[-9:]
@@ -257,14 +276,16 @@ class WatchedOrbit:
         if near and rate and not told and event.event.counts(rising):
             self._meet(event, rising=rising)
 
-    def _sides_now(self, crossed: Zero | None = None) -> Array:
+    def _sides_now(self, crossed: Zero | None = None, rounding: float = _AT_ONCE) -> Array:
         """Return of which sign every function is from here on: of its rate where it vanishes; 0 where that does too."""
         watch = self._watch()
         at = self._place()
         sides = [float(self.signs[k]) if self.signs[k] != HELD else 1.0 for k in watch.kinks]
         for event in watch.events:
             value, rate = at.values(watch.regime.system, [event.value, event.rate])
-            zero = abs(value) <= _AT_ONCE * at.size(watch.regime.system, event.value)
+            # An event is found to the rounding of time.
+            late = 2 * np.spacing(abs(self.t)) * abs(rate) if rounding else 0.0
+            zero = abs(value) <= rounding * at.size(watch.regime.system, event.value) + late
             sides.append(
                 math.copysign(1.0, rate * self.forward) * bool(rate) if zero else math.copysign(1.0, value)
             )

@@ -18,6 +18,9 @@ __all__ = ["Zero", "zeros_in_step"]
 _PLACES = 9
 """At so many places of a step, its end included, functions are looked at, and at the extrema between them."""
 
+_HALVINGS = 60
+"""So often a step is halved to find a function off the zero at which it begins."""
+
 _MOST = 10_000
 """Steps of Brent's method at most."""
 
@@ -62,14 +65,16 @@ def zeros_in_step(
 
 
 def _root(value: Callable[[float], float], a: float, b: float, at_b: float) -> float:
-    from scipy.optimize import brentq, minimize_scalar
+    from scipy.optimize import brentq
 
     if value(a) * at_b >= 0:  # the start of a step lies at the zero, rounded to the other side
         side = math.copysign(1.0, at_b)
-        turn: Any = minimize_scalar(lambda t: side * value(t), bounds=sorted((a, b)), method="bounded")
-        if side * value(float(turn.x)) >= 0:
+        # A ball that hardly bounces is off the floor for a very small part of a step.
+        parts = (a + (b - a) * 0.5**k for k in range(1, _HALVINGS))
+        inside = next((t for t in parts if side * value(t) < 0), a)
+        if inside == a:
             return a
-        a = float(turn.x)
+        a = inside
     # At a multiple root, as of x³, Brent's method takes some hundred steps.
     root: Any = brentq(value, a, b, xtol=2.0**-51 * max(abs(a), abs(b), 2.0**-900), maxiter=_MOST)
     return float(root)

@@ -33,6 +33,9 @@ _IN_ONE_STEP = 100
 _AT_ONCE = Fraction(1, 2**30)
 """Nor does one that changes the state come again after so small a part of a step unless it does."""
 
+_AWAY = 2.0**-10
+"""In parts of its way in a step: a function that a change of the state has taken farther from zero is on that side."""
+
 _TRIES = 200
 
 
@@ -189,8 +192,11 @@ class EventLocator:
             rest.n, place, base, self.steps.moved(base, rest.n, place, Fraction(1))
         )
         self.sides[i] = _sign(following.latest[i][1]) or -self.sides[i]
-        if self.events[i].switches:
-            self.sides[i] = _sign(self.values_and_rates(base, t)[i][0]) or self.sides[i]
+        if self.events[i].switches or self.events[i].resets:
+            value, rate = self.values_and_rates(base, t)[i]
+            way = abs(rate * float(self.steps.h)) + abs(following.at_end[i][0] - value)
+            if self.events[i].switches or abs(value) > _AWAY * way > 0:
+                self.sides[i] = _sign(value) or self.sides[i]
         return following
 
     def _record(

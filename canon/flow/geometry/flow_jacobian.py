@@ -126,7 +126,9 @@ def flow_jacobian(
 
     Where neighbours part by more than doubles can hold, the variations begin anew on the way and are multiplied.
     For methods of fixed steps it is the exact derivative of the discrete map that the compiled steps make, up to
-    round-off, so that a symplectic method's is symplectic to round-off at any step. For Taylor and DOP853 it is
+    round-off, so that a symplectic method's is symplectic to round-off at any step; but that of
+    :class:`canon.flow.ExtendedPhaseSpace`, which is symplectic in two copies of phase space: M is the derivative of
+    their mean, from copies that begin alike, and symplectic to the method's error. For Taylor and DOP853 it is
     the flow's, to their tolerance, with the jumps of variations where rates jump at kinks, which steps of one size pass
     unseen.
 
@@ -280,7 +282,7 @@ def reversal_error(
     """Return how far from its start a motion arrives that runs forward and then back, shape of y0.
 
     A symmetric method arrives to round-off, times what the motion makes of it; others miss by their error, and so do
-    time-transformed ones, which land within a step.
+    time-transformed ones, which land within a step. Tao's method goes back from both of its copies.
 
     Parameters
     ----------
@@ -314,7 +316,12 @@ def reversal_error(
     if task.system.kicked:
         forward = task.method == KICK_AND_DRIFT
         task = replace(task, method=DRIFT_AND_KICK if forward else KICK_AND_DRIFT)
-    returned = finished(recorded(replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back)))
-    end = returned.record.samples
+    task = replace(task, states=(kept.y[:, -1], kept.carried[:, -1]), plan=back)
+    from_copies = None  # the second copy is no part of the state
+    if task.method.family == "extended_phase_space":
+        from_copies = replace(
+            kept, t=kept.t[-1:], y=kept.y[:, -1:], carried=kept.carried[:, -1:], steps=0, evaluations=0
+        )
+    end = finished(recorded(task, so_far=from_copies, moving=there.moving)).record.samples
     missed = ((end.y[:, -1] - high) + (end.carried[:, -1] - low))[task.system.rows]
     return missed[:, 0] if task.single else missed

@@ -39,8 +39,8 @@ class ExtendedPhaseSpace:
     Notes
     -----
     The method is symplectic in the doubled phase space; the state that is kept is the mean of the copies, whose energy
-    error stays bounded while the copies keep together. See :class:`SemiexplicitSplitting` for a method that is
-    symplectic in (q, p) and has no ω.
+    error stays bounded while the copies keep together, and whose Jacobian is symplectic to the method's error only. See
+    :class:`SemiexplicitSplitting` for a method that is symplectic in (q, p) and has no ω.
 
     Examples
     --------

@@ -124,7 +124,8 @@ class Crossing:
 class PreparedEvent:
     """An event's nodes in a system's graph: g, dg/dt along the motion, and the state after its change.
 
-    ``switches``: the change itself takes g away from zero, so that the motion need not leave it.
+    ``switches``: the change itself takes g away from zero, so that the motion need not leave it. ``resets``: it changes
+    variables that g holds, as θ → θ − 2π at θ = π, and may take it away.
     """
 
     event: Event
@@ -132,6 +133,7 @@ class PreparedEvent:
     rate: int
     jump: tuple[int, ...] | None
     switches: bool = False
+    resets: bool = False
 
 
 def prepared_events(system: HamiltonEquations, events: Sequence[Event]) -> tuple[PreparedEvent, ...]:
@@ -175,8 +177,16 @@ def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
         else graph.symbol(s)
         for s in state
     ]
+    held = graph.symbols(value)
     switched = {s for s in given if isinstance(s, sp.Dummy)}
-    return PreparedEvent(event, value, rate, tuple(jump), not switched.isdisjoint(graph.symbols(value)))
+    return PreparedEvent(
+        event,
+        value,
+        rate,
+        tuple(jump),
+        switches=not switched.isdisjoint(held),
+        resets=not held.isdisjoint(given),
+    )
 
 
 def _reflected(

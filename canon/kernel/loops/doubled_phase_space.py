@@ -304,7 +304,9 @@ class _Projection:
         for i, moved in enumerate(self.moves(r)):
             change = w.algebra("mul", half, w.multiply_add(back, moved, r[i]))
             w.store(w.algebra("sub", w.load(self.guess, i), change), self.guess, i)
-            for k, value in ((0, change), (1, w.load(copies.y, i))) if i in copies.system.rows else ():
+            # A motion that comes to rest at the end of a step has momenta at its beginning.
+            sizes = (0, change), (1, w.load(copies.y, i)), (1, w.load(self.start, i))
+            for k, value in sizes if i in copies.system.rows else ():
                 place = 2 * (i * _HALVES // self.size) + k
                 size = g.intrinsic("fabs", value if w.number == SINGLE else w.as_double(value))
                 g.store(g.intrinsic("maxnum", g.load(self.sizes, place), size), self.sizes, place)

@@ -12,8 +12,11 @@ from canon.flow.method.adaptive_methods import Taylor
 from canon.flow.propagation import propagate
 from canon.mechanics.integrable.actions import angles
 from canon.mechanics.integrable.cycles import CycleKind
+from canon.progress import reporting
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy.typing as npt
     from sympy import Symbol
 
@@ -59,7 +62,12 @@ class OrbitFrequencies:
         return max(abs(f - e) for f, e in zip(self.found, self.expected, strict=True)) / scale
 
 
-def orbit_frequencies(torus: ActionVariables, periods: float = 200.0) -> OrbitFrequencies:
+def orbit_frequencies(
+    torus: ActionVariables,
+    periods: float = 200.0,
+    *,
+    progress: Callable[[float], None] | bool | None = None,
+) -> OrbitFrequencies:
     """Propagate the start of a torus with heyoka's Taylor method, and return the frequencies of that orbit.
 
     The angles θ = ∂W/∂J of states along the orbit grow as ω t on the right torus. Frequencies are read from them over
@@ -72,6 +80,8 @@ def orbit_frequencies(torus: ActionVariables, periods: float = 200.0) -> OrbitFr
         What :func:`canon.mechanics.action_variables` returned.
     periods
         How many of the shortest periods the orbit runs for.
+    progress
+        As :func:`canon.propagate` takes it.
 
     Examples
     --------
@@ -93,25 +103,29 @@ def orbit_frequencies(torus: ActionVariables, periods: float = 200.0) -> OrbitFr
     known: dict[Symbol | str, float] = {
         s: float(v) for s, v in torus.values.items() if s in H.H.free_symbols and s not in variables
     }
-    for precision in ("double", "quad"):
-        run: Any = propagate(
-            H,
-            (0.0, float(times[-1])),
-            start,
-            method=Taylor(),
-            times=times,
-            parameters=known,
-            precision=precision,
-        )
-        kept = float(np.abs(run.energy_error).max())
-        if kept < KEPT:
-            break
-    states: npt.NDArray[np.float64] = run.y
-    chosen = [
-        _farthest_from_rest(torus, states, range(i * CANDIDATES, (i + 1) * CANDIDATES))
-        for i in range(len(centres))
-    ]
-    reduced = [_angles(torus, variables, states[:, k]) for k in chosen]
+    with reporting(progress) as report:
+        for precision in ("double", "quad"):
+            run: Any = propagate(
+                H,
+                (0.0, float(times[-1])),
+                start,
+                method=Taylor(),
+                times=times,
+                parameters=known,
+                precision=precision,
+            )
+            kept = float(np.abs(run.energy_error).max())
+            if kept < KEPT:
+                break
+        states: npt.NDArray[np.float64] = run.y
+        chosen = [
+            _farthest_from_rest(torus, states, range(i * CANDIDATES, (i + 1) * CANDIDATES))
+            for i in range(len(centres))
+        ]
+        reduced: list[npt.NDArray[np.float64]] = []
+        for k in chosen:  # balls take nearly all of the time
+            reduced.append(_angles(torus, variables, states[:, k]))
+            report(len(reduced) / len(chosen))
     found, span = np.zeros(len(expected)), 0.0
     for k, theta in zip(chosen[1:], reduced[1:], strict=True):
         span = float(times[k] - times[chosen[0]])
