@@ -104,9 +104,7 @@ def taylor_motion(
     y = found.astype(np.float64)
     t = plan.instants[first : first + y.shape[1]]
     if events and kinks is None:
-        begin = None if so_far is not None else (plan.instants[0], run.rows[0][0, :, 0] / taylor_events.size)
-        end = None if run.stopped else (t[-1], run.beyond[0][0] / taylor_events.size)
-        taylor_events.settle_ends(begin, end, float(t[-1] - t[0]))
+        run.settle_ends(t, begins=so_far is None)
     if run.stopped:
         t = np.append(t[: y.shape[1] - 1], taylor_events.crossings[-1].t)
     if events:
@@ -178,6 +176,13 @@ class _TaylorRun:
                     progress(end / (len(plan.instants) - 1))
             except KeyboardInterrupt:
                 del self.taylor_events.crossings[met:]
+
+    def settle_ends(self, t: Array, *, begins: bool) -> None:
+        """Count zeros at the ends of these sample times once; at the first where the motion begins there."""
+        size = self.taylor_events.size
+        begin = (t[0], self.rows[0][0, :, 0] / size) if begins else None
+        end = None if self.stopped else (t[-1], self.beyond[0][0] / size)
+        self.taylor_events.settle_ends(begin, end, float(t[-1] - t[0]))
 
     def _add(self, made: Sequence[Slice]) -> None:
         self.stopped = any(each.stopped for each in made)
