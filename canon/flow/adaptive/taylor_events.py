@@ -257,26 +257,24 @@ class TaylorEvents:
         for place, at_end in ((begin, False), (end, True)):
             if place is None:
                 continue
-            t, state = float(place[0]), place[1]
-            near, parts = (abs(t) + abs(span)) * _SAME_TIME, self._parts(state)
+            t, near = float(place[0]), (abs(float(place[0])) + abs(span)) * _SAME_TIME
             for event in self.recorded:
-                value, rate = (self._value(event, t, *parts, rate=rate) for rate in (False, True))
-                if not abs(value) < abs(rate) * near:
-                    continue
-                rising = rate * self.forward > 0
-                here = [
-                    c
-                    for c in self.crossings
-                    if c.event is event.event and c.rising == rising and abs(c.t - t) <= 2 * near
-                ]
-                # At the end it has been passed where the sign has changed, at the beginning it is still to be passed.
-                passed = value * rate * self.forward > 0 if at_end else value * rate * self.forward < 0
-                if not passed:
-                    self.crossings = [c for c in self.crossings if not any(c is each for each in here)]
-                elif not here and event.event.counts(rising):
-                    self._record(event, t, state, 1 if rate > 0 else -1, None)
-                    if not at_end:
-                        self.crossings.insert(0, self.crossings.pop())
+                self._settle_end(event, t, place[1], near, at_end=at_end)
+
+    def _settle_end(self, event: PreparedEvent, t: float, state: Any, near: float, *, at_end: bool) -> None:
+        parts = self._parts(state)
+        value, rate = (self._value(event, t, *parts, rate=rate) for rate in (False, True))
+        if not abs(value) < abs(rate) * near:
+            return
+        rising, beyond = rate * self.forward > 0, value * rate * self.forward
+        same = [c for c in self.crossings if c.event is event.event and c.rising == rising]
+        here = [c for c in same if abs(c.t - t) <= 2 * near]
+        # At the end it has been passed where the sign has changed, at the beginning it is still to be passed.
+        if not (beyond > 0 if at_end else beyond < 0):
+            self.crossings = [c for c in self.crossings if not any(c is each for each in here)]
+        elif not here and event.event.counts(rising):
+            self._record(event, t, state, 1 if rate > 0 else -1, None)
+            self.crossings.insert(len(self.crossings) if at_end else 0, self.crossings.pop())
 
     def _value(self, event: PreparedEvent, t: float, high: Array, low: Array, *, rate: bool = False) -> float:
         node = event.rate if rate else event.value
